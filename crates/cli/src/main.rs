@@ -7,16 +7,8 @@
 mod args;
 mod commands;
 mod error;
-mod files;
-mod graphs;
-mod measuring;
-mod pictures;
-mod records;
-mod reporting;
+mod scene_selection;
 mod terminal;
-#[cfg(feature = "window")]
-mod viewer;
-mod wording;
 
 use args::cli::{Cli, Command};
 use clap::Parser;

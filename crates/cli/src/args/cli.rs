@@ -162,9 +162,10 @@ pub enum Command {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::args::values::{Assignment, LightArgument, Size};
+    use crate::args::values::LightArgument;
     use clap::CommandFactory;
     use glam::DVec3;
+    use skiagraph_compare::{graphs::argument::Assignment, size::Size};
     use skiagraph_reference::OracleMode;
 
     fn parse(line: &str) -> Result<Cli, clap::Error> {

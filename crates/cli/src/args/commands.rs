@@ -2,14 +2,16 @@
 
 use crate::args::{
     shared::{MethodArgs, SceneArgs},
-    values::{Assignment, PublishedFile, Save, Size, frames, texels},
+    values::{frames, texels},
 };
 use clap::{Args, ValueEnum};
+use skiagraph_compare::graphs::argument::Assignment;
+use skiagraph_compare::measuring::ground_truth::REFERENCE_SAMPLES;
+use skiagraph_compare::pictures::save::Save;
+use skiagraph_compare::records::published_row::PublishedFile;
+use skiagraph_compare::size::Size;
 use skiagraph_reference::OracleMode;
 use std::path::PathBuf;
-
-/// Samples of lights with an extent, unless `--reference-samples` sets their number.
-pub const REFERENCE_SAMPLES: u32 = 512;
 
 /// `skiagraph compare`.
 #[derive(Args, Debug)]

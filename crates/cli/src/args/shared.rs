@@ -1,9 +1,17 @@
 //! Arguments that several commands share.
 
-use crate::args::values::{self, Assignment, LightArgument, Size, texels};
+use crate::args::values::{self, LightArgument, texels};
 use clap::{Args, ValueEnum};
 use glam::DVec3;
+use skiagraph_compare::error::CompareError;
+use skiagraph_compare::graphs::argument::Assignment;
+use skiagraph_compare::graphs::method::{self, ParamValues};
+use skiagraph_compare::graphs::preset::Preset;
+use skiagraph_compare::measuring::device::GpuRequest;
+use skiagraph_compare::size::Size;
+use skiagraph_graph::Sources;
 use skiagraph_scene::{Concave, MaterialUse};
+use std::{sync::Arc, time::Duration};
 
 /// The GPU, and how much of it and of our time a graph may take.
 #[derive(Args, Clone, Debug)]
@@ -27,6 +35,18 @@ pub struct GpuArgs {
     #[arg(long, global = true, value_name = "SECONDS", default_value_t = 300,
           value_parser = clap::value_parser!(u64).range(..=MAX_SECONDS))]
     pub timeout: u64,
+}
+
+impl GpuArgs {
+    /// The GPU that they ask for.
+    pub fn request(&self) -> GpuRequest {
+        GpuRequest {
+            adapter: self.adapter.clone(),
+            backends: self.backend.map(wgpu::Backends::from),
+            memory_limit: self.memory_limit,
+            timeout: (self.timeout > 0).then(|| Duration::from_secs(self.timeout)),
+        }
+    }
 }
 
 /// An interface to GPUs that this program knows.
@@ -138,6 +158,16 @@ impl From<ConcavePolygons> for Concave {
     }
 }
 
+impl SceneArgs {
+    /// The name of the light that they ask for, if it is one of the scene's.
+    pub fn light_name(&self) -> Option<&str> {
+        match &self.light {
+            Some(LightArgument::Name(name)) => Some(name),
+            Some(LightArgument::Direction(_)) | None => None,
+        }
+    }
+}
+
 #[cfg(feature = "window")]
 impl SceneArgs {
     /// A scene as its file says.
@@ -173,4 +203,14 @@ pub struct MethodArgs {
     /// A param of the graph. May be repeated.
     #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
     pub params: Vec<Assignment>,
+}
+
+impl MethodArgs {
+    /// Loads the graph that they name, with the params that they set.
+    ///
+    /// # Errors
+    /// Those of [`method::load_one`].
+    pub fn load(&self, sources: &dyn Sources) -> Result<(Arc<Preset>, ParamValues), CompareError> {
+        method::load_one(&self.preset, &self.params, self.map_size, sources)
+    }
 }

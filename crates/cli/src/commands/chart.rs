@@ -1,15 +1,16 @@
 //! `skiagraph chart`: what `compare` kept, as a picture.
 
 use crate::args::commands::{ChartArgs, ChartKind};
-use crate::args::values::{PublishedFile, Size};
 use crate::error::CliError;
-use crate::files::write::{check_folder, check_writable, write_whole};
-use crate::records::read_back;
-use crate::reporting::charts::{self, Kept};
-use crate::reporting::{published, published_charts};
 use crate::terminal::console::{note, print};
-use crate::wording::plural;
-use resvg::{tiny_skia, usvg};
+use skiagraph_compare::files::write::{check_folder, check_writable, write_whole};
+use skiagraph_compare::records::published;
+use skiagraph_compare::records::published_row::PublishedFile;
+use skiagraph_compare::records::read_back;
+use skiagraph_compare::size::Size;
+use skiagraph_compare::wording::plural;
+use skiagraph_report::charts::{self, Kept};
+use skiagraph_report::{published_charts, raster};
 use std::path::Path;
 
 /// Reads the results, draws them, and says what could not be drawn.
@@ -46,40 +47,11 @@ pub fn chart(args: &ChartArgs) -> Result<(), CliError> {
         .map_err(|error| CliError::Input(error.to_string()))?;
     match &args.out {
         Some(file) if file.extension().is_some_and(|it| it == "png") => {
-            write_whole(file, &png(&svg)?)
+            Ok(write_whole(file, &raster::png(&svg)?)?)
         }
-        Some(file) => write_whole(file, svg.as_bytes()),
+        Some(file) => Ok(write_whole(file, svg.as_bytes())?),
         None => print(&svg),
     }
-}
-
-/// A chart in two pixels per unit of its own, as papers and slides want it. Its font comes with the
-/// program, so that every machine draws the same.
-fn png(svg: &str) -> Result<Vec<u8>, CliError> {
-    const SCALE: f32 = 2.0;
-    let failed = |what: &dyn std::fmt::Display| {
-        CliError::Input(format!("the chart cannot become a picture: {what}"))
-    };
-    let mut options = usvg::Options::default();
-    let fonts = options.fontdb_mut();
-    fonts.load_font_data(epaint_default_fonts::UBUNTU_LIGHT.to_vec());
-    let family = fonts
-        .faces()
-        .find_map(|face| Some(face.families.first()?.0.clone()));
-    let family = family.ok_or_else(|| failed(&"its font has no name"))?;
-    fonts.set_sans_serif_family(family);
-    let tree = usvg::Tree::from_str(svg, &options).map_err(|error| failed(&error))?;
-    let size = tree
-        .size()
-        .to_int_size()
-        .scale_by(SCALE)
-        .ok_or_else(|| failed(&"it has no size"))?;
-    let pixmap = tiny_skia::Pixmap::new(size.width(), size.height());
-    let mut pixmap = pixmap.ok_or_else(|| failed(&"it is too large"))?;
-    pixmap.fill(tiny_skia::Color::WHITE);
-    let scaled = tiny_skia::Transform::from_scale(SCALE, SCALE);
-    resvg::render(&tree, scaled, &mut pixmap.as_mut());
-    pixmap.encode_png().map_err(|error| failed(&error))
 }
 
 fn kept(args: &ChartArgs) -> Result<Vec<Kept>, CliError> {

@@ -3,17 +3,17 @@
 use crate::args::commands::{CheckArgs, CheckFormat};
 use crate::args::shared::GpuArgs;
 use crate::error::CliError;
-use crate::files::json::to_text;
-use crate::files::watch::{self, Watch};
-use crate::graphs::faults::{GraphFaults, warn};
-use crate::graphs::idle_params;
-use crate::graphs::light_kinds;
-use crate::graphs::planning::{self, Capabilities};
-use crate::graphs::preset;
-use crate::measuring::device;
-use crate::records::check::{CheckReport, FileReport};
-use crate::terminal::console::{note, print, report};
-use crate::terminal::interrupt;
+use crate::terminal::console::{print, report};
+use crate::terminal::{Terminal, interrupt};
+use skiagraph_compare::files::json::to_text;
+use skiagraph_compare::files::watch::{self, Watch};
+use skiagraph_compare::graphs::faults::{GraphFaults, warn};
+use skiagraph_compare::graphs::idle_params;
+use skiagraph_compare::graphs::light_kinds;
+use skiagraph_compare::graphs::planning::{self, Capabilities};
+use skiagraph_compare::graphs::preset;
+use skiagraph_compare::measuring::device;
+use skiagraph_compare::records::check::{CheckReport, FileReport};
 use skiagraph_graph::{Diagnostics, Graph, Plan, Sources};
 use skiagraph_passes::{names::LIGHT, registry};
 use std::{sync::mpsc, time::Duration};
@@ -57,7 +57,7 @@ pub fn check(args: &CheckArgs, gpu: &GpuArgs) -> Result<(), CliError> {
 }
 
 fn check_once(args: &CheckArgs, gpu: &GpuArgs) -> Result<(), CliError> {
-    let sources = preset::sources();
+    let sources = preset::sources(&Terminal);
     let registry = registry();
     let paths: Vec<_> = args
         .graphs
@@ -92,7 +92,7 @@ fn open<'a>(
     sources: &dyn Sources,
 ) -> Result<Capabilities, CliError> {
     let graphs = paths.filter_map(|path| Graph::load(path, &registry(), sources).ok());
-    let gpu = device::open(gpu, &graphs.collect::<Vec<_>>())?;
+    let gpu = device::open(&gpu.request(), &graphs.collect::<Vec<_>>())?;
     Ok(Capabilities::new(&gpu))
 }
 
@@ -114,7 +114,7 @@ fn text(found: &[Found]) -> Result<(), CliError> {
     for (argument, checked) in found {
         match checked {
             Ok((graph, plan)) => {
-                warn(graph, plan.warnings());
+                warn(&Terminal, graph, plan.warnings());
                 let passes = plan.passes().len();
                 let noun = if passes == 1 { "pass" } else { "passes" };
                 let refused = refused_lights(graph, plan);
@@ -126,12 +126,12 @@ fn text(found: &[Found]) -> Result<(), CliError> {
         }
     }
     print(&fine)?;
-    let faulty = faults.none_or_error();
+    let faulty = faults.none_or_error().map_err(CliError::from);
     if missing.is_empty() {
         return faulty;
     }
     if let Err(error) = faulty {
-        note(&error.to_string());
+        report(&error);
     }
     Err(CliError::Input(missing.join("\nerror: ")))
 }

@@ -2,9 +2,9 @@
 
 use crate::args::shared::GpuArgs;
 use crate::error::CliError;
-use crate::measuring::device::{driver, open, timestamp_trust};
 use crate::terminal::console::print;
-use crate::wording::bytes;
+use skiagraph_compare::measuring::device::{driver, open, timestamp_trust};
+use skiagraph_compare::wording::bytes;
 use skiagraph_gpu::{
     device::{self, Gpu},
     timing::Trust,
@@ -26,7 +26,7 @@ pub fn doctor(args: &GpuArgs) -> Result<(), CliError> {
     }
     print(&text)?;
     print(&meshes())?;
-    let gpu = open(args, &[])?;
+    let gpu = open(&args.request(), &[])?;
     print(&chosen(&gpu))?;
     let verdict = match timestamp_trust(&gpu) {
         Trust::Trusted => "  GPU times: true (a long dispatch after a raster pass takes as long \

@@ -2,10 +2,10 @@
 
 use crate::args::commands::{DrawingFormat, GraphArgs};
 use crate::error::CliError;
-use crate::files::write::write_whole;
-use crate::graphs::planning::{Capabilities, placeholder};
-use crate::graphs::{method, preset};
-use crate::terminal::console::print;
+use crate::terminal::{Terminal, console::print};
+use skiagraph_compare::files::write::write_whole;
+use skiagraph_compare::graphs::planning::{Capabilities, placeholder};
+use skiagraph_compare::graphs::preset;
 use skiagraph_draw::Drawing;
 use std::{ffi::OsStr, path::Path};
 
@@ -14,17 +14,17 @@ use std::{ffi::OsStr, path::Path};
 /// # Errors
 /// A faulty graph, a param or output that it does not have, a file that cannot be written.
 pub fn graph(args: &GraphArgs) -> Result<(), CliError> {
-    let (preset, params) = method::load_one(&args.method, &preset::sources())?;
+    let (preset, params) = args.method.load(&preset::sources(&Terminal))?;
     let viewport = args.method.size.0;
     let provider = placeholder(viewport, &preset.graph);
     let mut request = Capabilities::greatest().request(viewport, &provider);
     request.params = params;
     request.outputs = (!args.outputs.is_empty()).then(|| args.outputs.clone());
-    let plan = preset.plan(&request)?;
+    let plan = preset.plan(&request, &Terminal)?;
     let title = format!("{}, viewport {}", preset.name, args.method.size);
     let text = text(&Drawing::from_plan(&plan).titled(title), format(args))?;
     match &args.out {
-        Some(file) => write_whole(file, text.as_bytes()),
+        Some(file) => Ok(write_whole(file, text.as_bytes())?),
         None => print(&text),
     }
 }

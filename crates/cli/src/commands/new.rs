@@ -2,9 +2,9 @@
 
 use crate::args::commands::NewArgs;
 use crate::error::CliError;
-use crate::files::write::write_new;
-use crate::graphs::preset;
-use crate::terminal::console::print;
+use crate::terminal::{Terminal, console::print};
+use skiagraph_compare::files::write::write_new;
+use skiagraph_compare::graphs::preset;
 use skiagraph_graph::{Param, Sources};
 use std::{fs, path::Path};
 
@@ -45,7 +45,7 @@ fn check_name(name: &str) -> Result<(), CliError> {
              digits and `_`, and the files get their endings by themselves"
         )));
     }
-    let sources = preset::sources();
+    let sources = preset::sources(&Terminal);
     for path in [
         format!("pipelines/{name}.ron"),
         format!("shaders/{name}.wgsl"),
@@ -65,7 +65,7 @@ fn check_name(name: &str) -> Result<(), CliError> {
 
 /// A document that extends the preset, with a line for each of its params.
 fn variant(name: &str, from: &str) -> Result<String, CliError> {
-    let sources = preset::sources();
+    let sources = preset::sources(&Terminal);
     // A path is no preset's name: what extends a file in another folder is not found from here.
     if from.contains(['/', '\\', '.']) {
         return Err(CliError::Usage(format!(
@@ -127,7 +127,7 @@ fn write_all(files: &[(String, String)]) -> Result<(), CliError> {
             Ok(true) => continue,
             // By another process, just now.
             Ok(false) => is_there(file),
-            Err(error) => error,
+            Err(error) => error.into(),
         };
         for (written, _) in &files[..index] {
             // The next attempt names a file that is left behind if even this fails.

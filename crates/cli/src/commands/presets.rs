@@ -2,19 +2,20 @@
 
 use crate::args::commands::{PresetsArgs, PresetsFormat};
 use crate::error::CliError;
-use crate::graphs::method::Method;
-use crate::graphs::planning::{Capabilities, placeholder};
-use crate::graphs::preset::{self, Preset, RAY_COUNT, VISIBILITY};
-use crate::measuring::guarantee;
-use crate::terminal::console::print;
+use crate::terminal::{Terminal, console::print};
+use skiagraph_compare::graphs::method::Method;
+use skiagraph_compare::graphs::planning::{Capabilities, placeholder};
+use skiagraph_compare::graphs::preset::{self, Preset, RAY_COUNT, VISIBILITY};
+use skiagraph_compare::measuring::guarantee;
 use skiagraph_graph::{Graph, Param};
+use std::sync::Arc;
 
 /// Lists the presets with their params, or as a table.
 ///
 /// # Errors
 /// A preset on disk that cannot be loaded or planned, standard output.
 pub fn presets(args: &PresetsArgs) -> Result<(), CliError> {
-    let sources = preset::sources();
+    let sources = preset::sources(&Terminal);
     let loaded = preset::load_all(&preset::names(&sources), &sources)?;
     match args.format {
         PresetsFormat::Text => {
@@ -53,7 +54,7 @@ fn range(param: &Param) -> String {
 }
 
 /// Returns a table of the presets: what each is and answers, as its document says it.
-fn table(presets: &[Preset]) -> Result<String, CliError> {
+fn table(presets: &[Arc<Preset>]) -> Result<String, CliError> {
     let heads = [
         "preset",
         "what it is",
@@ -74,10 +75,13 @@ fn table(presets: &[Preset]) -> Result<String, CliError> {
     Ok(lines.iter().map(line).collect())
 }
 
-fn row(preset: &Preset) -> Result<[String; 7], CliError> {
+fn row(preset: &Arc<Preset>) -> Result<[String; 7], CliError> {
     let graph = &preset.graph;
     let provider = placeholder([64, 64], graph);
-    let plan = preset.plan(&Capabilities::greatest().request([64, 64], &provider))?;
+    let plan = preset.plan(
+        &Capabilities::greatest().request([64, 64], &provider),
+        &Terminal,
+    )?;
     let outputs = plan.outputs();
     let format = outputs.iter().find(|output| output.name == VISIBILITY);
     let answers = match format.and_then(|output| output.format) {
@@ -97,7 +101,7 @@ fn row(preset: &Preset) -> Result<[String; 7], CliError> {
         let words: Vec<&str> = fit.words().map(|word| word.as_str()).collect();
         words.join(", ")
     });
-    let method = Method::new(preset, Default::default());
+    let method = Method::new(preset.clone(), Default::default());
     let promise = guarantee::find(&method, &[])?;
     let promise = promise.map_or("–", |(guarantee, _)| guarantee.word());
     let description = graph.description().trim_end_matches('.').to_owned();

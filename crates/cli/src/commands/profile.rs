@@ -2,23 +2,25 @@
 
 use crate::args::commands::ProfileArgs;
 use crate::args::shared::GpuArgs;
-use crate::args::values::{Size, unique};
+use crate::commands::compare::note_without_map;
 use crate::error::CliError;
-use crate::files::json;
-use crate::files::write::{check_writable, write_whole};
-use crate::graphs::openings;
-use crate::graphs::variants;
-use crate::graphs::{method, preset};
-use crate::measuring::scene_selection::SceneSelection;
-use crate::measuring::{device, profiling};
-use crate::records::profile::Profile;
-use crate::records::read_back;
-use crate::records::samples::TimedFrame;
-use crate::reporting::profile_csv::to_csv;
-use crate::reporting::profile_text::{matrices, report};
-use crate::reporting::trace::trace;
+use crate::scene_selection::SceneSelection;
 use crate::terminal::console::{note, print};
-use crate::terminal::interrupt;
+use crate::terminal::{Terminal, interrupt};
+use skiagraph_compare::error::CompareError;
+use skiagraph_compare::files::json;
+use skiagraph_compare::files::write::{check_writable, write_whole};
+use skiagraph_compare::graphs::{method, preset};
+use skiagraph_compare::lists::unique;
+use skiagraph_compare::measuring::{device, profiling};
+use skiagraph_compare::records::profile::Profile;
+use skiagraph_compare::records::read_back;
+use skiagraph_compare::records::samples::TimedFrame;
+use skiagraph_compare::sink::Session;
+use skiagraph_compare::size::Size;
+use skiagraph_report::profile_csv::to_csv;
+use skiagraph_report::profile_text::{matrices, report};
+use skiagraph_report::trace::trace;
 use std::{path::Path, sync::Arc};
 
 /// Times graphs, prints what it measured, and writes what was asked for.
@@ -32,12 +34,13 @@ pub fn profile(args: &ProfileArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         Some(path) => Some((path.as_path(), read_back::profile(path)?)),
         None => None,
     };
-    let sources = preset::sources();
-    let (arguments, params) = openings::arguments(&args.presets, &args.params, &sources)?;
-    let presets = preset::load_all(&variants::presets(&arguments), &sources)?;
-    let methods = method::methods(&presets, &arguments, &params, &args.map_size)?;
-    method::note_without_map(&methods, &args.map_size);
-    let gpu = device::open(gpu, preset::graphs(&presets))?;
+    let (words, sizes) = (&args.presets, &args.map_size);
+    let sources = preset::sources(&Terminal);
+    let methods = method::load(words, &args.params, sizes, &sources, preset::load_all)?;
+    note_without_map(&methods, &args.map_size);
+    let graphs = methods.iter().map(|method| &method.preset.graph);
+    let gpu = device::open(&gpu.request(), graphs)?;
+    let session = Session::new(&gpu, &Terminal);
     let SceneSelection { scene, views } = SceneSelection::load(&args.scene)?;
     let viewports = unique(&args.size);
     let planned = methods.len() * views.len() * viewports.len();
@@ -52,8 +55,9 @@ pub fn profile(args: &ProfileArgs, gpu: &GpuArgs) -> Result<(), CliError> {
             for &Size(viewport) in &viewports {
                 let method = method.at(viewport);
                 let mut profile;
-                (profile, timed) = match profiling::profile(args, &gpu, &method, &scene, view) {
-                    Err(CliError::Interrupted { .. }) if !profiles.is_empty() => {
+                let count = [args.warmup, args.frames];
+                (profile, timed) = match profiling::profile(session, count, &method, &scene, view) {
+                    Err(CompareError::Interrupted { .. }) if !profiles.is_empty() => {
                         return interrupted(args, &profiles, planned);
                     }
                     measured => measured?,
@@ -138,7 +142,7 @@ fn write(
     timed: &[TimedFrame],
 ) -> Result<String, CliError> {
     if let Some(path) = &args.csv {
-        let csv = to_csv(profiles).map_err(|error| CliError::write(path, error))?;
+        let csv = to_csv(profiles).map_err(|error| CompareError::write(path, error))?;
         write_whole(path, csv.as_bytes())?;
     }
     let single = profiles.first().filter(|_| profiles.len() == 1);

@@ -2,19 +2,21 @@
 
 use crate::args::commands::RunArgs;
 use crate::args::shared::GpuArgs;
-use crate::args::values::Save;
 use crate::commands::run_sequence::{PoseSequence, of_frame};
 use crate::error::CliError;
-use crate::files::write::check_writable;
-use crate::graphs::idle_params::IdleParams;
-use crate::graphs::planning::Capabilities;
-use crate::graphs::{method, preset};
-use crate::measuring::scene_selection::SceneSelection;
-use crate::measuring::{device, frame, poison};
-use crate::pictures::colours::ClipPlanes;
-use crate::pictures::save::{Decoding, capture, captures, check_encodings, write};
-use crate::terminal::console::print;
-use crate::wording::bytes;
+use crate::scene_selection::SceneSelection;
+use crate::terminal::{Terminal, console::print};
+use skiagraph_compare::files::write::check_writable;
+use skiagraph_compare::graphs::idle_params::IdleParams;
+use skiagraph_compare::graphs::planning::Capabilities;
+use skiagraph_compare::graphs::preset;
+use skiagraph_compare::measuring::{device, frame, poison};
+use skiagraph_compare::pictures::colours::ClipPlanes;
+use skiagraph_compare::pictures::save::{
+    Decoding, Save, capture, captures, check_encodings, write,
+};
+use skiagraph_compare::sink::Session;
+use skiagraph_compare::wording::bytes;
 use skiagraph_graph::Plan;
 use skiagraph_passes::SceneProvider;
 use std::{collections::BTreeSet, sync::Arc};
@@ -25,7 +27,7 @@ use std::{collections::BTreeSet, sync::Arc};
 /// A faulty graph, a scene that cannot be loaded, no GPU, a file that cannot be written.
 pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let (method, saves) = (&args.method, &args.save);
-    let (preset, params) = &method::load_one(method, &preset::sources())?;
+    let (preset, params) = &method.load(&preset::sources(&Terminal))?;
     if args.scene.view.as_deref() == Some("all") && !saves.is_empty() {
         return Err(CliError::Usage(
             "--save takes the picture of one view; give its name instead of `all`".into(),
@@ -42,7 +44,8 @@ pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         .iter()
         .map(|save| (format!("--save {}", name(save)), save.file.as_path()));
     check_writable(&files.collect::<Vec<_>>())?;
-    let gpu = device::open(gpu, [&preset.graph])?;
+    let gpu = device::open(&gpu.request(), [&preset.graph])?;
+    let session = Session::new(&gpu, &Terminal);
     let SceneSelection { scene, mut views } = SceneSelection::load(&args.scene)?;
     let poses = PoseSequence::new(args, &scene, &views)?;
     if let Some(first) = poses.as_ref().and_then(PoseSequence::first) {
@@ -59,8 +62,8 @@ pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         let mut request = Capabilities::new(&gpu).request(method.size.0, &provider);
         request.params = params.clone();
         request.captures = captures(&preset.graph.outputs(), saves);
-        let plan = preset.plan(&request)?;
-        idle.note_of(&preset.name, &plan, provider.light());
+        let plan = preset.plan(&request, &Terminal)?;
+        idle.note_of(&Terminal, &preset.name, &plan, provider.light());
         check_encodings(&plan, saves)?;
         let readings: Vec<Decoding> = saves
             .iter()
@@ -76,9 +79,9 @@ pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         ))?;
         let poisoned = args
             .poison
-            .then(|| poison::check(&gpu, &plan, &mut provider, preset));
+            .then(|| poison::check(session, &plan, &mut provider, preset));
         if let Some(poses) = &poses {
-            poses.record(&gpu, (preset, plan), &mut provider, saves)?;
+            poses.record(session, (preset, plan), &mut provider, saves)?;
             if let Some(verdict) = poisoned {
                 print(&verdict?)?;
             }
@@ -86,7 +89,7 @@ pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         }
         let names: BTreeSet<String> = saves.iter().map(name).collect();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        let (contents, growth) = frame::render(&gpu, &preset.name, plan, &mut provider, &names)?;
+        let (contents, growth) = frame::render(session, &preset.name, plan, &mut provider, &names)?;
         print(&growth.text())?;
         for (save, reading) in saves.iter().zip(readings) {
             let name = name(save);

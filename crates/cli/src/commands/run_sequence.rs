@@ -1,22 +1,21 @@
 //! `skiagraph run --frames`: a numbered sequence of pictures.
 
 use crate::args::commands::RunArgs;
-use crate::args::values::Save;
 use crate::error::CliError;
-use crate::graphs::preset::Preset;
-use crate::measuring::camera_pose::CameraPose;
-use crate::measuring::frame;
-use crate::measuring::mesh_frames::MeshFrames;
-use crate::measuring::scene_selection::check_path;
-use crate::measuring::view_or_path::ViewOrPath;
-use crate::pictures::colours::ClipPlanes;
-use crate::pictures::run_pictures::numbered;
-use crate::pictures::save::{Decoding, capture, write};
+use crate::scene_selection::check_path;
 use crate::terminal::console::print;
-use crate::terminal::interrupt;
-use crate::terminal::progress::Step;
-use crate::wording::frames;
-use skiagraph_gpu::{Executor, Frame, device::Gpu};
+use crate::terminal::{Terminal, interrupt};
+use skiagraph_compare::graphs::preset::Preset;
+use skiagraph_compare::measuring::camera_pose::CameraPose;
+use skiagraph_compare::measuring::frame;
+use skiagraph_compare::measuring::mesh_frames::MeshFrames;
+use skiagraph_compare::measuring::view_or_path::ViewOrPath;
+use skiagraph_compare::pictures::colours::ClipPlanes;
+use skiagraph_compare::pictures::run_pictures::numbered;
+use skiagraph_compare::pictures::save::{Decoding, Save, capture, write};
+use skiagraph_compare::sink::{Session, Step};
+use skiagraph_compare::wording::frames;
+use skiagraph_gpu::{Executor, Frame};
 use skiagraph_graph::Plan;
 use skiagraph_passes::SceneProvider;
 use skiagraph_scene::{CameraPath, Scene, SceneLibrary, View};
@@ -86,7 +85,7 @@ impl PoseSequence {
         let paths: Result<Vec<CameraPath>, _> =
             SceneLibrary::from_environment().paths(&args.scene.scene);
         let paths = paths.map_err(|error| CliError::Input(error.to_string()))?;
-        let mut views_or_paths = ViewOrPath::paths(scene, paths, name, &args.scene)?;
+        let mut views_or_paths = ViewOrPath::paths(scene, paths, name, args.scene.light_name())?;
         match views_or_paths.len() {
             1 => Ok(views_or_paths.remove(0)),
             _ => Err(CliError::Usage(
@@ -114,19 +113,19 @@ impl PoseSequence {
     /// Ctrl-C, those of the executor, a file that cannot be written.
     pub fn record(
         &self,
-        gpu: &Gpu,
+        session: Session,
         (preset, plan): (&Preset, Plan),
         provider: &mut SceneProvider,
         saves: &[Save],
     ) -> Result<(), CliError> {
         interrupt::install()?;
-        let failed = |error| frame::failed(&preset.name, error);
+        let failed = |error| frame::failed(session, &preset.name, error);
         let viewport = plan.viewport();
-        let (mut executor, growth) = frame::settled(gpu, plan, provider).map_err(failed)?;
+        let (mut executor, growth) = frame::settled(session, plan, provider).map_err(failed)?;
         print(&growth.text())?;
-        let step = Step::begin(preset.name.clone(), self.poses.len() as u64, "frames");
+        let step = Step::begin(&Terminal, &preset.name, self.poses.len() as u64, "frames");
         for (index, pose) in self.poses.iter().enumerate() {
-            if interrupt::raised() {
+            if session.is_stopped() {
                 let kept = format!("the pictures of {} are there", frames(index as u32));
                 return Err(CliError::Interrupted { kept });
             }
@@ -140,7 +139,7 @@ impl PoseSequence {
             let readings = readings.map(|save| Decoding::new(plan, &capture(save).name(), planes));
             let readings: Vec<Decoding> = readings.collect();
             let contents = self
-                .frame(gpu, &mut executor, provider, (index, saves))
+                .frame(session, &mut executor, provider, (index, saves))
                 .map_err(failed)?;
             for (save, reading) in saves.iter().zip(readings) {
                 let name = capture(save).name();
@@ -167,7 +166,7 @@ impl PoseSequence {
 
     fn frame(
         &self,
-        gpu: &Gpu,
+        session: Session,
         executor: &mut Executor,
         provider: &mut SceneProvider,
         (index, saves): (usize, &[Save]),
@@ -182,7 +181,7 @@ impl PoseSequence {
             seconds: (index as f64 / self.frames_per_second) as f32,
             ..Frame::default()
         };
-        let (report, _) = frame::run(gpu, executor, &request)?;
+        let (report, _) = frame::run(session, executor, &request)?;
         executor.grow(provider)?;
         Ok(frame::contents(report.readbacks))
     }

@@ -1,8 +1,8 @@
 //! `skiagraph scenes`: what `--scene` can name.
 
 use crate::error::CliError;
-use crate::reporting::table::table;
 use crate::terminal::console::print;
+use skiagraph_report::table::table;
 use skiagraph_scene::{SceneLibrary, SceneListing};
 
 /// Lists the scenes with their views, camera paths and whether their meshes are at hand.

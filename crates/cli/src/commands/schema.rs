@@ -2,8 +2,8 @@
 
 use crate::args::commands::{SchemaArgs, SchemaFormat};
 use crate::error::CliError;
-use crate::reporting::language;
 use crate::terminal::console::print;
+use skiagraph_report::language;
 
 /// Prints the JSON Schema of documents, or the reference of the language.
 ///

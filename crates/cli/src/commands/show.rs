@@ -3,11 +3,11 @@
 
 use crate::args::commands::ShowArgs;
 use crate::error::CliError;
-use crate::graphs::faults::GraphFaults;
-use crate::graphs::planning::{Capabilities, placeholder};
-use crate::graphs::preset;
-use crate::terminal::console::print;
-use crate::wording::did_you_mean;
+use crate::terminal::{Terminal, console::print};
+use skiagraph_compare::graphs::faults::GraphFaults;
+use skiagraph_compare::graphs::planning::{Capabilities, placeholder};
+use skiagraph_compare::graphs::preset;
+use skiagraph_compare::wording::did_you_mean;
 use skiagraph_graph::{Access, Graph, Sources};
 use skiagraph_passes::registry;
 use skiagraph_scene::SceneLibrary;
@@ -22,7 +22,7 @@ const FOLDERS: [&str; 4] = ["pipelines", "pipelines/shared", "shaders", "shaders
 /// # Errors
 /// A file that there is not, a document that cannot be read, standard output.
 pub fn show(args: &ShowArgs) -> Result<(), CliError> {
-    let sources = preset::sources();
+    let sources = preset::sources(&Terminal);
     let (path, text) = match find(&args.file, &sources)? {
         Found::Text(path, text) => (path, text),
         Found::Scene(text) if !args.flat => return print(&text),
@@ -47,7 +47,7 @@ pub fn show(args: &ShowArgs) -> Result<(), CliError> {
     }
     match Graph::flat(&path, &sources) {
         Ok(text) => print(&format!("{text}{passes}")),
-        Err(faults) => Err(GraphFaults::one(&args.file, &faults)),
+        Err(faults) => Err(GraphFaults::one(&args.file, &faults).into()),
     }
 }
 

@@ -2,32 +2,30 @@
 
 use crate::args::commands::{StressArgs, StressFormat};
 use crate::args::shared::GpuArgs;
-use crate::args::values::unique;
 use crate::error::CliError;
-use crate::files::json::to_text;
-use crate::files::lock::{self, Locked, Shared};
-use crate::files::write::{check_folder, write_whole};
-use crate::graphs::faults::reasons;
-use crate::graphs::method::{self, Method};
-use crate::graphs::openings;
-use crate::graphs::planning::Capabilities;
-use crate::graphs::variants;
-use crate::graphs::{preset, shadow_method};
-use crate::measuring::ground_truth::PrimaryVisibility;
-use crate::measuring::hard_case::{HardCaseContext, MethodRun};
-use crate::measuring::{device, guarantee};
-use crate::pictures::run_pictures::{check_stems, reference_stem};
-use crate::records::results::PROGRAM;
-use crate::records::stress::{Column, Report, Verdict};
-use crate::reporting::stress_matrix;
-use crate::reporting::table::table;
 use crate::terminal::console::print;
-use crate::terminal::interrupt;
-use crate::terminal::progress::Step;
-use crate::wording::{command_line, did_you_mean, plural};
+use crate::terminal::{Terminal, interrupt, progress};
 use skiagraph_cases::{Casters, HardCase};
+use skiagraph_compare::files::json::to_text;
+use skiagraph_compare::files::lock::{self, Locked, Shared};
+use skiagraph_compare::files::write::{check_folder, write_whole};
+use skiagraph_compare::graphs::faults::reasons;
+use skiagraph_compare::graphs::method::Method;
+use skiagraph_compare::graphs::planning::Capabilities;
+use skiagraph_compare::graphs::{preset, shadow_method};
+use skiagraph_compare::lists::unique;
+use skiagraph_compare::measuring::ground_truth::PrimaryVisibility;
+use skiagraph_compare::measuring::hard_case::{HardCaseContext, MethodRun};
+use skiagraph_compare::measuring::{device, guarantee};
+use skiagraph_compare::pictures::run_pictures::{check_stems, reference_stem};
+use skiagraph_compare::records::results::PROGRAM;
+use skiagraph_compare::records::stress::{Column, Report, Verdict};
+use skiagraph_compare::sink::Session;
+use skiagraph_compare::wording::{command_line, did_you_mean, plural};
 use skiagraph_gpu::{device::Gpu, timing::Trust};
 use skiagraph_passes::SceneProvider;
+use skiagraph_report::stress_matrix;
+use skiagraph_report::table::table;
 use std::{path::Path, sync::Arc};
 
 /// Checks everything, then runs the matrix.
@@ -40,12 +38,10 @@ pub fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         return list();
     }
     let cases = cases(&args.cases)?;
-    let sources = preset::sources();
+    let sources = preset::sources(&Terminal);
     let names = preset::named_or_all(&args.presets, &sources);
     check_exact(&args.exact, &names)?;
-    let (arguments, params) = openings::arguments(&names, &args.params, &sources)?;
-    let presets = shadow_method::load_all(&variants::presets(&arguments), &sources)?;
-    let methods = method::methods(&presets, &arguments, &params, &args.map_size)?;
+    let methods = shadow_method::load_methods(&names, &args.params, &args.map_size, &sources)?;
     for method in &methods {
         guarantee::find(method, &args.exact)?;
     }
@@ -53,8 +49,10 @@ pub fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let viewport = args.size.0;
     let provider = SceneProvider::new(Arc::new(with_triangles(&cases).scene()));
     shadow_method::check_plans(&methods, &[viewport], &provider, None)?;
-    let gpu = device::open(gpu, preset::graphs(&presets))?;
-    primary.plan(&gpu, viewport, &provider)?;
+    let graphs = methods.iter().map(|method| &method.preset.graph);
+    let gpu = device::open(&gpu.request(), graphs)?;
+    let session = Session::new(&gpu, &Terminal);
+    primary.plan(session, viewport, &provider)?;
     let methods: Vec<MethodRun> = methods
         .into_iter()
         .map(|method| method_run(method, args, &gpu, &provider))
@@ -69,7 +67,7 @@ pub fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         None => None,
     };
     let context = HardCaseContext {
-        gpu: &gpu,
+        session,
         primary: &primary,
         methods: &methods,
         viewport,
@@ -92,7 +90,7 @@ pub fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
 /// The folder for stress.json, which no other process may write meanwhile.
 fn claim(folder: &Path) -> Result<Locked, CliError> {
     check_folder(folder)?;
-    lock::claim(folder, Shared::Stress)?.ok_or_else(|| {
+    lock::claim(folder, Shared::Stress, &Terminal)?.ok_or_else(|| {
         CliError::Input(format!(
             "another `skiagraph stress` is writing stress.json into {}\n  wait for its end, or \
              give another --out",
@@ -108,16 +106,18 @@ fn run(
     report: &mut Report,
     out: Option<&Path>,
 ) -> Result<(), CliError> {
-    let step = Step::quiet("hard cases".into(), cases.len() as u64, "cases");
-    for (done, case) in (0..).zip(cases) {
-        step.set_part(case.name);
-        step.set_done(done);
+    progress::begin_quietly("hard cases", cases.len() as u64, "cases");
+    let outcome = (0..).zip(cases).try_for_each(|(done, case)| {
+        progress::set_part(case.name);
+        progress::set_done(done);
         report.cases.push(context.run(case)?);
         if let Some(folder) = out {
             write_whole(&folder.join("stress.json"), to_text(report).as_bytes())?;
         }
-    }
-    Ok(())
+        Ok(())
+    });
+    progress::end_step(outcome.is_ok());
+    outcome
 }
 
 /// Prints what is done, and says what came of it.
@@ -161,12 +161,12 @@ fn finish(
 }
 
 /// The method with what it guarantees, and why this adapter cannot run it, if it cannot.
-fn method_run<'a>(
-    method: Method<'a>,
+fn method_run(
+    method: Method,
     args: &StressArgs,
     gpu: &Gpu,
     provider: &SceneProvider,
-) -> Result<MethodRun<'a>, CliError> {
+) -> Result<MethodRun, CliError> {
     let method = method.at(args.size.0).settled(gpu.device.features());
     let plan = method.plan(args.size.0, Capabilities::new(gpu), provider);
     Ok(MethodRun {
@@ -263,7 +263,7 @@ fn check_pictures(
             stems.extend(run.stems(case, viewport));
         }
     }
-    check_stems(stems, "--save")
+    Ok(check_stems(stems)?)
 }
 
 /// Lists the catalogue.

@@ -3,6 +3,10 @@
 use crate::args::commands::ViewArgs;
 use crate::args::shared::GpuArgs;
 use crate::error::CliError;
+#[cfg(feature = "window")]
+use crate::{args::shared::SceneArgs, scene_selection::SceneSelection, terminal::Terminal};
+#[cfg(feature = "window")]
+use skiagraph_viewer::Opening;
 
 /// Opens the window.
 ///
@@ -10,7 +14,26 @@ use crate::error::CliError;
 /// No display, no GPU, a method or a param that there is not.
 #[cfg(feature = "window")]
 pub fn view(args: &ViewArgs, gpu: &GpuArgs) -> Result<(), CliError> {
-    crate::viewer::open(args, gpu)
+    let named = args.scene.clone();
+    let opening = Opening {
+        methods: args.methods.clone(),
+        params: args.params.clone(),
+        map_size: args.map_size,
+        size: args.size.0,
+        scene: named.scene.clone(),
+        // The arguments say of camera and light what holds for the scene that they name.
+        load_scene: Box::new(move |scene| {
+            let loaded = if scene == named.scene {
+                SceneSelection::load(&named)
+            } else {
+                SceneSelection::load(&SceneArgs::new(scene))
+            };
+            let SceneSelection { scene, views } = loaded?;
+            Ok((scene, views))
+        }),
+        gpu: gpu.request(),
+    };
+    Ok(skiagraph_viewer::open(opening, &Terminal)?)
 }
 
 /// Says why there is no window.

@@ -1,6 +1,7 @@
 //! Standard output, standard error and its colours.
 
-use crate::error::{CliError, advice, io_advice};
+use crate::error::CliError;
+use skiagraph_compare::error::{CompareError, advice, io_advice, rendered};
 use skiagraph_gpu::ExecuteError;
 use std::{
     error::Error,
@@ -41,7 +42,10 @@ pub fn report(error: &CliError) -> ExitCode {
     let code = error.exit_code();
     if code != 0 {
         let mut text = match error {
-            CliError::Diagnostics { .. } | CliError::Interrupted { .. } => error.to_string(),
+            CliError::Compare(CompareError::Diagnostics { faults, summary }) => {
+                rendered(faults, colour()) + summary
+            }
+            CliError::Interrupted { .. } => error.to_string(),
             _ => format!("{} {error}", style("error:", "1;31")),
         };
         let mut line = |line: &str| text += &format!("\n  {}", line.replace('\n', "\n  "));
@@ -53,7 +57,7 @@ pub fn report(error: &CliError) -> ExitCode {
             }
             cause = error.source();
         }
-        if let CliError::Gpu { source, .. } = error {
+        if let CliError::Compare(CompareError::Gpu { source, .. }) = error {
             if let Some(way_out) = advice(source.as_ref()) {
                 line(way_out);
             }

@@ -80,12 +80,18 @@ fn duration(seconds: f64) -> String {
     }
 }
 
+/// The step under way, with its bar.
+struct Running {
+    name: String,
+    share: Share,
+    bar: ProgressBar,
+}
+
 /// Work that the process does now. Standard error, too, belongs to the whole process.
 struct Now {
     /// All runs of the command.
     runs: Option<Share>,
-    /// Name and parts of the step under way.
-    step: Option<(String, Share)>,
+    step: Option<Running>,
     has_printer: bool,
 }
 
@@ -102,12 +108,12 @@ fn now() -> MutexGuard<'static, Now> {
 impl Now {
     /// A line on the step under way.
     fn line(&self) -> Option<String> {
-        let (name, step) = self.step.as_ref()?;
-        let share = self.runs.as_ref().unwrap_or(step);
+        let step = self.step.as_ref()?;
+        let share = self.runs.as_ref().unwrap_or(&step.share);
         let mut words = vec![format!("{} of {} {}", share.done, share.total, share.unit)];
         words.push(duration(share.began.elapsed().as_secs_f64()));
         words.extend(share.left());
-        Some(format!("{}: {name}", words.join(", ")))
+        Some(format!("{}: {}", words.join(", "), step.name))
     }
 
     /// Prints a line each [`PERIOD`] while a step is under way, from now until the program ends.
@@ -127,116 +133,84 @@ impl Now {
     }
 }
 
-/// All runs of a command, for an estimate of the time that they take.
-pub struct Runs(());
+/// Begins so many runs, for an estimate of the time that they take.
+pub fn begin_runs(total: u64) {
+    now().runs = Some(Share::begin(total, "runs"));
+}
 
-impl Runs {
-    /// Begins a command of `total` runs.
-    pub fn begin(total: u64) -> Self {
-        now().runs = Some(Share::begin(total, "runs"));
-        Self(())
-    }
-
-    /// Counts a run that is done.
-    pub fn count(&self) {
-        if let Some(runs) = &mut now().runs {
-            runs.done += 1;
-        }
-    }
-
-    /// Leaves out the runs that are done: those kept from an earlier command took no time.
-    pub fn forget_done(&self) {
-        if let Some(runs) = &mut now().runs {
-            *runs = Share::begin(runs.total - runs.done, runs.unit);
-        }
+/// Counts a run that is done.
+pub fn count_run() {
+    if let Some(runs) = &mut now().runs {
+        runs.done += 1;
     }
 }
 
-impl Drop for Runs {
-    fn drop(&mut self) {
-        now().runs = None;
+/// No runs are under way any more.
+pub fn end_runs() {
+    now().runs = None;
+}
+
+/// Begins a step of `total` parts, counted in `unit`.
+pub fn begin_step(name: &str, total: u64, unit: &'static str) {
+    if style() == Style::Steps {
+        note(&format!("starting {name}"));
+    }
+    begin_quietly(name, total, unit);
+}
+
+/// The same without a line of its own in a log of steps.
+pub fn begin_quietly(name: &str, total: u64, unit: &'static str) {
+    let mut now = now();
+    let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr());
+    let template = format!(
+        "{{msg:40!}} {{wide_bar:.cyan/dim}} {{pos}}/{{len}} {unit} {{elapsed:>4}}{{prefix}}"
+    );
+    // The template is ours and fixed; if indicatif should refuse it, its default does as well.
+    bar.set_style(
+        ProgressStyle::with_template(&template).unwrap_or_else(|_| ProgressStyle::default_bar()),
+    );
+    bar.set_message(name.to_owned());
+    if let Some(runs) = &now.runs {
+        let left = runs.left().map(|left| format!(", {left}"));
+        let left = left.unwrap_or_default();
+        bar.set_prefix(format!(" · {} of {} runs{left}", runs.done, runs.total));
+    }
+    bar.enable_steady_tick(Duration::from_millis(250));
+    now.step = Some(Running {
+        name: name.to_owned(),
+        share: Share::begin(total, unit),
+        bar,
+    });
+    if style() == Style::Periodic {
+        now.print_lines();
     }
 }
 
-/// One step of a long command.
-pub struct Step {
-    what: String,
-    bar: ProgressBar,
-    began: Instant,
-}
-
-impl Step {
-    /// Begins a step of `total` parts, counted in `unit`.
-    pub fn begin(what: String, total: u64, unit: &'static str) -> Self {
-        if style() == Style::Steps {
-            note(&format!("starting {what}"));
-        }
-        Self::quiet(what, total, unit)
-    }
-
-    /// The same without a line of its own in a log of steps.
-    pub fn quiet(what: String, total: u64, unit: &'static str) -> Self {
-        let mut now = now();
-        let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr());
-        let template = format!(
-            "{{msg:40!}} {{wide_bar:.cyan/dim}} {{pos}}/{{len}} {unit} {{elapsed:>4}}{{prefix}}"
-        );
-        // The template is ours and fixed; if indicatif should refuse it, its default does as well.
-        bar.set_style(
-            ProgressStyle::with_template(&template)
-                .unwrap_or_else(|_| ProgressStyle::default_bar()),
-        );
-        bar.set_message(what.clone());
-        if let Some(runs) = &now.runs {
-            let left = runs.left().map(|left| format!(", {left}"));
-            let left = left.unwrap_or_default();
-            bar.set_prefix(format!(" · {} of {} runs{left}", runs.done, runs.total));
-        }
-        bar.enable_steady_tick(Duration::from_millis(250));
-        now.step = Some((what.clone(), Share::begin(total, unit)));
-        if style() == Style::Periodic {
-            now.print_lines();
-        }
-        Self {
-            what,
-            bar,
-            began: Instant::now(),
-        }
-    }
-
-    /// Says which part is under way.
-    pub fn set_part(&self, part: &str) {
-        self.bar.set_message(part.to_owned());
-        if let Some((name, _)) = &mut now().step {
-            *name = part.to_owned();
-        }
-    }
-
-    /// Says how many parts are done; from any thread.
-    pub fn set_done(&self, done: u64) {
-        self.bar.set_position(done);
-        if let Some((_, share)) = &mut now().step {
-            share.done = done;
-        }
-    }
-
-    /// Ends the step.
-    pub fn end(self) {
-        if style() == Style::Steps {
-            note(&format!(
-                "{}: {:.1} s",
-                self.what,
-                self.began.elapsed().as_secs_f64()
-            ));
-        }
+/// Says which part is under way.
+pub fn set_part(part: &str) {
+    if let Some(step) = &mut now().step {
+        step.bar.set_message(part.to_owned());
+        step.name = part.to_owned();
     }
 }
 
-impl Drop for Step {
-    fn drop(&mut self) {
-        // A step cut short by an error must not leave its bar in front of the message.
-        self.bar.finish_and_clear();
-        now().step = None;
+/// Says how many parts are done; from any thread.
+pub fn set_done(done: u64) {
+    if let Some(step) = &mut now().step {
+        step.bar.set_position(done);
+        step.share.done = done;
+    }
+}
+
+/// Ends the step. One cut short by an error must not leave its bar in front of the message.
+pub fn end_step(is_whole: bool) {
+    let Some(step) = now().step.take() else {
+        return;
+    };
+    step.bar.finish_and_clear();
+    if is_whole && style() == Style::Steps {
+        let seconds = step.share.began.elapsed().as_secs_f64();
+        note(&format!("{}: {seconds:.1} s", step.name));
     }
 }
 
@@ -261,7 +235,11 @@ mod tests {
                 done: 3,
                 ..Share::begin(7, "runs")
             }),
-            step: Some(("nsm, bench_side 64x64".into(), Share::begin(5, "frames"))),
+            step: Some(Running {
+                name: "nsm, bench_side 64x64".into(),
+                share: Share::begin(5, "frames"),
+                bar: ProgressBar::hidden(),
+            }),
             has_printer: false,
         };
         assert_eq!(

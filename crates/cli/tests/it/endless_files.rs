@@ -13,17 +13,17 @@ const COMMANDS: [(&str, &str, &str, [&str; 3]); 6] = [
     (
         "compare lit.ron --size 16x16 --beside P:FILE",
         "published.csv",
-        "--beside published.csv: ",
+        "published.csv: ",
         [
             "a file of published figures",
             "16",
-            "split it, and give --beside for each part",
+            "split it, and name each part",
         ],
     ),
     (
         "profile lit.ron --size 16x16 --baseline FILE",
         "old.json",
-        "--baseline old.json: ",
+        "old.json: ",
         [
             "a profile",
             "256",
@@ -33,12 +33,11 @@ const COMMANDS: [(&str, &str, &str, [&str; 3]); 6] = [
     (
         "compare lit.ron --size 16x16 --frames 1 --warmup 0 --out . --resume",
         "results.json",
-        "--resume ./results.json: ",
+        "./results.json: ",
         [
             "a results.json",
             "64",
-            "give another --out, or --replace, which measures everything and overwrites \
-             the file",
+            "take another folder (`--out`), or replace all that this one holds (`--replace`)",
         ],
     ),
     (

@@ -76,7 +76,7 @@ fn an_unknown_case_or_method_is_named_before_anything_runs() {
         ("--case zzzzzzzz", 1, "`skiagraph stress --list` names them"),
         ("nms", 1, "did you mean `nsm`?"),
         ("rt nsm --exact nms", 2, "did you mean `nsm`?"),
-        ("rt --set cull=none", 1, "--set cull: unknown param"),
+        ("rt --set cull=none", 1, "unknown param `cull`"),
         ("--size 0x1", 2, "at least 1x1"),
         ("--list rt", 2, "--list"),
     ] {

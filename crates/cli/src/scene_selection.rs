@@ -1,0 +1,288 @@
+//! From the scene arguments to a loaded scene and the views to draw.
+
+use crate::args::shared::SceneArgs;
+use crate::args::values::LightArgument;
+use crate::error::CliError;
+use crate::terminal::console::note;
+use glam::DVec3;
+use skiagraph_compare::measuring::view_or_path::under_lights;
+use skiagraph_compare::wording::did_you_mean;
+use skiagraph_scene::{
+    Concave, DirectionalLight, Light, MaterialUse, ObjSetup, QuadDiagonal, Scene, SceneError,
+    SceneLibrary, SceneRequest, View,
+};
+use std::path::Path;
+
+/// A scene and the views that were asked for, at least one.
+#[derive(Debug)]
+pub struct SceneSelection {
+    /// The scene.
+    pub scene: Scene,
+    /// The views to draw.
+    pub views: Vec<View>,
+}
+
+impl SceneSelection {
+    /// Loads what the arguments name; warns of what an import had to mend.
+    ///
+    /// # Errors
+    /// A scene that cannot be loaded, a view that it does not have, a camera that is none.
+    pub fn load(args: &SceneArgs) -> Result<Self, CliError> {
+        let request = SceneRequest {
+            argument: args.scene.clone(),
+            obj: bare_setup(args),
+        };
+        if request.obj.is_none() && (args.materials.is_some() || args.concave.is_some()) {
+            return Err(CliError::Usage(format!(
+                "--materials and --concave are of a mesh file (.obj, .gltf, .glb); a scene file \
+                 says `materials` and `concave` itself, so leave them out with --scene {}",
+                args.scene
+            )));
+        }
+        let library = SceneLibrary::from_environment();
+        if let Some(file) = library.stand_in(&args.scene) {
+            note(&format!(
+                "{} stands in for the built-in scene `{}`, which differs",
+                file.display(),
+                args.scene
+            ));
+        }
+        let loaded = library.load(&request);
+        let (mut scene, report) = loaded.map_err(|error| explain(error, args, &library))?;
+        if report.has_warnings() {
+            note(&format!(
+                "{}: {}",
+                args.scene,
+                report.to_string().trim_end().replace('\n', "; ")
+            ));
+        }
+        let is_bare = request.obj.is_some();
+        if is_bare {
+            look_at_all(&mut scene, args);
+        }
+        let views = choose(&scene, args.view.as_deref())?;
+        let views = override_views(&scene, views, args, is_bare)?;
+        let views = under_lights(&scene, views, args.light_name())?;
+        if let Some(text) = from_below(&views, args) {
+            note(&text);
+        }
+        Ok(Self { scene, views })
+    }
+}
+
+/// That a sun of one's own shines upwards, which most often is its direction turned round.
+fn from_below(views: &[View], args: &SceneArgs) -> Option<String> {
+    let direction = own_light(args)?;
+    let up = views.first()?.up;
+    let three = |v: DVec3| format!("{},{},{}", v.x, v.y, v.z);
+    (direction.dot(up) > 0.0).then(|| {
+        format!(
+            "warning: --light {} shines from below: it is the direction in which the light \
+             travels; --light {} shines from above",
+            three(direction),
+            three(-direction + DVec3::ZERO)
+        )
+    })
+}
+
+fn explain(error: SceneError, args: &SceneArgs, library: &SceneLibrary) -> CliError {
+    match error {
+        SceneError::BadView { .. } => CliError::Usage(error.to_string()),
+        SceneError::UnknownScene { .. } => {
+            let known = library.list();
+            let hint = did_you_mean(&args.scene, known.iter().map(|scene| scene.name.as_str()));
+            CliError::Input(format!("{error}{hint}"))
+        }
+        error => CliError::Scene {
+            name: args.scene.clone(),
+            source: Box::new(error),
+        },
+    }
+}
+
+/// Returns the parts that a bare mesh file lacks. Its view is put in place once its bounds are
+/// known.
+fn bare_setup(args: &SceneArgs) -> Option<ObjSetup> {
+    let extension = Path::new(&args.scene).extension()?;
+    let mut known = ["obj", "gltf", "glb"].into_iter();
+    known.find(|known| extension.eq_ignore_ascii_case(known))?;
+    Some(ObjSetup {
+        view: View {
+            name: "main".into(),
+            eye: DVec3::ZERO,
+            direction: DVec3::NEG_Z,
+            up: DVec3::Y,
+            fov_y_degrees: 60.0,
+            near: 1.0,
+            far: NEAR_TO_FAR,
+            light: None,
+        },
+        light: DirectionalLight::new(own_light(args).unwrap_or(FALLBACK_LIGHT)).into(),
+        quads: QuadDiagonal::default(),
+        concave: args.concave.map_or_else(Concave::default, Into::into),
+        materials: args.materials.map_or_else(MaterialUse::default, Into::into),
+    })
+}
+
+/// The direction in which light travels over a mesh by default: a high sun, from the side.
+const FALLBACK_LIGHT: DVec3 = DVec3::new(-0.4, -1.0, -0.55);
+
+/// A depth buffer of 32-bit floats tells depths apart well over this range.
+const NEAR_TO_FAR: f64 = 1e4;
+
+fn own_light(args: &SceneArgs) -> Option<DVec3> {
+    match &args.light {
+        Some(LightArgument::Direction(direction)) => Some(*direction),
+        Some(LightArgument::Name(_)) | None => None,
+    }
+}
+
+/// Looks at a bare mesh from where all of it is seen, as far as no argument says otherwise, and
+/// says so.
+fn look_at_all(scene: &mut Scene, args: &SceneArgs) {
+    let (Some((min, max)), Some(view)) = (scene.mesh.bounds(), scene.views.first_mut()) else {
+        return;
+    };
+    let (min, max) = (min.as_dvec3(), max.as_dvec3());
+    let centre = (min + max) * 0.5;
+    let radius = ((max - min).length() * 0.5).max(f64::MIN_POSITIVE);
+    let fov = args.fov.unwrap_or(view.fov_y_degrees).to_radians();
+    let distance = radius / (fov * 0.5).sin();
+    view.eye = centre + DVec3::new(0.5, 0.6, 1.0).normalize() * distance;
+    if let Some(eye) = args.eye {
+        view.eye = eye;
+    }
+    let towards = centre - view.eye;
+    view.direction = if towards == DVec3::ZERO {
+        DVec3::NEG_Z
+    } else {
+        towards
+    };
+    let given = [
+        args.eye.is_some(),
+        args.look.is_some(),
+        own_light(args).is_some(),
+    ];
+    if given == [true; 3] {
+        return;
+    }
+    let three = |v: DVec3| format!("{:.4},{:.4},{:.4}", v.x, v.y, v.z);
+    let chosen = [
+        ("--eye", three(view.eye)),
+        ("--look", three(view.direction.normalize())),
+        ("--light", three(FALLBACK_LIGHT)),
+    ];
+    let chosen = chosen.iter().zip(given).filter(|(_, given)| !given);
+    let chosen: Vec<String> = chosen
+        .map(|((flag, value), _)| format!("{flag} {value}"))
+        .collect();
+    note(&format!(
+        "{}: a mesh file holds no view and no light; chosen: {}",
+        args.scene,
+        chosen.join(" ")
+    ));
+}
+
+/// Refuses a camera or a light of one's own along a path, which has both.
+///
+/// # Errors
+/// One is given.
+pub fn check_path(args: &SceneArgs, path: &str) -> Result<(), CliError> {
+    if has_own_view(args) {
+        Err(CliError::Usage(format!(
+            "--path {path} brings its camera and its light: leave out --eye, --look, --up, --fov, \
+             --near, --far and --light x,y,z"
+        )))
+    } else {
+        Ok(())
+    }
+}
+
+fn has_own_view(args: &SceneArgs) -> bool {
+    [args.eye, args.look, args.up].iter().any(Option::is_some)
+        || [args.fov, args.near, args.far].iter().any(Option::is_some)
+        || own_light(args).is_some()
+}
+
+/// Puts what the arguments say of the camera and the light into views, which are then called
+/// `own`; `is_bare` if the view was made here.
+fn override_views(
+    scene: &Scene,
+    views: Vec<View>,
+    args: &SceneArgs,
+    is_bare: bool,
+) -> Result<Vec<View>, CliError> {
+    if !has_own_view(args) && !is_bare {
+        return Ok(views);
+    }
+    let light = own_light(args).filter(|_| !is_bare);
+    if args.eye.is_some() && views.len() > 1 {
+        return Err(CliError::Usage(
+            "--eye is one view of your own: leave out --view all, or --eye".into(),
+        ));
+    }
+    let several = views.len() > 1;
+    let own = |view: View| {
+        let mut own = View {
+            name: match (is_bare, several) {
+                (true, _) => view.name.clone(),
+                (_, true) => format!("{}-own", view.name),
+                (_, false) => "own".into(),
+            },
+            eye: args.eye.unwrap_or(view.eye),
+            direction: args.look.unwrap_or(view.direction),
+            up: args.up.unwrap_or(view.up),
+            fov_y_degrees: args.fov.unwrap_or(view.fov_y_degrees),
+            ..view
+        };
+        if let Some(direction) = light {
+            own.light = Some(Light {
+                name: "own".into(),
+                kind: DirectionalLight::new(direction).into(),
+            });
+        }
+        if args.eye.is_some() || is_bare {
+            fit_planes(&mut own, scene, args);
+        } else {
+            own.far = args.far.unwrap_or(own.far);
+            own.near = args.near.unwrap_or(own.near);
+        }
+        let light = own.light.as_ref().map_or(Ok(()), Light::check);
+        own.check().and(light).map_err(CliError::Usage)?;
+        Ok(own)
+    };
+    views.into_iter().map(own).collect()
+}
+
+/// Clip planes where none are given: far just behind the mesh, near a ten-thousandth of it.
+fn fit_planes(view: &mut View, scene: &Scene, args: &SceneArgs) {
+    let farthest = scene.mesh.bounds().map_or(1.0, |(min, max)| {
+        let (min, max) = (min.as_dvec3(), max.as_dvec3());
+        (max - view.eye).abs().max((view.eye - min).abs()).length()
+    });
+    view.far = args.far.unwrap_or_else(|| {
+        (farthest * 1.01)
+            .max(args.near.unwrap_or(0.0) * 2.0)
+            .max(f64::MIN_POSITIVE)
+    });
+    view.near = args.near.unwrap_or(view.far / NEAR_TO_FAR);
+}
+
+fn choose(scene: &Scene, name: Option<&str>) -> Result<Vec<View>, CliError> {
+    match name {
+        Some("all") => Ok(scene.views.clone()),
+        None => Ok(scene.views.iter().take(1).cloned().collect()),
+        Some(name) => match scene.view(name) {
+            Some(view) => Ok(vec![view.clone()]),
+            None => {
+                let names: Vec<&str> = scene.views.iter().map(|view| view.name.as_str()).collect();
+                let hint = did_you_mean(name, names.iter().copied());
+                Err(CliError::Input(format!(
+                    "the scene `{}` has no view `{name}`{hint}\n  views: {}, or all of them: all",
+                    scene.name,
+                    names.join(", ")
+                )))
+            }
+        },
+    }
+}

@@ -1,0 +1,194 @@
+//! The input of a comparison: methods, a scene, places to see it from, and the protocol.
+
+use crate::error::CompareError;
+use crate::files::fingerprint::Fingerprint;
+use crate::graphs::idle_params::IdleParams;
+use crate::graphs::method::Method;
+use crate::graphs::planning::Capabilities;
+use crate::graphs::shadow_method;
+use crate::measuring::ground_truth::{PrimaryVisibility, REFERENCE_SAMPLES};
+use crate::measuring::view_or_path::ViewOrPath;
+use crate::pictures::run_pictures::{check_stems, reference_stem, stem};
+use crate::records::published_row::Row;
+use crate::sink::Session;
+use skiagraph_passes::{EmbeddedSources, SceneProvider};
+use skiagraph_reference::OracleMode;
+use skiagraph_scene::{LightKind, Scene};
+use std::sync::Arc;
+
+/// How methods are run and judged.
+#[derive(Clone, Copy, Debug)]
+pub struct Protocol {
+    /// Timed frames of a still view. The frame that is judged and pictured is one more behind them,
+    /// as its readback would be timed, too.
+    pub frames: u32,
+    /// Frames before the timed ones.
+    pub warmup: u32,
+    /// Timed frames in which only the camera moves, so that passes may be skipped; 0 for none.
+    pub cached_frames: u32,
+    /// Places within a pixel that the camera of a path takes in turns; `None` for its centre alone.
+    pub jitter: Option<u32>,
+    /// How rays of the ground truth leave their receivers.
+    pub oracle: OracleMode,
+    /// Rays of the ground truth from a pixel to a light that has an extent.
+    pub reference_samples: u32,
+    /// True if pictures of every run are drawn into the folder of the results.
+    pub pictures: bool,
+}
+
+impl Default for Protocol {
+    fn default() -> Self {
+        Self {
+            frames: 10,
+            warmup: 2,
+            cached_frames: 10,
+            jitter: None,
+            oracle: OracleMode::Exact,
+            reference_samples: REFERENCE_SAMPLES,
+            pictures: false,
+        }
+    }
+}
+
+/// Methods, the scene that they run on, the places that it is seen from, and the protocol.
+///
+/// ```no_run
+/// use skiagraph_compare::{
+///     comparison::Comparison,
+///     graphs::shadow_method,
+///     measuring::{device::{self, GpuRequest}, series::run},
+///     sink::{Session, Silent},
+/// };
+/// use skiagraph_passes::EmbeddedSources;
+/// use skiagraph_scene::{SceneLibrary, SceneRequest};
+/// use std::sync::Arc;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let request = SceneRequest { argument: "park".into(), obj: None };
+/// let (scene, _) = SceneLibrary::from_environment().load(&request)?;
+/// let methods = shadow_method::load_methods(
+///     &["light_buffer", "nsm@slope_bias=2"], &[], &[1024], &EmbeddedSources)?;
+/// let gpu = device::open(&GpuRequest::default(), methods.iter().map(|it| &it.preset.graph))?;
+/// let comparison = Comparison::new(Arc::new(scene), methods)?;
+/// for run in run(&comparison, Session::new(&gpu, &Silent))?.runs {
+///     let measured = run.measured.ok_or("cannot run here")?;
+///     println!("{}: {} wrong of {}", run.preset, measured.wrong.total, run.pixels.facing_light);
+/// }
+/// # Ok(())
+/// # }
+/// ```
+pub struct Comparison {
+    /// The scene.
+    pub scene: Arc<Scene>,
+    /// The places that it is seen from.
+    pub views: Vec<ViewOrPath>,
+    /// Sizes of viewports, pixels.
+    pub viewports: Vec<[u32; 2]>,
+    /// The methods, each in one setting.
+    pub methods: Vec<Method>,
+    /// How they are run and judged.
+    pub protocol: Protocol,
+    /// Finds the visible triangles.
+    pub primary: PrimaryVisibility,
+    /// Figures that others have published, to stand beside the runs that they are of.
+    pub published: Vec<Row>,
+    /// The command that the results are to name, so that they can be measured again.
+    pub command: Option<String>,
+}
+
+impl Comparison {
+    /// Compares methods on all views of a scene in 512×512 pixels.
+    ///
+    /// # Errors
+    /// The built-in G-buffer cannot be loaded.
+    pub fn new(scene: Arc<Scene>, methods: Vec<Method>) -> Result<Self, CompareError> {
+        let views = scene.views.iter().cloned().map(ViewOrPath::Still);
+        Ok(Self {
+            views: views.collect(),
+            viewports: vec![[512, 512]],
+            methods,
+            protocol: Protocol::default(),
+            primary: PrimaryVisibility::load(&EmbeddedSources)?,
+            published: Vec::new(),
+            command: None,
+            scene,
+        })
+    }
+
+    /// Plans everything, so that a mistake in the last method is told at once and not after an
+    /// hour, and notes params that have no effect.
+    ///
+    /// # Errors
+    /// Every fault of every graph together; no method that this GPU can run; runs whose pictures
+    /// would overwrite each other.
+    pub fn check(&self, session: Session) -> Result<(), CompareError> {
+        let device = Capabilities::new(session.gpu);
+        let mut provider = SceneProvider::new(self.scene.clone());
+        if self.protocol.pictures {
+            self.check_pictures(session)?;
+        }
+        for &viewport in &self.viewports {
+            self.primary.plan(session, viewport, &provider)?;
+        }
+        // A provider describes the same for every view under a light of one kind.
+        let (methods, mut idle) = (&self.methods, IdleParams::default());
+        for light in self.kinds_of_light() {
+            provider.set_light(light);
+            shadow_method::check_plans(methods, &self.viewports, &provider, Some(&device))?;
+            idle.note(session.sink, methods, &device, &provider);
+        }
+        Ok(())
+    }
+
+    /// The methods as this GPU runs them: defaults of params may depend on its features.
+    pub fn settled(&self, session: Session) -> Vec<Method> {
+        let features = session.gpu.device.features();
+        let methods = self.methods.iter().cloned();
+        methods.map(|method| method.settled(features)).collect()
+    }
+
+    /// One light of each kind that the views are under, in their order.
+    pub fn kinds_of_light(&self) -> Vec<LightKind> {
+        let mut lights: Vec<LightKind> = Vec::new();
+        for light in self.views.iter().map(|view| view.light(&self.scene)) {
+            if lights.iter().all(|known| known.word() != light.word()) {
+                lights.push(light);
+            }
+        }
+        lights
+    }
+
+    /// Hashes everything that all runs depend on.
+    pub(crate) fn fingerprint(&self) -> Fingerprint {
+        let scene = &self.scene;
+        let mut of = self
+            .primary
+            .fingerprint
+            .with_scene(&scene.mesh, &scene.lights);
+        if self.views.iter().any(|view| view.light(scene).has_extent()) {
+            of = of.with_text(&self.protocol.reference_samples.to_string());
+        }
+        match self.protocol.jitter {
+            Some(count) => of.with_text(&format!("jitter {count}")),
+            None => of,
+        }
+    }
+
+    /// Refuses runs that would overwrite each other's pictures.
+    fn check_pictures(&self, session: Session) -> Result<(), CompareError> {
+        let methods = self.settled(session);
+        let mut stems = Vec::new();
+        for view in &self.views {
+            let view = view.name();
+            for &viewport in &self.viewports {
+                stems.extend(methods.iter().map(|method| {
+                    let owner = format!("`{}` on view `{view}`", method.name);
+                    (stem(method, view, viewport), owner)
+                }));
+                let owner = format!("the reference on view `{view}`");
+                stems.push((reference_stem(view, viewport), owner));
+            }
+        }
+        check_stems(stems)
+    }
+}

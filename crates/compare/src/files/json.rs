@@ -1,0 +1,77 @@
+//! JSON files of ours: writing them, and the place of a mistake in one that is read back.
+
+use crate::error::CompareError;
+use serde::Serialize;
+use serde_json::Value;
+use skiagraph_graph::{Code, Diagnostic, SourceFile};
+
+/// The contents of a file, or what is printed.
+pub fn to_text(value: &impl Serialize) -> String {
+    let mut text = serde_json::to_string_pretty(value)
+        .expect("plain structs with string keys always serialise");
+    text.push('\n');
+    text
+}
+
+/// A mistake at a byte of the text.
+#[derive(Debug)]
+pub struct Mistake {
+    at: usize,
+    what: String,
+}
+
+impl Mistake {
+    /// Takes over the message and the place of an error of serde.
+    pub fn from_serde(text: &str, error: &serde_json::Error) -> Self {
+        // serde_json counts lines and, in bytes, columns from 1; an empty text has column 0.
+        let lines = text.split_inclusive('\n').map(str::len);
+        let before: usize = lines.take(error.line().saturating_sub(1)).sum();
+        let message = error.to_string();
+        let place = format!(" at line {} column {}", error.line(), error.column());
+        Self {
+            at: before + error.column().saturating_sub(1),
+            what: message.strip_suffix(&place).unwrap_or(&message).to_owned(),
+        }
+    }
+
+    /// At the first place where `field` is written, or at the begin of the file.
+    pub fn at_field(text: &str, field: &str, what: String) -> Self {
+        let at = text.find(field).unwrap_or(0);
+        Self { at, what }
+    }
+
+    /// Shows the mistake in its file: `what_for` goes on "`FILE` is not a …", `help` is the way
+    /// out, `summary` the last line.
+    pub fn in_file(
+        self,
+        file: &SourceFile,
+        what_for: &str,
+        help: &str,
+        summary: &str,
+    ) -> CompareError {
+        // Rendering moves a place inside a character or behind the text to where it can be shown.
+        let error = Diagnostic::error(
+            Code::Syntax,
+            format!("`{}` is not a {what_for}: {}", file.name, self.what),
+        )
+        .at(file.span(self.at..self.at + 1), "")
+        .help(help);
+        CompareError::Diagnostics {
+            faults: vec![vec![error]],
+            summary: summary.into(),
+        }
+    }
+}
+
+/// Refuses every version of a schema but the first.
+///
+/// # Errors
+/// At the version.
+pub fn check_schema(text: &str, version: Option<Value>) -> Result<(), Mistake> {
+    if version == Some(1.into()) {
+        return Ok(());
+    }
+    let version = version.unwrap_or_default();
+    let what = format!("this program reads version 1 of the schema, not {version}");
+    Err(Mistake::at_field(text, "\"schema\"", what))
+}

@@ -1,0 +1,122 @@
+//! One process at a time where several may write the same files of a folder.
+
+use crate::error::CompareError;
+use crate::sink::Sink;
+use std::{
+    fs::{File, TryLockError},
+    io,
+    path::Path,
+    sync::atomic::Ordering,
+    thread,
+    time::{Duration, Instant},
+};
+
+/// The files of a folder that one process writes at a time. A file beside them,
+/// `.skiagraph-results.lock` for one, is locked; it stays there, as taking it away would let two
+/// processes lock two files of that name.
+#[derive(Clone, Copy, Debug)]
+pub enum Shared {
+    /// results.json, what is written beside it (results.csv, report.html) and the pictures of its
+    /// runs. It is held for as long as that takes, not while runs are measured.
+    Results,
+    /// stress.json, which holds one command's matrix: it is held to the command's end.
+    Stress,
+}
+
+impl Shared {
+    fn file(self) -> &'static str {
+        match self {
+            Self::Results => ".skiagraph-results.lock",
+            Self::Stress => ".skiagraph-stress.lock",
+        }
+    }
+}
+
+/// No other process has the files until this is dropped, or the process ends in whatever way.
+#[derive(Debug)]
+pub struct Locked {
+    /// Where the file system has no locks: nothing.
+    _file: Option<File>,
+}
+
+/// How often another try is made.
+const RETRY: Duration = Duration::from_millis(20);
+/// After so long it is said that something is waited for.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// Waits until no other process has the files of the folder.
+///
+/// # Errors
+/// An early end, a folder that takes no file.
+pub fn wait_for(folder: &Path, files: Shared, sink: &dyn Sink) -> Result<Locked, CompareError> {
+    let began = Instant::now();
+    let mut is_told = false;
+    loop {
+        if let Some(locked) = claim(folder, files, sink)? {
+            return Ok(locked);
+        }
+        // Finished work is written after a stop, too, but the wait has an end.
+        if sink.stop().load(Ordering::Relaxed) && began.elapsed() > PATIENCE {
+            return Err(CompareError::interrupted());
+        }
+        if began.elapsed() > PATIENCE && !is_told {
+            sink.note(&format!(
+                "waiting for another skiagraph that writes into {}",
+                folder.display()
+            ));
+            is_told = true;
+        }
+        thread::sleep(RETRY);
+    }
+}
+
+/// The same without waiting: `None` if another process has them.
+///
+/// # Errors
+/// A folder that takes no file.
+pub fn claim(
+    folder: &Path,
+    files: Shared,
+    sink: &dyn Sink,
+) -> Result<Option<Locked>, CompareError> {
+    let path = folder.join(files.file());
+    let opened = File::options()
+        .create(true)
+        .truncate(false)
+        .write(true)
+        .open(&path);
+    let file = opened.map_err(|error| CompareError::write(&path, error))?;
+    match file.try_lock() {
+        Ok(()) => Ok(Some(Locked { _file: Some(file) })),
+        Err(TryLockError::WouldBlock) => Ok(None),
+        Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => {
+            sink.note(&format!(
+                "{} cannot be locked: let one command at a time write into it",
+                folder.display()
+            ));
+            Ok(Some(Locked { _file: None }))
+        }
+        Err(TryLockError::Error(error)) => Err(CompareError::write(&path, error)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sink::Silent;
+
+    #[test]
+    fn one_has_the_files_until_it_lets_go() {
+        let folder = tempfile::tempdir().unwrap();
+        let claim = |files| claim(folder.path(), files, &Silent).unwrap();
+        let first = claim(Shared::Results);
+        assert!(first.is_some());
+        assert!(claim(Shared::Results).is_none());
+        assert!(claim(Shared::Stress).is_some(), "files of their own");
+        drop(first);
+        assert!(claim(Shared::Results).is_some());
+        let nowhere = folder.path().join("nowhere");
+        let error = super::claim(&nowhere, Shared::Results, &Silent).unwrap_err();
+        assert!(error.to_string().contains("nowhere"), "{error}");
+    }
+}

@@ -1,0 +1,172 @@
+//! Files that are there whole or not at all.
+
+use crate::error::CompareError;
+use std::{
+    fs,
+    io::{self, Write},
+    path::{Component, Path, PathBuf},
+};
+
+/// Refuses files that would overwrite each other or have no folder, before anything runs for them.
+/// Each comes with what writes it, as the command line says it.
+///
+/// # Errors
+/// Names both writers, or the folder.
+pub fn check_writable(files: &[(String, &Path)]) -> Result<(), CompareError> {
+    let place = |file: &Path| -> PathBuf {
+        let parts = file.components();
+        parts.filter(|part| *part != Component::CurDir).collect()
+    };
+    for (index, (writer, file)) in files.iter().enumerate() {
+        let earlier = files[..index]
+            .iter()
+            .find(|(_, other)| place(other) == place(file));
+        if let Some((other, _)) = earlier {
+            return Err(CompareError::Request(format!(
+                "{other} and {writer} both write {}; give each a file of its own",
+                file.display()
+            )));
+        }
+        let folder = folder_of(file);
+        let why = if folder.is_dir() {
+            file.is_dir().then(|| "it is a folder".to_owned())
+        } else {
+            Some(format!("there is no folder {}", folder.display()))
+        };
+        if let Some(why) = why {
+            let file = file.display();
+            let message = format!("{writer}: cannot write {file}: {why}");
+            return Err(CompareError::Input(message));
+        }
+        if is_replaced(file) {
+            try_out(folder).map_err(|error| CompareError::write(file, error))?;
+        }
+    }
+    Ok(())
+}
+
+/// Makes a folder if it is not there, and refuses one that takes no files, before anything runs for
+/// them.
+///
+/// # Errors
+/// Names the folder.
+pub fn check_folder(folder: &Path) -> Result<(), CompareError> {
+    let made = fs::create_dir_all(folder).and_then(|()| try_out(folder));
+    made.map_err(|error| CompareError::write(folder, error))
+}
+
+/// Writes a few bytes into a folder and takes them away again: permissions alone do not say whether
+/// that works, and a full disk has room for an empty file.
+fn try_out(folder: &Path) -> io::Result<()> {
+    let mut file = tempfile::Builder::new()
+        .prefix(".skiagraph-")
+        .tempfile_in(folder)?;
+    file.write_all(&[0; 4096])
+}
+
+/// True if a path holds a file, or nothing yet. Devices and pipes (`/dev/stdout`) are written into;
+/// a file in their place would take them away from all other processes.
+fn is_replaced(path: &Path) -> bool {
+    fs::metadata(path).map_or(true, |found| found.is_file())
+}
+
+fn folder_of(file: &Path) -> &Path {
+    match file.parent() {
+        Some(parent) if parent != Path::new("") => parent,
+        _ => Path::new("."),
+    }
+}
+
+/// A new file in the same folder, of a name that nothing has.
+fn beside(path: &Path) -> io::Result<tempfile::NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    // Temporary files are private by default; a result should be as readable as any file the user
+    // makes.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.prefix(".skiagraph-").tempfile_in(folder_of(path))
+}
+
+/// Writes a file whole or not at all: beside it first, then renamed over it, so that an interrupt
+/// keeps the old one.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), CompareError> {
+    let write = || -> io::Result<()> {
+        if !is_replaced(path) {
+            return fs::write(path, bytes);
+        }
+        // A link stays what it is; the file behind it is replaced.
+        let path = &fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+        let mut file = beside(path)?;
+        file.write_all(bytes)?;
+        file.persist(path)?;
+        Ok(())
+    };
+    write().map_err(|error| CompareError::write(path, error))
+}
+
+/// Writes a file that is not there yet, whole or not at all; false if something of that name is
+/// there.
+///
+/// # Errors
+/// It cannot be written.
+pub fn write_new(path: &Path, bytes: &[u8]) -> Result<bool, CompareError> {
+    let write = || -> io::Result<bool> {
+        let mut file = beside(path)?;
+        file.write_all(bytes)?;
+        match file.persist_noclobber(path) {
+            Ok(_) => Ok(true),
+            Err(kept) if kept.error.kind() == io::ErrorKind::AlreadyExists => Ok(false),
+            Err(kept) => Err(kept.error),
+        }
+    };
+    write().map_err(|error| CompareError::write(path, error))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_that_clash_or_have_no_folder_are_refused_beforehand() {
+        let check = |files: &[&'static str]| {
+            let files: Vec<_> = files
+                .iter()
+                .map(|file| (format!("--{file}"), Path::new(*file)))
+                .collect();
+            check_writable(&files)
+        };
+        check(&["a", "b", "./c"]).unwrap();
+        let clash = check(&["a", "./a"]).unwrap_err();
+        assert!(matches!(clash, CompareError::Request(_)));
+        assert!(clash.to_string().starts_with("--a and --./a both write"));
+        let nowhere = check(&["nowhere/at/all.json"]).unwrap_err().to_string();
+        assert!(
+            nowhere.ends_with("there is no folder nowhere/at"),
+            "{nowhere}"
+        );
+    }
+
+    #[test]
+    fn a_file_is_replaced_whole_and_a_bad_path_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.txt");
+        write_whole(&path, b"old and long").unwrap();
+        write_whole(&path, b"new").unwrap();
+        assert_eq!(std::fs::read(&path).unwrap(), b"new");
+        assert_eq!(
+            std::fs::read_dir(folder.path()).unwrap().count(),
+            1,
+            "no temporary file stays"
+        );
+        assert!(!write_new(&path, b"newer").unwrap());
+        assert_eq!(std::fs::read(&path).unwrap(), b"new");
+        assert!(write_new(&folder.path().join("b.txt"), b"b").unwrap());
+        let missing = folder.path().join("missing").join("a.txt");
+        assert!(
+            write_whole(&missing, b"x")
+                .unwrap_err()
+                .to_string()
+                .contains("a.txt")
+        );
+    }
+}

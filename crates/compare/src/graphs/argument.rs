@@ -1,0 +1,111 @@
+//! A method as the command line names it.
+
+use std::{path::Path, str::FromStr};
+
+/// A param that is set, `NAME=VALUE`; the value is read by the graph that has the param.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Assignment {
+    /// The param.
+    pub name: String,
+    /// Its value as written.
+    pub value: String,
+}
+
+impl FromStr for Assignment {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.split_once('=') {
+            Some((name, value)) if !name.trim().is_empty() => Ok(Self {
+                name: name.trim().into(),
+                value: value.trim().into(),
+            }),
+            _ => Err("expected NAME=VALUE, for example slope_bias=2".into()),
+        }
+    }
+}
+
+/// `PRESET[@PARAM=VALUE,…]`: a method as it is named on the command line.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MethodArgument {
+    /// The preset's name, or the graph's path.
+    pub preset: String,
+    /// Params set for this method alone.
+    pub own: Vec<Assignment>,
+}
+
+impl MethodArgument {
+    /// Splits a word of the command line. A comma also stands in the values of vectors, so that a
+    /// part without `=` belongs to the value before it.
+    pub fn new(word: &str) -> Self {
+        // Folders have any name.
+        let split = word.split_once('@').filter(|_| !Path::new(word).is_file());
+        let Some((preset, own)) = split.filter(|(name, own)| !name.is_empty() && own.contains('='))
+        else {
+            return Self {
+                preset: word.to_owned(),
+                own: Vec::new(),
+            };
+        };
+        let mut assignments: Vec<Assignment> = Vec::new();
+        for part in own.split(',') {
+            match (part.parse::<Assignment>(), assignments.last_mut()) {
+                (Ok(assignment), _) => assignments.push(assignment),
+                (Err(_), Some(last)) => last.value += &format!(",{part}"),
+                (Err(_), None) => assignments.push(Assignment {
+                    name: part.to_owned(),
+                    value: String::new(),
+                }),
+            }
+        }
+        Self {
+            preset: preset.to_owned(),
+            own: assignments,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn set(text: &str) -> Assignment {
+        text.parse().unwrap()
+    }
+
+    #[test]
+    fn a_word_is_a_method_with_what_is_set_of_it_alone() {
+        let plain = MethodArgument::new("crsm");
+        assert_eq!((plain.preset.as_str(), plain.own.len()), ("crsm", 0));
+        let two = MethodArgument::new("crsm@n=1,depth=plane");
+        assert_eq!(two.own, [set("n=1"), set("depth=plane")]);
+        let vector = MethodArgument::new("my.ron@tint=1,0,0,n=2");
+        assert_eq!(vector.own, [set("tint=1,0,0"), set("n=2")]);
+        // A file's name may have the sign.
+        assert_eq!(MethodArgument::new("a@b.ron").preset, "a@b.ron");
+    }
+
+    #[test]
+    fn a_file_below_a_folder_of_any_name_has_no_setting() {
+        let folder = tempfile::tempdir().unwrap();
+        let odd = folder.path().join("dir@a=b");
+        std::fs::create_dir(&odd).unwrap();
+        std::fs::write(odd.join("x.ron"), "").unwrap();
+        let word = odd.join("x.ron").display().to_string();
+        let argument = MethodArgument::new(&word);
+        assert_eq!((argument.preset, argument.own.len()), (word, 0));
+    }
+
+    #[test]
+    fn assignments_keep_everything_after_the_first_equals_sign() {
+        assert_eq!(
+            "a=b=c".parse(),
+            Ok(Assignment {
+                name: "a".into(),
+                value: "b=c".into()
+            })
+        );
+        assert!("=1".parse::<Assignment>().is_err());
+        assert!("cull".parse::<Assignment>().is_err());
+    }
+}

@@ -1,0 +1,82 @@
+//! Mistakes of graphs, as they are shown.
+
+use crate::error::CompareError;
+use crate::sink::Sink;
+use crate::wording::plural;
+use skiagraph_graph::{Diagnostic, Diagnostics, Graph, Severity};
+use std::collections::BTreeSet;
+
+/// Faults of several graphs, gathered so that all are shown, each once.
+#[derive(Default)]
+pub struct GraphFaults {
+    rendered: Vec<String>,
+    faults: Vec<Vec<Diagnostic>>,
+    errors: usize,
+    graphs: BTreeSet<String>,
+}
+
+impl GraphFaults {
+    /// Adds the faults of one graph, which may be the same as under another viewport before.
+    pub fn add(&mut self, graph: &str, diagnostics: &Diagnostics) {
+        let rendered = diagnostics.render(false);
+        self.graphs.insert(graph.into());
+        if !self.rendered.contains(&rendered) {
+            self.errors += errors(diagnostics).count();
+            self.faults.push(diagnostics.iter().cloned().collect());
+            self.rendered.push(rendered);
+        }
+    }
+
+    /// The faults of one graph alone, as an error.
+    pub fn one(graph: &str, diagnostics: &Diagnostics) -> CompareError {
+        let mut faults = Self::default();
+        faults.add(graph, diagnostics);
+        faults.into_error()
+    }
+
+    /// An error if there are any.
+    ///
+    /// # Errors
+    /// [`CompareError::Diagnostics`].
+    pub fn none_or_error(self) -> Result<(), CompareError> {
+        if self.graphs.is_empty() {
+            Ok(())
+        } else {
+            Err(self.into_error())
+        }
+    }
+
+    fn into_error(self) -> CompareError {
+        let summary = format!(
+            "{} in {}",
+            plural(self.errors, "error"),
+            plural(self.graphs.len(), "graph")
+        );
+        CompareError::Diagnostics {
+            faults: self.faults,
+            summary,
+        }
+    }
+}
+
+fn errors(diagnostics: &Diagnostics) -> impl Iterator<Item = &Diagnostic> {
+    let is_error = |diagnostic: &&Diagnostic| diagnostic.severity == Severity::Error;
+    diagnostics.iter().filter(is_error)
+}
+
+/// The errors in one line each, for a table's footnote; of a help only its first line.
+pub fn reasons(diagnostics: &Diagnostics) -> String {
+    let line = |Diagnostic { message, help, .. }: &Diagnostic| match help {
+        Some(help) => format!("{message} ({})", help.lines().next().unwrap_or_default()),
+        None => message.clone(),
+    };
+    errors(diagnostics).map(line).collect::<Vec<_>>().join("; ")
+}
+
+/// Tells a sink the warnings of a graph and of its plan.
+pub fn warn(sink: &dyn Sink, graph: &Graph, plan: &[Diagnostic]) {
+    let warnings: Vec<Diagnostic> = graph.warnings().iter().chain(plan).cloned().collect();
+    if !warnings.is_empty() {
+        sink.warnings(&warnings);
+    }
+}

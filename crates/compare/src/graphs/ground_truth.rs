@@ -1,0 +1,109 @@
+//! How a frame of a shadow method compares with the ground truth.
+
+use crate::error::CompareError;
+use crate::graphs::preset::Preset;
+use crate::graphs::shadow_method::Outputs;
+use skiagraph_reference::{Graded, GroundTruth, Statistics};
+
+/// How a frame compares with the ground truth.
+pub struct Judgement {
+    /// Its pixels counted; of shares as if they were cut at one half.
+    pub counts: Statistics,
+    /// Where the answer or the light is graded.
+    pub graded: Option<Graded>,
+}
+
+impl Judgement {
+    /// Compares a frame's outputs with the ground truth.
+    ///
+    /// # Errors
+    /// Outputs of another size than the reference, or with values that are none.
+    pub fn new(
+        outputs: &Outputs,
+        ground_truth: &GroundTruth,
+    ) -> Result<Self, skiagraph_reference::Error> {
+        let truth = &ground_truth.pixels;
+        let counts = Statistics::judged(&outputs.visibility, &outputs.status, truth)?;
+        let graded = (outputs.shares.is_some() || ground_truth.area.is_some())
+            .then(|| Graded::judged(&outputs.shown(), &ground_truth.shares(), truth))
+            .transpose()?;
+        Ok(Self { counts, graded })
+    }
+
+    /// Compares two pictures of a still view: by grades where there are any, else by wrong pixels.
+    pub fn is_worse_than(&self, other: &Self) -> bool {
+        match (&self.graded, &other.graded) {
+            (Some(one), Some(other)) => one.rmse > other.rmse,
+            _ => self.counts.wrong.total > other.counts.wrong.total,
+        }
+    }
+}
+
+/// A frame's outputs beside the ground truth.
+///
+/// # Errors
+/// [`CompareError::InvalidOutputs`] where they are not what a shadow method's must be.
+pub fn judged(
+    preset: &Preset,
+    outputs: Result<Outputs, String>,
+    ground_truth: &GroundTruth,
+) -> Result<(Outputs, Judgement), CompareError> {
+    let broken = |reason: String| {
+        let name = &preset.name;
+        CompareError::InvalidOutputs(format!("`{name}` breaks the contract of outputs: {reason}"))
+    };
+    let outputs = outputs.map_err(broken)?;
+    let judgement = Judgement::new(&outputs, ground_truth).map_err(|error| match error {
+        // The driver's doing, not the method's.
+        skiagraph_reference::Error::Unanswered { .. } => {
+            CompareError::InvalidOutputs(format!("`{}`: {error}", preset.name))
+        }
+        error => broken(error.to_string()),
+    })?;
+    Ok((outputs, judgement))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::graphs::preset;
+    use skiagraph_reference::{AreaVisibility, Class, GroundTruthPixels};
+
+    #[test]
+    fn a_graded_answer_or_light_is_judged_as_graded() {
+        let presets = preset::load_all(&["nsm".into()], &skiagraph_passes::EmbeddedSources);
+        let presets = presets.unwrap();
+        let pixels = GroundTruthPixels {
+            viewport: [4, 1],
+            classes: vec![
+                Class::Shadow,
+                Class::Lit,
+                Class::FacingAway,
+                Class::Background,
+            ],
+            indeterminate: vec![false; 4],
+            n_dot_l: vec![0.5; 4],
+            base_colors: Vec::new(),
+        };
+        let error = |shares: Option<Vec<f32>>, area: Option<AreaVisibility>| {
+            let outputs = Outputs {
+                visibility: vec![0, 1, 0, 0],
+                shares,
+                status: vec![3, 2, 1, 0],
+                rays: None,
+            };
+            let pixels = pixels.clone();
+            let ground_truth = GroundTruth { pixels, area };
+            let (_, judgement) = judged(&presets[0], Ok(outputs), &ground_truth).unwrap();
+            judgement.graded.map(|graded| graded.mean_absolute_error)
+        };
+        let area = AreaVisibility {
+            samples: 4,
+            shares: vec![0.5, 1.0, 0.0, 0.0],
+            standard_errors: vec![0.0; 4],
+        };
+        assert_eq!(error(None, None), None);
+        assert_eq!(error(Some(vec![0.0, 1.0, 0.1, 0.1]), None), Some(0.0));
+        assert_eq!(error(None, Some(area)), Some(0.25));
+    }
+}

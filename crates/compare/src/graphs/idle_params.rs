@@ -1,0 +1,82 @@
+//! Params that are set and change nothing, most of all under a light that has no use for them.
+
+use crate::graphs::method::Method;
+use crate::graphs::planning::{Capabilities, placeholder, stand_ins};
+use crate::sink::Sink;
+use skiagraph_graph::{Graph, ParamValue, Plan, PlanRequest};
+use skiagraph_passes::SceneProvider;
+use skiagraph_scene::LightKind;
+use std::collections::BTreeSet;
+
+/// Says of params that change nothing in some plans, of each once.
+#[derive(Default)]
+pub struct IdleParams {
+    told: BTreeSet<String>,
+}
+
+impl IdleParams {
+    /// A note for each param that was asked for and changes nothing in this plan of a method under
+    /// a light, unless it was told before.
+    pub fn note_of(&mut self, sink: &dyn Sink, name: &str, plan: &Plan, light: LightKind) {
+        for param in plan.idle_params() {
+            let value = plan.param(param).map(ParamValue::to_string);
+            let (value, kind) = (value.unwrap_or_default(), light.word());
+            let text = format!("{param}={value} has no effect on {name} under a {kind} light");
+            if self.told.insert(text.clone()) {
+                sink.note(&text);
+            }
+        }
+    }
+
+    /// The same of methods on an adapter; what it cannot run is told elsewhere.
+    pub fn note(
+        &mut self,
+        sink: &dyn Sink,
+        methods: &[Method],
+        on: &Capabilities,
+        provider: &SceneProvider,
+    ) {
+        for method in methods {
+            if let Ok(plan) = method.plan(method.viewport, on.clone(), provider) {
+                self.note_of(sink, &method.name, &plan, provider.light());
+            }
+        }
+    }
+}
+
+/// The params of words that choose something under the first kind of light that the graph takes and
+/// nothing under another: ` fit` under a spot light, whose map lies over its cone.
+pub fn under_other_lights(graph: &Graph) -> String {
+    let viewport = [64, 64];
+    let mut provider = placeholder(viewport, graph);
+    let choosing = |provider: &_| {
+        let plan = graph.plan(&PlanRequest {
+            any_adapter: true,
+            ..PlanRequest::new(viewport, provider)
+        });
+        plan.map_or(BTreeSet::new(), |plan| choosing(graph, &plan))
+    };
+    let under_first = choosing(&provider);
+    let mut told = String::new();
+    for light in stand_ins(graph).into_iter().skip(1) {
+        provider.set_light(light);
+        let there = choosing(&provider);
+        let idle: Vec<&str> = under_first.difference(&there).map(String::as_str).collect();
+        if !idle.is_empty() {
+            let (kind, idle) = (light.word(), idle.join(", "));
+            told += &format!("; under a {kind} light {idle} has no effect");
+        }
+    }
+    told
+}
+
+/// Params of words that do not all mean the same in a plan.
+fn choosing(graph: &Graph, plan: &Plan) -> BTreeSet<String> {
+    let choices = graph.params().iter().filter(|param| {
+        param.words().any(|word| {
+            let value = ParamValue::Choice(word.to_string());
+            !plan.is_same_with(param.name.as_str(), value)
+        })
+    });
+    choices.map(|param| param.name.value.to_string()).collect()
+}

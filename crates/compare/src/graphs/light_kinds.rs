@@ -1,0 +1,40 @@
+//! Which kinds of light a method takes.
+
+use crate::error::CompareError;
+use crate::wording::did_you_mean;
+use skiagraph_graph::Graph;
+use skiagraph_passes::uniforms::LIGHT_KINDS;
+
+/// The kinds of light that a graph takes and those that it does not, both as words: directional
+/// alone, unless its document says otherwise.
+pub fn split(graph: &Graph) -> [Vec<&'static str>; 2] {
+    let says: Vec<&str> = graph.lights().map(|word| word.as_str()).collect();
+    let takes = |word: &&'static str| match says[..] {
+        [] => *word == LIGHT_KINDS[0],
+        _ => says.contains(word),
+    };
+    let (takes, others) = LIGHT_KINDS.into_iter().partition(takes);
+    [takes, others]
+}
+
+/// True if a method takes lights of this kind.
+pub fn takes(graph: &Graph, kind: &str) -> bool {
+    split(graph)[0].contains(&kind)
+}
+
+/// Refuses words that are no kind of light.
+///
+/// # Errors
+/// The first such word.
+pub fn check(name: &str, graph: &Graph) -> Result<(), CompareError> {
+    let unknown = |word: &&str| !LIGHT_KINDS.contains(word);
+    let mut words = graph.lights().map(|word| word.as_str());
+    match words.find(unknown) {
+        None => Ok(()),
+        Some(word) => Err(CompareError::Input(format!(
+            "`{name}` takes the light `{word}`, which there is not{}\n  lights are {}",
+            did_you_mean(word, LIGHT_KINDS.into_iter()),
+            LIGHT_KINDS.join(", ")
+        ))),
+    }
+}

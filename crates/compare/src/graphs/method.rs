@@ -1,0 +1,275 @@
+//! A preset with the params that it runs with.
+
+use crate::error::CompareError;
+use crate::files::fingerprint::Fingerprint;
+use crate::graphs::argument::Assignment;
+use crate::graphs::argument::MethodArgument;
+use crate::graphs::openings;
+use crate::graphs::planning::Capabilities;
+use crate::graphs::preset::{self, Preset};
+use crate::graphs::variants::{self, MAP_SIZE, Setting};
+use crate::lists::unique;
+use crate::wording::did_you_mean;
+use skiagraph_gpu::Provider;
+use skiagraph_graph::{Diagnostics, ParamValue, Plan, Sources};
+use std::{collections::BTreeMap, slice, sync::Arc};
+
+/// Values of params, by their names.
+pub type ParamValues = BTreeMap<String, ParamValue>;
+
+/// A preset with the params that it runs with.
+#[derive(Clone)]
+pub struct Method {
+    /// The preset's name, with what tells this setting from its others: `crsm@n=1`.
+    pub name: String,
+    /// The preset.
+    pub preset: Arc<Preset>,
+    /// Its params that are not at their defaults.
+    pub params: ParamValues,
+    /// In how many pixels it runs.
+    pub viewport: [u32; 2],
+    /// Features of the adapter.
+    pub features: wgpu::Features,
+    /// All params; a default may depend on the viewport, and on what the adapter can do.
+    values: ParamValues,
+    /// The size of its shadow map, if it has that param.
+    pub map_size: Option<u32>,
+}
+
+impl Method {
+    /// Creates a method of a preset and the params set for it, in 1024×1024 pixels on the most able
+    /// adapter.
+    pub fn new(preset: Arc<Preset>, params: ParamValues) -> Self {
+        Self::on(preset, params, [1024, 1024], wgpu::Features::all())
+    }
+
+    /// Creates a method of a preset and the params set for it, in so many pixels on an adapter with
+    /// these features.
+    pub fn on(
+        preset: Arc<Preset>,
+        params: ParamValues,
+        viewport: [u32; 2],
+        features: wgpu::Features,
+    ) -> Self {
+        // Planning the method tells what is wrong with a value.
+        let values = preset.graph.values(&params, viewport, features);
+        let values = values.unwrap_or_default();
+        let map_size = match values.get(MAP_SIZE) {
+            Some(ParamValue::U32(size)) => Some(*size),
+            _ => None,
+        };
+        Self {
+            name: preset.name.clone(),
+            preset,
+            params,
+            viewport,
+            features,
+            values,
+            map_size,
+        }
+    }
+
+    /// The same under another name.
+    pub fn named(self, name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            ..self
+        }
+    }
+
+    /// The same on an adapter with these features.
+    pub fn settled(self, features: wgpu::Features) -> Self {
+        Self::on(self.preset, self.params, self.viewport, features).named(&self.name)
+    }
+
+    /// The same in so many pixels.
+    pub fn at(&self, viewport: [u32; 2]) -> Self {
+        let params = self.params.clone();
+        Self::on(self.preset.clone(), params, viewport, self.features).named(&self.name)
+    }
+
+    /// The plan on a viewport for such an adapter, of the outputs that are judged: what else the
+    /// graph shows would only cost time.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it.
+    pub fn plan(
+        &self,
+        viewport: [u32; 2],
+        capabilities: Capabilities,
+        provider: &dyn Provider,
+    ) -> Result<Plan, Diagnostics> {
+        let mut request = capabilities.request(viewport, provider);
+        request.params = self.params.clone();
+        let judged = self.preset.judged().into_iter();
+        request.outputs = Some(judged.map(str::to_owned).collect());
+        self.preset.graph.plan(&request)
+    }
+
+    /// Hashes everything that a run on a scene and view depends on, but the params.
+    pub fn fingerprint(&self, scene: Fingerprint) -> String {
+        scene.with_all(self.preset.fingerprint).to_string()
+    }
+
+    /// All params with the values that it runs with.
+    pub fn all_params(&self) -> BTreeMap<String, serde_json::Value> {
+        let entry = |(name, value): (&String, &ParamValue)| (name.clone(), json(value));
+        self.values.iter().map(entry).collect()
+    }
+}
+
+/// A param's value for `results.json`. An f32 is written as the short decimal that it was read
+/// from, not as the f64 nearest to it.
+fn json(value: &ParamValue) -> serde_json::Value {
+    let float = |value: &f32| value.to_string().parse::<f64>().unwrap_or(f64::NAN);
+    match value {
+        ParamValue::F32(number) => float(number).into(),
+        ParamValue::Vec(numbers) => numbers.iter().map(float).collect(),
+        ParamValue::I32(number) => (*number).into(),
+        ParamValue::U32(number) => (*number).into(),
+        ParamValue::Bool(flag) => (*flag).into(),
+        ParamValue::Choice(word) => word.as_str().into(),
+    }
+}
+
+/// Loads presets by their names, or refuses them.
+pub type Load = fn(&[String], &dyn Sources) -> Result<Vec<Arc<Preset>>, CompareError>;
+
+/// Loads the methods that words name (`crsm@n=1,depth=plane`, `my.ron@over=pcf`) with `load`, each
+/// in each setting of `params` and with each map size; a preset without that param once.
+///
+/// # Errors
+/// Graphs with faults or that do not exist; a value that a param cannot take, a param that no graph
+/// has.
+pub fn load(
+    words: &[impl AsRef<str>],
+    params: &[Assignment],
+    map_sizes: &[u32],
+    sources: &dyn Sources,
+    load: Load,
+) -> Result<Vec<Method>, CompareError> {
+    let (arguments, params) = openings::arguments(words, params, sources)?;
+    let presets = load(&variants::presets(&arguments), sources)?;
+    methods(&presets, &arguments, &params, map_sizes)
+}
+
+/// Each method in each of its settings, with each map size; a preset without that param once.
+///
+/// # Errors
+/// A value that a param cannot take, and a name that no preset has.
+fn methods(
+    presets: &[Arc<Preset>],
+    arguments: &[MethodArgument],
+    params: &[Assignment],
+    map_sizes: &[u32],
+) -> Result<Vec<Method>, CompareError> {
+    check_names(presets, params)?;
+    let mut methods: Vec<Method> = Vec::new();
+    for argument in unique(arguments) {
+        let named = presets.iter().find(|preset| preset.name == argument.preset);
+        let Some(preset) = named else {
+            continue;
+        };
+        let mut sizes: Vec<Option<u32>> = unique(map_sizes).into_iter().map(Some).collect();
+        if sizes.is_empty() || preset.param(MAP_SIZE).is_none() {
+            sizes = vec![None];
+        }
+        for Setting { label, set } in variants::settings(preset, &argument, params)? {
+            let name = match label.as_str() {
+                "" => preset.name.clone(),
+                label if is_over_another(&preset.name) => format!("{},{label}", preset.name),
+                label => format!("{}@{label}", preset.name),
+            };
+            let set = set
+                .into_iter()
+                .map(|(name, value)| Assignment { name, value });
+            let set: Vec<Assignment> = set.collect();
+            let has_size = argument.own.iter().any(|own| own.name == MAP_SIZE);
+            for &size in if has_size { &[None][..] } else { &sizes } {
+                let params = param_values(preset, &set, size)?;
+                methods.push(Method::new(preset.clone(), params).named(&name));
+            }
+        }
+    }
+    Ok(methods)
+}
+
+/// True if a preset's name says what stands in an open include of it.
+fn is_over_another(name: &str) -> bool {
+    !MethodArgument::new(name).own.is_empty()
+}
+
+/// Loads the one graph that a word names, with the params that it and `params` set.
+///
+/// # Errors
+/// Its faults, a param that it does not have, a value that a param cannot take, several documents
+/// for an open include.
+pub fn load_one(
+    word: &str,
+    params: &[Assignment],
+    map_size: Option<u32>,
+    sources: &dyn Sources,
+) -> Result<(Arc<Preset>, ParamValues), CompareError> {
+    let (arguments, params) = openings::arguments([word], params, sources)?;
+    let [argument] = &arguments[..] else {
+        return Err(CompareError::Request(
+            "name one document for an open include here".into(),
+        ));
+    };
+    let mut presets = preset::load_all(slice::from_ref(&argument.preset), sources)?;
+    check_names(&presets, &params)?;
+    let preset = presets
+        .pop()
+        .ok_or_else(|| CompareError::Input("no graph".into()))?;
+    let set = [&params[..], &argument.own].concat();
+    check_names(slice::from_ref(&preset), &argument.own)?;
+    let params = param_values(&preset, &set, map_size)?;
+    Ok((preset, params))
+}
+
+/// The params of a preset, as they are set, with its map size.
+///
+/// # Errors
+/// A value that a param cannot take, and a map size where there is no such param.
+pub fn param_values(
+    preset: &Preset,
+    assignments: &[Assignment],
+    map_size: Option<u32>,
+) -> Result<ParamValues, CompareError> {
+    let own = assignments
+        .iter()
+        .filter(|set| preset.param(&set.name).is_some());
+    let own = own.map(|set| (set.name.as_str(), set.value.clone()));
+    let size = map_size.map(|size| (MAP_SIZE, size.to_string()));
+    let parsed = own.chain(size).map(|(name, value)| {
+        let parsed = preset.graph.parse_param(name, &value);
+        parsed
+            .map(|value| (name.to_owned(), value))
+            .map_err(|error| CompareError::Input(error.to_string()))
+    });
+    parsed.collect()
+}
+
+/// Refuses an assignment that no preset has a param for.
+fn check_names(presets: &[Arc<Preset>], assignments: &[Assignment]) -> Result<(), CompareError> {
+    for Assignment { name, .. } in assignments {
+        if presets.iter().any(|preset| preset.param(name).is_some()) {
+            continue;
+        }
+        let mut known: Vec<&str> = presets
+            .iter()
+            .flat_map(|preset| preset.settable())
+            .collect();
+        known.sort_unstable();
+        known.dedup();
+        let list = match &known[..] {
+            [] => "none".into(),
+            known => known.join(", "),
+        };
+        return Err(CompareError::Input(format!(
+            "unknown param `{name}`{}\n  params: {list}",
+            did_you_mean(name, known.iter().copied())
+        )));
+    }
+    Ok(())
+}

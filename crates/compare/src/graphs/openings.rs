@@ -1,0 +1,133 @@
+//! Open includes: with another document in one a graph is a method of its own,
+//! `contact.ron@over=msm`.
+
+use crate::error::CompareError;
+use crate::graphs::argument::Assignment;
+use crate::graphs::argument::MethodArgument;
+use crate::graphs::preset;
+use crate::lists::unique;
+use skiagraph_graph::Sources;
+use std::collections::BTreeSet;
+
+/// Reads methods as the command line names them. Assignments that name a document for an open
+/// include, the method's own or of `params`, move into the name of the graph, one argument for each
+/// document of a list; the other assignments for all are returned beside.
+///
+/// # Errors
+/// A graph that does not exist.
+pub fn arguments(
+    words: impl IntoIterator<Item = impl AsRef<str>>,
+    params: &[Assignment],
+    sources: &dyn Sources,
+) -> Result<(Vec<MethodArgument>, Vec<Assignment>), CompareError> {
+    let (mut chosen, mut taken) = (Vec::new(), BTreeSet::new());
+    for word in words {
+        let argument = MethodArgument::new(word.as_ref());
+        if argument.own.is_empty() && params.is_empty() {
+            chosen.push(argument);
+            continue;
+        }
+        // A graph with faults is told where it is loaded.
+        let graph = preset::load(&argument.preset, sources)?.0.ok();
+        let openings = graph.iter().flat_map(|graph| graph.openings());
+        let openings: BTreeSet<String> = openings.map(|(name, _)| name.to_owned()).collect();
+        taken.extend(
+            params
+                .iter()
+                .map(|set| &set.name)
+                .filter(|name| openings.contains(*name)),
+        );
+        chosen.extend(over(argument, params, &openings));
+    }
+    let left = params.iter().filter(|set| !taken.contains(&set.name));
+    Ok((chosen, left.cloned().collect()))
+}
+
+/// One argument for each choice of documents.
+fn over(
+    argument: MethodArgument,
+    params: &[Assignment],
+    openings: &BTreeSet<String>,
+) -> Vec<MethodArgument> {
+    let (documents, own): (Vec<Assignment>, Vec<Assignment>) = argument
+        .own
+        .into_iter()
+        .partition(|set| openings.contains(&set.name));
+    let is_own = |name: &str| documents.iter().any(|set| set.name == name);
+    let for_all = params
+        .iter()
+        .filter(|set| openings.contains(&set.name) && !is_own(&set.name));
+    let mut names = vec![argument.preset];
+    for (number, set) in documents.iter().chain(for_all).enumerate() {
+        let sign = if number == 0 { '@' } else { ',' };
+        let documents: Vec<&str> = set.value.split(',').map(str::trim).collect();
+        let with = |document: &&str| {
+            let named = names.iter();
+            let named = named.map(|name| format!("{name}{sign}{}={document}", set.name));
+            named.collect::<Vec<_>>()
+        };
+        names = unique(&documents).iter().flat_map(with).collect();
+    }
+    let with = |preset| MethodArgument {
+        preset,
+        own: own.clone(),
+    };
+    names.into_iter().map(with).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::graphs::preset;
+    use skiagraph_graph::{FolderSources, LayeredSources};
+    use skiagraph_passes::EmbeddedSources;
+
+    const STEP: &str = r#"(format: 3, outputs: ["visibility"], passes: [
+        Include(graph: "nsm.ron", open: "over", expose: All)])"#;
+
+    #[test]
+    fn documents_in_open_includes_are_in_the_names_of_graphs() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::create_dir(folder.path().join("pipelines")).unwrap();
+        std::fs::write(folder.path().join("pipelines/step.ron"), STEP).unwrap();
+        let root = folder.path().to_owned();
+        let sources = LayeredSources(vec![
+            Box::new(FolderSources { root }),
+            Box::new(EmbeddedSources),
+        ]);
+        let read = |words: &[&str], set: &[&str]| {
+            let words: Vec<String> = words.iter().map(|word| (*word).to_owned()).collect();
+            let set: Vec<Assignment> = set.iter().map(|set| set.parse().unwrap()).collect();
+            let (arguments, left) = arguments(&words, &set, &sources).unwrap();
+            let all = arguments.iter().map(|it| (it.preset.clone(), it.own.len()));
+            (all.collect::<Vec<_>>(), left.len())
+        };
+        let named = |names: &[(&str, usize)]| -> Vec<(String, usize)> {
+            let names = names.iter().map(|(name, own)| ((*name).to_owned(), *own));
+            names.collect()
+        };
+        let found = read(&["step", "nsm@bias=1", "step@over=pcf,bias=1"], &[]);
+        let expected = [("step", 0), ("nsm", 1), ("step@over=pcf", 1)];
+        assert_eq!(found, (named(&expected), 0));
+        // A value set for all methods holds where nothing else is said; a list makes several
+        // methods.
+        let found = read(
+            &["step", "step@over=pcf", "nsm"],
+            &["over=nsm,pcf", "bias=1"],
+        );
+        let expected = [
+            ("step@over=nsm", 0),
+            ("step@over=pcf", 0),
+            ("step@over=pcf", 0),
+            ("nsm", 0),
+        ];
+        assert_eq!(found, (named(&expected), 1));
+
+        let load = |name: &str| preset::load(name, &sources).unwrap().0;
+        let params = |name| load(name).unwrap().params().len();
+        assert_ne!(params("step"), params("step@over=pcf"));
+        let faults = load("step@ovr=pcf").unwrap_err().to_string();
+        assert!(faults.contains("has no open include `ovr`"), "{faults}");
+        assert!(preset::load("step@over=none", &sources).is_err());
+    }
+}

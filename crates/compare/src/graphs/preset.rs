@@ -1,0 +1,289 @@
+//! From the arguments `nsm` or `my/method.ron` to loaded graphs.
+
+use crate::error::CompareError;
+use crate::files::fingerprint::{Fingerprint, RecordedSources};
+use crate::files::picture_sources::PictureSources;
+use crate::graphs::argument::Assignment;
+use crate::graphs::argument::MethodArgument;
+use crate::graphs::faults::{GraphFaults, warn};
+use crate::graphs::planning;
+use crate::sink::Sink;
+use crate::wording::did_you_mean;
+use skiagraph_graph::{
+    Diagnostics, FolderSources, Graph, LayeredSources, Param, Plan, PlanRequest, Sources,
+};
+use skiagraph_passes::{EmbeddedSources, registry};
+use std::{
+    collections::BTreeMap,
+    path::Path,
+    sync::{Arc, Once},
+};
+
+/// The output from 0 in shadow to 1 in light.
+pub const VISIBILITY: &str = "visibility";
+/// The optional output with 0 background, 1 facing away, 2 certain light, 3 certain shadow, 4
+/// uncertain.
+pub const STATUS: &str = "status";
+/// The optional output with the number of rays traced in the frame.
+pub const RAY_COUNT: &str = "ray_count";
+
+/// Where graphs and shaders are read from: the working directory, then what is built in. Tells the
+/// sink, once in a process, which files of the working directory stand in for others that are built
+/// in.
+pub fn sources(sink: &dyn Sink) -> LayeredSources {
+    static SAID: Once = Once::new();
+    let folder = FolderSources { root: ".".into() };
+    SAID.call_once(|| {
+        if let Some(text) = stand_ins(&folder) {
+            sink.note(&text);
+        }
+    });
+    LayeredSources(vec![
+        Box::new(PictureSources(folder)),
+        Box::new(EmbeddedSources),
+    ])
+}
+
+/// Folders of what presets are made of.
+const PARTS: [&str; 3] = ["pipelines/shared", "shaders", "shaders/shared"];
+
+/// Which files of a folder stand in for built-in ones that differ: a line for the presets, one for
+/// what they are made of.
+fn stand_ins(folder: &dyn Sources) -> Option<String> {
+    let differ = |parent: &str| {
+        let files = folder.list(parent).into_iter();
+        let differs = |file: &String| {
+            let path = format!("{parent}/{file}");
+            let built_in = EmbeddedSources.read(&path).ok().flatten();
+            let own = folder.read(&path).ok().flatten();
+            built_in.is_some_and(|built_in| own.is_some_and(|own| own != built_in))
+        };
+        files.filter(differs).collect::<Vec<_>>()
+    };
+    let presets: Vec<String> = differ("pipelines")
+        .iter()
+        .map(|file| file.trim_end_matches(".ron").to_owned())
+        .collect();
+    let mut lines = Vec::new();
+    if !presets.is_empty() {
+        let names = presets.join(", ");
+        lines.push(format!(
+            "./pipelines stands in for built-in presets, which differ: {names}"
+        ));
+    }
+    for parent in PARTS {
+        let files = differ(parent);
+        if !files.is_empty() {
+            let names = files.join(", ");
+            lines.push(format!(
+                "./{parent} stands in for built-in files, which differ: {names}"
+            ));
+        }
+    }
+    (!lines.is_empty()).then(|| lines.join("\n"))
+}
+
+/// Names of the presets: `pipelines/*.ron` on disk and built in, sorted.
+pub fn names(sources: &dyn Sources) -> Vec<String> {
+    let files = sources.list("pipelines");
+    let mut names: Vec<String> = files
+        .iter()
+        .filter_map(|file| file.strip_suffix(".ron"))
+        .map(Into::into)
+        .collect();
+    names.sort();
+    names.dedup();
+    names
+}
+
+/// The presets that a command is to take: those that its arguments name, else all.
+pub fn named_or_all(arguments: &[String], sources: &dyn Sources) -> Vec<String> {
+    match arguments {
+        [] => names(sources),
+        named => named.to_vec(),
+    }
+}
+
+/// A graph under the name that tables and file names give it.
+pub struct Preset {
+    /// The preset's name, or the graph's path as given.
+    pub name: String,
+    /// The graph.
+    pub graph: Graph,
+    /// Hash of the texts that it was read from.
+    pub fingerprint: Fingerprint,
+}
+
+impl Preset {
+    /// Names of the outputs by which a shadow method is judged, as far as the graph has them.
+    pub fn judged(&self) -> Vec<&'static str> {
+        let outputs = self.graph.outputs();
+        let mut names = vec![VISIBILITY, STATUS, RAY_COUNT];
+        names.retain(|name| outputs.contains(name));
+        names
+    }
+
+    /// The param that the graph declares under this name.
+    pub fn param(&self, name: &str) -> Option<&Param> {
+        self.graph
+            .params()
+            .iter()
+            .find(|param| param.name.as_str() == name)
+    }
+
+    /// The names that can be set: those of its params and of its open includes.
+    pub fn settable(&self) -> impl Iterator<Item = &str> {
+        let params = self.graph.params().iter().map(|param| param.name.as_str());
+        params.chain(self.graph.openings().map(|(name, _)| name))
+    }
+
+    /// Plans the graph, and tells the sink its warnings.
+    ///
+    /// # Errors
+    /// Its faults.
+    pub fn plan(&self, request: &PlanRequest, sink: &dyn Sink) -> Result<Plan, CompareError> {
+        let plan = self.graph.plan(request);
+        let plan = plan.map_err(|diagnostics| GraphFaults::one(&self.name, &diagnostics))?;
+        warn(sink, &self.graph, plan.warnings());
+        Ok(plan)
+    }
+}
+
+/// The graphs of some presets.
+pub fn graphs(presets: &[Arc<Preset>]) -> impl Iterator<Item = &Graph> {
+    presets.iter().map(|preset| &preset.graph)
+}
+
+/// Loads all arguments, each once.
+///
+/// # Errors
+/// Every fault of every graph together.
+pub fn load_all(
+    arguments: &[String],
+    sources: &dyn Sources,
+) -> Result<Vec<Arc<Preset>>, CompareError> {
+    let mut presets: Vec<Arc<Preset>> = Vec::new();
+    let mut faults = GraphFaults::default();
+    for argument in arguments {
+        if presets.iter().any(|preset| preset.name == *argument) {
+            continue;
+        }
+        let recorded = RecordedSources::new(sources);
+        match load(argument, &recorded)? {
+            (Ok(graph), _) => presets.push(Arc::new(Preset {
+                name: argument.clone(),
+                graph,
+                fingerprint: recorded.fingerprint(),
+            })),
+            // Faults that only planning finds are shown in the same go.
+            (Err(diagnostics), path) => {
+                let all = planning::check(&path, &registry(), sources, None).err();
+                faults.add(argument, &all.unwrap_or(diagnostics));
+            }
+        }
+    }
+    faults.none_or_error().map(|()| presets)
+}
+
+/// Loads the graph that an argument names, `contact.ron@over=msm` with another document in an open
+/// include. Returns its path, too.
+///
+/// # Errors
+/// A file that does not exist; faults of the graph are in the result.
+pub fn load(
+    argument: &str,
+    sources: &dyn Sources,
+) -> Result<(Result<Graph, Diagnostics>, String), CompareError> {
+    let named = MethodArgument::new(argument);
+    let path = locate(&named.preset, sources)?;
+    let mut documents = BTreeMap::new();
+    for Assignment { name, value } in named.own {
+        documents.insert(name, locate(&value, sources)?);
+    }
+    let graph = Graph::load_over(&path, &registry(), sources, &documents);
+    Ok((graph, path))
+}
+
+/// The path of the graph that an argument names.
+///
+/// # Errors
+/// Names what is there instead.
+pub fn locate(argument: &str, sources: &dyn Sources) -> Result<String, CompareError> {
+    let is_path = Path::new(argument)
+        .extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("ron"));
+    let path = if !is_path {
+        format!("pipelines/{argument}.ron")
+    } else if cfg!(windows) {
+        argument.replace('\\', "/")
+    } else {
+        argument.into()
+    };
+    let missing = match sources.read(&path) {
+        Ok(Some(_)) => return Ok(path),
+        Err(reason) => format!("cannot read `{path}`: {reason}"),
+        Ok(None) if is_path => format!("there is no file `{argument}`"),
+        Ok(None) if Path::new(argument).is_dir() => {
+            format!("`{argument}` is a folder; a graph is given as a path that ends in .ron")
+        }
+        Ok(None) if Path::new(argument).is_file() => {
+            format!("`{argument}` is not a .ron file; a graph is given as a path that ends in .ron")
+        }
+        Ok(None) => {
+            let known = names(sources);
+            format!(
+                "unknown preset `{argument}`{}\n  presets: {}\n  a graph of your own is \
+                 given as a path that ends in .ron",
+                did_you_mean(argument, known.iter().map(String::as_str)),
+                known.join(", ")
+            )
+        }
+    };
+    Err(CompareError::Input(missing))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sink::Silent;
+
+    /// A folder of what presets are made of that is not in the list would stand in silently.
+    #[test]
+    fn every_built_in_folder_is_looked_at() {
+        let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+        let mut open = vec!["pipelines".to_owned(), "shaders".to_owned()];
+        while let Some(folder) = open.pop() {
+            let is_listed = folder == "pipelines" || PARTS.contains(&folder.as_str());
+            assert!(is_listed, "{folder}");
+            for entry in std::fs::read_dir(root.join(&folder)).unwrap().flatten() {
+                if entry.path().is_dir() {
+                    open.push(format!("{folder}/{}", entry.file_name().display()));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn files_that_stand_in_for_built_in_ones_are_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path();
+        std::fs::create_dir_all(root.join("pipelines")).unwrap();
+        let sources = FolderSources { root: root.into() };
+        let built_in = EmbeddedSources.read("pipelines/rt.ron").unwrap().unwrap();
+        std::fs::write(root.join("pipelines/rt.ron"), &*built_in).unwrap();
+        std::fs::write(root.join("pipelines/mine.ron"), "()").unwrap();
+        assert_eq!(stand_ins(&sources), None);
+        std::fs::write(root.join("pipelines/nsm.ron"), format!("{built_in} ")).unwrap();
+        let told = stand_ins(&sources).unwrap();
+        let expected = "./pipelines stands in for built-in presets, which differ: nsm";
+        assert_eq!(told, expected);
+    }
+
+    #[test]
+    fn missing_presets_and_files_are_told_apart() {
+        let sources = sources(&Silent);
+        let message = |argument| locate(argument, &sources).unwrap_err().to_string();
+        assert!(message("nowhere/a.ron").contains("no file `nowhere/a.ron`"));
+        assert!(message("zzzzzzzz").contains("unknown preset `zzzzzzzz`"));
+    }
+}

@@ -1,0 +1,326 @@
+//! The outputs that a graph must have to stand in `compare`, and how they are read.
+
+use crate::error::CompareError;
+use crate::graphs::argument::Assignment;
+use crate::graphs::faults::GraphFaults;
+use crate::graphs::light_kinds;
+use crate::graphs::method::{self, Method};
+use crate::graphs::planning::Capabilities;
+use crate::graphs::preset::{self, Preset, RAY_COUNT, STATUS, VISIBILITY};
+use crate::wording::size;
+use skiagraph_gpu::Content;
+use skiagraph_graph::{Code, Plan, Sources};
+use skiagraph_passes::SceneProvider;
+use skiagraph_reference::{Class, GroundTruthPixels, image::Shown, statistics::status};
+use std::{
+    borrow::Cow,
+    collections::{BTreeMap, BTreeSet},
+    sync::Arc,
+};
+
+/// Loads graphs and refuses those that are no shadow methods.
+///
+/// # Errors
+/// Every fault of every graph together.
+pub fn load_all(names: &[String], sources: &dyn Sources) -> Result<Vec<Arc<Preset>>, CompareError> {
+    let presets = preset::load_all(names, sources)?;
+    let known = |preset: &Arc<Preset>| light_kinds::check(&preset.name, &preset.graph);
+    presets.iter().try_for_each(known)?;
+    let incomplete: Vec<String> = presets
+        .iter()
+        .filter_map(|preset| missing_outputs(preset))
+        .collect();
+    none_or_error(incomplete).map(|()| presets)
+}
+
+/// Loads the shadow methods that words name, as [`method::load`] does.
+///
+/// # Errors
+/// Those of [`method::load`], and graphs that are no shadow methods.
+pub fn load_methods(
+    words: &[impl AsRef<str>],
+    params: &[Assignment],
+    map_sizes: &[u32],
+    sources: &dyn Sources,
+) -> Result<Vec<Method>, CompareError> {
+    method::load(words, params, map_sizes, sources, load_all)
+}
+
+fn none_or_error(errors: Vec<String>) -> Result<(), CompareError> {
+    match &errors[..] {
+        [] => Ok(()),
+        errors => Err(CompareError::Input(errors.join("\nerror: "))),
+    }
+}
+
+/// Plans all methods on all viewports for the most able adapter there is: a graph that only this
+/// one cannot run is no mistake, unless there is no other; nor is one that does not take the light.
+///
+/// # Errors
+/// Every fault of every graph together, outputs that are not a shadow method's; why the
+/// device, if there is one yet, can run none.
+pub fn check_plans(
+    methods: &[Method],
+    viewports: &[[u32; 2]],
+    provider: &SceneProvider,
+    device: Option<&Capabilities>,
+) -> Result<(), CompareError> {
+    let lights = provider.lights().len();
+    let mut faults = GraphFaults::default();
+    let mut mismatches = BTreeSet::new();
+    // Refusals of methods that this adapter cannot run; and whether it can run one.
+    let (mut refusals, mut can_run_one) = (GraphFaults::default(), device.is_none());
+    for &viewport in viewports {
+        for method in methods {
+            match method.plan(viewport, Capabilities::greatest(), provider) {
+                Ok(plan) => {
+                    mismatches.extend(mismatch(&method.preset, &plan, viewport, lights));
+                    if let Some(device) = device {
+                        match method.plan(viewport, device.clone(), provider) {
+                            Ok(_) => can_run_one = true,
+                            Err(diagnostics) => refusals.add(&method.name, &diagnostics),
+                        }
+                    }
+                }
+                Err(diagnostics) if diagnostics.iter().all(|found| found.code == Code::Light) => {
+                    refusals.add(&method.name, &diagnostics);
+                }
+                Err(diagnostics) => faults.add(&method.name, &diagnostics),
+            }
+        }
+    }
+    faults.none_or_error()?;
+    if !can_run_one {
+        refusals.none_or_error()?;
+    }
+    none_or_error(mismatches.into_iter().collect())
+}
+
+/// True if a method answers for every light at once, in a layer for each.
+pub fn is_layered(method: &Method, device: &Capabilities, provider: &SceneProvider) -> bool {
+    let plan = method.plan(method.viewport, device.clone(), provider);
+    plan.is_ok_and(|plan| {
+        let mut outputs = plan.outputs().into_iter();
+        outputs.any(|output| output.name == VISIBILITY && output.layers > 1)
+    })
+}
+
+/// Lists what the graph lacks as a shadow preset.
+fn missing_outputs(preset: &Preset) -> Option<String> {
+    if preset.graph.outputs().contains(&VISIBILITY) {
+        return None;
+    }
+    Some(format!(
+        "`{}` has no output `{VISIBILITY}`, so it cannot be compared\n  \
+         a shadow method declares\n    \
+         outputs: [\"{VISIBILITY}\"] or [\"{VISIBILITY}\", \"{STATUS}\"]\n  \
+         {VISIBILITY}: per pixel 0 in shadow to 1 in light, {INTEGERS} for a hard answer, 0 or 1, \
+         or {FLOATS} for a graded one\n  \
+         {STATUS}: per pixel 0 background, 1 facing away from the light, 2 certain light, \
+         3 certain shadow, 4 uncertain, {INTEGERS}; without it the reference says what faces the \
+         light, and all else counts as certain\n  \
+         all of the viewport's size",
+        preset.name,
+    ))
+}
+
+/// The formats of integers, as messages name them.
+const INTEGERS: &str = "R8Uint, R16Uint or R32Uint";
+/// The formats of shares.
+const FLOATS: &str = "R8Unorm, R16Unorm, R16Float or R32Float";
+
+/// Says what is wrong with the outputs' sizes and formats on this viewport.
+fn mismatch(preset: &Preset, plan: &Plan, viewport: [u32; 2], lights: usize) -> Option<String> {
+    use wgpu::TextureFormat as F;
+    plan.outputs().into_iter().find_map(|output| {
+        let fits = match (output.name.as_str(), output.format) {
+            (VISIBILITY | STATUS, Some(F::R8Uint | F::R16Uint | F::R32Uint))
+            | (VISIBILITY, Some(F::R8Unorm | F::R16Unorm | F::R16Float | F::R32Float)) => true,
+            (VISIBILITY | STATUS, _) => false,
+            _ => return None,
+        };
+        let kind = output
+            .format
+            .map_or("a buffer".into(), |format| format!("{format:?}"));
+        let fits_lights = output.layers == 1 || output.layers as usize == lights;
+        (!fits || !fits_lights || output.size != viewport).then(|| {
+            let floats = match output.name.as_str() {
+                VISIBILITY => format!(" (0 or 1), {FLOATS} (0 to 1)"),
+                _ => String::new(),
+            };
+            let layers = match output.layers {
+                1 => String::new(),
+                layers => format!(" and {layers} layers"),
+            };
+            format!(
+                "`{}`: the output `{}` is {kind} of {}{layers}; expected {INTEGERS}{floats} of \
+                 the viewport's {}, in one layer or one for each of {lights} lights",
+                preset.name,
+                output.name,
+                size(output.size),
+                size(viewport)
+            )
+        })
+    })
+}
+
+/// One frame's outputs.
+pub struct Outputs {
+    /// Per pixel 0 or 1; of shares, whether they are one half or more.
+    pub visibility: Vec<u32>,
+    /// Per pixel the share of light, 0 to 1 if the method is right, where it answers in shares.
+    pub shares: Option<Vec<f32>>,
+    /// Per pixel 0 to 4.
+    pub status: Vec<u32>,
+    /// Rays traced, where the graph counts them.
+    pub rays: Option<u64>,
+}
+
+impl Outputs {
+    /// Those of one light, of outputs that have a layer for each.
+    ///
+    /// # Errors
+    /// Those of [`decode`](Self::decode).
+    pub fn from_contents(
+        contents: BTreeMap<String, Content>,
+        light: usize,
+        truth: &GroundTruthPixels,
+    ) -> Result<Self, String> {
+        let of = |(name, content): (String, Content)| {
+            let mut layers = content.split();
+            let content = match layers.len() {
+                0 | 1 => content,
+                count => layers.swap_remove(light.min(count - 1)),
+            };
+            (name, content)
+        };
+        Self::decode(&contents.into_iter().map(of).collect(), truth)
+    }
+
+    /// Decodes what was read. Without a status the reference says what faces the light, and the
+    /// method is certain of it.
+    ///
+    /// # Errors
+    /// An output that is not there or not in one of the allowed formats.
+    pub fn decode(
+        contents: &BTreeMap<String, Content>,
+        truth: &GroundTruthPixels,
+    ) -> Result<Self, String> {
+        let integers = |name: &str| contents.get(name).and_then(Content::as_u32);
+        let shares = contents.get(VISIBILITY).and_then(Content::as_f32);
+        let visibility = match &shares {
+            Some(shares) => shares
+                .iter()
+                .map(|&share| u32::from(share >= 0.5))
+                .collect(),
+            None => integers(VISIBILITY).ok_or("`visibility` cannot be read as numbers")?,
+        };
+        let status = match contents.get(STATUS) {
+            Some(status) => status
+                .as_u32()
+                .ok_or("`status` cannot be read as integers")?,
+            None => certain(&visibility, truth),
+        };
+        Ok(Self {
+            visibility,
+            shares,
+            status,
+            rays: integers(RAY_COUNT)
+                .and_then(|count| count.first().copied())
+                .map(u64::from),
+        })
+    }
+
+    /// Share of the light that each pixel shows, of hard answers 0 or 1.
+    pub fn shown(&self) -> Cow<'_, [f32]> {
+        match &self.shares {
+            Some(shares) => Cow::Borrowed(shares),
+            None => Cow::Owned(self.visibility.iter().map(|&lit| lit.share()).collect()),
+        }
+    }
+}
+
+/// The status of a method that has none.
+fn certain(visibility: &[u32], truth: &GroundTruthPixels) -> Vec<u32> {
+    let of = |(&class, &visibility): (&Class, &u32)| match (class, visibility) {
+        (Class::Background, _) => status::BACKGROUND,
+        (Class::FacingAway, _) => status::FACING_AWAY,
+        (_, 0) => status::CERTAIN_SHADOW,
+        _ => status::CERTAIN_LIGHT,
+    };
+    truth.classes.iter().zip(visibility).map(of).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use wgpu::TextureFormat as F;
+
+    fn truth() -> GroundTruthPixels {
+        GroundTruthPixels {
+            viewport: [4, 1],
+            classes: vec![
+                Class::Shadow,
+                Class::Lit,
+                Class::FacingAway,
+                Class::Background,
+            ],
+            indeterminate: vec![false; 4],
+            n_dot_l: vec![0.5; 4],
+            base_colors: Vec::new(),
+        }
+    }
+
+    fn texture(format: F, bytes: &[u8]) -> Content {
+        Content::Texture {
+            format,
+            parts: vec![[4, 1]],
+            bytes: bytes.to_vec(),
+        }
+    }
+
+    fn contents(visibility: Content, status: Option<Content>) -> BTreeMap<String, Content> {
+        let status = status.map(|status| (STATUS.to_owned(), status));
+        let visibility = (VISIBILITY.to_owned(), visibility);
+        [visibility].into_iter().chain(status).collect()
+    }
+
+    #[test]
+    fn integers_are_hard_and_floats_are_graded() {
+        let status = || Some(texture(F::R8Uint, &[3, 2, 1, 0]));
+        let hard = texture(F::R8Uint, &[0, 1, 0, 0]);
+        let floats = [0.25f32, 0.5, 0.0, f32::NAN];
+        let graded = floats.iter().flat_map(|share| share.to_le_bytes());
+        let graded = texture(F::R32Float, &graded.collect::<Vec<_>>());
+        let eighths = texture(F::R8Unorm, &[51, 255, 0, 0]);
+        for (visibility, shares) in [
+            (hard, None),
+            (graded, Some([0.25, 0.5])),
+            (eighths, Some([0.2, 1.0])),
+        ] {
+            let outputs = Outputs::decode(&contents(visibility, status()), &truth()).unwrap();
+            assert_eq!(outputs.visibility, [0, 1, 0, 0]);
+            assert_eq!(outputs.status, [3, 2, 1, 0]);
+            let first = outputs.shares.as_ref().map(|shares| [shares[0], shares[1]]);
+            assert_eq!(first, shares);
+            let shown = outputs.shown();
+            assert_eq!([shown[0], shown[1]], shares.unwrap_or([0.0, 1.0]));
+        }
+    }
+
+    #[test]
+    fn without_a_status_the_reference_says_what_faces_the_light() {
+        let hard = texture(F::R8Uint, &[1, 0, 1, 0]);
+        let outputs = Outputs::decode(&contents(hard, None), &truth()).unwrap();
+        assert_eq!(outputs.status, [2, 3, 1, 0]);
+    }
+
+    #[test]
+    fn a_missing_output_is_named() {
+        let missing = Outputs::decode(&BTreeMap::new(), &truth()).err();
+        assert!(missing.unwrap().contains("visibility"));
+        let status = Some(texture(F::R8Unorm, &[0; 4]));
+        let wrong = Outputs::decode(&contents(texture(F::R8Uint, &[0; 4]), status), &truth());
+        assert!(wrong.err().unwrap().contains("status"));
+    }
+}

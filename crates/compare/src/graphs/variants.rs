@@ -1,0 +1,186 @@
+//! One method in several settings: `crsm@n=1,depth=plane` beside `crsm`, `--set radius=1,2,4`,
+//! `--set bias=0..0.01/5`.
+
+use crate::error::CompareError;
+use crate::graphs::argument::Assignment;
+use crate::graphs::argument::MethodArgument;
+use crate::graphs::preset::Preset;
+use crate::wording::did_you_mean;
+use skiagraph_graph::ParamType;
+
+/// The param that `--map-size` sets.
+pub const MAP_SIZE: &str = "map_size";
+
+/// Most values of one param; who asks for more has written something else than was meant.
+const MOST: usize = 1000;
+
+/// Presets that arguments name, each once.
+pub fn presets(arguments: &[MethodArgument]) -> Vec<String> {
+    let names = arguments.iter().map(|argument| argument.preset.clone());
+    crate::lists::unique(&names.collect::<Vec<_>>())
+}
+
+/// A setting of a preset: what tells it from the preset's others, `n=1,depth=plane`, and all that
+/// is set.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Setting {
+    /// Empty where there is only one.
+    pub label: String,
+    /// Names and values.
+    pub set: Vec<(String, String)>,
+}
+
+/// The settings of a preset: what is set of it alone wins over what is set of all, and of each list
+/// of values every one, with every one of the other lists.
+///
+/// # Errors
+/// A param that the preset does not have, a range that is none.
+pub fn settings(
+    preset: &Preset,
+    argument: &MethodArgument,
+    all: &[Assignment],
+) -> Result<Vec<Setting>, CompareError> {
+    let mut settings = vec![Setting::default()];
+    let is_own = |name: &str| argument.own.iter().any(|own| own.name == name);
+    let others = all
+        .iter()
+        .filter(|set| !is_own(&set.name) && preset.param(&set.name).is_some());
+    let own = argument.own.iter().map(|set| (set, true));
+    for (assignment, is_own) in own.chain(others.map(|set| (set, false))) {
+        let name = &assignment.name;
+        let Some(param) = preset.param(name) else {
+            let known: Vec<&str> = preset.settable().collect();
+            let hint = did_you_mean(name, known.iter().copied());
+            return Err(CompareError::Input(format!(
+                "`{}` has no param `{name}`{hint}\n  params: {}",
+                preset.name,
+                known.join(", ")
+            )));
+        };
+        let values = values(assignment, &param.ty)?;
+        let is_told = is_own || values.len() > 1;
+        let with = |setting: &Setting, value: &String| {
+            let mut setting = setting.clone();
+            setting.set.push((name.clone(), value.clone()));
+            // The map's size has a column of its own.
+            if is_told && name != MAP_SIZE {
+                let comma = if setting.label.is_empty() { "" } else { "," };
+                setting.label += &format!("{comma}{name}={value}");
+            }
+            setting
+        };
+        let each = settings.iter().flat_map(|setting| {
+            let values = values.iter();
+            values.map(|value| with(setting, value)).collect::<Vec<_>>()
+        });
+        settings = each.collect();
+        if settings.len() > MOST {
+            return Err(CompareError::Input(format!(
+                "`{}` would run in {} settings; {MOST} are the most",
+                preset.name,
+                settings.len()
+            )));
+        }
+    }
+    Ok(settings)
+}
+
+/// The values of a list, `1,2,4`, or of a range, `0..0.01/5`: so many, evenly, both ends included.
+/// Those of a vector stand between semicolons, as its own numbers do between commas.
+fn values(assignment: &Assignment, ty: &ParamType) -> Result<Vec<String>, CompareError> {
+    let text = &assignment.value;
+    let is_vector = matches!(ty, ParamType::Vec2 | ParamType::Vec3 | ParamType::Vec4);
+    if let (Some((ends, count)), false) = (text.rsplit_once('/'), is_vector)
+        && let Some((from, to)) = ends.split_once("..")
+    {
+        return range(from, to, count, ty).ok_or_else(|| {
+            CompareError::Request(format!(
+                "{}={text}: expected FROM..TO/COUNT, two numbers and how many values there are \
+                 between them, 2 to {MOST}, both ends included, for example 0..0.01/5",
+                assignment.name
+            ))
+        });
+    }
+    let between = if is_vector { ';' } else { ',' };
+    let values = text.split(between).map(|value| value.trim().to_owned());
+    Ok(crate::lists::unique(&values.collect::<Vec<_>>()))
+}
+
+fn range(from: &str, to: &str, count: &str, ty: &ParamType) -> Option<Vec<String>> {
+    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|n| n.is_finite());
+    let (from, to) = (number(from)?, number(to)?);
+    let count: usize = count.trim().parse().ok()?;
+    if !(2..=MOST).contains(&count) {
+        return None;
+    }
+    let whole = matches!(ty, ParamType::I32 | ParamType::U32);
+    let value = |index: usize| {
+        let share = index as f64 / (count - 1) as f64;
+        let value = from * (1.0 - share) + to * share;
+        if whole {
+            format!("{}", value.round())
+        } else {
+            // As short as f32 allows: sums of tenths have a tail.
+            format!("{}", value as f32)
+        }
+    };
+    let values: Vec<String> = (0..count).map(value).collect();
+    Some(crate::lists::unique(&values))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::graphs::preset::load_all;
+
+    fn set(text: &str) -> Assignment {
+        text.parse().unwrap()
+    }
+
+    fn labels(word: &str, all: &[&str]) -> Result<Vec<String>, String> {
+        let argument = MethodArgument::new(word);
+        let names = [argument.preset.clone()];
+        let presets = load_all(&names, &skiagraph_passes::EmbeddedSources).unwrap();
+        let all: Vec<Assignment> = all.iter().map(|text| set(text)).collect();
+        let settings = settings(&presets[0], &argument, &all);
+        let settings = settings.map_err(|error| error.to_string())?;
+        Ok(settings.into_iter().map(|setting| setting.label).collect())
+    }
+
+    #[test]
+    fn lists_and_ranges_are_settings_each_with_a_label() {
+        assert_eq!(labels("crsm", &[]).unwrap(), [""]);
+        // One value for all is nothing that tells rows apart.
+        assert_eq!(labels("crsm", &["n=1"]).unwrap(), [""]);
+        assert_eq!(labels("crsm@n=1", &["n=2,3"]).unwrap(), ["n=1"]);
+        assert_eq!(
+            labels("crsm", &["n=0.51,1", "cull=front,none"]).unwrap(),
+            [
+                "n=0.51,cull=front",
+                "n=0.51,cull=none",
+                "n=1,cull=front",
+                "n=1,cull=none"
+            ]
+        );
+        assert_eq!(
+            labels("crsm", &["n=0.5..1.5/3"]).unwrap(),
+            ["n=0.5", "n=1", "n=1.5"]
+        );
+        assert_eq!(labels("nsm", &["map_size=64,128"]).unwrap(), ["", ""]);
+        assert_eq!(
+            labels("rt", &["n=1,2"]).unwrap(),
+            [""],
+            "rt has no such param"
+        );
+    }
+
+    #[test]
+    fn what_is_no_range_and_no_param_says_what_was_expected() {
+        let error = labels("crsm", &["n=0..1/1"]).unwrap_err();
+        assert!(error.contains("expected FROM..TO/COUNT"), "{error}");
+        let error = labels("crsm@deph=plane", &[]).unwrap_err();
+        assert!(error.contains("did you mean `depth`?"), "{error}");
+        let error = labels("crsm", &["n=0..1/1000", "cull=front,none"]).unwrap_err();
+        assert!(error.contains("2000 settings"), "{error}");
+    }
+}

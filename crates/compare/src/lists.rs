@@ -1,0 +1,12 @@
+//! Lists without repeats.
+
+/// A list without repeats, in its own order.
+pub fn unique<T: Clone + PartialEq>(list: &[T]) -> Vec<T> {
+    let mut kept = Vec::new();
+    for item in list {
+        if !kept.contains(item) {
+            kept.push(item.clone());
+        }
+    }
+    kept
+}

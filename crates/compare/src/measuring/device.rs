@@ -1,0 +1,97 @@
+//! Opening a GPU, and what is to be known of it before anything is measured.
+
+use crate::error::{CompareError, with_causes};
+use crate::records::results::Adapter;
+use skiagraph_gpu::{
+    device::{self, Gpu, GpuError, Wanted},
+    timing::{self, Trust},
+};
+use skiagraph_graph::Graph;
+use std::time::Duration;
+
+/// The GPU to open, and how much of it and of our time a graph may take.
+#[derive(Clone, Debug, Default)]
+pub struct GpuRequest {
+    /// Part of its name, in any case; `None` for the best one.
+    pub adapter: Option<String>,
+    /// The interfaces through which it may be used; `None` for those of the platform.
+    pub backends: Option<wgpu::Backends>,
+    /// Bytes for the textures and buffers of a graph; `None` for what the machine has free on a
+    /// software adapter, and all elsewhere.
+    pub memory_limit: Option<u64>,
+    /// Time after which a frame is given up, and with it the device; `None` for none.
+    pub timeout: Option<Duration>,
+}
+
+/// Opens the adapter asked for, or the best one, with those features of the graphs that it has.
+///
+/// # Errors
+/// [`CompareError::NoGpu`] with the way out.
+pub fn open<'a>(
+    request: &GpuRequest,
+    graphs: impl IntoIterator<Item = &'a Graph>,
+) -> Result<Gpu, CompareError> {
+    let all = |all, graph: &Graph| all | graph.features();
+    let features = graphs.into_iter().fold(wgpu::Features::empty(), all);
+    let wanted = Wanted {
+        adapter: request.adapter.as_deref(),
+        backends: request.backends,
+        features,
+    };
+    let mut gpu = device::open_with(&wanted)
+        .map_err(|error: GpuError| CompareError::NoGpu(error.to_string()))?;
+    let is_software = gpu.adapter.get_info().device_type == wgpu::DeviceType::Cpu;
+    gpu.memory = request
+        .memory_limit
+        .or_else(|| is_software.then(free_memory).flatten());
+    gpu.timeout = request.timeout;
+    Ok(gpu)
+}
+
+/// Memory that the machine has free: a software adapter's. What it has besides is lent out by most
+/// systems before it is there, and a process that then uses it is killed. `None` where the system
+/// does not say.
+fn free_memory() -> Option<u64> {
+    let mut system = sysinfo::System::new();
+    system.refresh_memory();
+    if system.total_memory() == 0 {
+        return None;
+    }
+    // A container may have less than the machine. What it holds as file cache is free for all that.
+    let of_group = system.cgroup_limits().map_or(u64::MAX, |limits| {
+        limits.total_memory.saturating_sub(limits.rss)
+    });
+    Some(system.available_memory().min(of_group))
+}
+
+/// How results name the adapter; `trust` says whether its timestamps are true.
+pub fn describe(gpu: &Gpu, trust: Trust) -> Adapter {
+    let info = gpu.adapter.get_info();
+    Adapter {
+        driver: driver(&info),
+        backend: info.backend.to_str().into(),
+        device_type: format!("{:?}", info.device_type),
+        name: info.name,
+        gpu_unavailable: match trust {
+            Trust::Trusted => None,
+            Trust::Untrusted { reason } => Some(reason),
+        },
+    }
+}
+
+/// Driver and version in one string.
+pub fn driver(info: &wgpu::AdapterInfo) -> String {
+    format!("{} {}", info.driver, info.driver_info)
+        .trim()
+        .into()
+}
+
+/// Tells whether this device's timestamps are true.
+pub fn timestamp_trust(gpu: &Gpu) -> Trust {
+    timing::check(&gpu.device, &gpu.queue).unwrap_or_else(|error| Trust::Untrusted {
+        reason: format!(
+            "the check of its timestamps failed: {}",
+            with_causes(&error)
+        ),
+    })
+}

@@ -1,0 +1,234 @@
+//! One frame of a graph on a GPU.
+
+use crate::error::CompareError;
+use crate::sink::Session;
+use crate::wording::frames;
+use skiagraph_gpu::{Content, ExecuteError, Executor, Frame, FrameReport, Provider, Readback};
+use skiagraph_graph::Plan;
+use std::{
+    collections::BTreeMap,
+    time::{Duration, Instant},
+};
+
+/// Contents that were read back from a frame, by their names.
+pub type Contents = BTreeMap<String, Content>;
+
+/// Makes what a plan needs on a GPU.
+///
+/// # Errors
+/// Those of the executor.
+pub fn executor(
+    session: Session,
+    plan: Plan,
+    provider: &mut dyn Provider,
+) -> Result<Executor, ExecuteError> {
+    Executor::new(&session.gpu.device, &session.gpu.queue, plan, provider)
+}
+
+/// The same with room in the buffers that grow for all that a frame needs: which items would have
+/// none is chance, and with it what such a frame shows. Frames find out how much that is, but what
+/// a method remembers is empty again: the next frame is its first.
+///
+/// # Errors
+/// Those of the executor.
+pub fn settled(
+    session: Session,
+    plan: Plan,
+    provider: &mut dyn Provider,
+) -> Result<(Executor, Growth), ExecuteError> {
+    let mut grown = executor(session, plan, provider)?;
+    let growth = grow(session, &mut grown, provider)?;
+    if growth.frames == 0 || !grown.plan().remembers() {
+        return Ok((grown, growth));
+    }
+    let plan = grown.plan().with(|_| ())?;
+    drop(grown);
+    Ok((executor(session, plan, provider)?, growth))
+}
+
+/// Runs one frame of `graph` as [`settled`] has it, and reads outputs and captures by name.
+///
+/// # Errors
+/// Why it cannot run.
+pub fn render(
+    session: Session,
+    graph: &str,
+    plan: Plan,
+    provider: &mut dyn Provider,
+    names: &[&str],
+) -> Result<(Contents, Growth), CompareError> {
+    let settled = settled(session, plan, provider);
+    settled
+        .and_then(|(mut executor, growth)| Ok((read(session, &mut executor, names)?, growth)))
+        .map_err(|error| failed(session, graph, error))
+}
+
+/// Runs one frame to its end; returns what it reports and the time from the start of encoding until
+/// the GPU was done.
+///
+/// # Errors
+/// Those of the executor.
+pub fn run(
+    session: Session,
+    executor: &mut Executor,
+    frame: &Frame,
+) -> Result<(FrameReport, Duration), ExecuteError> {
+    let began = Instant::now();
+    let mut encoder = session
+        .gpu
+        .device
+        .create_command_encoder(&wgpu::CommandEncoderDescriptor {
+            label: Some("frame"),
+        });
+    executor.encode(&mut encoder, frame)?;
+    session.gpu.queue.submit([encoder.finish()]);
+    let report = wait(session, executor)?;
+    Ok((report, began.elapsed()))
+}
+
+/// Frames after which buffers are as large as they get: each brings the count of the one before.
+const GROWING: u32 = 8;
+
+/// Frames that it took to give buffers room for all that a frame needs.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Growth {
+    /// Frames that were run for it; 0 where nothing grows.
+    pub frames: u32,
+    /// The buffers and textures that may grow, by their full names.
+    pub buffers: Vec<String>,
+    /// True if the last of the frames asked for no more.
+    pub is_settled: bool,
+}
+
+impl Growth {
+    /// A line of what `run` says; nothing where nothing grows.
+    pub fn text(&self) -> String {
+        let (frames, buffers) = (frames(self.frames), self.buffers.join(", "));
+        match (self.frames, self.is_settled) {
+            (0, _) => String::new(),
+            (_, true) => format!(
+                "  warmed up: {frames} before this one, until {buffers} had room for all that a \
+                 frame needs\n"
+            ),
+            (_, false) => format!(
+                "  warmed up: {frames} before this one, and {buffers} still grew: what has no room \
+                 is chance\n"
+            ),
+        }
+    }
+}
+
+/// Runs frames until what grows has room for all that a frame needs.
+///
+/// # Errors
+/// Those of the executor.
+pub fn grow(
+    session: Session,
+    executor: &mut Executor,
+    provider: &mut dyn Provider,
+) -> Result<Growth, ExecuteError> {
+    let plan = executor.plan();
+    let names = plan.growing().into_iter();
+    let mut growth = Growth {
+        buffers: names
+            .map(|(id, _)| plan.resource(id).name.clone())
+            .collect(),
+        ..Growth::default()
+    };
+    while !growth.buffers.is_empty() && !growth.is_settled && growth.frames < GROWING {
+        run(session, executor, &Frame::default())?;
+        growth.frames += 1;
+        growth.is_settled = executor.grow(provider)?.is_none();
+    }
+    Ok(growth)
+}
+
+/// How often Ctrl-C is looked for while a frame is under way.
+const POLL_INTERVAL: Duration = Duration::from_millis(100);
+
+/// Waits for a submitted frame, but no longer than the GPU's timeout, and not after Ctrl-C. The
+/// device of a frame that is given up is of no more use.
+fn wait(session: Session, executor: &mut Executor) -> Result<FrameReport, ExecuteError> {
+    let began = Instant::now();
+    loop {
+        let passes = match executor.finish_within(Some(POLL_INTERVAL)) {
+            Err(ExecuteError::Unfinished { passes, .. }) => passes,
+            done => return done,
+        };
+        let after = began.elapsed();
+        if session.is_stopped() || session.gpu.timeout.is_some_and(|timeout| after >= timeout) {
+            // wgpu waits for the queue when its last handle is dropped, and there would be no end
+            // to that either.
+            std::mem::forget(session.gpu.queue.clone());
+            return Err(ExecuteError::Unfinished { after, passes });
+        }
+    }
+}
+
+/// Why a command ends that was about to run `graph`.
+pub fn failed(session: Session, graph: &str, error: ExecuteError) -> CompareError {
+    match error {
+        ExecuteError::Unfinished { .. } if session.is_stopped() => CompareError::interrupted(),
+        error => CompareError::Gpu {
+            graph: graph.to_owned(),
+            source: Box::new(error),
+        },
+    }
+}
+
+/// Runs one frame and reads outputs and captures by name.
+///
+/// # Errors
+/// Those of the executor.
+pub fn read(
+    session: Session,
+    executor: &mut Executor,
+    names: &[&str],
+) -> Result<Contents, ExecuteError> {
+    let frame = Frame {
+        read: names,
+        ..Frame::default()
+    };
+    let (report, _) = run(session, executor, &frame)?;
+    Ok(contents(report.readbacks))
+}
+
+/// Readbacks by their names.
+pub fn contents(readbacks: Vec<Readback>) -> Contents {
+    let readbacks = readbacks.into_iter();
+    readbacks
+        .map(|readback| (readback.name, readback.content))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::{explain, is_fatal};
+    use crate::graphs::planning::{Capabilities, placeholder};
+    use crate::graphs::preset;
+    use crate::measuring::device::{self, GpuRequest};
+    use crate::sink::Silent;
+
+    /// As a driver's reset does it, but on demand.
+    #[test]
+    fn a_lost_device_is_an_error_of_its_own() {
+        let gpu =
+            device::open(&GpuRequest::default(), []).unwrap_or_else(|error| panic!("{error}"));
+        let session = Session::new(&gpu, &Silent);
+        let preset = preset::load_all(&["nsm".into()], &preset::sources(&Silent)).unwrap();
+        let mut provider = placeholder([16, 16], &preset[0].graph);
+        let request = Capabilities::new(&gpu).request([16, 16], &provider);
+        let plan = preset[0].graph.plan(&request).unwrap();
+        let mut executor = executor(session, plan, &mut provider).unwrap();
+        run(session, &mut executor, &Frame::default()).unwrap();
+        gpu.device.destroy();
+        let Err(lost) = run(session, &mut executor, &Frame::default()) else {
+            panic!("a destroyed device ran a frame");
+        };
+        assert!(is_fatal(&lost), "{lost}");
+        assert!(explain(&lost).starts_with("the device was lost"), "{lost}");
+        let failed = failed(session, "nsm", lost);
+        assert!(matches!(failed, CompareError::Gpu { .. }), "{failed:?}");
+    }
+}

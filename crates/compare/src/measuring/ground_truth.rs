@@ -1,0 +1,241 @@
+//! The ground truth of one view and viewport: the GPU's primitive ids, judged by the oracle.
+
+use crate::error::CompareError;
+use crate::files::fingerprint::{Fingerprint, RecordedSources};
+use crate::graphs::faults::GraphFaults;
+use crate::graphs::planning::Capabilities;
+use crate::graphs::shadow_method::Outputs;
+use crate::measuring::frame;
+use crate::sink::{Session, Sink, Step};
+use skiagraph_gpu::{Content, Provider};
+use skiagraph_graph::{Graph, Plan, Sources};
+use skiagraph_passes::registry;
+use skiagraph_reference::{
+    BlockerCounts, Error, GroundTruth, GroundTruthPixels, Oracle, OracleMode, Progress, Statistics,
+    shimmer::Seen,
+};
+use skiagraph_scene::{Camera, LightKind};
+use std::rc::Rc;
+
+/// The graph that every comparison draws first, as far as its output `primitive` needs: which one
+/// does each pixel show?
+const GBUFFER: &str = "pipelines/shared/gbuffer.ron";
+
+/// Renders primitive ids as every method's G-buffer does, so that all are judged on the surface
+/// that they saw.
+pub struct PrimaryVisibility {
+    graph: Graph,
+    /// Hash of the texts that it was read from.
+    pub fingerprint: Fingerprint,
+}
+
+impl PrimaryVisibility {
+    /// Loads the graph.
+    ///
+    /// # Errors
+    /// It is faulty: it may be one on disk.
+    pub fn load(sources: &dyn Sources) -> Result<Self, CompareError> {
+        let recorded = RecordedSources::new(sources);
+        let graph = Graph::load(GBUFFER, &registry(), &recorded)
+            .map_err(|diagnostics| GraphFaults::one(GBUFFER, &diagnostics))?;
+        Ok(Self {
+            graph,
+            fingerprint: recorded.fingerprint(),
+        })
+    }
+
+    /// The plan on a viewport.
+    ///
+    /// # Errors
+    /// The viewport is too large for this adapter.
+    pub fn plan(
+        &self,
+        session: Session,
+        viewport: [u32; 2],
+        provider: &dyn Provider,
+    ) -> Result<Plan, CompareError> {
+        let mut request = Capabilities::new(session.gpu).request(viewport, provider);
+        request.outputs = Some(vec!["primitive".to_owned()]);
+        self.graph
+            .plan(&request)
+            .map_err(|diagnostics| GraphFaults::one(GBUFFER, &diagnostics))
+    }
+
+    /// The primitive that each pixel shows.
+    ///
+    /// # Errors
+    /// The graph cannot run, or has no such output.
+    pub fn ids(
+        &self,
+        session: Session,
+        viewport: [u32; 2],
+        provider: &mut dyn Provider,
+    ) -> Result<Vec<u32>, CompareError> {
+        let plan = self.plan(session, viewport, provider)?;
+        let (contents, _) = frame::render(session, GBUFFER, plan, provider, &["primitive"])?;
+        contents
+            .get("primitive")
+            .and_then(Content::as_u32)
+            .ok_or_else(|| {
+                CompareError::Input(format!("{GBUFFER} has no output `primitive` of integers"))
+            })
+    }
+}
+
+/// The reference's pixels, counted as a method's are.
+pub fn own_counts(truth: &GroundTruthPixels) -> Statistics {
+    let (visibility, status) = (truth.visibility(), truth.status());
+    // Its own buffers are as large as it is and hold values that are allowed.
+    Statistics::judged(&visibility, &status, truth).unwrap_or_default()
+}
+
+/// Rays to a light that has an extent, unless said otherwise.
+pub const REFERENCE_SAMPLES: u32 = 512;
+
+/// How the oracle traces.
+#[derive(Clone, Copy, Debug)]
+pub struct Tracing {
+    /// How rays leave their receivers.
+    pub mode: OracleMode,
+    /// How many to a light that has an extent.
+    pub samples: u32,
+}
+
+/// The ground truth of one view and viewport, and what it was traced from.
+pub struct GroundTruthView<'a> {
+    oracle: Rc<Oracle<'a>>,
+    camera: Camera,
+    light: LightKind,
+    primitives: Vec<u32>,
+    mode: OracleMode,
+    /// The oracle's answer.
+    pub ground_truth: GroundTruth,
+    /// Pixels that show a surface which is not seen there: on it, methods are judged all the same.
+    pub wrong_surfaces: u64,
+}
+
+impl<'a> GroundTruthView<'a> {
+    /// Runs the oracle; the sink hears how far it is.
+    ///
+    /// # Errors
+    /// Those of [`ground_truth`].
+    pub fn new(
+        oracle: Rc<Oracle<'a>>,
+        camera: Camera,
+        light: LightKind,
+        primitives: Vec<u32>,
+        tracing: Tracing,
+        (what, sink): (&str, &dyn Sink),
+    ) -> Result<Self, CompareError> {
+        let step = Step::begin(
+            sink,
+            &format!("reference, {what}"),
+            camera.viewport[1].into(),
+            "rows",
+        );
+        let rows_done = |rows| step.set_done(rows);
+        let ground_truth = ground_truth(
+            &oracle,
+            &camera,
+            &light,
+            &primitives,
+            tracing,
+            heard(sink, &rows_done),
+            what,
+        )?;
+        step.end();
+        let step = Step::begin(
+            sink,
+            &format!("what is visible, {what}"),
+            camera.viewport[1].into(),
+            "rows",
+        );
+        let rows_done = |rows| step.set_done(rows);
+        let wrong_surfaces =
+            wrong_surfaces(&oracle, &camera, &primitives, heard(sink, &rows_done), what)?;
+        step.end();
+        Ok(Self {
+            oracle,
+            camera,
+            light,
+            primitives,
+            mode: tracing.mode,
+            ground_truth,
+            wrong_surfaces,
+        })
+    }
+
+    /// Returns mesh, camera and primitives that it looks at.
+    pub fn seen(&self) -> Seen<'_> {
+        Seen {
+            mesh: self.oracle.mesh(),
+            camera: &self.camera,
+            primitives: &self.primitives,
+        }
+    }
+
+    /// Counts what blocks the pixels that a method is certain and wrong of, under a light without
+    /// extent.
+    ///
+    /// # Errors
+    /// Outputs that do not fit the reference.
+    pub fn blockers(&self, outputs: &Outputs) -> Result<BlockerCounts, CompareError> {
+        let (visibility, status) = (&outputs.visibility, &outputs.status);
+        let pixels =
+            Statistics::certain_wrong_pixels(visibility, status, &self.ground_truth.pixels);
+        let (camera, light, primitives) = (&self.camera, &self.light, &self.primitives);
+        let blockers = pixels.and_then(|pixels| {
+            let oracle = &self.oracle;
+            oracle.blockers(camera, light, primitives, self.mode, &pixels)
+        });
+        blockers.map_err(|error| CompareError::Input(format!("no blockers: {error}")))
+    }
+}
+
+/// The progress of an oracle that `rows_done` hears and a sink may stop.
+pub fn heard<'a>(sink: &'a dyn Sink, rows_done: &'a (dyn Fn(u64) + Sync)) -> Progress<'a> {
+    Progress {
+        rows_done,
+        interrupted: sink.stop(),
+    }
+}
+
+/// Runs the oracle.
+///
+/// # Errors
+/// An early end, ids of another mesh, an impossible light.
+pub fn ground_truth(
+    oracle: &Oracle,
+    camera: &Camera,
+    light: &LightKind,
+    primitives: &[u32],
+    Tracing { mode, samples }: Tracing,
+    progress: Progress,
+    what: &str,
+) -> Result<GroundTruth, CompareError> {
+    let ground_truth = oracle.ground_truth(camera, light, primitives, (mode, samples), progress);
+    ground_truth.map_err(|error| named(error, what))
+}
+
+/// Counts the pixels that show a surface which is not seen there.
+///
+/// # Errors
+/// An early end, ids of another mesh.
+pub fn wrong_surfaces(
+    oracle: &Oracle,
+    camera: &Camera,
+    primitives: &[u32],
+    progress: Progress,
+    what: &str,
+) -> Result<u64, CompareError> {
+    let wrong = oracle.wrong_surfaces(camera, primitives, progress);
+    wrong.map_err(|error| named(error, what))
+}
+
+/// Why there is no reference of a view.
+fn named(error: Error, what: &str) -> CompareError {
+    match error {
+        Error::Interrupted => CompareError::interrupted(),
+        error => CompareError::Input(format!("no reference for {what}: {error}")),
+    }
+}

@@ -1,0 +1,389 @@
+//! One case with every method.
+
+use crate::error::{CompareError, is_fatal, with_causes};
+use crate::graphs::faults::reasons;
+use crate::graphs::ground_truth::{Judgement, judged};
+use crate::graphs::light_kinds;
+use crate::graphs::method::Method;
+use crate::graphs::planning::Capabilities;
+use crate::graphs::shadow_method::Outputs;
+use crate::measuring::frame;
+use crate::measuring::ground_truth::{
+    PrimaryVisibility, REFERENCE_SAMPLES, Tracing, ground_truth, heard, own_counts, wrong_surfaces,
+};
+use crate::measuring::guarantee::{self, WITHOUT_CULLING};
+use crate::measuring::steady;
+use crate::measuring::stop::Stop;
+use crate::pictures::run_pictures::{PicturePlace, draw_pictures, stem, write_pictures};
+use crate::records::stress::{Case, Casters, Cell, Column, Counts, Guarantee, Verdict};
+use crate::sink::Session;
+use skiagraph_cases::HardCase;
+use skiagraph_passes::SceneProvider;
+use skiagraph_reference::{
+    Class, Error, GroundTruth, GroundTruthPixels, Oracle, OracleMode, PixelCounts, Statistics,
+};
+use skiagraph_scene::{Scene, View};
+use std::{path::Path, sync::Arc};
+
+/// A method and what is guaranteed of it.
+pub struct MethodRun {
+    /// As the user wants it.
+    pub method: Method,
+    /// Which pixels must be right, and why they will be.
+    pub guarantee: Option<(Guarantee, String)>,
+    /// The same with all faces as casters, if it is not that one already.
+    pub without_culling: Option<Method>,
+    /// Why it cannot run on this adapter.
+    pub unavailable: Option<String>,
+}
+
+impl MethodRun {
+    /// Creates the run of a method that can run; `exact` are the names of those that the user wants
+    /// judged.
+    ///
+    /// # Errors
+    /// Those of [`guarantee::find`].
+    pub fn new(method: Method, exact: &[String]) -> Result<Self, CompareError> {
+        Ok(Self {
+            guarantee: guarantee::find(&method, exact)?,
+            without_culling: guarantee::without_culling(&method),
+            method,
+            unavailable: None,
+        })
+    }
+
+    /// As a column of the report.
+    pub fn column(&self) -> Column {
+        Column {
+            preset: self.method.name.clone(),
+            map_size: self.method.map_size,
+            params: self.method.all_params(),
+            guarantee: self.guarantee.as_ref().map(|(guarantee, _)| *guarantee),
+            because: self.guarantee.as_ref().map(|(_, reason)| reason.clone()),
+            unavailable: self.unavailable.clone(),
+        }
+    }
+
+    /// The ways in which it runs on such casters.
+    fn variants(&self, casters: Casters) -> Vec<Variant<'_>> {
+        let as_it_is = Variant {
+            method: &self.method,
+            set: None,
+            culls: self.without_culling.is_some(),
+        };
+        let is_judged = casters == Casters::Open && self.guarantee.is_some();
+        let judged = self.without_culling.iter().filter(|_| is_judged);
+        let judged = judged.map(|method| Variant {
+            method,
+            set: Some(WITHOUT_CULLING),
+            culls: false,
+        });
+        [as_it_is].into_iter().chain(judged).collect()
+    }
+
+    /// Returns the beginnings of the names of its pictures of a case, and whose they are.
+    pub fn stems(&self, case: &HardCase, viewport: [u32; 2]) -> Vec<(String, String)> {
+        let variants = self.variants(casters(case)).into_iter();
+        let owner = format!("`{}` on `{}`", self.method.name, case.name);
+        variants
+            .map(|variant| (variant.stem(case, viewport), owner.clone()))
+            .collect()
+    }
+}
+
+/// A way to run a method on a case.
+struct Variant<'a> {
+    method: &'a Method,
+    /// The param set for it besides.
+    set: Option<&'static str>,
+    /// True if not all faces cast shadows.
+    culls: bool,
+}
+
+impl Variant<'_> {
+    /// Returns the beginning of the names of its pictures.
+    fn stem(&self, case: &HardCase, viewport: [u32; 2]) -> String {
+        let with_set = |set| format!("{} {set}", case.name);
+        let place = self.set.map_or(case.name.into(), with_set);
+        stem(self.method, &place, viewport)
+    }
+}
+
+fn casters(case: &HardCase) -> Casters {
+    match case.casters {
+        skiagraph_cases::Casters::Closed => Casters::Closed,
+        skiagraph_cases::Casters::Open => Casters::Open,
+    }
+}
+
+/// Context shared by all cases.
+pub struct HardCaseContext<'a> {
+    /// Where they run.
+    pub session: Session<'a>,
+    /// Finds the visible triangles.
+    pub primary: &'a PrimaryVisibility,
+    /// The methods.
+    pub methods: &'a [MethodRun],
+    /// Width and height in pixels.
+    pub viewport: [u32; 2],
+    /// Folder for pictures, if there are to be any.
+    pub pictures: Option<&'a Path>,
+}
+
+impl HardCaseContext<'_> {
+    /// Runs every method on a case.
+    ///
+    /// # Errors
+    /// Ctrl-C, a lost device, a picture that cannot be written. All else is part of the result.
+    pub fn run(&self, hard: &HardCase) -> Result<Case, CompareError> {
+        let scene = Arc::new(hard.scene());
+        let mut provider = SceneProvider::new(scene.clone());
+        let mut case = Case {
+            name: hard.name.into(),
+            reason: hard.reason.into(),
+            casters: casters(hard),
+            band_cap: hard.indeterminate_cap,
+            verdict: Verdict::Fail,
+            failed: None,
+            pixels: PixelCounts::default(),
+            band: 0,
+            wrong_surface: 0,
+            cells: Vec::new(),
+        };
+        let (ground_truth, wrong_surface) = match self.ground_truth(&scene, &mut provider) {
+            Ok(answer) => answer,
+            Err(error) if ends_all(&error) => return Err(error),
+            Err(error) => {
+                case.failed = Some(with_causes(&error));
+                return Ok(case);
+            }
+        };
+        let counts = own_counts(&ground_truth.pixels);
+        (case.pixels, case.band) = (counts.pixels, counts.band);
+        case.wrong_surface = wrong_surface;
+        if !case.exceeds_cap() {
+            case.verdict = Verdict::Pass;
+        }
+        let light = scene.light().word();
+        let can_run = |run: &&MethodRun| {
+            run.unavailable.is_none() && light_kinds::takes(&run.method.preset.graph, light)
+        };
+        for run in self.methods.iter().filter(can_run) {
+            for variant in run.variants(case.casters) {
+                if self.session.is_stopped() {
+                    return Err(CompareError::interrupted());
+                }
+                let mut cell = Cell {
+                    preset: variant.method.name.clone(),
+                    map_size: variant.method.map_size,
+                    set: variant.set.map(Into::into),
+                    verdict: Verdict::Fail,
+                    counts: None,
+                    failed: None,
+                    images: None,
+                };
+                match self.count(variant.method, &mut provider, &ground_truth) {
+                    Ok((outputs, whole, counts)) => {
+                        let guarantee = run.guarantee.as_ref().map(|(guarantee, _)| *guarantee);
+                        let certain = case.pixels.facing_light.saturating_sub(counts.uncertain);
+                        let (culls, outside) = (variant.culls, &counts.outside_band);
+                        cell.verdict =
+                            Verdict::new(guarantee, culls, case.casters, certain, outside);
+                        cell.counts = Some(counts);
+                        if let Some(folder) = self.pictures {
+                            let place = PicturePlace {
+                                stem: variant.stem(hard, self.viewport),
+                                view: hard.name,
+                                frame: None,
+                            };
+                            let (images, files) =
+                                draw_pictures(&place, &ground_truth, &outputs, &whole)?;
+                            write_pictures(folder, &files)?;
+                            cell.images = Some(images);
+                        }
+                    }
+                    Err(error) if ends_all(&error) => return Err(error),
+                    Err(error) => cell.failed = Some(with_causes(&error)),
+                }
+                case.cells.push(cell);
+            }
+        }
+        Ok(case)
+    }
+
+    /// The ground truth, and how many pixels show a surface which is not seen there.
+    fn ground_truth(
+        &self,
+        scene: &Scene,
+        provider: &mut SceneProvider,
+    ) -> Result<(GroundTruth, u64), CompareError> {
+        let [view] = &scene.views[..] else {
+            return Err(CompareError::Input(format!(
+                "{} has no single view",
+                scene.name
+            )));
+        };
+        let view: &View = view;
+        provider.set_view(view, self.viewport);
+        let ids = self.primary.ids(self.session, self.viewport, provider)?;
+        let oracle = Oracle::new(&scene.mesh);
+        let tracing = Tracing {
+            mode: OracleMode::Exact,
+            samples: REFERENCE_SAMPLES,
+        };
+        let camera = view.camera(self.viewport);
+        let silent = heard(self.session.sink, &|_| ());
+        let ground_truth = ground_truth(
+            &oracle,
+            &camera,
+            &scene.light_of(view),
+            &ids,
+            tracing,
+            silent,
+            &scene.name,
+        )?;
+        let wrong = wrong_surfaces(&oracle, &camera, &ids, silent, &scene.name)?;
+        Ok((ground_truth, wrong))
+    }
+
+    /// One frame of a method, counted; of one that remembers, the worst of its steady state.
+    fn count(
+        &self,
+        method: &Method,
+        provider: &mut SceneProvider,
+        ground_truth: &GroundTruth,
+    ) -> Result<(Outputs, Judgement, Counts), CompareError> {
+        let preset = &*method.preset;
+        let plan = method.plan(self.viewport, Capabilities::new(self.session.gpu), provider);
+        let plan = plan.map_err(|faults| CompareError::Input(reasons(&faults)))?;
+        let names = preset.judged();
+        let (truth, light) = (&ground_truth.pixels, provider.light_number());
+        let judge = |contents| {
+            judged(
+                preset,
+                Outputs::from_contents(contents, light, truth),
+                ground_truth,
+            )
+        };
+        let (outputs, judgement) = if plan.remembers() {
+            let executor = frame::executor(self.session, plan, provider);
+            let worst = executor.map_err(Stop::from).and_then(|mut executor| {
+                frame::grow(self.session, &mut executor, provider)?;
+                let mut steady = steady::settle(self.session, &mut executor)?;
+                steady::judge(self.session, &mut executor, &names, &mut steady, judge)
+            });
+            worst.map_err(|stop| stop.into_error(self.session, &preset.name))?
+        } else {
+            let (contents, _) = frame::render(self.session, &preset.name, plan, provider, &names)?;
+            judge(contents)?
+        };
+        let broken = |error: Error| CompareError::InvalidOutputs(error.to_string());
+        let (visibility, status) = (strict(&outputs, ground_truth), &outputs.status);
+        let whole = Statistics::judged(&visibility, status, truth).map_err(broken)?;
+        let settled = right_in_band(&visibility, truth);
+        let outside = Statistics::judged(&settled, status, truth).map_err(broken)?;
+        let counts = Counts::new(&whole, &outside, outputs.rays);
+        Ok((outputs, judgement, counts))
+    }
+}
+
+/// The picture as 0 and 1. A share that is off by more than 8 bits can tell is as wrong as it can
+/// be: what is guaranteed is guaranteed of shares, too.
+fn strict(outputs: &Outputs, ground_truth: &GroundTruth) -> Vec<u32> {
+    let Some(shown) = &outputs.shares else {
+        return outputs.visibility.clone();
+    };
+    let answers = ground_truth
+        .pixels
+        .classes
+        .iter()
+        .zip(ground_truth.shares().to_vec());
+    let pixels = shown.iter().zip(answers);
+    let strict = |(&shown, (&class, share)): (&f32, (&Class, f32))| {
+        let is_right = f64::from((shown - share).abs()) <= 1.0 / 255.0;
+        u32::from(is_right == (class == Class::Lit))
+    };
+    pixels.map(strict).collect()
+}
+
+/// The picture with the reference's answer wherever that is in the band.
+fn right_in_band(visibility: &[u32], truth: &GroundTruthPixels) -> Vec<u32> {
+    let answers = truth.classes.iter().zip(&truth.indeterminate);
+    let pixels = visibility.iter().zip(answers);
+    pixels
+        .map(|(&shown, (&class, &in_band))| {
+            if in_band {
+                u32::from(class == Class::Lit)
+            } else {
+                shown
+            }
+        })
+        .collect()
+}
+
+/// True if no other method or case can run either.
+fn ends_all(error: &CompareError) -> bool {
+    match error {
+        CompareError::Interrupted { .. } => true,
+        CompareError::Gpu { source, .. } => is_fatal(source.as_ref()),
+        _ => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::graphs::preset;
+    use crate::records::stress::OutsideBand;
+    use std::collections::BTreeMap;
+
+    #[test]
+    fn only_a_guarantee_and_open_casters_make_a_second_run() {
+        let names = ["crsm".into(), "nsm".into(), "rt".into()];
+        let presets = preset::load_all(&names, &skiagraph_passes::EmbeddedSources).unwrap();
+        let runs = |index: usize, casters, exact: &[String]| {
+            let method = Method::new(presets[index].clone(), BTreeMap::new());
+            let run = MethodRun::new(method, exact).unwrap();
+            let variants = run.variants(casters).into_iter();
+            let keys = variants.map(|variant| (variant.set, variant.culls));
+            keys.collect::<Vec<_>>()
+        };
+        let again = vec![(None, true), (Some("cull=none"), false)];
+        assert_eq!(runs(0, Casters::Closed, &[]), [(None, true)]);
+        assert_eq!(runs(0, Casters::Open, &[]), again);
+        assert_eq!(runs(1, Casters::Open, &[]), [(None, true)]);
+        assert_eq!(runs(1, Casters::Open, &names), again);
+        assert_eq!(runs(2, Casters::Open, &[]), [(None, false)]);
+    }
+
+    #[test]
+    fn pixels_in_the_band_are_settled_by_the_reference_and_no_others() {
+        use Class::{Background, FacingAway, Lit, Shadow};
+        let truth = GroundTruthPixels {
+            viewport: [6, 1],
+            classes: vec![Background, FacingAway, Lit, Lit, Shadow, Shadow],
+            indeterminate: vec![false, true, true, false, true, false],
+            n_dot_l: vec![0.5; 6],
+            base_colors: Vec::new(),
+        };
+        let wrong = [0, 1, 0, 0, 1, 1];
+        assert_eq!(right_in_band(&wrong, &truth), [0, 0, 1, 0, 0, 1]);
+        let status = [0u32, 4, 3, 3, 2, 4];
+        let count = |visibility: &[u32]| Statistics::judged(visibility, &status, &truth);
+        let whole = count(&wrong).unwrap();
+        let counts = Counts::new(
+            &whole,
+            &count(&right_in_band(&wrong, &truth)).unwrap(),
+            None,
+        );
+        assert_eq!((counts.wrong.lit, counts.wrong.shadow), (3, 2));
+        assert_eq!(counts.wrong.in_band, 3);
+        let OutsideBand {
+            lit,
+            shadow,
+            certain,
+        } = counts.outside_band;
+        assert_eq!((lit, shadow, certain), (1, 1, 1));
+        assert_eq!(certain, counts.wrong.certain);
+    }
+}

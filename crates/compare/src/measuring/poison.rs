@@ -1,0 +1,87 @@
+//! `run --poison`: whether a graph reads memory that no pass has written.
+
+use crate::error::CompareError;
+use crate::graphs::faults::GraphFaults;
+use crate::graphs::preset::Preset;
+use crate::measuring::frame::{self, Contents};
+use crate::sink::Session;
+use crate::wording::percent;
+use skiagraph_gpu::{Content, Provider};
+use skiagraph_graph::Plan;
+use std::collections::BTreeSet;
+
+/// Bytes that all memory is filled with: no bit of one is the other's.
+const PATTERNS: [u8; 2] = [0x11, 0xee];
+
+/// Frames more of each pattern in which an output may show that it differs without another one.
+const AGAIN: usize = 4;
+
+/// Renders with two patterns in all memory that a frame has not written yet: outputs that differ
+/// depend on memory that no pass wrote. An output that differs between frames of the same pattern,
+/// too, depends on the order of threads; that is no fault, and such an output is not judged.
+///
+/// # Errors
+/// Names the outputs at fault.
+pub fn check(
+    session: Session,
+    plan: &Plan,
+    provider: &mut dyn Provider,
+    preset: &Preset,
+) -> Result<String, CompareError> {
+    let outputs = preset.graph.outputs();
+    let mut render = |pattern: u8| {
+        let plan = plan
+            .with(|request| request.poison = Some(pattern))
+            .map_err(|diagnostics| GraphFaults::one(&preset.name, &diagnostics))?;
+        // Which items of a buffer that is too small have room is chance.
+        let (contents, _) = frame::render(session, &preset.name, plan, provider, &outputs)?;
+        Ok(contents)
+    };
+    let [low, high] = [render(PATTERNS[0])?, render(PATTERNS[1])?];
+    let mut differing = differences(&low, &high);
+    let mut unordered = BTreeSet::new();
+    for _ in 0..AGAIN {
+        if differing.is_empty() {
+            break;
+        }
+        for (pattern, before) in PATTERNS.into_iter().zip([&low, &high]) {
+            let again = differences(before, &render(pattern)?);
+            unordered.extend(again.into_iter().map(|(name, _)| name));
+        }
+        differing.retain(|(name, _)| !unordered.contains(name));
+    }
+    if differing.is_empty() {
+        let mut text =
+            "  poisoned memory: no output depends on what the frame has not written\n".to_owned();
+        for name in unordered {
+            text += &format!(
+                "  not judged: `{name}`, which the order of threads changes in the same memory, \
+                 too\n"
+            );
+        }
+        return Ok(text);
+    }
+    let differing = differing
+        .iter()
+        .map(|(name, share)| format!("`{name}` ({share} of its bytes)"));
+    Err(CompareError::Input(format!(
+        "`{}` reads memory that no pass has written in the frame: with two patterns in it, {} \
+         differ\n  clear what is written only in part, and promise by `overwrites` only what holds",
+        preset.name,
+        differing.collect::<Vec<_>>().join(", ")
+    )))
+}
+
+/// Outputs whose bytes differ, with the share of these.
+fn differences(one: &Contents, other: &Contents) -> Vec<(String, String)> {
+    let share = |(name, content): (&String, &Content)| {
+        let others = other.get(name).map_or(&[][..], Content::bytes);
+        let bytes = content.bytes().iter().zip(others);
+        let count = bytes.filter(|(a, b)| a != b).count();
+        (count > 0).then(|| {
+            let share = percent(count as u64, content.bytes().len() as u64);
+            (name.clone(), share)
+        })
+    };
+    one.iter().filter_map(share).collect()
+}

@@ -1,0 +1,94 @@
+//! One method on one view, over many frames.
+
+use crate::error::CompareError;
+use crate::graphs::method::Method;
+use crate::graphs::planning::Capabilities;
+use crate::measuring::timing::{self, FrameMode};
+use crate::measuring::{date, device, frame};
+use crate::pictures::run_pictures::conditions as conditions_in_words;
+use crate::records::profile::{Conditions, Memory, Profile};
+use crate::records::results::PROGRAM;
+use crate::records::samples::{Samples, TimedFrame};
+use crate::sink::{Session, Step};
+use skiagraph_graph::Plan;
+use skiagraph_passes::SceneProvider;
+use skiagraph_scene::{Scene, View};
+use std::{sync::Arc, time::SystemTime};
+
+/// Times a method: so many frames after so many of warm-up. From the first frame on a stop ends it
+/// early, with what was timed until then.
+///
+/// # Errors
+/// The graph cannot be planned or run here; Ctrl-C before any frame was timed.
+pub fn profile(
+    session: Session,
+    [warmup, frames]: [u32; 2],
+    method: &Method,
+    scene: &Arc<Scene>,
+    view: &View,
+) -> Result<(Profile, Vec<TimedFrame>), CompareError> {
+    let (preset, viewport) = (&method.preset, method.viewport);
+    let mut provider = SceneProvider::new(scene.clone());
+    provider.set_view(view, viewport);
+    let mut request = Capabilities::new(session.gpu).request(viewport, &provider);
+    request.params = method.params.clone();
+    let plan = preset.plan(&request, session.sink)?;
+
+    let conditions = Conditions {
+        program: PROGRAM.into(),
+        build: if cfg!(debug_assertions) {
+            "debug".into()
+        } else {
+            "release".into()
+        },
+        date: date::utc(SystemTime::now()),
+        adapter: device::describe(session.gpu, device::timestamp_trust(session.gpu)),
+        scene: (&**scene).into(),
+        preset: method.name.clone(),
+        view: view.name.clone(),
+        viewport,
+        params: method.all_params(),
+        frames,
+        warmup,
+    };
+    let failed = |error| frame::failed(session, &method.name, error);
+    let mut executor = frame::executor(session, plan, &mut provider).map_err(failed)?;
+    frame::grow(session, &mut executor, &mut provider).map_err(failed)?;
+    let (passes, memory) = (executor.plan().passes(), memory(executor.plan()));
+    let step = Step::begin(
+        session.sink,
+        &format!(
+            "{}, {}",
+            method.name,
+            conditions_in_words(method, &view.name, viewport)
+        ),
+        u64::from(warmup) + u64::from(frames),
+        "frames",
+    );
+    let count = [warmup, frames];
+    let set_done = |frames| step.set_done(frames);
+    let timed = timing::sample(
+        session,
+        &mut executor,
+        FrameMode::AllPasses,
+        count,
+        set_done,
+    )
+    .map_err(failed)?;
+    step.end();
+
+    match Profile::new(conditions, &passes, &Samples::new(&timed), memory) {
+        Some(profile) => Ok((profile, timed)),
+        None => Err(CompareError::Interrupted {
+            kept: "no frame was timed".into(),
+        }),
+    }
+}
+
+fn memory(plan: &Plan) -> Memory {
+    Memory {
+        bytes: plan.memory_bytes(),
+        saved_bytes: plan.saved_bytes(),
+        materials: plan.memory().into_iter().map(Into::into).collect(),
+    }
+}

@@ -1,0 +1,192 @@
+//! The results of a folder that other processes may write at the same time: what they have written
+//! meanwhile stays.
+
+use crate::error::CompareError;
+use crate::files::lock::{self, Shared};
+use crate::lists::unique;
+use crate::measuring::resume;
+use crate::pictures::run_pictures::{PictureFile, write_pictures};
+use crate::records::read_back;
+use crate::records::results::{Results, Run};
+use crate::records::results_csv::save;
+use crate::sink::Sink;
+use std::path::{Path, PathBuf};
+
+/// `results.json` of a folder, with what is written beside it.
+#[derive(Debug)]
+pub struct ResultsFolder {
+    folder: PathBuf,
+    /// Runs that were in it at the begin and do not stay.
+    dropped: Vec<Run>,
+    /// The file as this process has read or written it last; none if there was none, or one that
+    /// cannot be read.
+    known: Option<String>,
+    /// There is one that cannot be read, and is overwritten.
+    is_unreadable: bool,
+    /// Runs of others that stay.
+    pub others: Vec<Run>,
+    /// The commands that measured them.
+    commands: Vec<String>,
+}
+
+impl ResultsFolder {
+    /// A folder as it stands: the runs in it that are dropped, those that stay, and the commands
+    /// that measured these. A file that cannot be read is overwritten: where it must not be, that
+    /// was refused before.
+    pub fn new(folder: &Path, [dropped, others]: [Vec<Run>; 2], commands: Vec<String>) -> Self {
+        let file = read_back::results_file(&folder.join("results.json"));
+        let is_unreadable = file.is_err();
+        let known = file.ok().flatten();
+        Self {
+            folder: folder.to_path_buf(),
+            dropped,
+            known: known.map(|file| file.text.to_string()),
+            is_unreadable,
+            others,
+            commands,
+        }
+    }
+
+    /// These runs with those of others.
+    pub fn whole(&self, own: &Results) -> Results {
+        let commands = [&self.commands[..], &own.commands].concat();
+        Results {
+            commands: unique(&commands),
+            runs: [&own.runs[..], &self.others].concat(),
+            ..own.clone()
+        }
+    }
+
+    /// Writes these runs and those of others, also those that other processes have written since,
+    /// with the pictures of a run: all that belongs together while no other process writes.
+    ///
+    /// # Errors
+    /// Ctrl-C, a file that cannot be written, or that another process has written under other
+    /// conditions.
+    pub fn save(
+        &mut self,
+        own: &Results,
+        pictures: &[PictureFile],
+        sink: &dyn Sink,
+    ) -> Result<(), CompareError> {
+        let _locked = lock::wait_for(&self.folder, Shared::Results, sink)?;
+        self.merge(own)?;
+        write_pictures(&self.folder, pictures)?;
+        self.known = Some(save(&self.whole(own), &self.folder)?);
+        self.is_unreadable = false;
+        Ok(())
+    }
+
+    /// Takes over what other processes have written.
+    fn merge(&mut self, own: &Results) -> Result<(), CompareError> {
+        let path = self.folder.join("results.json");
+        let file = match read_back::results_file(&path) {
+            Err(_) if self.is_unreadable => None,
+            file => file?,
+        };
+        let Some(file) = file else {
+            return Ok(());
+        };
+        if self.known.as_deref() != Some(&*file.text) {
+            let found = read_back::results_of(&file)?;
+            resume::check_alike(&path, &found, own)?;
+            self.commands = unique(&[found.commands, self.commands.clone()].concat());
+            self.others = found.runs;
+            self.others.retain(|run| !self.dropped.contains(run));
+        }
+        // Runs that were measured here count.
+        let is_own = |run: &Run| own.runs.iter().any(|own| own.is_in_place_of(run));
+        self.others.retain(|run| !is_own(run));
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::records::results::tests::sample;
+    use crate::sink::Silent;
+
+    /// Names of the runs in the folder's two files.
+    fn kept(folder: &Path) -> Vec<String> {
+        let results = read_back::kept(folder).unwrap();
+        let names = results.runs.iter().map(|run| run.preset.clone());
+        let names: Vec<String> = names.collect();
+        let csv = std::fs::read_to_string(folder.join("results.csv")).unwrap();
+        assert_eq!(csv.lines().count(), names.len() + 1);
+        names
+    }
+
+    fn only(index: usize, command: &str) -> Results {
+        let mut results = sample();
+        results.runs = vec![results.runs.swap_remove(index)];
+        results.commands = vec![command.into()];
+        results
+    }
+
+    fn begin(folder: &Path, dropped: Vec<Run>) -> ResultsFolder {
+        ResultsFolder::new(folder, [dropped, Vec::new()], Vec::new())
+    }
+
+    #[test]
+    fn runs_of_two_processes_that_began_together_are_both_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path();
+        let (mut one, mut other) = (begin(folder, Vec::new()), begin(folder, Vec::new()));
+        one.save(&only(0, "one"), &[], &Silent).unwrap();
+        other.save(&only(1, "other"), &[], &Silent).unwrap();
+        one.save(&only(0, "one"), &[], &Silent).unwrap();
+        assert_eq!(kept(folder), ["nsm", "rt"]);
+        let mut commands = read_back::kept(folder).unwrap().commands;
+        commands.sort();
+        assert_eq!(commands, ["one", "other"]);
+    }
+
+    #[test]
+    fn of_a_run_that_both_measure_the_later_one_counts() {
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path();
+        let (mut one, mut other) = (begin(folder, Vec::new()), begin(folder, Vec::new()));
+        other.save(&only(0, "other"), &[], &Silent).unwrap();
+        let mut again = only(0, "one");
+        again.runs[0].band = 77;
+        let picture = PictureFile {
+            name: "a.png".into(),
+            png: vec![1],
+        };
+        one.save(&again, &[picture], &Silent).unwrap();
+        assert_eq!(kept(folder), ["nsm"]);
+        assert_eq!(read_back::kept(folder).unwrap().runs[0].band, 77);
+        assert!(folder.join("a.png").is_file());
+    }
+
+    #[test]
+    fn what_was_there_and_is_dropped_does_not_come_back_by_another_process() {
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path();
+        save(&sample(), folder).unwrap();
+        let mut replaces = begin(folder, sample().runs);
+        let mut adds = ResultsFolder::new(folder, [Vec::new(), sample().runs], Vec::new());
+        let mut own = only(0, "adds");
+        own.runs[0].preset = "crsm".into();
+        adds.save(&own, &[], &Silent).unwrap();
+        assert_eq!(kept(folder), ["crsm", "nsm", "rt", "rt_hw"]);
+        let mut mine = only(1, "replaces");
+        mine.runs[0].band = 1;
+        replaces.save(&mine, &[], &Silent).unwrap();
+        assert_eq!(kept(folder), ["rt", "crsm"]);
+    }
+
+    #[test]
+    fn other_conditions_of_another_process_are_refused_and_its_file_stays() {
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path();
+        let (mut one, mut other) = (begin(folder, Vec::new()), begin(folder, Vec::new()));
+        other.save(&only(0, "other"), &[], &Silent).unwrap();
+        let mut results = only(1, "one");
+        results.frames = 3;
+        let error = one.save(&results, &[], &Silent).unwrap_err().to_string();
+        assert!(error.contains("frames: there 10, here 3"), "{error}");
+        assert_eq!(kept(folder), ["nsm"]);
+    }
+}

@@ -1,0 +1,54 @@
+//! Why a method's frames ended early.
+
+use crate::error::{CompareError, explain, is_fatal};
+use crate::graphs::method::Method;
+use crate::measuring::frame;
+use crate::records::results::Measured;
+use crate::sink::Session;
+use skiagraph_gpu::ExecuteError;
+
+/// Why a method's frames ended early.
+pub enum Stop {
+    /// The device refuses it, or is lost.
+    Refused(Box<ExecuteError>),
+    /// All else.
+    Failed(CompareError),
+}
+
+impl Stop {
+    /// As an error that ends what was to come of `graph`.
+    pub fn into_error(self, session: Session, graph: &str) -> CompareError {
+        match self {
+            Self::Refused(error) => frame::failed(session, graph, *error),
+            Self::Failed(error) => error,
+        }
+    }
+}
+
+impl From<ExecuteError> for Stop {
+    fn from(error: ExecuteError) -> Self {
+        Self::Refused(Box::new(error))
+    }
+}
+
+impl From<CompareError> for Stop {
+    fn from(error: CompareError) -> Self {
+        Self::Failed(error)
+    }
+}
+
+/// Outcome of running a method: measurements, or why the device refuses.
+pub type Attempt = Result<Result<Measured, String>, CompareError>;
+
+/// Tells a method that the device refuses from a device that is of no more use.
+///
+/// # Errors
+/// Ctrl-C, a lost device, and what else ends more than this method.
+pub fn attempt(session: Session, method: &Method, came: Result<Measured, Stop>) -> Attempt {
+    match came {
+        Ok(measured) => Ok(Ok(measured)),
+        // The box is an error, too, but not the one that is asked for.
+        Err(Stop::Refused(error)) if !is_fatal(&*error) => Ok(Err(explain(&*error))),
+        Err(stop) => Err(stop.into_error(session, &method.name)),
+    }
+}

@@ -1,0 +1,174 @@
+//! The camera's view: a still one, or every frame of a camera path.
+
+use crate::error::CompareError;
+use crate::files::fingerprint::Fingerprint;
+use crate::measuring::camera_pose::CameraPose;
+use crate::measuring::mesh_frames::MeshFrames;
+use crate::wording::did_you_mean;
+use skiagraph_scene::{CameraPath, LightKind, Scene, View};
+
+/// One still view or camera path of a comparison.
+#[derive(Clone, Debug)]
+pub enum ViewOrPath {
+    /// One picture.
+    Still(View),
+    /// A picture for each frame.
+    Path(CameraPath),
+}
+
+impl ViewOrPath {
+    /// Its name in results.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Still(view) => &view.name,
+            Self::Path(path) => &path.view.name,
+        }
+    }
+
+    /// Its frames; of a path with `jitter`, each with that of as many that are blended.
+    pub fn poses(&self, jitter: Option<u32>) -> Vec<CameraPose> {
+        let views = match self {
+            Self::Still(view) => vec![view.clone()],
+            Self::Path(path) => path.views().collect(),
+        };
+        CameraPose::numbered(views, jitter)
+    }
+
+    /// The mesh of its first frames; `None` where it stands.
+    ///
+    /// # Errors
+    /// A part that the mesh has not, or that is welded to others.
+    pub fn mesh_frames(
+        &self,
+        scene: &Scene,
+        frames: usize,
+    ) -> Result<Option<MeshFrames>, CompareError> {
+        match self {
+            Self::Still(_) => Ok(None),
+            Self::Path(path) => MeshFrames::new(path, &scene.mesh, frames),
+        }
+    }
+
+    /// Frames per second of its own time.
+    pub fn frames_per_second(&self) -> f64 {
+        match self {
+            Self::Still(_) => 30.0,
+            Self::Path(path) => path.frames_per_second,
+        }
+    }
+
+    /// Its light.
+    pub fn light(&self, scene: &Scene) -> LightKind {
+        let (Self::Still(view) | Self::Path(CameraPath { view, .. })) = self;
+        scene.light_of(view)
+    }
+
+    /// With what it depends on.
+    pub fn fingerprint(&self, of: Fingerprint) -> Fingerprint {
+        match self {
+            Self::Still(view) => of.with_view(view),
+            Self::Path(path) => of.with_text(&format!("{path:?}")),
+        }
+    }
+
+    /// A scene's path of that name, or all of them, under the light of that name, or under all of
+    /// theirs.
+    ///
+    /// # Errors
+    /// The scene has no such path or light, or no path at all.
+    pub fn paths(
+        scene: &Scene,
+        paths: Vec<CameraPath>,
+        name: &str,
+        light: Option<&str>,
+    ) -> Result<Vec<Self>, CompareError> {
+        let names: Vec<&str> = paths.iter().map(|path| path.view.name.as_str()).collect();
+        if names.is_empty() {
+            return Err(CompareError::Input(format!(
+                "the scene `{}` has no camera paths\n  a scene file lists them as `paths: \
+                 [(name: …, fov_y_degrees: …, near: …, far: …, keys: [(at: SECONDS, eye: …, \
+                 direction: …), …])]`",
+                scene.name
+            )));
+        }
+        if name != "all" && !names.contains(&name) {
+            let hint = did_you_mean(name, names.iter().copied());
+            return Err(CompareError::Input(format!(
+                "the scene `{}` has no path `{name}`{hint}\n  paths: {}, or all of them: all",
+                scene.name,
+                names.join(", ")
+            )));
+        }
+        let mut views_or_paths = Vec::new();
+        for path in paths {
+            if name == "all" || path.view.name == name {
+                let views = under_lights(scene, vec![path.view.clone()], light)?;
+                let lit = views.into_iter().map(|view| lit(scene, &path, view));
+                views_or_paths.extend(
+                    lit.collect::<Result<Vec<_>, _>>()?
+                        .into_iter()
+                        .map(Self::Path),
+                );
+            }
+        }
+        Ok(views_or_paths)
+    }
+}
+
+/// The path under the light of a view; one that moves becomes the view's own.
+fn lit(scene: &Scene, path: &CameraPath, mut view: View) -> Result<CameraPath, CompareError> {
+    if !path.light_keys.is_empty() {
+        view.light = scene.lights_of(&view).into_iter().next();
+    }
+    let path = CameraPath {
+        view,
+        ..path.clone()
+    };
+    path.check().map_err(CompareError::Input)?;
+    Ok(path)
+}
+
+/// The views under the light of that name, or under all of theirs: `VIEW@LIGHT` where that makes
+/// several of one view; without a name under their first.
+///
+/// # Errors
+/// The scene has no such light.
+pub fn under_lights(
+    scene: &Scene,
+    views: Vec<View>,
+    name: Option<&str>,
+) -> Result<Vec<View>, CompareError> {
+    let Some(name) = name else {
+        return Ok(views);
+    };
+    let mut lit = Vec::new();
+    for view in views {
+        let lights = scene.lights_of(&view);
+        let several = lights.len() > 1 && name == "all";
+        let chosen: Vec<_> = lights
+            .iter()
+            .filter(|light| name == "all" || light.name == name)
+            .collect();
+        if chosen.is_empty() {
+            let names: Vec<&str> = lights.iter().map(|light| light.name.as_str()).collect();
+            let hint = did_you_mean(name, names.iter().copied());
+            return Err(CompareError::Input(format!(
+                "view `{}` of the scene `{}` has no light `{name}`{hint}\n  lights: {}, or all of \
+                 them: all",
+                view.name,
+                scene.name,
+                names.join(", ")
+            )));
+        }
+        lit.extend(chosen.into_iter().map(|light| View {
+            name: if several {
+                format!("{}@{}", view.name, light.name)
+            } else {
+                view.name.clone()
+            },
+            light: Some(light.clone()),
+            ..view.clone()
+        }));
+    }
+    Ok(lit)
+}

@@ -1,0 +1,258 @@
+//! From values to colours, each with a legend that says which is which.
+
+use crate::wording::thousands;
+use skiagraph_reference::BACKGROUND;
+use skiagraph_scene::View;
+use std::collections::BTreeSet;
+
+/// Colours of the `status` values 0 to 4, with their meaning.
+pub const STATUS: [([u8; 3], &str); 5] = [
+    ([96, 112, 128], "grey background"),
+    ([0, 128, 0], "green facing away"),
+    ([255, 255, 255], "white certain light"),
+    ([0, 0, 0], "black certain shadow"),
+    ([160, 32, 240], "purple uncertain"),
+];
+/// Where there is no primitive, and depths that nothing has written since they were cleared.
+pub const EMPTY: [u8; 3] = STATUS[0].0;
+/// NaN, and integers that have no business being there.
+pub const INVALID: [u8; 3] = [255, 0, 255];
+/// Colour of positive infinity.
+pub const POSITIVE_INFINITY: [u8; 3] = [255, 128, 0];
+/// Colour of negative infinity.
+pub const NEGATIVE_INFINITY: [u8; 3] = [0, 192, 255];
+
+/// Near and far plane of the perspective camera whose depths a texture holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClipPlanes {
+    /// Distance of the near plane, depth 1.
+    pub near: f64,
+    /// Distance of the far plane, depth 0: what is cleared to.
+    pub far: f64,
+}
+
+impl ClipPlanes {
+    /// Reads the planes of a view.
+    pub fn new(view: &View) -> Self {
+        let View { near, far, .. } = *view;
+        Self { near, far }
+    }
+
+    /// The distance along the viewing direction that a depth stands for.
+    pub fn distance(self, depth: f32) -> f32 {
+        let Self { near, far } = self;
+        (near * far / (near + f64::from(depth) * (far - near))) as f32
+    }
+}
+
+/// Integers by what they mean: `status` values, 0 and 1, or numbers such as ids.
+pub fn integers(name: &str, values: &[u32]) -> (Vec<u8>, String) {
+    let (colour, legend): (fn(u32) -> [u8; 3], _) = match () {
+        // An include puts its instance's name before that of the material.
+        () if name.rsplit('.').next() == Some("status") => (status_colour, statuses(values)),
+        () if values.iter().all(|&value| value <= 1) => {
+            let [zeros, ones] = [0, 1].map(|bit| count(values, |value| value == bit));
+            let legend = vec![counted("black 0", zeros), counted("white 1", ones)];
+            (|value| [value as u8 * 255; 3], legend)
+        }
+        () => (id_colour, ids(values)),
+    };
+    let rgb = values.iter().flat_map(|&value| colour(value));
+    (rgb.collect(), legend.join(", "))
+}
+
+fn status_colour(status: u32) -> [u8; 3] {
+    let known = STATUS.get(status as usize);
+    known.map_or(INVALID, |(colour, _)| *colour)
+}
+
+fn statuses(values: &[u32]) -> Vec<String> {
+    let of = |(status, (_, meaning))| counted(meaning, count(values, |value| value == status));
+    let strangers = count(values, |value| value as usize >= STATUS.len());
+    let known = (0..).zip(STATUS).map(of);
+    known.chain(mark("magenta no status", strangers)).collect()
+}
+
+fn ids(values: &[u32]) -> Vec<String> {
+    let distinct: BTreeSet<u32> = values.iter().copied().collect();
+    let background = count(values, |value| value == BACKGROUND);
+    let ids: Vec<u32> = distinct
+        .into_iter()
+        .filter(|&id| id != BACKGROUND)
+        .collect();
+    let of_ids = match (ids.first(), ids.last()) {
+        (Some(first), Some(last)) => format!(
+            "a colour per number, {} of them from {first} to {last}",
+            thousands(ids.len() as u64)
+        ),
+        _ => "no number".into(),
+    };
+    let of_background = mark("grey 0xffffffff", background);
+    [of_ids].into_iter().chain(of_background).collect()
+}
+
+fn count<T: Copy>(values: &[T], is: impl Fn(T) -> bool) -> usize {
+    values.iter().filter(|value| is(**value)).count()
+}
+
+/// Says what a colour stands for and how often.
+fn counted(meaning: &str, count: usize) -> String {
+    format!("{meaning} ({})", thousands(count as u64))
+}
+
+/// The same, where there is any.
+fn mark(meaning: &str, count: usize) -> Option<String> {
+    (count > 0).then(|| counted(meaning, count))
+}
+
+/// Neighbouring ids must look different: a multiplicative hash (Knuth's 2³²/φ), its high bits as a
+/// bright colour.
+pub fn id_colour(id: u32) -> [u8; 3] {
+    if id == BACKGROUND {
+        return EMPTY;
+    }
+    let hash = (id.wrapping_add(1))
+        .wrapping_mul(0x9e37_79b9)
+        .rotate_left(15)
+        .wrapping_mul(0x85eb_ca6b);
+    [hash >> 24, hash >> 16 & 0xff, hash >> 8 & 0xff]
+        .map(|channel| 48 + (channel * 207 / 255) as u8)
+}
+
+/// Depth that means nothing was drawn: 0 of a camera, whose depths are reversed, 1 of a light.
+pub fn cleared(planes: Option<ClipPlanes>) -> f32 {
+    match planes {
+        Some(_) => 0.0,
+        None => 1.0,
+    }
+}
+
+/// Depths from the nearest to the farthest, those apart that nothing has written. A camera's are
+/// shown as distances, which its depths would squeeze into a hair above 0.
+pub fn depths(values: &[f32], planes: Option<ClipPlanes>) -> (Vec<u8>, String) {
+    let is_cleared = |depth: f32| depth == cleared(planes);
+    let distance = |depth| planes.map_or(depth, |planes| planes.distance(depth));
+    let written = || values.iter().copied().filter(|&depth| !is_cleared(depth));
+    let (stored, shown) = (range(written()), range(written().map(distance)));
+    let colour = |&depth: &f32| match non_finite_colour(distance(depth)) {
+        _ if is_cleared(depth) => EMPTY,
+        Some(colour) => colour,
+        None => [grey_level(distance(depth), shown); 3],
+    };
+    let mut legend = vec![match planes {
+        Some(_) => format!(
+            "distance along the view, black to white {} (stored {})",
+            span(shown),
+            span(stored)
+        ),
+        None => format!("stored depth, black to white {}", span(stored)),
+    }];
+    legend.extend(mark(
+        &format!("grey {}, nothing there", cleared(planes)),
+        count(values, is_cleared),
+    ));
+    legend.extend(non_finite_marks(
+        &values.iter().copied().map(distance).collect::<Vec<_>>(),
+    ));
+    (values.iter().flat_map(colour).collect(), legend.join(", "))
+}
+
+/// Channels that reach from 0 to 1, as they are.
+pub fn fractions(values: &[f32], channels: usize) -> (Vec<u8>, String) {
+    let whole = [(0.0, 1.0); 4];
+    let rgb = coloured(values, channels, &whole[..channels.min(3)]);
+    let legend = format!("0 to 1 as it is, holds {}", ranges(values, channels));
+    (rgb, legend)
+}
+
+/// Each channel between its own least and greatest finite value; one channel is grey, two leave
+/// blue black, a fourth is not shown.
+pub fn floats(values: &[f32], channels: usize) -> (Vec<u8>, String) {
+    let shown: Vec<(f32, f32)> = (0..channels.min(3))
+        .map(|index| range(channel(values, channels, index)))
+        .collect();
+    let rgb = coloured(values, channels, &shown);
+    let mut legend = vec![ranges(values, channels)];
+    legend.extend(non_finite_marks(values));
+    (rgb, legend.join(", "))
+}
+
+fn channel(values: &[f32], channels: usize, index: usize) -> impl Iterator<Item = f32> {
+    values.iter().skip(index).step_by(channels).copied()
+}
+
+/// Least and greatest finite value.
+fn range(values: impl Iterator<Item = f32>) -> (f32, f32) {
+    let finite = values.filter(|value| value.is_finite());
+    finite.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), value| {
+        (low.min(value), high.max(value))
+    })
+}
+
+fn span((low, high): (f32, f32)) -> String {
+    if low <= high {
+        format!("{low} … {high}")
+    } else {
+        "without a finite value".into()
+    }
+}
+
+/// The range of each channel.
+fn ranges(values: &[f32], channels: usize) -> String {
+    let names = match channels {
+        1 => [""; 4],
+        _ => ["red ", "green ", "blue ", "alpha (not shown) "],
+    };
+    let spans = names.iter().take(channels).enumerate();
+    let spans = spans
+        .map(|(index, name)| format!("{name}{}", span(range(channel(values, channels, index)))));
+    spans.collect::<Vec<_>>().join(", ")
+}
+
+fn grey_level(value: f32, (low, high): (f32, f32)) -> u8 {
+    // In f64, where the difference of two f32 cannot overflow.
+    let share = (f64::from(value) - f64::from(low))
+        / (f64::from(high) - f64::from(low)).max(f64::MIN_POSITIVE);
+    (share.clamp(0.0, 1.0) * 255.0).round() as u8
+}
+
+/// The colour that marks a value which is no number to draw.
+fn non_finite_colour(value: f32) -> Option<[u8; 3]> {
+    match value {
+        _ if value.is_nan() => Some(INVALID),
+        f32::INFINITY => Some(POSITIVE_INFINITY),
+        f32::NEG_INFINITY => Some(NEGATIVE_INFINITY),
+        _ => None,
+    }
+}
+
+fn non_finite_marks(values: &[f32]) -> impl Iterator<Item = String> {
+    let marks = [
+        mark("magenta NaN", count(values, f32::is_nan)),
+        mark("orange +∞", count(values, |value| value == f32::INFINITY)),
+        mark(
+            "light blue -∞",
+            count(values, |value| value == f32::NEG_INFINITY),
+        ),
+    ];
+    marks.into_iter().flatten()
+}
+
+/// The first channels between these ranges; a texel with a value that is not finite shows that,
+/// whichever channel it is in.
+fn coloured(values: &[f32], channels: usize, shown: &[(f32, f32)]) -> Vec<u8> {
+    let texel = |texel: &[f32]| {
+        if let Some(colour) = texel.iter().find_map(|&value| non_finite_colour(value)) {
+            return colour;
+        }
+        let mut colour = [0; 3];
+        for ((colour, &value), &range) in colour.iter_mut().zip(texel).zip(shown) {
+            *colour = grey_level(value, range);
+        }
+        match shown.len() {
+            1 => [colour[0]; 3],
+            _ => colour,
+        }
+    };
+    values.chunks_exact(channels).flat_map(texel).collect()
+}

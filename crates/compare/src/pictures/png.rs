@@ -1,0 +1,30 @@
+//! PNG files.
+
+use crate::error::CompareError;
+use crate::files::write::write_whole;
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::{ExtendedColorType, ImageEncoder};
+use skiagraph_reference::Image;
+use std::path::Path;
+
+/// The contents of the file `path`.
+///
+/// # Errors
+/// The picture cannot be encoded.
+pub fn encode(path: &Path, image: &Image) -> Result<Vec<u8>, CompareError> {
+    let mut png = Vec::new();
+    let [width, height] = image.size;
+    // Flat areas: the fast setting would make them five times as large.
+    PngEncoder::new_with_quality(&mut png, CompressionType::Default, FilterType::Adaptive)
+        .write_image(&image.rgb, width, height, ExtendedColorType::Rgb8)
+        .map_err(|error| CompareError::write(path, error))?;
+    Ok(png)
+}
+
+/// Writes a picture, whole or not at all.
+///
+/// # Errors
+/// The path cannot be written.
+pub fn save(path: &Path, image: &Image) -> Result<(), CompareError> {
+    write_whole(path, &encode(path, image)?)
+}

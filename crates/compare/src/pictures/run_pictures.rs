@@ -1,0 +1,207 @@
+//! The pictures of a run and of the reference, and their file names.
+
+use crate::error::CompareError;
+use crate::files::write::write_whole;
+use crate::graphs::ground_truth::Judgement;
+use crate::graphs::method::Method;
+use crate::graphs::shadow_method::Outputs;
+use crate::pictures::png;
+use crate::records::results::Images;
+use crate::wording::size;
+use skiagraph_reference::{Error, GroundTruth, Image};
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
+
+/// A picture that is drawn and not yet written: it is written together with the figures that it
+/// belongs to.
+pub struct PictureFile {
+    /// Its name in the folder.
+    pub name: String,
+    /// Its contents.
+    pub png: Vec<u8>,
+}
+
+/// Writes pictures into a folder, each whole or not at all.
+///
+/// # Errors
+/// One cannot be written.
+pub fn write_pictures(folder: &Path, files: &[PictureFile]) -> Result<(), CompareError> {
+    let mut files = files.iter();
+    files.try_for_each(|file| write_whole(&folder.join(&file.name), &file.png))
+}
+
+/// Subject of pictures: a run on a view or case, or a frame of a camera path.
+pub struct PicturePlace<'a> {
+    /// Beginning of the names of the method's pictures.
+    pub stem: String,
+    /// The view, path or case.
+    pub view: &'a str,
+    /// The frame of a path, counted from 0.
+    pub frame: Option<usize>,
+}
+
+impl PicturePlace<'_> {
+    fn file(&self, name: String) -> String {
+        match self.frame {
+            Some(frame) => numbered(Path::new(&name), frame).display().to_string(),
+            None => name,
+        }
+    }
+}
+
+/// Draws the pictures of a frame, and that of the reference beside it.
+///
+/// # Errors
+/// Outputs that do not fit the reference.
+pub fn draw_pictures(
+    place: &PicturePlace,
+    ground_truth: &GroundTruth,
+    outputs: &Outputs,
+    judgement: &Judgement,
+) -> Result<(Images, Vec<PictureFile>), CompareError> {
+    let Judgement { counts, graded } = judgement;
+    let (truth, visibility, status) = (&ground_truth.pixels, &outputs.shown(), &outputs.status);
+    let of_reference = draw_reference(place.view, place.frame, ground_truth)?;
+    let mut files = Vec::new();
+    let mut draw = |kind: &str, image| -> Result<String, CompareError> {
+        let file = drawn(place.file(format!("{}-{kind}.png", place.stem)), image)?;
+        let name = file.name.clone();
+        files.push(file);
+        Ok(name)
+    };
+    let images = Images {
+        frame: place.frame,
+        reference: Some(of_reference.name.clone()),
+        shaded: draw("shaded", Image::shaded(visibility, truth))?,
+        visibility: draw(
+            "visibility",
+            Image::visibility(truth.viewport, visibility, status),
+        )?,
+        error: match graded {
+            None => draw("error", Image::error(&outputs.visibility, status, truth))?,
+            Some(_) => {
+                let difference = Image::difference(visibility, &ground_truth.shares(), truth);
+                draw("error", difference)?
+            }
+        },
+        uncertain: match counts.certain.lit + counts.certain.shadow + counts.uncertain {
+            0 => None,
+            _ => {
+                let image = Image::uncertain(visibility, status, truth);
+                Some(draw("uncertain", image)?)
+            }
+        },
+    };
+    files.push(of_reference);
+    Ok((images, files))
+}
+
+/// Draws the picture of the reference of a view or case, or of a frame of a path.
+fn draw_reference(
+    view: &str,
+    frame: Option<usize>,
+    ground_truth: &GroundTruth,
+) -> Result<PictureFile, CompareError> {
+    let truth = &ground_truth.pixels;
+    let image = Image::visibility(truth.viewport, &ground_truth.shares(), &truth.status());
+    let place = PicturePlace {
+        stem: String::new(),
+        view,
+        frame,
+    };
+    drawn(place.file(reference_name(view, truth.viewport)), image)
+}
+
+fn drawn(name: String, image: Result<Image, Error>) -> Result<PictureFile, CompareError> {
+    let image =
+        image.map_err(|error| CompareError::Input(format!("no picture {name}: {error}")))?;
+    let png = png::encode(Path::new(&name), &image)?;
+    Ok(PictureFile { name, png })
+}
+
+/// The file of a frame: `visibility.0003.png` of `visibility.png`.
+pub fn numbered(file: &Path, frame: usize) -> PathBuf {
+    let mut name = file.file_stem().unwrap_or_default().to_owned();
+    name.push(format!(".{frame:04}"));
+    if let Some(extension) = file.extension() {
+        name.push(".");
+        name.push(extension);
+    }
+    file.with_file_name(name)
+}
+
+/// Refuses pictures that would overwrite each other, before anything runs: what the name of each
+/// begins with, and whose they are.
+///
+/// # Errors
+/// Names both owners; `option` is what says where pictures go.
+pub fn check_stems(stems: impl IntoIterator<Item = (String, String)>) -> Result<(), CompareError> {
+    let mut owners: BTreeMap<String, String> = BTreeMap::new();
+    for (stem, owner) in stems {
+        if let Some(other) = owners.get(&stem) {
+            return Err(CompareError::Input(format!(
+                "the pictures of {other} and of {owner} would overwrite each other: both are \
+                 called {stem}-….png\n  rename one, or run them one after the other into \
+                 folders of their own"
+            )));
+        }
+        owners.insert(stem, owner);
+    }
+    Ok(())
+}
+
+/// View, viewport and map size of a run, as progress lines have them.
+pub fn conditions(method: &Method, view: &str, viewport: [u32; 2]) -> String {
+    let map = method
+        .map_size
+        .map_or(String::new(), |size| format!(" map{size}"));
+    format!("{} {}{map}", slug(view), size(viewport))
+}
+
+/// Returns the beginning of the names of a run's pictures.
+pub fn stem(method: &Method, view: &str, viewport: [u32; 2]) -> String {
+    format!(
+        "{}-{}",
+        slug(&method.name),
+        conditions(method, view, viewport).replace(' ', "-")
+    )
+}
+
+/// Returns the beginning of the name of the reference's picture.
+pub fn reference_stem(view: &str, viewport: [u32; 2]) -> String {
+    format!("reference-{}-{}", slug(view), size(viewport))
+}
+
+/// The name of the chart of a method's graph.
+pub fn graph_name(method: &str) -> String {
+    format!("graph-{}.svg", slug(method))
+}
+
+/// The name of the reference's picture of a still view.
+pub fn reference_name(view: &str, viewport: [u32; 2]) -> String {
+    format!("{}-visibility.png", reference_stem(view, viewport))
+}
+
+/// A name as part of a file name: `my/method.ron` becomes `my-method`.
+fn slug(name: &str) -> String {
+    let stem = name.strip_suffix(".ron").unwrap_or(name);
+    let plain = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.');
+    let text: String = stem
+        .chars()
+        .map(|c| if plain(c) { c } else { '-' })
+        .collect();
+    text.trim_matches(['-', '.']).replace("--", "-")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slugs_are_file_names() {
+        let slugs = ["nsm", "pipelines/nsm.ron", "/tmp/a b/../x.ron", "Größe 1"].map(slug);
+        assert_eq!(slugs, ["nsm", "pipelines-nsm", "tmp-a-b-..-x", "Größe-1"]);
+    }
+}

@@ -1,0 +1,235 @@
+//! `run --save`: what of a graph is read back, and how it is written.
+
+use crate::error::CompareError;
+use crate::files::write::write_whole;
+use crate::pictures::colours::ClipPlanes;
+use crate::pictures::material::Picture;
+use crate::pictures::{buffer_csv, png};
+use crate::wording::{bytes, size, thousands};
+use skiagraph_gpu::Content;
+use skiagraph_graph::{Capture, Item, PartSummary, Plan};
+use skiagraph_passes::names::{CAMERA, LIGHT};
+use std::{collections::BTreeMap, path::PathBuf, str::FromStr};
+
+/// Encodings of a saved file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Encoding {
+    /// A picture fit for looking at.
+    Png,
+    /// The texels or items as they are in memory, rows tightly packed.
+    Raw,
+    /// A line per item of a buffer.
+    Csv,
+}
+
+/// `--save MATERIAL[@PASS]=FILE.png|.bin|.csv`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Save {
+    /// An output or a material of the graph.
+    pub material: String,
+    /// The pass after which it is read; `None`: at the end of the frame.
+    pub after: Option<String>,
+    /// Where to.
+    pub file: PathBuf,
+    /// From the file's extension.
+    pub encoding: Encoding,
+}
+
+impl FromStr for Save {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let expected = "expected MATERIAL=FILE.png or MATERIAL@PASS=FILE.bin, for example \
+            visibility=shadow.png";
+        let (what, file) = text.split_once('=').ok_or(expected)?;
+        let (material, after) = match what.split_once('@') {
+            Some((material, pass)) => (material, Some(pass.to_string())),
+            None => (what, None),
+        };
+        if material.is_empty() || after.as_deref() == Some("") || file.is_empty() {
+            return Err(expected.into());
+        }
+        let file = PathBuf::from(file);
+        let extension = file.extension().unwrap_or_default().to_ascii_lowercase();
+        let encoding = match extension.to_str() {
+            Some("png") => Encoding::Png,
+            Some("bin") => Encoding::Raw,
+            Some("csv") => Encoding::Csv,
+            _ => {
+                return Err(format!(
+                    "`{}` must end in .png (a picture), .bin (raw bytes) or .csv (the items of a \
+                     buffer)",
+                    file.display()
+                ));
+            }
+        };
+        Ok(Self {
+            material: material.into(),
+            after,
+            file,
+            encoding,
+        })
+    }
+}
+
+/// Returns the capture to read back for a save.
+pub fn capture(save: &Save) -> Capture {
+    Capture {
+        material: save.material.clone(),
+        after: save.after.clone(),
+    }
+}
+
+/// Returns captures of those saves that are not outputs of the graph anyway.
+pub fn captures(outputs: &[&str], saves: &[Save]) -> Vec<Capture> {
+    let wanted: BTreeMap<String, Capture> = saves
+        .iter()
+        .map(capture)
+        .map(|capture| (capture.name(), capture))
+        .collect();
+    wanted
+        .into_iter()
+        .filter(|(name, _)| !outputs.contains(&name.as_str()))
+        .map(|(_, capture)| capture)
+        .collect()
+}
+
+/// Refuses the picture of a buffer and the items of a texture before anything is rendered.
+///
+/// # Errors
+/// Names what it can be saved as.
+pub fn check_encodings(plan: &Plan, saves: &[Save]) -> Result<(), CompareError> {
+    let outputs = plan.outputs();
+    for save in saves {
+        let name = capture(save).name();
+        let Some(output) = outputs.iter().find(|output| output.name == name) else {
+            continue;
+        };
+        let refused = match (save.encoding, output.format) {
+            (Encoding::Png, None) => "is a buffer and has no picture; save it as .csv or .bin",
+            (Encoding::Csv, Some(_)) => "is a texture and has no items; save it as .png or .bin",
+            _ => continue,
+        };
+        return Err(CompareError::Input(format!("`{name}` {refused}")));
+    }
+    Ok(())
+}
+
+/// How the contents of a material are to be read.
+#[derive(Clone, Default)]
+pub struct Decoding {
+    /// The camera whose depths they are, if they are depths.
+    pub planes: Option<ClipPlanes>,
+    /// The items of a buffer.
+    pub item: Option<Item>,
+    /// Which of its mips, layers or items they are, if not all.
+    pub part: Option<PartSummary>,
+}
+
+impl Decoding {
+    /// Describes what this plan writes into the output or capture, seen between these planes.
+    pub fn new(plan: &Plan, name: &str, planes: ClipPlanes) -> Self {
+        let behind = plan.provided_behind(name);
+        // A pass that also knows the light may well draw from there.
+        let is_camera = behind.contains(CAMERA) && !behind.contains(LIGHT);
+        Self {
+            planes: is_camera.then_some(planes),
+            item: plan.item(name),
+            part: plan.part(name).filter(PartSummary::is_less),
+        }
+    }
+
+    /// `layer 0 of 3, `: which part of a texture or buffer it is; nothing of a whole one.
+    pub fn part_text(&self, content: &Content) -> String {
+        let Some(PartSummary { mips, layers, of }) = &self.part else {
+            return String::new();
+        };
+        let layer = match content {
+            Content::Texture { .. } => "layer",
+            Content::Buffer(_) => "item",
+        };
+        let parts = [("mip", mips, of[0]), (layer, layers, of[1])].into_iter();
+        let parts = parts.filter(|(.., of)| *of > 1);
+        let text = parts.map(|(what, range, of)| match range.len() {
+            1 => format!("{what} {} of {of}, ", range.start),
+            _ => format!("{what}s {} to {} of {of}, ", range.start, range.end - 1),
+        });
+        text.collect()
+    }
+
+    /// The number of the first item of a buffer.
+    pub fn first_item(&self) -> usize {
+        let part = self.part.as_ref();
+        part.map_or(0, |part| part.layers.start as usize)
+    }
+}
+
+/// Writes the file; returns what to say about it.
+///
+/// # Errors
+/// There is no such picture, or the file cannot be written.
+pub fn write(save: &Save, content: &Content, reading: &Decoding) -> Result<String, CompareError> {
+    let part = reading.part_text(content);
+    let said = match save.encoding {
+        Encoding::Png => {
+            let picture = Picture::new(&save.material, content, reading.planes);
+            let Picture { image, legend } = picture.map_err(|reason| {
+                let name = &save.material;
+                CompareError::Input(format!("`{name}` {reason}"))
+            })?;
+            png::save(&save.file, &image)?;
+            format!("{}, {part}{legend}", size(image.size))
+        }
+        Encoding::Csv => {
+            let raw = content.bytes();
+            let table = buffer_csv::to_csv(raw, reading.item.as_ref(), reading.first_item())
+                .map_err(|error| CompareError::write(&save.file, error))?;
+            write_whole(&save.file, table.as_bytes())?;
+            let (stride, what) = match &reading.item {
+                Some(item) => (item.stride, "items as the shader declares them"),
+                None => (4, "words, each read as u32, i32 and f32"),
+            };
+            let lines = thousands((raw.len() / stride.max(1)) as u64);
+            format!("{part}{lines} {what}")
+        }
+        Encoding::Raw => {
+            let raw = content.bytes();
+            write_whole(&save.file, raw)?;
+            let what = match content {
+                Content::Texture { format, parts, .. } => {
+                    let sizes: Vec<String> = parts.iter().map(|part| size(*part)).collect();
+                    format!("{} texels of {format:?}", sizes.join(", "))
+                }
+                Content::Buffer(_) => "a buffer".into(),
+            };
+            format!("{}, {part}{what}", bytes(raw.len() as u64))
+        }
+    };
+    Ok(format!("  saved {}: {said}\n", save.file.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn saves_name_a_material_and_a_file_of_a_known_kind() {
+        let save: Save = "shadow_map@create_shadow_map=out/a=b.PNG".parse().unwrap();
+        assert_eq!(save.material, "shadow_map");
+        assert_eq!(save.after.as_deref(), Some("create_shadow_map"));
+        assert_eq!(
+            (save.file, save.encoding),
+            (PathBuf::from("out/a=b.PNG"), Encoding::Png)
+        );
+        for wrong in [
+            "visibility",
+            "visibility=a.jpg",
+            "visibility=a",
+            "=a.png",
+            "v@=a.png",
+            "v=",
+        ] {
+            assert!(wrong.parse::<Save>().is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,292 @@
+//! Decoding back what `compare` and `profile --json` wrote.
+
+use crate::error::CompareError;
+use crate::files::json::{Mistake, check_schema};
+use crate::records::profile::{KIND, Profile};
+use crate::records::results::{Results, Run};
+use crate::records::statistics::Series;
+use serde::{Deserialize, de::DeserializeOwned};
+use serde_json::Value;
+use skiagraph_graph::SourceFile;
+use skiagraph_scene::Limit;
+use std::{io, path::Path};
+
+/// How to get on without earlier results.
+pub const WITHOUT_RESULTS: &str =
+    "take another folder (`--out`), or replace all that this one holds (`--replace`)";
+
+/// Where results come from.
+const COMPARE_FIRST: &str = "name a folder that `skiagraph compare --out DIR` wrote";
+
+/// Some twenty thousand runs.
+const RESULTS: Limit = Limit {
+    of: "a results.json",
+    mib: 64,
+    way_out: WITHOUT_RESULTS,
+};
+
+/// The same, not to be resumed.
+const KEPT: Limit = Limit {
+    way_out: "compare fewer views, viewports or maps into one folder",
+    ..RESULTS
+};
+
+/// The most frames that can be asked for, of fifty passes.
+const PROFILE: Limit = Limit {
+    of: "a profile",
+    mib: 256,
+    way_out: "name one that `skiagraph profile --json FILE` wrote, of fewer --frames",
+};
+
+/// Reads an older profile, for `--baseline`.
+///
+/// # Errors
+/// A file that cannot be read, or that is not a profile; with the place.
+pub fn profile(path: &Path) -> Result<Profile, CompareError> {
+    let text = PROFILE
+        .read_text(path)
+        .map_err(|error| CompareError::Input(format!("{}: {error}", path.display())))?;
+    profile_of(&SourceFile::new(path.display().to_string(), text))
+}
+
+/// Reads earlier results, for `--resume`; `None` if there are none.
+///
+/// # Errors
+/// A file that cannot be read, or that is not a results.json; with the place.
+pub fn results(path: &Path) -> Result<Option<Results>, CompareError> {
+    let file = results_file(path)?;
+    file.map(|file| results_of(&file)).transpose()
+}
+
+/// The file of earlier results, whatever is in it; `None` if there is none.
+///
+/// # Errors
+/// A file that cannot be read.
+pub fn results_file(path: &Path) -> Result<Option<SourceFile>, CompareError> {
+    let name = path.display().to_string();
+    match RESULTS.read_text(path) {
+        Ok(text) => Ok(Some(SourceFile::new(name, text))),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(CompareError::Input(format!("{name}: {error}"))),
+    }
+}
+
+/// Reads the results in a folder, to do something with them.
+///
+/// # Errors
+/// No such folder, no results.json in it, or a file that cannot be read or is no results.json; with
+/// the place.
+pub fn kept(folder: &Path) -> Result<Results, CompareError> {
+    let path = folder.join("results.json");
+    let name = path.display().to_string();
+    let refused = |why: String| CompareError::Input(format!("{why}; {COMPARE_FIRST}"));
+    if !folder.is_dir() {
+        return Err(refused(format!("there is no folder {}", folder.display())));
+    }
+    let text = KEPT.read_text(&path).map_err(|error| {
+        refused(match error.kind() {
+            io::ErrorKind::NotFound => {
+                format!("there is no results.json in {}", folder.display())
+            }
+            _ => format!("{name}: {error}"),
+        })
+    })?;
+    let file = SourceFile::new(name, text);
+    parse_results(&file.text).map_err(|mistake| {
+        mistake.in_file(
+            &file,
+            "results.json",
+            COMPARE_FIRST,
+            "the results cannot be used",
+        )
+    })
+}
+
+/// Reads the matrix in a folder; `None` if there is none.
+///
+/// # Errors
+/// A file that cannot be read or is not a stress.json; with the place.
+pub fn stress(folder: &Path) -> Result<Option<Value>, CompareError> {
+    let path = folder.join("stress.json");
+    let name = path.display().to_string();
+    let text = match KEPT.read_text(&path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+        text => text.map_err(|error| CompareError::Input(format!("{name}: {error}")))?,
+    };
+    let file = SourceFile::new(name, text);
+    parse_stress(&file.text).map(Some).map_err(|mistake| {
+        let help = "`skiagraph stress --out DIR` writes it anew";
+        let summary = "the matrix cannot be used";
+        mistake.in_file(&file, "stress.json", help, summary)
+    })
+}
+
+fn parse_stress(text: &str) -> Result<Value, Mistake> {
+    let value: Value = parse(text)?;
+    check_schema(text, value.get("schema").cloned())?;
+    let has = |name: &str| value.get(name).is_some_and(Value::is_array);
+    if has("methods") && has("cases") {
+        Ok(value)
+    } else {
+        let what = "\"methods\" or \"cases\" is missing".into();
+        Err(Mistake::at_field(text, "{", what))
+    }
+}
+
+fn profile_of(file: &SourceFile) -> Result<Profile, CompareError> {
+    parse_profile(&file.text).map_err(|mistake| {
+        let help = "a baseline is what `skiagraph profile --json FILE` writes";
+        let summary = "the baseline cannot be used";
+        mistake.in_file(file, "profile to compare with", help, summary)
+    })
+}
+
+/// The results in a file.
+///
+/// # Errors
+/// At the place where it is no results.json.
+pub fn results_of(file: &SourceFile) -> Result<Results, CompareError> {
+    parse_results(&file.text).map_err(|mistake| {
+        let summary = "nothing was measured";
+        mistake.in_file(file, "results.json to resume", WITHOUT_RESULTS, summary)
+    })
+}
+
+/// Fields that tell our files from each other and from other JSON. Any other file lacks many
+/// fields, and to name the first would mislead.
+#[derive(Deserialize)]
+struct Head {
+    schema: Option<Value>,
+    kind: Option<Value>,
+    oracle: Option<Value>,
+    runs: Option<Value>,
+}
+
+fn parse<T: DeserializeOwned>(text: &str) -> Result<T, Mistake> {
+    serde_json::from_str(text).map_err(|error| Mistake::from_serde(text, &error))
+}
+
+fn parse_profile(text: &str) -> Result<Profile, Mistake> {
+    let head: Head = parse(text)?;
+    if head.kind != Some(KIND.into()) {
+        let what = match head.kind {
+            Some(kind) => format!("the kind is {kind}, not \"{KIND}\""),
+            None => format!("\"kind\": \"{KIND}\" is missing"),
+        };
+        return Err(Mistake::at_field(text, "\"kind\"", what));
+    }
+    check_schema(text, head.schema)?;
+    let profile: Profile = parse(text)?;
+    match without_times(&profile) {
+        None => Ok(profile),
+        Some(place) => Err(Mistake::at_field(
+            text,
+            &place,
+            "no samples here, or some that are not times".into(),
+        )),
+    }
+}
+
+/// How the JSON begins where something has samples that are no times.
+fn without_times(profile: &Profile) -> Option<String> {
+    let are_times = |series: &Series| {
+        let samples = &series.samples;
+        !samples.is_empty() && samples.iter().all(|ms| ms.is_finite() && *ms >= 0.0)
+    };
+    let pass = profile.passes.iter().find(|pass| {
+        let mut series = pass.gpu_ms.iter().chain([&pass.cpu_ms]);
+        !series.all(are_times)
+    });
+    if let Some(pass) = pass {
+        return Some(format!("\"name\": \"{}\"", pass.name));
+    }
+    let frame = &profile.frame;
+    let mut series = frame.gpu_ms.iter().chain([&frame.cpu_ms, &frame.wall_ms]);
+    (!series.all(are_times)).then(|| "\"frame\": {".to_owned())
+}
+
+fn parse_results(text: &str) -> Result<Results, Mistake> {
+    let head: Head = parse(text)?;
+    if head.oracle.is_none() || head.runs.is_none() {
+        let what = "\"oracle\" or \"runs\" is missing".into();
+        return Err(Mistake::at_field(text, "{", what));
+    }
+    check_schema(text, head.schema)?;
+    let results: Results = parse(text)?;
+    // A mistake in a run's measurements reads as a run without any.
+    let is_broken = |run: &&Run| run.measured.is_none() && run.unavailable.is_none();
+    match results.runs.iter().find(is_broken) {
+        None => Ok(results),
+        Some(run) => {
+            let what = format!(
+                "{} has neither all its measurements nor a reason why not",
+                run.label()
+            );
+            let field = format!("\"preset\": {}", Value::from(run.preset.as_str()));
+            Err(Mistake::at_field(text, &field, what))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::files::json::to_text;
+    use crate::records::{profile, results};
+
+    fn refused<T>(
+        read: fn(&SourceFile) -> Result<T, CompareError>,
+        name: &str,
+        text: String,
+    ) -> String {
+        let error = read(&SourceFile::new(name, text)).err().expect("refused");
+        assert!(matches!(error, CompareError::Diagnostics { .. }), "{error}");
+        error.to_string()
+    }
+
+    #[test]
+    fn what_json_writes_can_be_read() {
+        let sample = profile::tests::sample();
+        assert!(parse_profile(&to_text(&sample)).is_ok_and(|profile| profile == sample));
+    }
+
+    #[test]
+    fn a_broken_baseline_is_shown_with_its_place() {
+        let good = to_text(&profile::tests::sample());
+        let texts = [
+            good.replacen("\"median\": 2.0", "\"median\": \"two\"", 1),
+            good.replacen("\"kind\": \"profile\"", "\"kind\": \"results\"", 1),
+            good.replacen("\"schema\": 1", "\"schema\": 2", 1),
+            good.replacen("2.5,", "2.5", 1),
+            "{\"schema\": 1, \"runs\": []}".to_owned(),
+            String::new(),
+            good.replacen("        4.0,\n        5.0,\n        4.5\n", "", 1),
+            good.replacen("        2.0,", "        -2.0,", 1),
+        ];
+        assert!(texts.iter().all(|text| *text != good));
+        insta::assert_snapshot!(
+            texts
+                .map(|text| refused(profile_of, "old.json", text))
+                .join("\n")
+        );
+    }
+
+    #[test]
+    fn a_broken_or_foreign_file_is_shown_with_its_place() {
+        let good = to_text(&results::tests::sample());
+        let texts = [
+            good.replacen("\"lit\": 60000,", "\"lit\": 60000", 1),
+            good.replacen("\"frames\": 10", "\"frames\": \"ten\"", 1),
+            good.replacen("\"schema\": 1", "\"schema\": 2", 1),
+            good.replacen("\"memory_bytes\": 12582912,", "", 1),
+            "{\"schema\": 1, \"kind\": \"profile\"}\n".to_owned(),
+            String::new(),
+        ];
+        assert!(texts.iter().all(|text| *text != good));
+        insta::assert_snapshot!(
+            texts
+                .map(|text| refused(results_of, "results.json", text))
+                .join("\n")
+        );
+    }
+}

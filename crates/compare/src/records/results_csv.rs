@@ -1,0 +1,54 @@
+//! `results.csv`, one line per run for spreadsheets, and `results.json` beside it.
+
+use crate::error::CompareError;
+use crate::files::write::write_whole;
+use crate::files::{csv, json};
+use crate::records::columns;
+use crate::records::results::Results;
+use std::path::Path;
+
+/// The contents of `results.csv`: times are medians, empty cells are nulls.
+fn to_csv(results: &Results) -> Result<String, ::csv::Error> {
+    let columns = columns::csv();
+    let names: Vec<&str> = columns.iter().map(|column| column.head).collect();
+    let cells = |run| {
+        columns
+            .iter()
+            .map(move |column| column.csv_cell(results, run))
+    };
+    csv::to_text(&names, results.runs.iter().map(|run| cells(run).collect()))
+}
+
+/// Writes `results.json` and `results.csv` into `folder`; each is replaced whole or not at all.
+/// Returns the contents of the first.
+///
+/// # Errors
+/// One cannot be written.
+pub fn save(results: &Results, folder: &Path) -> Result<String, CompareError> {
+    let text = json::to_text(results);
+    write_whole(&folder.join("results.json"), text.as_bytes())?;
+    let path = folder.join("results.csv");
+    let csv = to_csv(results).map_err(|error| CompareError::write(&path, error))?;
+    write_whole(&path, csv.as_bytes())?;
+    Ok(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::records::results::tests::sample;
+
+    #[test]
+    fn csv_has_a_line_per_run_and_as_many_cells_as_columns() {
+        let csv = to_csv(&sample()).unwrap();
+        insta::assert_snapshot!(csv);
+        let mut reader = ::csv::Reader::from_reader(csv.as_bytes());
+        assert_eq!(
+            reader
+                .records()
+                .map(|record| record.unwrap().len())
+                .collect::<Vec<_>>(),
+            [columns::csv().len(); 3]
+        );
+    }
+}

@@ -1,0 +1,463 @@
+//! The schema of `stress.json`, version 1, and what is judged of it. Scripts rely on it: extend it,
+//! rename nothing.
+
+use crate::records::results::{Adapter, Images};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use skiagraph_reference::{PixelCounts, Statistics, WrongCounts};
+use std::collections::BTreeMap;
+
+/// The matrix.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Report {
+    /// Version of this schema: 1.
+    pub schema: u32,
+    /// The program that ran, `skiagraph 0.1.0`.
+    pub program: String,
+    /// Where.
+    pub adapter: Adapter,
+    /// Width and height in pixels.
+    pub viewport: [u32; 2],
+    /// The columns.
+    pub methods: Vec<Column>,
+    /// The rows that are done, in the order of the catalogue or of the command line.
+    pub cases: Vec<Case>,
+}
+
+/// A method.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Column {
+    /// Name of the preset, or path of the graph.
+    pub preset: String,
+    /// Value of the param `map_size`; null where the graph has none.
+    pub map_size: Option<u32>,
+    /// All params of the graph with the values it runs with, but for cells with a `set` of their
+    /// own.
+    pub params: BTreeMap<String, Value>,
+    /// Which pixels must be right; null where nothing is guaranteed.
+    #[serde(rename = "promise")]
+    pub guarantee: Option<Guarantee>,
+    /// Why it can be guaranteed; null where nothing is.
+    pub because: Option<String>,
+    /// Why it cannot run on this adapter; absent where it can, and then it has no cells.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unavailable: Option<String>,
+}
+
+/// Which pixels must be right, outside the band.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Guarantee {
+    /// Those of the final picture.
+    Exact,
+    /// Those that the method calls certain.
+    Certain,
+}
+
+impl Guarantee {
+    /// As headers have it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Exact => "exact",
+            Self::Certain => "certain",
+        }
+    }
+}
+
+/// A case with all methods.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Case {
+    /// Its name in the catalogue.
+    pub name: String,
+    /// The fault that it provokes.
+    pub reason: String,
+    /// Closed or open casters.
+    pub casters: Casters,
+    /// The greatest share of the pixels facing the light that the band may take.
+    pub band_cap: f64,
+    /// Verdict on the band: failed where it is above its cap, or there is no reference at all.
+    pub verdict: Verdict,
+    /// Why there is no reference, and so no cell; absent where there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub failed: Option<String>,
+    /// The reference's pixels.
+    pub pixels: PixelCounts,
+    /// Pixels facing the light whose answer flips within the rounding error of receiver and
+    /// casters.
+    pub band: u64,
+    /// Pixels that show a surface which is not seen there: another one stands before it by more
+    /// than rounding.
+    pub wrong_surface: u64,
+    /// One per method that runs, and one more without culling where that is what is judged.
+    pub cells: Vec<Cell>,
+}
+
+/// Kinds of casters of a case.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Casters {
+    /// Closed, wound outward, apart from each other.
+    Closed,
+    /// Anything else.
+    Open,
+}
+
+/// One method on one case.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Cell {
+    /// Name of the preset, or path of the graph.
+    pub preset: String,
+    /// Value of the param `map_size`; null where the graph has none.
+    pub map_size: Option<u32>,
+    /// The param that differs from the method's, `cull=none`; null where none does.
+    pub set: Option<String>,
+    /// The cell's verdict.
+    pub verdict: Verdict,
+    /// The cell's counts; absent where it could not run.
+    #[serde(flatten)]
+    pub counts: Option<Counts>,
+    /// Why it could not run; absent where it could.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub failed: Option<String>,
+    /// Its pictures, file names in the folder of `--save`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub images: Option<Images>,
+}
+
+/// Verdict on a cell or band.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// As guaranteed.
+    Pass,
+    /// Not as guaranteed, or it could not run.
+    Fail,
+    /// Not judged: what the method guarantees of closed casters does not hold for this case's open
+    /// ones.
+    Open,
+    /// Not judged: the method guarantees nothing, or only of certain pixels where it calls none
+    /// certain.
+    Unjudged,
+}
+
+/// Counts of a cell.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Counts {
+    /// Pixels on which method and reference disagree.
+    pub wrong: WrongCounts,
+    /// Those of them that are not in the band.
+    pub outside_band: OutsideBand,
+    /// Pixels facing the light that the method left to rays, or all that it traced.
+    pub uncertain: u64,
+    /// The same as a share.
+    pub uncertain_share: f64,
+    /// Rays traced; null where the graph does not count them.
+    pub rays: Option<u64>,
+}
+
+/// Wrong pixels outside the band.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct OutsideBand {
+    /// Lit by the method, not by the reference.
+    pub lit: u64,
+    /// In shadow by the method, lit by the reference.
+    pub shadow: u64,
+    /// Those of both that the method called certain.
+    pub certain: u64,
+}
+
+impl OutsideBand {
+    /// True if this breaks the guarantee.
+    pub fn breaks(&self, guarantee: Guarantee) -> bool {
+        match guarantee {
+            Guarantee::Exact => self.lit + self.shadow > 0,
+            Guarantee::Certain => self.certain > 0,
+        }
+    }
+}
+
+impl Verdict {
+    /// Judges a cell that ran. `culls`: not all faces cast shadows, so that nothing is guaranteed
+    /// of open casters; `certain`: pixels called so.
+    pub fn new(
+        guarantee: Option<Guarantee>,
+        culls: bool,
+        casters: Casters,
+        certain: u64,
+        outside: &OutsideBand,
+    ) -> Self {
+        match guarantee {
+            None => Self::Unjudged,
+            Some(_) if culls && casters == Casters::Open => Self::Open,
+            Some(Guarantee::Certain) if certain == 0 => Self::Unjudged,
+            Some(guarantee) if outside.breaks(guarantee) => Self::Fail,
+            Some(_) => Self::Pass,
+        }
+    }
+}
+
+impl Counts {
+    /// Counts a picture: `whole` counts all of its pixels, `settled` the same with the reference's
+    /// answer wherever that is in the band.
+    pub fn new(whole: &Statistics, settled: &Statistics, rays: Option<u64>) -> Self {
+        let WrongCounts {
+            lit,
+            shadow,
+            certain,
+            ..
+        } = settled.wrong;
+        Self {
+            wrong: whole.wrong,
+            outside_band: OutsideBand {
+                lit,
+                shadow,
+                certain,
+            },
+            uncertain: whole.uncertain,
+            uncertain_share: whole.uncertain_share(),
+            rays,
+        }
+    }
+}
+
+impl Cell {
+    /// True if it is of this method.
+    pub fn is_of(&self, column: &Column) -> bool {
+        (&self.preset, self.map_size) == (&column.preset, column.map_size)
+    }
+}
+
+impl Case {
+    /// True if the band takes more than its cap: the pixels in it are not proven, and a band that
+    /// swallows a case proves nothing.
+    pub fn exceeds_cap(&self) -> bool {
+        self.band as f64 > self.band_cap * self.pixels.facing_light as f64
+    }
+
+    /// True if a method with a map called nothing certain, so that a right answer says nothing of
+    /// the map.
+    pub fn is_left_to_rays(&self, cell: &Cell) -> bool {
+        let all = self.pixels.facing_light;
+        let of_all = |counts: &Counts| all > 0 && counts.uncertain == all;
+        cell.map_size.is_some() && cell.counts.as_ref().is_some_and(of_all)
+    }
+}
+
+impl Report {
+    /// How many cells came to this.
+    pub fn count(&self, verdict: Verdict) -> usize {
+        let cells = self.cases.iter().flat_map(|case| &case.cells);
+        cells.filter(|cell| cell.verdict == verdict).count()
+    }
+
+    /// How many cells passed without calling anything certain.
+    pub fn left_to_rays(&self) -> usize {
+        let of = |case: &Case| {
+            let passed = case
+                .cells
+                .iter()
+                .filter(|cell| cell.verdict == Verdict::Pass);
+            passed.filter(|cell| case.is_left_to_rays(cell)).count()
+        };
+        self.cases.iter().map(of).sum()
+    }
+
+    /// How many cases have too large a band, or no reference.
+    pub fn failed_cases(&self) -> usize {
+        let failed = |case: &&Case| case.verdict == Verdict::Fail;
+        self.cases.iter().filter(failed).count()
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use crate::files::json;
+
+    fn cell(preset: &str, verdict: Verdict, outside: [u64; 3]) -> Cell {
+        let [lit, shadow, certain] = outside;
+        let wrong = WrongCounts {
+            lit: lit + 1,
+            shadow,
+            total: lit + shadow + 1,
+            certain,
+            in_band: 1,
+        };
+        Cell {
+            preset: preset.into(),
+            map_size: (preset != "rt").then_some(128),
+            set: None,
+            verdict,
+            counts: Some(Counts {
+                wrong,
+                outside_band: OutsideBand {
+                    lit,
+                    shadow,
+                    certain,
+                },
+                uncertain: 250,
+                uncertain_share: 0.25,
+                rays: Some(250),
+            }),
+            failed: None,
+            images: None,
+        }
+    }
+
+    fn case(name: &str, casters: Casters, band: u64, cells: Vec<Cell>) -> Case {
+        let mut case = Case {
+            name: name.into(),
+            reason: format!("what {name} provokes"),
+            casters,
+            band_cap: 0.005,
+            verdict: Verdict::Pass,
+            failed: None,
+            pixels: PixelCounts {
+                background: 500,
+                facing_away: 200,
+                facing_light: 1000,
+                lit: 600,
+                shadow: 400,
+            },
+            band,
+            wrong_surface: 0,
+            cells,
+        };
+        if case.exceeds_cap() {
+            case.verdict = Verdict::Fail;
+        }
+        case
+    }
+
+    /// A report with everything that can occur.
+    pub(crate) fn sample() -> Report {
+        let column = |preset: &str, guarantee: Option<Guarantee>| Column {
+            preset: preset.into(),
+            map_size: (preset != "rt").then_some(128),
+            params: BTreeMap::from([("cull".into(), "front".into())]),
+            guarantee,
+            because: guarantee.map(|_| "it is proven".into()),
+            unavailable: (preset == "crsm_hw").then(|| "needs what is not here".into()),
+        };
+        let exact = Some(Guarantee::Exact);
+        let mut uncertain = Cell {
+            set: Some("cull=none".into()),
+            ..cell("crsm", Verdict::Pass, [0; 3])
+        };
+        if let Some(counts) = &mut uncertain.counts {
+            (counts.uncertain, counts.uncertain_share) = (1000, 1.0);
+        }
+        let unreferenced = Case {
+            verdict: Verdict::Fail,
+            failed: Some("the light is nowhere".into()),
+            pixels: PixelCounts::default(),
+            ..case("nothing", Casters::Closed, 0, Vec::new())
+        };
+        Report {
+            schema: 1,
+            program: "skiagraph 0.1.0".into(),
+            adapter: Adapter {
+                name: "Some GPU".into(),
+                backend: "vulkan".into(),
+                driver: "driver 1.2".into(),
+                device_type: "Cpu".into(),
+                gpu_unavailable: None,
+            },
+            viewport: [128, 96],
+            methods: vec![
+                column("rt", exact),
+                column("nsm", None),
+                column("crsm", exact),
+                column("crsm_hw", exact),
+            ],
+            cases: vec![
+                case(
+                    "needles",
+                    Casters::Closed,
+                    5,
+                    vec![
+                        Cell {
+                            counts: None,
+                            failed: Some("out of memory".into()),
+                            ..cell("rt", Verdict::Fail, [0; 3])
+                        },
+                        cell("nsm", Verdict::Unjudged, [12, 3, 15]),
+                        cell("crsm", Verdict::Fail, [0, 3, 2]),
+                    ],
+                ),
+                case(
+                    "sheet",
+                    Casters::Open,
+                    6,
+                    vec![
+                        cell("rt", Verdict::Pass, [0; 3]),
+                        cell("nsm", Verdict::Unjudged, [0; 3]),
+                        cell("crsm", Verdict::Open, [40, 0, 40]),
+                        uncertain,
+                    ],
+                ),
+                unreferenced,
+            ],
+        }
+    }
+
+    #[test]
+    fn the_schema_is_pinned() {
+        insta::assert_snapshot!(json::to_text(&sample()));
+    }
+
+    #[test]
+    fn only_what_is_guaranteed_is_judged() {
+        use Verdict::{Fail, Open, Pass, Unjudged};
+        let (right, guessed) = (
+            OutsideBand::default(),
+            OutsideBand {
+                lit: 1,
+                ..OutsideBand::default()
+            },
+        );
+        let certain = OutsideBand {
+            shadow: 1,
+            certain: 1,
+            ..OutsideBand::default()
+        };
+        let exact = Some(Guarantee::Exact);
+        let only_certain = Some(Guarantee::Certain);
+        for (guarantee, culls, casters, outside, verdict) in [
+            (None, false, Casters::Closed, certain, Unjudged),
+            (None, true, Casters::Open, certain, Unjudged),
+            (exact, false, Casters::Closed, right, Pass),
+            (exact, true, Casters::Closed, right, Pass),
+            (exact, true, Casters::Closed, guessed, Fail),
+            (exact, false, Casters::Open, guessed, Fail),
+            (exact, false, Casters::Open, right, Pass),
+            (exact, true, Casters::Open, certain, Open),
+            (exact, true, Casters::Open, right, Open),
+            (only_certain, true, Casters::Closed, guessed, Pass),
+            (only_certain, true, Casters::Closed, certain, Fail),
+            (only_certain, false, Casters::Open, certain, Fail),
+            (only_certain, true, Casters::Open, certain, Open),
+        ] {
+            let found = Verdict::new(guarantee, culls, casters, 7, &outside);
+            assert_eq!(
+                found, verdict,
+                "{guarantee:?} {culls} {casters:?} {outside:?}"
+            );
+        }
+        for (guarantee, verdict) in [(exact, Pass), (only_certain, Unjudged)] {
+            let found = Verdict::new(guarantee, true, Casters::Closed, 0, &right);
+            assert_eq!(found, verdict, "nothing is certain, {guarantee:?}");
+        }
+    }
+
+    #[test]
+    fn a_band_may_reach_its_cap_and_not_pass_it() {
+        let exceeds = |band| case("a", Casters::Closed, band, Vec::new()).exceeds_cap();
+        assert_eq!([0, 5, 6].map(exceeds), [false, false, true]);
+        let nothing = Case {
+            pixels: PixelCounts::default(),
+            ..case("nothing", Casters::Closed, 0, Vec::new())
+        };
+        assert!(!nothing.exceeds_cap(), "no pixel faces the light");
+    }
+}

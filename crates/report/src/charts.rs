@@ -1,0 +1,308 @@
+//! Kept results as charts: what is drawn of which runs. How is `skiagraph-chart`'s affair.
+
+use skiagraph_chart::{Figure, Kind, Mark, Panel, Series};
+use skiagraph_compare::error::CompareError;
+use skiagraph_compare::records::results::{Measured, Results, Run};
+use skiagraph_compare::wording::{frames, size};
+use std::{collections::BTreeSet, path::PathBuf};
+
+/// Results that `compare` kept in a folder.
+#[derive(Debug)]
+pub struct Kept {
+    /// The folder.
+    pub folder: PathBuf,
+    /// Its results.json.
+    pub results: Results,
+}
+
+const TIME: &str = "GPU ms of a frame less its G-buffer";
+
+/// Time against error: a panel per folder and viewport, a mark per method and map size. What is
+/// measured on several views counts as their mean.
+///
+/// # Errors
+/// Results without GPU times.
+pub fn front(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, CompareError> {
+    let results = || kept.iter().map(|kept| &kept.results);
+    let maps: BTreeSet<u32> = results()
+        .flat_map(|results| &results.runs)
+        .filter(|run| is_drawn(run, viewport))
+        .filter_map(|run| run.map_size)
+        .collect();
+    let maps: Vec<u32> = maps.into_iter().collect();
+    let mut panels = Vec::new();
+    for kept in kept {
+        for viewport in viewports(&kept.results, viewport) {
+            panels.push(front_panel(kept, viewport, &maps)?);
+        }
+    }
+    let scenes: BTreeSet<String> = results().map(|results| results.scene.to_string()).collect();
+    let mut notes = conditions(kept);
+    notes.push(scenes.into_iter().collect::<Vec<_>>().join("; "));
+    notes.push(
+        "Left is faster, down is more right; where there are several views, the means of all."
+            .into(),
+    );
+    Ok(Figure {
+        title: "Time against error".into(),
+        notes,
+        sizes: maps.iter().map(|map| format!("map {map}²")).collect(),
+        columns: panels.len().clamp(1, 2),
+        panels,
+        ..Figure::default()
+    })
+}
+
+fn front_panel(kept: &Kept, viewport: [u32; 2], maps: &[u32]) -> Result<Panel, CompareError> {
+    // A graded answer has no wrong pixels.
+    let runs = drawn(&kept.results, viewport).filter(|(run, _)| run.is_hard());
+    let runs: Vec<(&Run, &Measured)> = runs.collect();
+    let mut series: Vec<Series> = Vec::new();
+    let mut seen: Vec<(&str, Option<u32>)> = Vec::new();
+    for (run, _) in &runs {
+        let cell = (run.preset.as_str(), run.map_size);
+        if seen.contains(&cell) {
+            continue;
+        }
+        seen.push(cell);
+        let of_cell = runs
+            .iter()
+            .filter(|(run, _)| (run.preset.as_str(), run.map_size) == cell);
+        let (mut ms, mut wrong, mut pixels, mut views) = (0.0, 0, 0, 0.0);
+        for (run, measured) in of_cell {
+            ms += time(kept, measured)?;
+            wrong += measured.wrong_outside_band();
+            pixels += u64::from(run.viewport[0]) * u64::from(run.viewport[1]);
+            views += 1.0;
+        }
+        let map = run
+            .map_size
+            .and_then(|size| maps.iter().position(|map| *map == size));
+        let mark = Mark {
+            x: ms / views,
+            y: 100.0 * wrong as f64 / pixels as f64,
+            size: map.unwrap_or(0),
+        };
+        push(&mut series, &run.preset, mark);
+    }
+    let views: BTreeSet<&str> = runs.iter().map(|(run, _)| run.view.as_str()).collect();
+    let views = match views.first() {
+        Some(view) if views.len() == 1 => format!("view {view}"),
+        _ => format!("mean of {} views", views.len()),
+    };
+    Ok(Panel {
+        title: format!("{}, {views}, {}", kept.results.scene.name, size(viewport)),
+        kind: Kind::Front,
+        x: TIME.into(),
+        y: "wrong pixels outside the band, % of all".into(),
+        series,
+    })
+}
+
+/// How time and memory grow with the number of triangles: two panels per scene, view and viewport,
+/// a line per method and map size.
+///
+/// # Errors
+/// Results without GPU times.
+pub fn growth(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, CompareError> {
+    let runs = || {
+        kept.iter().flat_map(|kept| {
+            let viewports = viewports(&kept.results, viewport);
+            viewports
+                .into_iter()
+                .flat_map(|viewport| drawn(&kept.results, viewport))
+                .map(move |(run, measured)| (kept, run, measured))
+        })
+    };
+    let maps: BTreeSet<Option<u32>> = runs().map(|(_, run, _)| run.map_size).collect();
+    let has_maps = maps.into_iter().flatten().count() > 1;
+    let mut cells = Vec::new();
+    let mut panels: Vec<[Panel; 2]> = Vec::new();
+    for (kept, run, measured) in runs() {
+        let scene = &kept.results.scene;
+        let cell = (scene.name.as_str(), run.view.as_str(), run.viewport);
+        let index = cells
+            .iter()
+            .position(|known| *known == cell)
+            .unwrap_or_else(|| {
+                cells.push(cell);
+                let title = format!("{}, view {}, {}", scene.name, run.view, size(run.viewport));
+                let panel = |y: &str| Panel {
+                    title: title.clone(),
+                    kind: Kind::Growth,
+                    x: "triangles".into(),
+                    y: y.into(),
+                    series: Vec::new(),
+                };
+                panels.push([panel(TIME), panel("MB of buffers and textures")]);
+                cells.len() - 1
+            });
+        let name = if has_maps {
+            run.method_label()
+        } else {
+            run.preset.clone()
+        };
+        let bytes = measured.memory_bytes + measured.scene_bytes;
+        let heights = [time(kept, measured)?, bytes as f64 / 1e6];
+        for (panel, y) in panels[index].iter_mut().zip(heights) {
+            let x = scene.triangles as f64;
+            push(&mut panel.series, &name, Mark { x, y, size: 0 });
+        }
+    }
+    for series in panels
+        .iter_mut()
+        .flatten()
+        .flat_map(|panel| &mut panel.series)
+    {
+        series.marks.sort_by(|a, b| a.x.total_cmp(&b.x));
+    }
+    let mut notes = conditions(kept);
+    notes.push("Memory is the graph's own and the scene's buffers that it reads.".into());
+    Ok(Figure {
+        title: "Growth with the number of triangles".into(),
+        notes,
+        panels: panels.into_iter().flatten().collect(),
+        columns: 2,
+        ..Figure::default()
+    })
+}
+
+/// Methods that could not run, with the reason; each once.
+pub fn unavailable(kept: &[Kept]) -> BTreeSet<String> {
+    let runs = kept.iter().flat_map(|kept| &kept.results.runs);
+    runs.filter_map(|run| {
+        let reason = run.unavailable.as_ref()?;
+        Some(format!("not drawn: {}: {reason}", run.method_label()))
+    })
+    .collect()
+}
+
+/// Adds a mark to the series of that name.
+pub fn push(series: &mut Vec<Series>, name: &str, mark: Mark) {
+    match series.iter_mut().find(|series| series.name == name) {
+        Some(series) => series.marks.push(mark),
+        None => series.push(Series {
+            name: name.to_owned(),
+            marks: vec![mark],
+        }),
+    }
+}
+
+fn is_drawn(run: &Run, viewport: Option<[u32; 2]>) -> bool {
+    run.measured.is_some() && viewport.is_none_or(|wanted| wanted == run.viewport)
+}
+
+/// Viewports with something to draw, in the order of the file.
+fn viewports(results: &Results, wanted: Option<[u32; 2]>) -> Vec<[u32; 2]> {
+    let mut viewports = Vec::new();
+    for run in results.runs.iter().filter(|run| is_drawn(run, wanted)) {
+        if !viewports.contains(&run.viewport) {
+            viewports.push(run.viewport);
+        }
+    }
+    viewports
+}
+
+fn drawn(results: &Results, viewport: [u32; 2]) -> impl Iterator<Item = (&Run, &Measured)> {
+    let runs = results
+        .runs
+        .iter()
+        .filter(move |run| run.viewport == viewport);
+    runs.filter_map(|run| Some((run, run.measured.as_ref()?)))
+}
+
+fn time(kept: &Kept, measured: &Measured) -> Result<f64, CompareError> {
+    measured.ms_without_gbuffer().ok_or_else(|| {
+        let why = kept.results.adapter.gpu_unavailable.as_deref();
+        CompareError::Input(format!(
+            "{}: there are no GPU times to draw: {}",
+            kept.folder.display(),
+            why.unwrap_or("the adapter gave none for a pass")
+        ))
+    })
+}
+
+/// Lines that say under which conditions everything was measured.
+pub fn conditions(kept: &[Kept]) -> Vec<String> {
+    let adapters: BTreeSet<String> = kept
+        .iter()
+        .map(|kept| kept.results.adapter.to_string())
+        .collect();
+    let medians: BTreeSet<u32> = kept.iter().map(|kept| kept.results.frames).collect();
+    let medians: Vec<String> = medians.into_iter().map(frames).collect();
+    let mut lines: Vec<String> = adapters.into_iter().collect();
+    lines.push(format!("Medians of {}", medians.join(" or ")));
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::samples::results as sample;
+
+    fn kept() -> Kept {
+        let mut results = sample();
+        // Without the run that has no GPU times.
+        results.runs.remove(1);
+        Kept {
+            folder: "out".into(),
+            results,
+        }
+    }
+
+    #[test]
+    fn a_mark_is_the_frame_less_its_gbuffer_and_the_share_of_all_pixels() {
+        let mut kept = kept();
+        let mut second = kept.results.runs[0].clone();
+        second.view = "side".into();
+        let measured = second.measured.as_mut().unwrap();
+        (measured.wrong.total, measured.wrong.in_band) = (6, 6);
+        kept.results.runs.insert(1, second);
+        let figure = front(&[kept], None).unwrap();
+        let [panel] = &figure.panels[..] else {
+            panic!("{figure:?}")
+        };
+        assert_eq!(panel.title, "park, mean of 2 views, 512x256");
+        let [nsm] = &panel.series[..] else {
+            panic!("{panel:?}")
+        };
+        // 1.5 ms a frame, 0.375 ms of it the G-buffer; 503 wrong, 6 of them in the band, and none.
+        let share = 100.0 * 497.0 / (2.0 * 512.0 * 256.0);
+        let mark = Mark {
+            x: 1.125,
+            y: share,
+            size: 0,
+        };
+        assert_eq!((nsm.name.as_str(), &nsm.marks[..]), ("nsm", &[mark][..]));
+        assert_eq!(figure.sizes, ["map 1024²"]);
+    }
+
+    #[test]
+    fn growth_is_drawn_from_the_smallest_scene_on_with_the_scenes_memory() {
+        let mut large = kept();
+        large.results.scene.triangles = 1_000_000;
+        let figure = growth(&[large, kept()], None).unwrap();
+        let [time, memory] = &figure.panels[..] else {
+            panic!("{figure:?}")
+        };
+        let at = |panel: &Panel| {
+            let marks = panel.series[0].marks.iter();
+            marks.map(|mark| (mark.x, mark.y)).collect::<Vec<_>>()
+        };
+        assert_eq!(at(time), [(55_000.0, 1.125), (1e6, 1.125)]);
+        assert_eq!(at(memory)[0].1, 14.582_912);
+    }
+
+    #[test]
+    fn what_is_not_drawn_is_told() {
+        assert!(front(&[kept()], Some([1, 1])).unwrap().panels.is_empty());
+        let told: Vec<String> = unavailable(&[kept()]).into_iter().collect();
+        assert_eq!(told, ["not drawn: rt_hw: needs ray queries, \"not\" here"]);
+        let without = Kept {
+            folder: "out".into(),
+            results: sample(),
+        };
+        let error = front(&[without], None).unwrap_err().to_string();
+        assert!(error.starts_with("out: there are no GPU times"), "{error}");
+    }
+}

@@ -1,0 +1,171 @@
+//! Remarks of tables and notes on graded answers, and on lights that have an extent.
+
+use skiagraph_compare::records::results::{AreaReference, Run};
+use skiagraph_compare::wording::thousands;
+use skiagraph_reference::Graded;
+
+/// The runs of a view and viewport as tables have them, each table's with a title where there are
+/// several: hard answers are held against a hard light by counts, all else by grades.
+pub fn by_answer(runs: &[Run]) -> Vec<(Option<&'static str>, Vec<&Run>)> {
+    let (hard, graded): (Vec<&Run>, Vec<&Run>) = runs.iter().partition(|run| run.is_hard());
+    if hard.is_empty() || graded.is_empty() {
+        return vec![(None, runs.iter().collect())];
+    }
+    vec![
+        (Some("Hard answers against the hard reference"), hard),
+        (Some("Graded answers against the hard reference"), graded),
+    ]
+}
+
+/// How the reference of a light with extent was made.
+pub fn area_reference(area: &AreaReference, band: u64) -> String {
+    format!(
+        "the light has an extent: reference of {} samples per pixel, standard error {:.5} (root \
+         mean square over PFL; the worst {:.5}); lit is what sees half of it or more, in penumbra \
+         {}, in the band {}",
+        thousands(area.samples.into()),
+        area.standard_error_rms,
+        area.standard_error_worst,
+        thousands(area.penumbra),
+        thousands(band)
+    )
+}
+
+/// Writes the remarks on graded answers: their rank under a light with extent, values that are no
+/// share, and the meaning of the colours of error pictures.
+pub fn graded(runs: &[Run]) -> Vec<String> {
+    let mut notes: Vec<String> = ranks(runs).into_iter().collect();
+    notes.extend(runs.iter().filter_map(no_shares));
+    if runs.iter().any(|run| errors(run).is_some()) {
+        notes.push(
+            "errors are over PFL; error pictures of grades: blue too light, red too dark, full \
+             colour where off by 1/4 and more, magenta NaN"
+                .into(),
+        );
+    }
+    notes
+}
+
+fn errors(run: &Run) -> Option<Graded> {
+    run.measured.as_ref()?.graded
+}
+
+/// Warns of a method whose visibility is not a share of light.
+pub fn no_shares(run: &Run) -> Option<String> {
+    let invalid = errors(run)?.invalid;
+    let counts = [
+        ("NaN", invalid.nan),
+        ("infinite", invalid.infinite),
+        ("outside 0 to 1", invalid.outside),
+    ];
+    let counts = counts.into_iter().filter(|(_, count)| *count > 0);
+    let counts = counts.map(|(what, count)| format!("{what} {}", thousands(count)));
+    let counts = counts.collect::<Vec<_>>().join(", ");
+    let label = run.method_label();
+    let text = format!("warning: {label}: visibility that is not a share of light: {counts}");
+    (invalid.total() > 0).then_some(text)
+}
+
+/// Methods by their error under a light with extent, and whether the reference can tell.
+fn ranks(runs: &[Run]) -> Option<String> {
+    let reference = runs.first()?.area?.standard_error_rms;
+    let rank = |run: &Run| Some((errors(run)?.rmse, run.method_label()));
+    let mut ranks: Vec<(f64, String)> = runs.iter().filter_map(rank).collect();
+    ranks.sort_by(|(one, _), (other, _)| one.total_cmp(other));
+    let in_doubt = ranks.iter().filter(|(rmse, _)| *rmse < 10.0 * reference);
+    let in_doubt: Vec<&str> = in_doubt.map(|(_, label)| label.as_str()).collect();
+    let listed: Vec<String> = ranks
+        .iter()
+        .map(|(rmse, label)| format!("{label} {rmse:.5}"))
+        .collect();
+    if listed.is_empty() {
+        return None;
+    }
+    let doubt = if in_doubt.is_empty() {
+        String::new()
+    } else {
+        format!(
+            "; the reference's own error is more than a tenth of that of {}",
+            in_doubt.join(", ")
+        )
+    };
+    Some(format!("by RMSE: {}{doubt}", listed.join(", ")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::samples::results as sample;
+    use skiagraph_compare::records::results::Answer;
+    use skiagraph_reference::Invalid;
+
+    fn run(rmse: f64, answer: Answer) -> Run {
+        let mut run = sample().runs.remove(0);
+        let measured = run.measured.as_mut().unwrap();
+        measured.answer = answer;
+        measured.graded = Some(Graded {
+            rmse,
+            ..Graded::default()
+        });
+        run
+    }
+
+    #[test]
+    fn a_table_for_each_kind_of_answer_and_one_under_an_area() {
+        let hard = || sample().runs.remove(0);
+        let titles = |runs: &[Run]| -> Vec<(bool, usize)> {
+            let tables = by_answer(runs).into_iter();
+            tables
+                .map(|(title, runs)| (title.is_some(), runs.len()))
+                .collect()
+        };
+        assert_eq!(titles(&[hard(), hard()]), [(false, 2)]);
+        let mixed = [hard(), run(0.1, Answer::Graded), hard()];
+        assert_eq!(titles(&mixed), [(true, 2), (true, 1)]);
+        let mut area = [run(0.2, Answer::Hard), run(0.1, Answer::Graded)];
+        area.iter_mut().for_each(|run| run.area = Some(reference()));
+        assert_eq!(titles(&area), [(false, 2)]);
+    }
+
+    fn reference() -> AreaReference {
+        AreaReference {
+            samples: 512,
+            standard_error_rms: 0.0015,
+            standard_error_worst: 0.0625,
+            penumbra: 1_234,
+        }
+    }
+
+    #[test]
+    fn ranks_say_what_the_reference_cannot_tell() {
+        let mut runs = [run(0.2, Answer::Hard), run(0.01, Answer::Graded)];
+        assert_eq!(
+            graded(&runs).len(),
+            1,
+            "no rank under a light without extent"
+        );
+        runs.iter_mut().for_each(|run| run.area = Some(reference()));
+        runs[0].preset = "nsm".into();
+        runs[1].preset = "soft".into();
+        let invalid = Invalid {
+            nan: 2,
+            infinite: 0,
+            outside: 1_000,
+        };
+        let measured = runs[1].measured.as_mut().unwrap();
+        measured.graded.as_mut().unwrap().invalid = invalid;
+        let expected = [
+            "by RMSE: soft 1024 0.01000, nsm 1024 0.20000; the reference's own error is more than \
+             a tenth of that of soft 1024",
+            "warning: soft 1024: visibility that is not a share of light: NaN 2, outside 0 to 1 \
+             1,000",
+        ];
+        assert_eq!(graded(&runs)[..2], expected);
+        assert_eq!(
+            area_reference(&reference(), 12),
+            "the light has an extent: reference of 512 samples per pixel, standard error 0.00150 \
+             (root mean square over PFL; the worst 0.06250); lit is what sees half of it or more, \
+             in penumbra 1,234, in the band 12"
+        );
+    }
+}

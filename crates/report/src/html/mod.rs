@@ -1,0 +1,162 @@
+//! `report.html`: everything that `compare` and `stress` kept, in one file that needs no network.
+//! Every figure is worked out here, by the same rules as the tables; the page only draws it.
+//!
+//! | | |
+//! |-|-|
+//! | `sources` | folders that were measured alike become one |
+//! | `data` | what the page draws, as JSON |
+//! | `pictures` | which pictures go in, as far as there is room |
+//! | `report.html`, `.css`, `*.js` | the page |
+
+mod data;
+mod pictures;
+mod sources;
+
+pub use sources::{Source, sources};
+
+use pictures::Pictures;
+use serde_json::Value;
+
+/// The most that a page may have: more is slow to open, and too large for a mail.
+pub const LIMIT: usize = 30_000_000;
+
+/// In the order in which they need each other.
+const SCRIPTS: [&str; 7] = [
+    include_str!("page.js"),
+    include_str!("figures.js"),
+    include_str!("charts.js"),
+    include_str!("table.js"),
+    include_str!("picture.js"),
+    include_str!("viewer.js"),
+    include_str!("report.js"),
+];
+
+/// A page, and what it has no room for.
+pub struct Page {
+    /// The file's contents.
+    pub html: String,
+    /// Things that were left out, a line each; the page says so, too.
+    pub left_out: Vec<String>,
+}
+
+/// The page of these sources, and of these contents of `stress.json`.
+pub fn page(sources: &[Source], stress: &[Value]) -> Page {
+    page_within(sources, stress, LIMIT)
+}
+
+fn page_within(sources: &[Source], stress: &[Value], limit: usize) -> Page {
+    let empty = filled(&data::text(sources, stress, &Pictures::default()));
+    let pictures = Pictures::embed(sources, limit.saturating_sub(empty.len()));
+    Page {
+        html: filled(&data::text(sources, stress, &pictures)),
+        left_out: pictures.left_out,
+    }
+}
+
+/// The template with its parts put in; the data last, in which anything may stand.
+fn filled(data: &str) -> String {
+    include_str!("report.html")
+        .replace("/*STYLE*/", include_str!("report.css"))
+        .replace("/*SCRIPT*/", &SCRIPTS.concat())
+        .replacen("/*DATA*/", data, 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::charts::Kept;
+    use crate::samples::results as sample;
+    use skiagraph_compare::records::results::Results;
+    use std::path::Path;
+
+    fn source(folder: &Path, results: Results) -> Vec<Source> {
+        let folder = folder.to_path_buf();
+        sources(vec![Kept { folder, results }])
+    }
+
+    /// Returns the data that the page is given.
+    fn data_of(html: &str) -> Value {
+        let begin = html.find("id=\"data\">").unwrap() + "id=\"data\">".len();
+        let data = &html[begin..];
+        serde_json::from_str(&data[..data.find("</script>").unwrap()]).unwrap()
+    }
+
+    #[test]
+    fn hostile_names_stay_text() {
+        let mut results = sample();
+        let name = "</script><b onload=x>&\u{2028}";
+        results.runs[0].preset = name.into();
+        results.scene.name = name.into();
+        let html = page(&source(Path::new("nowhere"), results), &[]).html;
+        assert!(!html.contains("<b onload"));
+        let data = data_of(&html);
+        assert_eq!(data["sources"][0]["scene"], name);
+        let rows = data["tables"][0]["rows"].as_array().unwrap();
+        assert!(rows.iter().any(|row| row["method"] == name), "{rows:?}");
+    }
+
+    #[test]
+    fn what_a_page_has_no_room_for_is_named_the_least_telling_first() {
+        let folder = tempfile::tempdir().unwrap();
+        let results = sample();
+        let images = results.runs[0].measured.as_ref().unwrap().images.as_ref();
+        let images = images.unwrap();
+        let names = [&images.shaded, &images.visibility, &images.error];
+        let names = names.into_iter().chain(&images.uncertain);
+        for name in names {
+            std::fs::write(folder.path().join(name), [7; 3_000]).unwrap();
+        }
+        let sources = source(folder.path(), results);
+        let whole = page(&sources, &[]);
+        assert!(whole.left_out.is_empty(), "{:?}", whole.left_out);
+        // The four take 16,000 letters.
+        let thin = page_within(&sources, &[], whole.html.len() - 5_000);
+        assert!(thin.html.len() <= whole.html.len() - 5_000);
+        let [line] = &thin.left_out[..] else {
+            panic!("{:?}", thin.left_out)
+        };
+        assert!(line.contains("2 pictures"), "{line}");
+        let data = data_of(&thin.html);
+        let set = &data["pictures"]["sets"][0];
+        assert!(set["error"].is_u64() && set["shaded"].is_u64(), "{set}");
+        assert!(set["uncertain"].is_null() && set["visibility"].is_null());
+        assert_eq!(data["left_out"][0], line.as_str());
+    }
+
+    #[test]
+    fn folders_that_were_measured_alike_are_one_and_the_newer_run_counts() {
+        let mut newer = sample();
+        newer.runs.truncate(1);
+        newer.runs[0].date = "2026-12-24".into();
+        let mut other_machine = sample();
+        other_machine.adapter.name = "Another GPU".into();
+        let kept = |folder: &str, results| {
+            let folder = folder.into();
+            Kept { folder, results }
+        };
+        let merged = sources(vec![
+            kept("old", sample()),
+            kept("new", newer),
+            kept("far", other_machine),
+        ]);
+        let [here, far] = &merged[..] else {
+            panic!("{}", merged.len())
+        };
+        assert_eq!(here.results.runs.len(), sample().runs.len());
+        let dates = here.results.runs.iter().map(|run| run.date.as_str());
+        assert_eq!(
+            dates.collect::<Vec<_>>(),
+            ["2026-12-24", "2026-11-20", "2026-11-20"]
+        );
+        assert_eq!(here.folder_of(0), Path::new("new"));
+        assert_eq!(here.folder_of(1), Path::new("old"));
+        assert_eq!(far.results.adapter.name, "Another GPU");
+    }
+
+    #[test]
+    fn the_data_is_pinned() {
+        let html = page(&source(Path::new("nowhere"), sample()), &[]).html;
+        let text = serde_json::to_string_pretty(&data_of(&html)).unwrap();
+        insta::assert_snapshot!(text);
+    }
+}

@@ -1,0 +1,222 @@
+//! The pictures of a page, the most telling first, as far as there is room.
+
+use crate::html::sources::Source;
+use base64::{Engine, engine::general_purpose::STANDARD};
+use serde::Serialize;
+use skiagraph_compare::pictures::run_pictures::{graph_name, reference_name};
+use skiagraph_compare::records::results::{Images, Run};
+use skiagraph_compare::wording::plural;
+use std::{collections::BTreeMap, fs};
+
+/// Embedded files. Pictures are named by their index in `files`.
+#[derive(Debug, Default, Serialize)]
+pub struct Pictures {
+    /// One for each run that has any.
+    pub sets: Vec<Set>,
+    /// Charts of graphs, by source and method.
+    pub graphs: Vec<Graph>,
+    /// The files, in Base64.
+    pub files: Vec<String>,
+    /// Pictures that there is no room for, a line each.
+    #[serde(skip)]
+    pub left_out: Vec<String>,
+}
+
+/// The pictures of a run, or of the reference.
+#[derive(Debug, Serialize)]
+pub struct Set {
+    source: usize,
+    view: String,
+    viewport: [u32; 2],
+    /// Method and map in words; none of the reference.
+    label: Option<String>,
+    /// Frame of a camera path that it shows, counted from 0.
+    frame: Option<usize>,
+    shaded: Option<usize>,
+    visibility: Option<usize>,
+    error: Option<usize>,
+    uncertain: Option<usize>,
+    /// True if its answer is a share of light.
+    graded: bool,
+}
+
+/// The chart of a method's graph.
+#[derive(Debug, Serialize)]
+pub struct Graph {
+    source: usize,
+    method: String,
+    file: usize,
+}
+
+/// Kinds of pictures, the most telling first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Kind {
+    Reference,
+    Error,
+    Shaded,
+    Graph,
+    Visibility,
+    Uncertain,
+}
+
+const ORDER: [Kind; 6] = [
+    Kind::Reference,
+    Kind::Error,
+    Kind::Shaded,
+    Kind::Graph,
+    Kind::Visibility,
+    Kind::Uncertain,
+];
+
+impl Kind {
+    fn word(self) -> &'static str {
+        match self {
+            Self::Reference => "reference",
+            Self::Error => "error",
+            Self::Shaded => "shaded",
+            Self::Graph => "graph",
+            Self::Visibility => "visibility",
+            Self::Uncertain => "uncertain",
+        }
+    }
+}
+
+/// A file that could go in.
+struct EmbedCandidate {
+    source: usize,
+    run: usize,
+    kind: Kind,
+    name: String,
+    /// Frame of a camera path that it shows.
+    frame: Option<usize>,
+}
+
+impl Pictures {
+    /// Embeds the pictures in the sources' folders, in `room` bytes of the page at most. Files that
+    /// have gone are left out in silence: the page shows what there is.
+    pub fn embed(sources: &[Source], room: usize) -> Self {
+        let mut pictures = Self::default();
+        let mut room = room;
+        let candidates: Vec<EmbedCandidate> = candidates(sources);
+        let mut left_out: BTreeMap<&str, usize> = BTreeMap::new();
+        for kind in ORDER {
+            for file in candidates.iter().filter(|candidate| candidate.kind == kind) {
+                let source = &sources[file.source];
+                let path = source.folder_of(file.run).join(&file.name);
+                let Ok(length) = fs::metadata(&path).map(|found| found.len() as usize) else {
+                    continue;
+                };
+                // Its letters, and what names it.
+                let cost = length.div_ceil(3) * 4 + 400;
+                if cost > room {
+                    *left_out.entry(kind.word()).or_default() += 1;
+                    continue;
+                }
+                let Ok(bytes) = fs::read(&path) else {
+                    continue;
+                };
+                room -= cost;
+                pictures.files.push(STANDARD.encode(bytes));
+                pictures.place(source, file);
+            }
+        }
+        if !left_out.is_empty() {
+            let all: usize = left_out.values().sum();
+            let each = left_out.iter();
+            let each: Vec<String> = each.map(|(kind, n)| format!("{n} of {kind}")).collect();
+            pictures.left_out.push(format!(
+                "{} had no room in this page: {}; they are in the folders of the results",
+                plural(all, "picture"),
+                each.join(", ")
+            ));
+        }
+        pictures
+    }
+
+    /// The newest file, where it belongs.
+    fn place(&mut self, source: &Source, of: &EmbedCandidate) {
+        let file = self.files.len() - 1;
+        let run = &source.results.runs[of.run];
+        if of.kind == Kind::Graph {
+            self.graphs.push(Graph {
+                source: of.source,
+                method: run.preset.clone(),
+                file,
+            });
+            return;
+        }
+        let label = (of.kind != Kind::Reference).then(|| run.method_label());
+        let is_of = |set: &Set| {
+            (set.source, &set.view, set.viewport, &set.label, set.frame)
+                == (of.source, &run.view, run.viewport, &label, of.frame)
+        };
+        let index = self.sets.iter().position(is_of);
+        let index = index.unwrap_or_else(|| {
+            self.sets.push(Set {
+                source: of.source,
+                view: run.view.clone(),
+                viewport: run.viewport,
+                label,
+                frame: of.frame,
+                shaded: None,
+                visibility: None,
+                error: None,
+                uncertain: None,
+                graded: !run.is_hard(),
+            });
+            self.sets.len() - 1
+        });
+        let set = &mut self.sets[index];
+        let place = match of.kind {
+            Kind::Error => &mut set.error,
+            Kind::Shaded => &mut set.shaded,
+            Kind::Uncertain => &mut set.uncertain,
+            _ => &mut set.visibility,
+        };
+        *place = Some(file);
+    }
+}
+
+fn candidates(sources: &[Source]) -> Vec<EmbedCandidate> {
+    let mut all: Vec<EmbedCandidate> = Vec::new();
+    for (index, source) in sources.iter().enumerate() {
+        for (number, run) in source.results.runs.iter().enumerate() {
+            let measured = run.measured.as_ref();
+            let Some(images) = measured.and_then(|of| of.images.as_ref()) else {
+                continue;
+            };
+            for (kind, name) in names(run, images) {
+                let is_shared = matches!(kind, Kind::Reference | Kind::Graph);
+                let is_known =
+                    |known: &EmbedCandidate| (known.source, &known.name) == (index, &name);
+                if !is_shared || !all.iter().any(is_known) {
+                    all.push(EmbedCandidate {
+                        source: index,
+                        run: number,
+                        kind,
+                        name,
+                        frame: images.frame,
+                    });
+                }
+            }
+        }
+    }
+    all
+}
+
+fn names(run: &Run, images: &Images) -> Vec<(Kind, String)> {
+    let uncertain = images.uncertain.iter();
+    // Files of older programs do not name it.
+    let reference = images.reference.clone();
+    let reference = reference.unwrap_or_else(|| reference_name(&run.view, run.viewport));
+    [
+        (Kind::Reference, reference),
+        (Kind::Error, images.error.clone()),
+        (Kind::Shaded, images.shaded.clone()),
+        (Kind::Graph, graph_name(&run.preset)),
+        (Kind::Visibility, images.visibility.clone()),
+    ]
+    .into_iter()
+    .chain(uncertain.map(|name| (Kind::Uncertain, name.clone())))
+    .collect()
+}

@@ -1,0 +1,100 @@
+//! Folders that were measured alike become one source.
+
+use crate::charts::Kept;
+use skiagraph_compare::records::results::{Results, Run};
+use std::path::{Path, PathBuf};
+
+/// Measurements on one adapter, of one scene, under the same conditions.
+pub struct Source {
+    /// All its runs.
+    pub results: Results,
+    /// Folders that it is from.
+    pub folders: Vec<PathBuf>,
+    /// Index of each run's folder.
+    places: Vec<usize>,
+}
+
+impl Source {
+    /// Where the pictures of a run are, by its index.
+    pub fn folder_of(&self, run: usize) -> &Path {
+        &self.folders[self.places[run]]
+    }
+
+    fn is_like(&self, other: &Results) -> bool {
+        let conditions = |of: &Results| {
+            let Results {
+                adapter,
+                scene,
+                oracle,
+                frames,
+                warmup,
+                cached_frames,
+                program,
+                ..
+            } = of.clone();
+            (
+                (adapter, scene, oracle, program),
+                (frames, warmup, cached_frames),
+            )
+        };
+        conditions(&self.results) == conditions(other)
+    }
+
+    fn add(&mut self, folder: PathBuf, results: Results) {
+        let place = self.folders.len();
+        self.folders.push(folder);
+        for command in results.commands {
+            if !self.results.commands.contains(&command) {
+                self.results.commands.push(command);
+            }
+        }
+        for run in results.runs {
+            let is_same = |known: &Run| {
+                let key = |run: &Run| {
+                    let Run {
+                        preset,
+                        view,
+                        params,
+                        ..
+                    } = run.clone();
+                    (preset, view, run.viewport, run.map_size, params)
+                };
+                key(known) == key(&run)
+            };
+            match self.results.runs.iter().position(is_same) {
+                // Days are written so that they sort.
+                Some(at) if self.results.runs[at].date <= run.date => {
+                    self.results.runs[at] = run;
+                    self.places[at] = place;
+                }
+                Some(_) => {}
+                None => {
+                    self.results.runs.push(run);
+                    self.places.push(place);
+                }
+            }
+        }
+    }
+}
+
+/// One source for each adapter, scene and set of conditions, in the order of the folders.
+pub fn sources(kept: Vec<Kept>) -> Vec<Source> {
+    let mut sources: Vec<Source> = Vec::new();
+    for Kept { folder, results } in kept {
+        let index = sources.iter().position(|source| source.is_like(&results));
+        let index = index.unwrap_or_else(|| {
+            sources.push(Source {
+                results: Results {
+                    runs: Vec::new(),
+                    commands: Vec::new(),
+                    ..results.clone()
+                },
+                folders: Vec::new(),
+                places: Vec::new(),
+            });
+            sources.len() - 1
+        });
+        sources[index].add(folder, results);
+    }
+    sources
+}

@@ -1,0 +1,25 @@
+//! Measurements as people and spreadsheets read them: tables, documents, CSV, traces. No figure is
+//! worked out here that `records` does not hold.
+
+pub mod charts;
+pub mod graded;
+pub mod html;
+pub mod language;
+pub mod markdown;
+pub mod notes;
+pub mod page;
+pub mod profile_csv;
+pub mod profile_text;
+pub mod published_charts;
+pub mod published_left_out;
+pub mod published_panels;
+pub mod raster;
+pub mod results_table;
+#[cfg(test)]
+mod samples;
+pub mod stress_matrix;
+pub mod summary;
+pub mod summary_table;
+pub mod table;
+pub mod trace;
+pub mod verdict;

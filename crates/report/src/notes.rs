@@ -1,0 +1,285 @@
+//! Notes below tables, wherever they stand.
+
+use skiagraph_compare::records::results::{Measured, Run};
+use skiagraph_compare::records::sequence::{FrameCost, Sequence};
+use skiagraph_compare::wording::{frames, ms, thousands};
+use skiagraph_reference::BlockerCounts;
+
+/// A band of more than one pixel in so many of those facing the light leaves too much open.
+const MAX_BAND: u128 = 1000;
+
+/// That the band of a view and viewport leaves too much open, if it does.
+pub fn band_warning(run: &Run) -> Option<String> {
+    let is_large = u128::from(run.band) * MAX_BAND > u128::from(run.pixels.facing_light);
+    let text = "warning: the band is larger than 0.1 % of PFL; what lies in it is not proven";
+    is_large.then(|| text.to_owned())
+}
+
+/// That pixels of a view and viewport show what is not seen there, if any do. No method is to blame
+/// for it, and none is judged by it.
+pub fn surface_warning(run: &Run) -> Option<String> {
+    let count = run.wrong_surface.filter(|count| *count > 0)?;
+    let background = run.pixels.background + run.pixels.facing_away;
+    let all = background + run.pixels.facing_light;
+    Some(format!("warning: {}", wrong_surface(count, all)))
+}
+
+/// That so many of all pixels show what is not seen there.
+pub fn wrong_surface(count: u64, all: u64) -> String {
+    format!(
+        "{} of {} pixels show a surface that another one hides, or none where there is one; every \
+         method is judged on the surface that is shown",
+        thousands(count),
+        thousands(all)
+    )
+}
+
+/// Says of each method that is wrong of certain pixels how many they are, and what blocks them. All
+/// maps of a method, whose runs stand together, are in one line.
+pub fn certain_wrong(runs: &[Run]) -> Vec<String> {
+    let wrong = |run: &Run| {
+        let certain = run.measured.as_ref().map_or(0, |of| of.wrong.certain);
+        run.is_hard() && certain > 0
+    };
+    runs.chunk_by(|one, other| one.preset == other.preset)
+        .map(|runs| runs.iter().filter(|run| wrong(run)).collect::<Vec<_>>())
+        .filter_map(|runs| Some(format!("{}: {}", maps(&runs)?, blockers(&runs))))
+        .collect()
+}
+
+/// A method with those of its maps that the runs are of; `None` without runs.
+fn maps(runs: &[&Run]) -> Option<String> {
+    let preset = &runs.first()?.preset;
+    let maps: Vec<String> = runs
+        .iter()
+        .filter_map(|run| Some(run.map_size?.to_string()))
+        .collect();
+    Some(if maps.is_empty() {
+        preset.clone()
+    } else {
+        format!("{preset} {}", maps.join(" / "))
+    })
+}
+
+/// Certain wrong pixels of each run, then of each kind of blocker that one of them has.
+fn blockers(runs: &[&Run]) -> String {
+    type Kind = (&'static str, fn(&Measured) -> Option<u64>);
+    const KINDS: [Kind; 4] = [
+        ("certain wrong outside the band", |of| {
+            Some(of.wrong.certain)
+        }),
+        ("blocker in an open part", |of| {
+            Some(of.certain_wrong_blockers?.open_part)
+        }),
+        ("blocker in a closed part", |of| {
+            Some(of.certain_wrong_blockers?.closed_part)
+        }),
+        ("no blocker", |of| Some(of.certain_wrong_blockers?.none)),
+    ];
+    let measured = || runs.iter().filter_map(|run| run.measured.as_ref());
+    let kinds = KINDS.iter().filter_map(|(what, count)| {
+        // Files of older programs do not know the blockers.
+        let counts = measured().map(count).collect::<Option<Vec<u64>>>()?;
+        let text: Vec<String> = counts.iter().copied().map(thousands).collect();
+        let any = counts.iter().any(|&count| count > 0);
+        any.then(|| format!("{what} {}", text.join(" / ")))
+    });
+    kinds.collect::<Vec<_>>().join(", ")
+}
+
+/// How many certain pixels are wrong, and what blocks them, as far as that is known.
+pub fn blocked_by(wrong: u64, by: Option<BlockerCounts>) -> String {
+    let kinds = by.map(|by| {
+        [
+            ("blocker in an open part", by.open_part),
+            ("blocker in a closed part", by.closed_part),
+            ("no blocker", by.none),
+        ]
+    });
+    let kinds = kinds.into_iter().flatten().filter(|(_, count)| *count > 0);
+    let kinds = kinds.map(|(what, count)| format!(", {what} {}", thousands(count)));
+    let kinds: String = kinds.collect();
+    format!("certain wrong outside the band {}{kinds}", thousands(wrong))
+}
+
+/// Says what was judged of a method that remembers.
+pub fn remembering(run: &Run) -> Option<String> {
+    let measured = run.measured.as_ref()?;
+    let steady = measured.steady.as_ref()?;
+    let name = run.method_label();
+    let after = frames(steady.frames);
+    let state = match steady.period {
+        Some(1) => format!("its picture stays the same after {after}"),
+        Some(period) => format!("its picture repeats every {} after {after}", frames(period)),
+        None => format!("its picture does not repeat within {after}"),
+    };
+    Some(match steady.judged {
+        None => format!("{name} remembers, and stood at the path's begin before: {state}"),
+        Some(cycle) if cycle.pictures == 1 => {
+            format!("{name} remembers: {state}, and is judged then")
+        }
+        Some(cycle) => {
+            let mean = match cycle.rmse_mean {
+                Some(rmse) => format!("RMSE in the mean {rmse:.5}"),
+                None => format!("wrong pixels in the mean {:.1}", cycle.wrong_mean),
+            };
+            format!(
+                "{name} remembers: {state}; the counts are those of the worst of {} pictures then, \
+                 {mean}",
+                cycle.pictures
+            )
+        }
+    })
+}
+
+/// Says what the frames of a camera path cost, with what is kept and without.
+pub fn path_costs(run: &Run) -> Vec<String> {
+    let sequence = run.measured.as_ref().and_then(|of| of.sequence.as_ref());
+    let lines = sequence.map(|sequence| {
+        [
+            ("as it is", sequence.slowest()),
+            ("with every pass", sequence.slowest_with_every_pass()),
+        ]
+    });
+    let line = |(how, slowest): (&str, Option<(usize, FrameCost)>)| {
+        let (index, cost) = slowest?;
+        let clock = cost.gpu_ms.map_or("wall", |_| "GPU");
+        Some(format!(
+            "{} {how}: slowest frame {index}, {} ms ({clock})",
+            run.method_label(),
+            ms(cost.ms())
+        ))
+    };
+    let mut lines: Vec<String> = lines.into_iter().flatten().filter_map(line).collect();
+    lines.extend(sequence.and_then(|sequence| remade(run, sequence)));
+    lines
+}
+
+/// Lists the resources of the scene that followed from what moves.
+fn remade(run: &Run, sequence: &Sequence) -> Option<String> {
+    let all = sequence.frames.len();
+    let remade = sequence
+        .remade()
+        .into_iter()
+        .map(|(name, how, count, time)| {
+            format!("{name} {how} in {count} of {all}, {} ms each", ms(time))
+        });
+    let remade: Vec<String> = remade.collect();
+    (!remade.is_empty()).then(|| {
+        let label = run.method_label();
+        format!("{label} between frames, on the CPU: {}", remade.join("; "))
+    })
+}
+
+/// Which GPU times a run lacks on an adapter whose timestamps are true.
+pub fn times_missing(run: &Run) -> Option<String> {
+    let measured = run.measured.as_ref()?;
+    let passes = measured.passes.iter();
+    let passes = passes.map(|pass| (pass.name.as_str(), pass.gpu_ms.is_some()));
+    let why = untimed(passes, measured.frame.gpu_ms.is_some())?;
+    Some(format!("{}: {why}", run.method_label()))
+}
+
+/// Which GPU times are missing: of passes, each with whether it has one, and of the frame.
+pub fn untimed<'a>(passes: impl Iterator<Item = (&'a str, bool)>, frame: bool) -> Option<String> {
+    let untimed: Vec<&str> = passes
+        .filter_map(|(name, is_timed)| (!is_timed).then_some(name))
+        .collect();
+    let untimed = untimed.join(", ");
+    Some(match (frame, untimed.as_str()) {
+        (true, "") => return None,
+        (true, _) => format!(
+            "the whole frame is timed over its other passes, there are no GPU times of {untimed}"
+        ),
+        (false, "") => "no GPU time of the whole frame: some frames had none".into(),
+        (false, _) => format!("no GPU time of the whole frame: there are none of {untimed}"),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::samples::results as sample;
+    use skiagraph_compare::records::steady::{Cycle, Steady};
+    use skiagraph_reference::BlockerCounts;
+
+    #[test]
+    fn surfaces_that_are_not_seen_are_said() {
+        let mut run = sample().runs.remove(0);
+        assert_eq!(surface_warning(&run), None);
+        run.wrong_surface = Some(1_234);
+        assert_eq!(
+            surface_warning(&run).unwrap(),
+            "warning: 1,234 of 131,072 pixels show a surface that another one hides, or none where \
+             there is one; every method is judged on the surface that is shown"
+        );
+        // From a file of an older program.
+        run.wrong_surface = None;
+        assert_eq!(surface_warning(&run), None);
+    }
+
+    #[test]
+    fn what_was_judged_of_a_method_that_remembers_is_said() {
+        let mut run = sample().runs.remove(0);
+        assert_eq!(remembering(&run), None);
+        let mut said = |period, judged: Option<(u32, Option<f64>)>| {
+            let cycle = |(pictures, rmse_mean)| Cycle {
+                pictures,
+                wrong_mean: 12.25,
+                rmse_mean,
+            };
+            run.measured.as_mut().unwrap().steady = Some(Steady {
+                frames: 256,
+                period,
+                judged: judged.map(cycle),
+            });
+            let said = remembering(&run).unwrap();
+            said.split_once(": ").unwrap().1.to_owned()
+        };
+        assert_eq!(
+            said(Some(1), Some((1, None))),
+            "its picture stays the same after 256 frames, and is judged then"
+        );
+        assert_eq!(
+            said(None, Some((16, None))),
+            "its picture does not repeat within 256 frames; the counts are those of the worst of \
+             16 pictures then, wrong pixels in the mean 12.2"
+        );
+        assert!(said(Some(3), Some((3, Some(0.5)))).ends_with("RMSE in the mean 0.50000"));
+        assert_eq!(
+            said(Some(3), None),
+            "its picture repeats every 3 frames after 256 frames"
+        );
+    }
+
+    #[test]
+    fn blockers_of_all_maps_stand_in_a_line_and_only_those_there_are() {
+        let mut runs = vec![sample().runs.remove(0); 3];
+        let of = |open_part, closed_part, none| BlockerCounts {
+            open_part,
+            closed_part,
+            none,
+        };
+        let counts = [of(1_200, 0, 0), of(0, 0, 0), of(7, 0, 2)];
+        for ((run, counts), map) in runs.iter_mut().zip(counts).zip([512, 1024, 2048]) {
+            run.map_size = Some(map);
+            let measured = run.measured.as_mut().unwrap();
+            measured.wrong.certain = counts.open_part + counts.none;
+            measured.certain_wrong_blockers = Some(counts);
+        }
+        assert_eq!(
+            certain_wrong(&runs),
+            [
+                "nsm 512 / 2048: certain wrong outside the band 1,200 / 9, blocker in an open part \
+                 1,200 / 7, no blocker 0 / 2"
+            ]
+        );
+        // From a file of an older program.
+        runs.truncate(1);
+        runs[0].measured.as_mut().unwrap().certain_wrong_blockers = None;
+        let expected = "nsm 512: certain wrong outside the band 1,200";
+        assert_eq!(certain_wrong(&runs), [expected]);
+        runs[0].measured.as_mut().unwrap().wrong.certain = 0;
+        assert_eq!(certain_wrong(&runs), [""; 0]);
+    }
+}

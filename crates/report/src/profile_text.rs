@@ -1,0 +1,326 @@
+//! A profile as text: conditions, passes, memory, and how it stands to an older one.
+
+use crate::notes::untimed;
+use crate::table::table;
+use skiagraph_compare::graphs::variants::MAP_SIZE;
+use skiagraph_compare::records::baseline::{Comparison, Difference, MIN_FRAMES, Ratio, Verdict};
+use skiagraph_compare::records::profile::{Conditions, Material, Profile};
+use skiagraph_compare::records::statistics::Series;
+use skiagraph_compare::wording::{bytes, frames, ms, size};
+
+/// Writes a profile as it is printed on standard output.
+pub fn report(profile: &Profile) -> String {
+    let mut text = conditions(profile);
+    text += &format!("\nTimes, ms\n{}\n", times(profile));
+    let wall = &profile.frame.wall_ms;
+    text += &format!(
+        "Wall time from the start of encoding until the GPU was done: least {}, median {}, \
+         p95 {}, greatest {}\n",
+        ms(wall.min),
+        ms(wall.median),
+        ms(wall.p95),
+        ms(wall.max)
+    );
+    text.extend(notes(profile).map(|note| format!("{note}\n")));
+    text += &format!("\nMemory\n{}\n", memory(&profile.memory.materials));
+    text += &format!(
+        "Materials take {}; sharing saves {}\n",
+        bytes(profile.memory.bytes),
+        bytes(profile.memory.saved_bytes)
+    );
+    if let Some(baseline) = &profile.baseline {
+        text.push_str(&comparison(baseline, profile));
+    }
+    text
+}
+
+/// Writes several profiles: a table per method, a row per pass, a column per view and size.
+pub fn matrices(profiles: &[Profile]) -> String {
+    let mut text = String::new();
+    if let Some(first) = profiles.first() {
+        text += &format!(
+            "{}\n{}\nGPU ms, medians of {} after {} to warm up\n",
+            first.conditions.scene,
+            first.conditions.adapter,
+            frames(first.conditions.frames),
+            first.conditions.warmup
+        );
+    }
+    for method in unique(profiles, |profile| profile.conditions.preset.as_str()) {
+        let columns = profiles.iter();
+        let columns = columns.filter(|profile| profile.conditions.preset == method);
+        text += &format!("\n{}\n", matrix(method, &columns.collect::<Vec<_>>()));
+    }
+    text
+}
+
+/// In the order in which they first appear.
+fn unique<'a, T>(list: &'a [T], name: impl Fn(&'a T) -> &'a str) -> Vec<&'a str> {
+    let mut names = Vec::new();
+    for item in list {
+        if !names.contains(&name(item)) {
+            names.push(name(item));
+        }
+    }
+    names
+}
+
+fn matrix(method: &str, profiles: &[&Profile]) -> String {
+    let head = |profile: &&Profile| {
+        let Conditions { view, viewport, .. } = &profile.conditions;
+        let map = profile.conditions.params.get(MAP_SIZE);
+        let map = map.map_or(String::new(), |map| format!("\nmap {map}"));
+        format!("{view}\n{}{map}", size(*viewport))
+    };
+    let heads: Vec<String> = profiles.iter().map(head).collect();
+    let heads = [method].into_iter().chain(heads.iter().map(String::as_str));
+    let mut passes: Vec<&str> = Vec::new();
+    for pass in profiles.iter().flat_map(|profile| &profile.passes) {
+        if !passes.contains(&pass.name.as_str()) {
+            passes.push(&pass.name);
+        }
+    }
+    let cell = |series: Option<&Series>| series.map_or("–".into(), |of| ms(of.median));
+    let rows = passes.into_iter().map(|name| {
+        let of = |profile: &&Profile| {
+            let pass = profile.passes.iter().find(|pass| pass.name == name);
+            cell(pass.and_then(|pass| pass.gpu_ms.as_ref()))
+        };
+        let cells = profiles.iter().map(of);
+        [name.to_owned()].into_iter().chain(cells).collect()
+    });
+    let wholes = profiles.iter();
+    let wholes = wholes.map(|profile| cell(profile.frame.gpu_ms.as_ref()));
+    let whole: Vec<String> = ["whole frame".to_owned()]
+        .into_iter()
+        .chain(wholes)
+        .collect();
+    table(heads, 1, rows.chain([whole]))
+}
+
+fn times(profile: &Profile) -> String {
+    let rows = profile.passes.iter().map(|pass| {
+        let share = pass.share.map(|share| format!("{:.1} %", share * 100.0));
+        let share = share.unwrap_or("–".into());
+        row(
+            [&pass.name, &pass.kind, &share],
+            pass.gpu_ms.as_ref(),
+            &pass.cpu_ms,
+        )
+    });
+    let frame = &profile.frame;
+    let whole = row(
+        ["whole frame", "", ""],
+        frame.gpu_ms.as_ref(),
+        &frame.cpu_ms,
+    );
+    let heads = "pass|kind|GPU min|median|p95|max|of frame|CPU median".split('|');
+    table(heads, 2, rows.chain([whole]))
+}
+
+fn notes(profile: &Profile) -> impl Iterator<Item = String> {
+    let passes = profile.passes.iter();
+    let passes = passes.map(|pass| (pass.name.as_str(), pass.gpu_ms.is_some()));
+    let missing = match &profile.conditions.adapter.gpu_unavailable {
+        Some(_) => None,
+        None => untimed(passes, profile.frame.gpu_ms.is_some()).map(|why| format!("note: {why}")),
+    };
+    let slow = (profile.conditions.build == "debug").then(|| {
+        "note: a debug build of the program, so CPU times are those of unoptimised code".to_owned()
+    });
+    missing.into_iter().chain(slow)
+}
+
+fn conditions(profile: &Profile) -> String {
+    let Conditions {
+        program,
+        build,
+        date,
+        adapter,
+        scene,
+        preset,
+        view,
+        viewport,
+        frames: asked,
+        warmup,
+        ..
+    } = &profile.conditions;
+    let params = profile.conditions.params();
+    let params: Vec<String> = params
+        .map(|(name, value)| format!("{name} = {value}"))
+        .collect();
+    let params = if params.is_empty() {
+        "none".to_owned()
+    } else {
+        params.join(", ")
+    };
+    let timed = profile.timed() as u32;
+    let stopped = if timed < *asked {
+        format!(", stopped before the {asked} asked for")
+    } else {
+        String::new()
+    };
+    let trust = match &adapter.gpu_unavailable {
+        None => "trusted: they agree with wall time".to_owned(),
+        Some(reason) => format!("not used: {reason}"),
+    };
+    format!(
+        "{preset} on {scene} · view {view} · {}\n\
+         params: {params}\n\
+         {adapter}\n\
+         GPU timestamps {trust}\n\
+         {} after {warmup} to warm up{stopped} · {date} · {program}, {build} build\n",
+        size(*viewport),
+        frames(timed)
+    )
+}
+
+fn row([name, kind, share]: [&str; 3], gpu: Option<&Series>, cpu: &Series) -> Vec<String> {
+    let gpu = |pick: fn(&Series) -> f64| gpu.map_or("–".into(), |series| ms(pick(series)));
+    vec![
+        name.into(),
+        kind.into(),
+        gpu(|series| series.min),
+        gpu(|series| series.median),
+        gpu(|series| series.p95),
+        gpu(|series| series.max),
+        share.into(),
+        ms(cpu.median),
+    ]
+}
+
+fn memory(materials: &[Material]) -> String {
+    let row = |material: &Material| {
+        let mut size = match material.format {
+            Some(_) => size(material.size),
+            None => format!("{} bytes", material.size[0]),
+        };
+        for (count, noun) in [(material.layers, "layers"), (material.mips, "mips")] {
+            if count > 1 {
+                size += &format!(", {count} {noun}");
+            }
+        }
+        vec![
+            material.name.clone(),
+            material.format.clone().unwrap_or("buffer".into()),
+            material.shared_with.join(", "),
+            size,
+            bytes(material.bytes),
+        ]
+    };
+    let heads = "material|format|shares memory with|size|memory".split('|');
+    table(heads, 3, materials.iter().map(row))
+}
+
+fn comparison(baseline: &Comparison, new: &Profile) -> String {
+    let mut text = format!("\nAgainst {}, {}\n", baseline.file, baseline.date);
+    if !baseline.differences.is_empty() {
+        text.push_str(
+            "WARNING: measured under other conditions, so the ratios do not compare \
+            like with like\n",
+        );
+        for Difference { what, old, new } in &baseline.differences {
+            text += &format!("  {what}: then {old}, now {new}\n");
+        }
+    }
+    let mut rows = Vec::new();
+    let mut add = |clock: &str, name: &str, ratio: Option<&Ratio>| {
+        rows.push(ratio_row(clock, name, ratio));
+    };
+    for pass in &baseline.passes {
+        add("GPU", &pass.name, pass.gpu.as_ref());
+    }
+    add("GPU", "whole frame", baseline.frame.gpu.as_ref());
+    for pass in &baseline.passes {
+        add("CPU", &pass.name, Some(&pass.cpu));
+    }
+    add("CPU", "whole frame", Some(&baseline.frame.cpu));
+    add("wall", "whole frame", Some(&baseline.frame.wall));
+    let heads = "pass|clock|then|now|now / then|its spread|".split('|');
+    text += &format!("{}\n", table(heads, 2, rows));
+    if baseline.frame.gpu.is_none() {
+        let side = match new.frame.gpu_ms {
+            Some(_) => "the older profile has none",
+            None => "the new profile has none",
+        };
+        text += &format!("No ratio of GPU times of whole frames: {side}\n");
+    }
+    for (side, names) in [("then", &baseline.only_old), ("now", &baseline.only_new)] {
+        if !names.is_empty() {
+            text += &format!("Only {side}: {}\n", names.join(", "));
+        }
+    }
+    text += &format!(
+        "Medians, ms; the spread goes from Q1(now) / Q3(then) to Q3(now) / Q1(then). Faster or \
+         slower: the middle halves of both\n\
+         samples do not overlap; with fewer than {MIN_FRAMES} frames there is no verdict.\n",
+    );
+    text
+}
+
+fn ratio_row(clock: &str, name: &str, ratio: Option<&Ratio>) -> Vec<String> {
+    let mut row = vec![name.to_owned(), clock.to_owned()];
+    match ratio {
+        Some(ratio) => row.extend([
+            ms(ratio.old_ms),
+            ms(ratio.new_ms),
+            format!("{:.3}", ratio.ratio),
+            format!("{:.3} … {:.3}", ratio.low, ratio.high),
+            match ratio.verdict {
+                Verdict::Faster => "faster",
+                Verdict::Slower => "slower",
+                Verdict::Same => "same",
+                Verdict::TooFewFrames => "too few frames",
+            }
+            .to_owned(),
+        ]),
+        None => row.extend(["–", "–", "–", "–", ""].map(str::to_owned)),
+    }
+    row
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::samples::profile as sample;
+    use skiagraph_compare::records::statistics::Series;
+    use std::path::Path;
+
+    #[test]
+    fn the_report_shows_conditions_times_and_memory() {
+        insta::assert_snapshot!(report(&sample()));
+    }
+
+    #[test]
+    fn a_baseline_under_other_conditions_is_shown_and_warned_of() {
+        let (mut old, mut new) = (sample(), sample());
+        for (profile, ms) in [(&mut old, 1.0), (&mut new, 3.0)] {
+            profile.passes[0].gpu_ms =
+                Series::new(vec![ms, ms + 0.25, ms + 0.5, ms + 0.75, ms + 1.0]);
+        }
+        old.conditions.params.insert("map_size".into(), 512.into());
+        old.conditions.adapter.name = "Another GPU".into();
+        old.passes[1].name = "fill".into();
+        new.baseline = Some(new.against(Path::new("old.json"), &old));
+        let report = report(&new);
+        let (_, text) = report.split_once("\nAgainst").unwrap();
+        insta::assert_snapshot!(text);
+    }
+
+    #[test]
+    fn untrusted_timestamps_and_an_early_stop_are_said() {
+        let mut profile = sample();
+        profile.conditions.adapter.gpu_unavailable =
+            Some("the adapter has no timestamp queries".into());
+        profile.conditions.frames = 30;
+        profile.conditions.build = "debug".into();
+        let report = report(&profile);
+        for part in [
+            "GPU timestamps not used: the adapter has no timestamp queries\n",
+            "3 frames after 1 to warm up, stopped before the 30 asked for",
+            "note: a debug build",
+        ] {
+            assert!(report.contains(part), "{report}");
+        }
+    }
+}

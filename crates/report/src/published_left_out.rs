@@ -1,0 +1,137 @@
+//! Gaps in charts of published figures and ours, because only one side has a figure.
+
+use crate::published_panels::{Cell, Groups, PanelRow};
+use skiagraph_compare::records::published_row::Row;
+use skiagraph_compare::wording::size;
+use std::collections::BTreeSet;
+
+/// Views that a chart lacks.
+pub fn views_left_out(
+    cells: &[Cell],
+    chart: &str,
+    drawn: &[PanelRow],
+    groups: Groups,
+) -> Option<String> {
+    let all: BTreeSet<String> = cells
+        .iter()
+        .map(|cell| format!("{} {}", cell.scene, cell.run.view))
+        .collect();
+    let drawn = drawn
+        .iter()
+        .map(|row| format!("{} {}", row.scene, row.view));
+    let lacking: Vec<String> = (&all - &drawn.collect()).into_iter().collect();
+    if lacking.is_empty() {
+        return None;
+    }
+    let groups = groups.plural();
+    let why = format!("no two {groups} of which there are figures on both sides");
+    Some(if lacking.len() == all.len() {
+        format!("not drawn: {chart}: {why}")
+    } else {
+        format!("not in {chart}: {}: {why}", lacking.join(", "))
+    })
+}
+
+/// Lists what only one side has: scenes, and in a scene views, viewports, map sizes and presets.
+pub fn without_counterpart<'a>(
+    cells: &[Cell],
+    rows: impl Iterator<Item = &'a Row>,
+    label: &str,
+) -> Vec<String> {
+    let mut ours: Vec<(&str, Sides)> = Vec::new();
+    let mut theirs: Vec<(&str, Sides)> = Vec::new();
+    for cell in cells {
+        let run = cell.run;
+        let sides = of_scene(&mut ours, cell.scene);
+        sides.add(&run.view, run.viewport, run.map_size, &run.preset);
+    }
+    for row in rows {
+        let (scene, view, viewport, map, preset, _) = row.key();
+        let is_ours = |name: &String| {
+            let mut own = cells.iter().filter(|cell| cell.scene == scene);
+            own.any(|cell| cell.run.preset == *name)
+        };
+        // One of several presets is enough.
+        let known = if row.named.iter().any(is_ours) {
+            is_ours(&row.preset)
+        } else {
+            row.named.first() == Some(&row.preset)
+        };
+        if !preset.is_empty() && known {
+            of_scene(&mut theirs, scene).add(view, viewport, map, preset);
+        }
+    }
+    let find = |all: &[(&str, Sides)], scene: &str| {
+        let found = all.iter().find(|(known, _)| *known == scene);
+        found.map(|(_, sides)| sides.clone())
+    };
+    let mut lines = Vec::new();
+    for (scene, sides) in &ours {
+        lines.extend(match find(&theirs, scene) {
+            None => Some(format!("not drawn: {scene}: {label} has no figures of it")),
+            Some(there) => sides.lacking(&there).map(|lacking| {
+                format!("not drawn, of our {scene}: {lacking}: {label} has no figures")
+            }),
+        });
+    }
+    for (scene, sides) in &theirs {
+        lines.extend(match find(&ours, scene) {
+            None => Some(format!("not drawn: {label}'s {scene}: no results of it")),
+            Some(here) => sides
+                .lacking(&here)
+                .map(|lacking| format!("not drawn, of {label}'s {scene}: {lacking}: no results")),
+        });
+    }
+    lines
+}
+
+fn of_scene<'a, 's>(all: &'s mut Vec<(&'a str, Sides)>, scene: &'a str) -> &'s mut Sides {
+    let place = all.iter().position(|(known, _)| *known == scene);
+    let place = place.unwrap_or_else(|| {
+        all.push((scene, Sides::default()));
+        all.len() - 1
+    });
+    &mut all[place].1
+}
+
+/// Figures that one side has of a scene.
+#[derive(Clone, Default)]
+struct Sides {
+    views: BTreeSet<String>,
+    viewports: BTreeSet<[u32; 2]>,
+    maps: BTreeSet<u32>,
+    presets: BTreeSet<String>,
+}
+
+impl Sides {
+    fn add(&mut self, view: &str, viewport: [u32; 2], map: Option<u32>, preset: &str) {
+        self.views.insert(view.to_owned());
+        self.viewports.insert(viewport);
+        self.maps.extend(map);
+        self.presets.insert(preset.to_owned());
+    }
+
+    /// Says what the other side lacks, in words.
+    fn lacking(&self, other: &Self) -> Option<String> {
+        let viewports = &self.viewports - &other.viewports;
+        let maps = &self.maps - &other.maps;
+        let kinds = [
+            ("view", (&self.views - &other.views).into_iter().collect()),
+            ("viewport", viewports.into_iter().map(size).collect()),
+            (
+                "map",
+                maps.into_iter().map(|map| format!("{map}²")).collect(),
+            ),
+            (
+                "preset",
+                (&self.presets - &other.presets).into_iter().collect(),
+            ),
+        ];
+        let kinds = kinds
+            .into_iter()
+            .filter(|(_, lacking): &(_, Vec<String>)| !lacking.is_empty());
+        let words = kinds.map(|(kind, lacking)| format!("{kind} {}", lacking.join(", ")));
+        let words: Vec<String> = words.collect();
+        (!words.is_empty()).then(|| words.join("; "))
+    }
+}

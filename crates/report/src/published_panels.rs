@@ -1,0 +1,214 @@
+//! Pairs of panels: what others published of some runs left, what we measured right.
+
+use crate::charts::push;
+use skiagraph_chart::{Kind, Mark, Panel, Series};
+use skiagraph_compare::records::results::{Measured, Published, Results, Run};
+use skiagraph_compare::wording::size;
+use std::collections::BTreeSet;
+
+/// The tracer, of whose times others are shares: milliseconds of two machines have no axis in
+/// common.
+pub const TRACER: &str = "rt";
+
+/// A run with what was published about it, and the tracer's in its view and viewport.
+pub struct Cell<'a> {
+    /// Name of the scene.
+    pub scene: &'a str,
+    /// The run.
+    pub run: &'a Run,
+    /// Its measurements.
+    pub measured: &'a Measured,
+    /// The tracer's.
+    pub tracer: Option<(&'a Run, &'a Measured)>,
+}
+
+/// All runs with measurements.
+pub fn cells(results: &Results) -> impl Iterator<Item = Cell<'_>> {
+    let runs = || {
+        let runs = results.runs.iter();
+        runs.filter_map(|run| Some((run, run.measured.as_ref()?)))
+    };
+    runs().map(move |(run, measured)| Cell {
+        scene: &results.scene.name,
+        run,
+        measured,
+        tracer: runs().find(|(tracer, _)| {
+            let same = (&tracer.view, tracer.viewport) == (&run.view, run.viewport);
+            tracer.preset == TRACER && same
+        }),
+    })
+}
+
+/// The published figure of that quantity.
+pub fn published<'a>(run: &'a Run, quantity: &str) -> Option<&'a Published> {
+    let mut figures = run.published.iter();
+    figures.find(|figure| figure.quantity == quantity)
+}
+
+/// Quantity that a group of bars stands for; the other one has panels of its own for each.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Groups {
+    /// Viewports.
+    Viewports,
+    /// Sizes of maps.
+    Maps,
+}
+
+impl Groups {
+    /// Their name.
+    pub fn plural(self) -> &'static str {
+        match self {
+            Self::Viewports => "viewports",
+            Self::Maps => "map sizes",
+        }
+    }
+
+    fn axis(self) -> &'static str {
+        match self {
+            Self::Viewports => "viewport",
+            Self::Maps => "map",
+        }
+    }
+
+    fn name(self, group: [u32; 2]) -> String {
+        match self {
+            Self::Viewports => size(group),
+            Self::Maps => format!("{}²", group[0]),
+        }
+    }
+}
+
+/// A figure on both sides.
+pub struct Bar<'a> {
+    /// The series that it belongs to.
+    pub series: String,
+    /// Theirs, as it was published.
+    pub figure: &'a Published,
+    /// Theirs, as it is drawn.
+    pub theirs: f64,
+    /// Ours.
+    pub ours: f64,
+}
+
+/// Content of one pair of panels.
+pub struct PanelRow<'a> {
+    /// Name of the scene.
+    pub scene: &'a str,
+    /// Name of the view.
+    pub view: &'a str,
+    /// The viewport, or the map where groups are viewports.
+    place: String,
+    bars: Vec<([u32; 2], Bar<'a>)>,
+}
+
+/// Pairs of panels of at least two groups. `bars` may be none of a cell.
+pub fn rows<'a>(
+    cells: &'a [Cell<'a>],
+    groups: Groups,
+    bars: impl Fn(&'a Cell<'a>) -> Vec<Bar<'a>>,
+) -> Vec<PanelRow<'a>> {
+    let mut rows: Vec<PanelRow> = Vec::new();
+    for cell in cells {
+        let map = cell.run.map_size;
+        let (group, place) = match (groups, map) {
+            (Groups::Viewports, Some(map)) => (cell.run.viewport, format!(", map {map}²")),
+            (Groups::Viewports, None) => (cell.run.viewport, String::new()),
+            (Groups::Maps, Some(map)) => ([map; 2], format!(", {}", size(cell.run.viewport))),
+            (Groups::Maps, None) => continue,
+        };
+        let (scene, view) = (cell.scene, cell.run.view.as_str());
+        for bar in bars(cell) {
+            let key = (scene, view, &*place);
+            let known = rows
+                .iter_mut()
+                .find(|row| (row.scene, row.view, &*row.place) == key);
+            match known {
+                Some(row) => row.bars.push((group, bar)),
+                None => rows.push(PanelRow {
+                    scene,
+                    view,
+                    place: place.clone(),
+                    bars: vec![(group, bar)],
+                }),
+            }
+        }
+    }
+    rows.retain(|row| row.groups().len() > 1);
+    rows
+}
+
+impl PanelRow<'_> {
+    /// The published figures that are drawn.
+    pub fn figures(&self) -> impl Iterator<Item = &Published> {
+        self.bars.iter().map(|(_, bar)| bar.figure)
+    }
+
+    /// Theirs and ours as bars, `y` upwards.
+    pub fn bars(&self, label: &str, groups: Groups, y: &str) -> [Panel; 2] {
+        let known = self.groups();
+        let names: Vec<String> = known.iter().map(|group| groups.name(*group)).collect();
+        let mut sides: [Vec<Series>; 2] = Default::default();
+        for (group, bar) in &self.bars {
+            let place = known.iter().position(|known| known == group);
+            for (side, y) in sides.iter_mut().zip([bar.theirs, bar.ours]) {
+                let x = place.unwrap_or(0) as f64;
+                push(side, &bar.series, Mark { x, y, size: 0 });
+            }
+        }
+        self.pair(label, sides, |title, series| Panel {
+            title,
+            kind: Kind::Bars(names.clone()),
+            x: groups.axis().into(),
+            y: y.into(),
+            series,
+        })
+    }
+
+    /// Theirs and ours against the pixels of viewports, as multiples of the smallest one's.
+    pub fn growth(&self, label: &str, y: &str) -> [Panel; 2] {
+        let mut sides: [Vec<Series>; 2] = Default::default();
+        let mut first: Option<&Bar> = None;
+        for group in self.groups() {
+            for (_, bar) in self.bars.iter().filter(|(known, _)| *known == group) {
+                let first = first.get_or_insert(bar);
+                let times = [bar.theirs / first.theirs, bar.ours / first.ours];
+                for (side, y) in sides.iter_mut().zip(times) {
+                    let x = pixels(group) as f64;
+                    push(side, &bar.series, Mark { x, y, size: 0 });
+                }
+            }
+        }
+        self.pair(label, sides, |title, series| Panel {
+            title,
+            kind: Kind::Growth,
+            x: "pixels".into(),
+            y: y.into(),
+            series,
+        })
+    }
+
+    /// Viewports or map sizes with a bar, the smallest first.
+    fn groups(&self) -> Vec<[u32; 2]> {
+        let groups = self.bars.iter().map(|(group, _)| (pixels(*group), *group));
+        let groups: BTreeSet<(u64, [u32; 2])> = groups.collect();
+        groups.into_iter().map(|(_, group)| group).collect()
+    }
+
+    fn pair(
+        &self,
+        label: &str,
+        sides: [Vec<Series>; 2],
+        panel: impl Fn(String, Vec<Series>) -> Panel,
+    ) -> [Panel; 2] {
+        let Self {
+            scene, view, place, ..
+        } = self;
+        let title = |whose: &str| format!("{whose}: {scene}, {view}{place}");
+        let [theirs, ours] = sides;
+        [panel(title(label), theirs), panel(title("ours"), ours)]
+    }
+}
+
+fn pixels([width, height]: [u32; 2]) -> u64 {
+    u64::from(width) * u64::from(height)
+}

@@ -1,0 +1,223 @@
+//! Results as tables for a terminal: speed beside error, then the time of each pass.
+
+use crate::graded::{area_reference, by_answer, graded};
+use crate::notes::{
+    band_warning, certain_wrong, path_costs, remembering, surface_warning, times_missing,
+};
+use crate::table::table;
+use skiagraph_compare::records::columns::{self, Column, are_paths};
+use skiagraph_compare::records::results::{Results, Run};
+use skiagraph_compare::records::statistics::Spread;
+use skiagraph_compare::wording::{frames, ms, percent, size, thousands};
+use std::collections::BTreeSet;
+
+/// A heading and both tables for the runs of one view and viewport, which must stand together in
+/// `runs`.
+pub fn group(results: &Results, runs: &[Run]) -> String {
+    let Some(first) = runs.first() else {
+        return String::new();
+    };
+    let mut text = heading(results, first, runs);
+    let tables = by_answer(runs).into_iter().map(|(title, runs)| {
+        let title = title.map_or(String::new(), |title| format!("{title}\n"));
+        format!("{title}{}\n", comparison(results, &runs))
+    });
+    text += &tables.collect::<Vec<_>>().join("\n");
+    if runs.iter().any(|run| run.measured.is_some()) {
+        text += &format!(
+            "\nEach pass, ms: least, median and 95th percentile of {}\n",
+            timed_frames(results, runs)
+        );
+        text.push_str(&passes(runs));
+        text.push('\n');
+    }
+    for (index, note) in footnotes(results, runs).iter().enumerate() {
+        text.push_str(if index == 0 { "\n" } else { "" });
+        text.push_str(note);
+        text.push('\n');
+    }
+    text
+}
+
+fn heading(results: &Results, run: &Run, runs: &[Run]) -> String {
+    let Run {
+        view,
+        viewport,
+        pixels,
+        band,
+        area,
+        ..
+    } = run;
+    let what = if are_paths(runs) {
+        format!("path {view}, counts of all its frames together")
+    } else {
+        format!("view {view}")
+    };
+    let title = format!("{} · {what} · {}", results.scene, size(*viewport));
+    let mut lines = vec![
+        results.adapter.to_string(),
+        format!(
+            "medians of {} after {} to warm up · oracle {}",
+            timed_frames(results, runs),
+            results.warmup,
+            results.oracle
+        ),
+        format!(
+            "facing the light (PFL) {} = lit {} + shadow {} · facing away {} · background {}",
+            thousands(pixels.facing_light),
+            thousands(pixels.lit),
+            thousands(pixels.shadow),
+            thousands(pixels.facing_away),
+            thousands(pixels.background)
+        ),
+    ];
+    lines.push(match area {
+        Some(area) => area_reference(area, *band),
+        None => format!(
+            "in the band, where the answer hangs on rounding: {} ({} of PFL)",
+            thousands(*band),
+            percent(*band, pixels.facing_light)
+        ),
+    });
+    lines.extend(band_warning(run));
+    lines.extend(surface_warning(run));
+    format!("{title}\n{}\n", lines.join("\n"))
+}
+
+/// How many frames were timed of each run: `10 frames`; of paths of several lengths `9 to 25
+/// frames`.
+pub fn timed_frames<'a>(results: &Results, runs: impl IntoIterator<Item = &'a Run>) -> String {
+    let measured = runs.into_iter().filter_map(|run| run.measured.as_ref());
+    let counts = measured.map(|of| {
+        let path = of.sequence.as_ref();
+        path.map_or(results.frames, |path| path.frames.len() as u32)
+    });
+    let counts: BTreeSet<u32> = counts.collect();
+    let least = counts.first().copied().unwrap_or(results.frames);
+    match counts.last() {
+        Some(most) if *most != least => format!("{least} to {}", frames(*most)),
+        _ => frames(least),
+    }
+}
+
+fn comparison(results: &Results, runs: &[&Run]) -> String {
+    let is_hard = runs.iter().all(|run| run.is_hard());
+    let columns = columns::terminal(is_hard, runs);
+    let first = columns.iter().position(Column::is_measured);
+    let row = |run: &Run| {
+        let cells = columns
+            .iter()
+            .map(|column| column.cell(results, run, percent));
+        let mut row: Vec<String> = cells.collect();
+        if let (None, Some(first)) = (&run.measured, first) {
+            row[first] = "n/a".into();
+        }
+        row
+    };
+    let heads = columns.iter().map(|column| column.head);
+    table(heads, 1, runs.iter().copied().map(row))
+}
+
+fn passes(runs: &[Run]) -> String {
+    let mut rows = Vec::new();
+    for run in runs {
+        let Some(measured) = &run.measured else {
+            continue;
+        };
+        let whole = ("whole frame", measured.frame.gpu_ms, None);
+        let cached = measured.cached.as_ref();
+        let cached = cached.map(|cached| ("cached frame", cached.frame.gpu_ms, None));
+        let every = measured
+            .sequence
+            .as_ref()
+            .and_then(|of| of.every_pass.as_ref());
+        let every = every.map(|times| ("with every pass", times.gpu_ms, None));
+        let passes = measured.passes.iter();
+        let passes = passes.map(|pass| (pass.name.as_str(), pass.gpu_ms, Some(pass.cpu_ms)));
+        for (index, (name, gpu, cpu)) in
+            passes.chain([whole]).chain(cached).chain(every).enumerate()
+        {
+            let gpu = |pick: fn(Spread) -> f64| gpu.map_or("–".into(), |spread| ms(pick(spread)));
+            rows.push(vec![
+                // The eye finds groups by their first line.
+                Some(run.method_label())
+                    .filter(|_| index == 0)
+                    .unwrap_or_default(),
+                name.into(),
+                gpu(|spread| spread.min),
+                gpu(|spread| spread.median),
+                gpu(|spread| spread.p95),
+                cpu.map_or(String::new(), |spread| ms(spread.median)),
+            ]);
+        }
+    }
+    let heads = "method|pass|GPU min|GPU median|GPU p95|CPU median".split('|');
+    table(heads, 2, rows)
+}
+
+fn footnotes(results: &Results, runs: &[Run]) -> Vec<String> {
+    let mut notes = certain_wrong(runs);
+    notes.extend(graded(runs));
+    notes.extend(runs.iter().filter_map(remembering));
+    notes.extend(runs.iter().flat_map(path_costs));
+    match &results.adapter.gpu_unavailable {
+        Some(reason) => notes.push(format!("No GPU times: {reason}")),
+        None => notes.extend(runs.iter().filter_map(times_missing)),
+    }
+    notes.extend(runs.iter().filter_map(|run| {
+        let cached = run.measured.as_ref()?.cached.as_ref()?;
+        Some(format!(
+            "cached frame of {}: only the camera moved; it skips {}",
+            run.method_label(),
+            cached.skipped.join(", ")
+        ))
+    }));
+    notes.extend(runs.iter().filter_map(|run| {
+        Some(format!(
+            "{} is unavailable: {}",
+            run.preset,
+            run.unavailable.as_ref()?
+        ))
+    }));
+    notes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::samples::results as sample;
+
+    #[test]
+    fn the_terminal_shows_speed_beside_error() {
+        let mut results = sample();
+        results.adapter.gpu_unavailable = Some("the driver's timestamps are not true".into());
+        insta::assert_snapshot!(group(&results, &results.runs));
+    }
+
+    #[test]
+    fn a_band_of_more_than_a_thousandth_is_warned_of() {
+        let mut results = sample();
+        let warned = |results: &Results| {
+            group(results, &results.runs).contains("the band is larger than 0.1 % of PFL")
+        };
+        for (band, expected) in [(0, false), (100, false), (101, true)] {
+            results.runs.iter_mut().for_each(|run| run.band = band);
+            assert_eq!(warned(&results), expected, "{band} of 100,000");
+        }
+    }
+
+    #[test]
+    fn a_pass_without_a_gpu_time_is_named() {
+        let mut results = sample();
+        let passes = |run: &mut Run| run.measured.as_mut().map(|m| m.passes[0].gpu_ms = None);
+        passes(&mut results.runs[0]);
+        let text = group(&results, &results.runs);
+        for note in [
+            "nsm 1024: the whole frame is timed over its other passes, there are no GPU times of \
+             gbuffer\n",
+            "rt: no GPU time of the whole frame: there are none of gbuffer, trace_rays\n",
+        ] {
+            assert!(text.contains(note), "{text}");
+        }
+    }
+}

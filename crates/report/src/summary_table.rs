@@ -1,0 +1,487 @@
+//! The answer to "which one shall I take", as a table with its verdict: a row per method and
+//! setting over all views, the fastest first.
+
+use crate::notes::{
+    band_warning, blocked_by, path_costs, remembering, surface_warning, times_missing,
+};
+use crate::summary::{Row, by_wall, rows};
+use crate::verdict::{Verdict, verdict};
+use crate::{graded, results_table::timed_frames, table::table};
+use skiagraph_compare::records::columns::are_paths;
+use skiagraph_compare::records::results::{Promise, Results, Run};
+use skiagraph_compare::wording::{bytes, ms, percent, plural, size, thousands};
+use skiagraph_reference::BlockerCounts;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// All that was measured in one viewport.
+pub struct Summary<'a> {
+    results: &'a Results,
+    /// Its size in pixels.
+    pub viewport: [u32; 2],
+    runs: Vec<&'a Run>,
+    /// Rows of hard answers to hard light and of all others, each by itself.
+    pub groups: Vec<Group<'a>>,
+}
+
+/// Rows that are judged alike.
+pub struct Group<'a> {
+    /// By wrong pixels, not by how far shares of light are off.
+    pub is_hard: bool,
+    /// The fastest first.
+    pub rows: Vec<Row<'a>>,
+}
+
+/// One summary per viewport, in the order of the results.
+pub fn summaries(results: &Results) -> Vec<Summary<'_>> {
+    let mut viewports: Vec<[u32; 2]> = Vec::new();
+    for run in &results.runs {
+        if !viewports.contains(&run.viewport) {
+            viewports.push(run.viewport);
+        }
+    }
+    let all = viewports.into_iter();
+    all.map(|viewport| Summary::new(results, viewport))
+        .collect()
+}
+
+/// Beginning of lines that warn; the page makes them stand out by it.
+const WARNING: &str = "warning: ";
+
+/// Cell of a row that could not run.
+const NOT_THERE: &str = "n/a";
+
+impl<'a> Summary<'a> {
+    fn new(results: &'a Results, viewport: [u32; 2]) -> Self {
+        let runs = results.runs.iter();
+        let runs: Vec<&Run> = runs.filter(|run| run.viewport == viewport).collect();
+        let (hard, graded): (Vec<&Run>, Vec<&Run>) = runs.iter().partition(|run| run.is_hard());
+        let groups = [(true, hard), (false, graded)].into_iter();
+        let group = |(is_hard, runs): (bool, Vec<&'a Run>)| Group {
+            is_hard,
+            rows: rows(runs, viewport),
+        };
+        Self {
+            results,
+            viewport,
+            runs,
+            groups: groups
+                .filter(|(_, runs)| !runs.is_empty())
+                .map(group)
+                .collect(),
+        }
+    }
+
+    fn views(&self) -> BTreeSet<&str> {
+        self.runs.iter().map(|run| run.view.as_str()).collect()
+    }
+
+    /// `view main`, `path walk, 25 frames`, `9 views`.
+    pub fn what(&self) -> String {
+        let views = self.views();
+        let paths = are_paths(self.runs.iter().copied());
+        match (views.first(), views.len()) {
+            (Some(view), 1) if paths => {
+                let frames = timed_frames(self.results, self.runs.iter().copied());
+                format!("path {view}, {frames}")
+            }
+            (Some(view), 1) => format!("view {view}"),
+            (_, count) => plural(count, if paths { "path" } else { "view" }),
+        }
+    }
+
+    /// For a terminal.
+    pub fn text(&self) -> String {
+        let mut lines = vec![format!(
+            "{} · {} · {}",
+            self.results.scene,
+            self.what(),
+            size(self.viewport)
+        )];
+        lines.extend(self.conditions());
+        for group in &self.groups {
+            let (heads, cells) = self.cells(group);
+            if self.groups.len() > 1 {
+                lines.push(String::new());
+                lines.push(group.title().into());
+            }
+            lines.push(table(heads, 1, cells));
+            lines.extend(group.verdict().sentences);
+        }
+        lines.extend(self.notes());
+        lines.join("\n") + "\n"
+    }
+
+    /// For a document.
+    pub fn markdown(&self) -> String {
+        let mut text = format!("\n## In short: {}, {}\n", self.what(), size(self.viewport));
+        for group in &self.groups {
+            let (heads, cells) = self.cells(group);
+            let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
+            let heads: Vec<String> = heads.into_iter().map(Into::into).collect();
+            let rule: Vec<String> = heads.iter().map(|_| "---".into()).collect();
+            text += &format!("\n{}{}", line(&heads), line(&rule));
+            text.extend(cells.iter().map(|cells| line(cells)));
+            let sentences = group.verdict().sentences;
+            if !sentences.is_empty() {
+                text += &format!("\n{}\n", sentences.join("\n"));
+            }
+        }
+        text
+    }
+
+    /// Under which conditions all this was measured, a line each.
+    pub fn conditions(&self) -> Vec<String> {
+        let views = self.views();
+        let mut seen = BTreeSet::new();
+        let each = self.runs.iter().filter(|run| seen.insert(&run.view));
+        let each: Vec<&&Run> = each.collect();
+        let sum = |of: fn(&Run) -> u64| each.iter().map(|run| of(run)).sum::<u64>();
+        let (facing, band) = (sum(|run| run.pixels.facing_light), sum(|run| run.band));
+        let mean = match views.len() {
+            1 => "",
+            _ => ", means of the views",
+        };
+        let by_wall = self.groups.iter().any(|group| by_wall(&group.rows));
+        let clock = if by_wall { "wall clock" } else { "GPU" };
+        let mut lines = vec![
+            self.results.adapter.to_string(),
+            format!(
+                "times: {clock}, medians of {} after {} to warm up{mean} · oracle {}",
+                timed_frames(self.results, self.runs.iter().copied()),
+                self.results.warmup,
+                self.results.oracle
+            ),
+            format!(
+                "facing the light {} = lit {} + shadow {} · in the band, where the answer hangs on \
+                 rounding, {} ({})",
+                thousands(facing),
+                thousands(sum(|run| run.pixels.lit)),
+                thousands(sum(|run| run.pixels.shadow)),
+                thousands(band),
+                percent(band, facing)
+            ),
+        ];
+        let warned = each.iter();
+        lines.extend(warned.filter_map(|run| Some(self.named(run, band_warning(run)?))));
+        lines.extend(each.iter().filter_map(|run| {
+            let area = graded::area_reference(&run.area?, run.band);
+            Some(self.named(run, area))
+        }));
+        lines
+    }
+
+    fn cells(&self, group: &Group) -> (Vec<&'static str>, Vec<Vec<String>>) {
+        let are_paths = are_paths(self.runs.iter().copied());
+        let by_wall = by_wall(&group.rows);
+        let mut heads = vec!["method"];
+        heads.extend(if group.is_hard {
+            &["wrong outside band", "%", "in band"][..]
+        } else {
+            &["RMSE"][..]
+        });
+        if are_paths {
+            heads.extend(["worst frame", "shimmer"]);
+        }
+        heads.extend(["frame ms", "map kept ms", "rays", "memory"]);
+        let best = group.verdict().fastest_exact;
+        let views = self.views().len();
+        let row = |(index, row): (usize, &Row)| {
+            let mark = if best == Some(index) { " *" } else { "" };
+            let few = match row.views() {
+                some if some == views || some == 0 => String::new(),
+                some => format!(" ({some} of {})", plural(views, "view")),
+            };
+            let mut cells = vec![format!("{}{few}{mark}", row.label)];
+            if row.views() == 0 {
+                cells.push(NOT_THERE.into());
+                cells.resize(heads.len(), "–".into());
+                return cells;
+            }
+            let wrong = row.wrong();
+            if group.is_hard {
+                cells.extend([
+                    thousands(wrong.outside_band),
+                    percent(wrong.outside_band, wrong.facing_light),
+                    thousands(wrong.in_band),
+                ])
+            } else {
+                cells.push(or_dash(row.rmse(), |rmse| format!("{rmse:.5}")))
+            }
+            if are_paths {
+                cells.push(or_dash(row.worst_frame(), |frame| {
+                    if group.is_hard {
+                        percent(frame.wrong, frame.facing_light)
+                    } else {
+                        format!("{:.5}", frame.error())
+                    }
+                }));
+                let shimmer = row.shimmer();
+                cells.push(or_dash(shimmer, |part| percent(part.count, part.of)));
+            }
+            cells.push(or_dash(row.frame_ms(by_wall), ms));
+            cells.push(or_dash(row.kept_ms(by_wall), ms));
+            cells.push(or_dash(row.rays(), |rays| thousands(rays.round() as u64)));
+            cells.push(bytes(row.bytes()));
+            cells
+        };
+        let cells = group.rows.iter().enumerate().map(row).collect();
+        (heads, cells)
+    }
+
+    /// Lists all further remarks, a line each.
+    pub fn notes(&self) -> Vec<String> {
+        let mut notes = Vec::new();
+        if self
+            .groups
+            .iter()
+            .any(|group| group.verdict().fastest_exact.is_some())
+        {
+            notes.push("* the fastest with no wrong pixel outside the band".into());
+        }
+        notes.extend(self.open_parts());
+        notes.extend(self.wrong_surfaces());
+        let all = self.groups.iter().flat_map(|group| &group.rows);
+        notes.extend(all.clone().filter_map(|row| {
+            let why = row.unavailable?;
+            Some(format!("{} is unavailable: {why}", row.label))
+        }));
+        notes.extend(self.certain_wrong());
+        let told = self.runs.iter().copied();
+        notes.extend(
+            told.clone()
+                .filter_map(|run| Some(self.named(run, graded::no_shares(run)?))),
+        );
+        notes.extend(
+            told.clone()
+                .filter_map(|run| Some(self.named(run, remembering(run)?))),
+        );
+        notes.extend(told.clone().flat_map(|run| {
+            let costs = path_costs(run).into_iter();
+            costs.map(move |note| self.named(run, note))
+        }));
+        match &self.results.adapter.gpu_unavailable {
+            Some(reason) => notes.push(format!("No GPU times: {reason}")),
+            None => notes.extend(told.filter_map(|run| Some(self.named(run, times_missing(run)?)))),
+        }
+        notes
+    }
+
+    /// A line with the view or path that it is of, where there are several.
+    fn named(&self, run: &Run, line: String) -> String {
+        match self.views().len() {
+            1 => line,
+            _ => match line.strip_prefix(WARNING) {
+                Some(line) => format!("{WARNING}{}: {line}", run.view),
+                None => format!("{}: {line}", run.view),
+            },
+        }
+    }
+
+    /// That promises end at open parts, and whose.
+    fn open_parts(&self) -> Option<String> {
+        let parts = self.results.scene.parts.filter(|parts| parts.open > 0)?;
+        let closed_only = |run: &&&Run| {
+            matches!(
+                run.promise,
+                Some(Promise {
+                    closed_only: true,
+                    ..
+                })
+            )
+        };
+        let methods: BTreeSet<String> = self
+            .runs
+            .iter()
+            .filter(closed_only)
+            .map(|run| format!("`{}`", run.preset))
+            .collect();
+        let methods: Vec<String> = methods.into_iter().collect();
+        let share = format!(
+            "{} of the mesh's {} are open ({} of its triangles)",
+            thousands(parts.open),
+            match parts.all {
+                1 => "1 part".into(),
+                all => format!("{} parts", thousands(all)),
+            },
+            percent(parts.open_triangles, self.results.scene.triangles)
+        );
+        (!methods.is_empty()).then(|| {
+            format!(
+                "{share}: what {} promise{} ends at shadows of these, unless --set cull=none",
+                methods.join(", "),
+                if methods.len() == 1 { "s" } else { "" }
+            )
+        })
+    }
+
+    /// Says of each view that pixels show a surface that is not seen there.
+    fn wrong_surfaces(&self) -> Vec<String> {
+        let views = self.views();
+        let mut told = BTreeSet::new();
+        let each = self.runs.iter().filter(|run| told.insert(&run.view));
+        let notes = each.filter_map(|run| Some((run, surface_warning(run)?)));
+        notes
+            .map(|(run, note)| match views.len() {
+                1 => note,
+                _ => format!("{}: {note}", run.view),
+            })
+            .collect()
+    }
+
+    /// Says what blocks the pixels of which a method was certain and wrong, over all views.
+    fn certain_wrong(&self) -> Vec<String> {
+        let mut sums: BTreeMap<String, (u64, Option<BlockerCounts>)> = BTreeMap::new();
+        for run in self.runs.iter().filter(|run| run.is_hard()) {
+            let measured = run.measured.as_ref();
+            let Some(of) = measured.filter(|of| of.wrong.certain > 0) else {
+                continue;
+            };
+            let sum = sums
+                .entry(run.method_label())
+                .or_insert((0, Some(Default::default())));
+            sum.0 += of.wrong.certain;
+            sum.1 = sum
+                .1
+                .zip(of.certain_wrong_blockers)
+                .map(|(one, other)| BlockerCounts {
+                    open_part: one.open_part + other.open_part,
+                    closed_part: one.closed_part + other.closed_part,
+                    none: one.none + other.none,
+                });
+        }
+        let line =
+            |(label, (wrong, by)): (String, _)| format!("{label}: {}", blocked_by(wrong, by));
+        sums.into_iter().map(line).collect()
+    }
+}
+
+impl Group<'_> {
+    /// Title: what is judged against what.
+    pub fn title(&self) -> &'static str {
+        if self.is_hard {
+            "Hard answers against the hard reference"
+        } else {
+            "Graded answers against the hard reference"
+        }
+    }
+
+    /// Which of its rows to take.
+    pub fn verdict(&self) -> Verdict {
+        verdict(&self.rows)
+    }
+}
+
+fn or_dash<T>(value: Option<T>, text: impl Fn(T) -> String) -> String {
+    value.map_or("–".into(), text)
+}
+
+/// The time of each pass in each viewport and map, a table per method: medians of the GPU's ms,
+/// means where there are several views.
+pub fn passes(results: &Results) -> String {
+    let mut methods: Vec<String> = Vec::new();
+    for run in results.runs.iter().filter(|run| run.measured.is_some()) {
+        let name = run.preset.clone();
+        if !methods.contains(&name) {
+            methods.push(name);
+        }
+    }
+    let tables = methods.iter().map(|method| {
+        let runs = results.runs.iter().filter(|run| run.preset == *method);
+        matrix(method, &runs.collect::<Vec<_>>())
+    });
+    tables.collect::<Vec<_>>().join("\n")
+}
+
+fn matrix(method: &str, runs: &[&Run]) -> String {
+    let mut columns: Vec<([u32; 2], Option<u32>)> = Vec::new();
+    let mut passes: Vec<&str> = Vec::new();
+    // A pass's place, and the sum and number of its times, by pass and column.
+    let mut times: BTreeMap<(usize, usize), (f64, u32)> = BTreeMap::new();
+    let place = |list: &mut Vec<&'_ str>, name| list.iter().position(|known| *known == name);
+    for run in runs {
+        let Some(measured) = &run.measured else {
+            continue;
+        };
+        let cell = (run.viewport, run.map_size);
+        let column = columns.iter().position(|known| *known == cell);
+        let column = column.unwrap_or_else(|| {
+            columns.push(cell);
+            columns.len() - 1
+        });
+        for pass in &measured.passes {
+            let row = place(&mut passes, pass.name.as_str()).unwrap_or_else(|| {
+                passes.push(&pass.name);
+                passes.len() - 1
+            });
+            if let Some(gpu) = pass.gpu_ms {
+                let (sum, count) = times.entry((row, column)).or_default();
+                *sum += gpu.median;
+                *count += 1;
+            }
+        }
+    }
+    let heads: Vec<String> = columns
+        .iter()
+        .map(|(viewport, map)| match map {
+            Some(map) => format!("{}\nmap {map}", size(*viewport)),
+            None => size(*viewport),
+        })
+        .collect();
+    let first = format!("{method}, GPU ms");
+    let heads = [first.as_str()]
+        .into_iter()
+        .chain(heads.iter().map(String::as_str));
+    let rows = passes.iter().enumerate().map(|(row, name)| {
+        let cell = |column| {
+            let time = times.get(&(row, column));
+            or_dash(time, |(sum, count)| ms(sum / f64::from(*count)))
+        };
+        let cells = (0..columns.len()).map(cell);
+        [name.to_string()].into_iter().chain(cells).collect()
+    });
+    table(heads, 1, rows)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::samples::results as sample;
+
+    /// `sample()` with a second view, and with a promise that ends at open parts.
+    fn two_views() -> Results {
+        let mut results = sample();
+        results.runs[0].promise = Some(Promise {
+            of: "exact".into(),
+            closed_only: true,
+        });
+        results.runs.pop();
+        let mut others = results.runs.clone();
+        for run in &mut others {
+            run.view = "other".into();
+        }
+        // The second method was not run on it.
+        others.truncate(1);
+        results.runs.extend(others);
+        results
+    }
+
+    #[test]
+    fn a_row_per_method_over_all_views() {
+        insta::assert_snapshot!(summaries(&two_views())[0].text());
+    }
+
+    #[test]
+    fn a_document_ends_with_it() {
+        insta::assert_snapshot!(summaries(&sample())[0].markdown());
+    }
+
+    #[test]
+    fn a_pass_has_a_column_for_each_size() {
+        let mut results = sample();
+        let mut larger = results.runs[0].clone();
+        larger.map_size = Some(2048);
+        larger.measured.as_mut().unwrap().passes.pop();
+        results.runs.push(larger);
+        insta::assert_snapshot!(passes(&results));
+    }
+}

@@ -1,0 +1,239 @@
+//! The thread of the reference: the oracle's answer to what is shown, of every ninth pixel of each
+//! row and column first, then of every third, then of all. What is traced is exact for its pixels.
+
+use crate::desired_state::FrameSnapshot;
+use glam::DVec2;
+use skiagraph_reference::{Error, GroundTruth, Oracle, OracleMode, Progress};
+use skiagraph_scene::{Camera, LightKind, Scene};
+use std::{
+    ops::ControlFlow,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+        mpsc,
+    },
+    thread,
+};
+
+/// Steps from pixel to pixel, one answer after the other. They are odd, so that the middle of a
+/// large pixel is that of a small one.
+pub const STRIDES: [u32; 3] = [9, 3, 1];
+
+/// Shadow rays per pixel to a light that has an extent: a live picture has no time for more.
+pub const SAMPLES: u32 = 64;
+
+/// Question to the oracle.
+#[derive(Clone)]
+pub struct Question {
+    scene: Arc<Scene>,
+    camera: Camera,
+    light: LightKind,
+    primitives: Arc<Vec<u32>>,
+    /// Raised when the answer is not wanted any more.
+    outdated: Arc<AtomicBool>,
+}
+
+impl Question {
+    /// About a frame.
+    pub fn new(snapshot: &FrameSnapshot) -> Self {
+        Self {
+            scene: snapshot.scene.clone(),
+            camera: snapshot.camera,
+            light: snapshot.light,
+            primitives: snapshot.primitives.clone(),
+            outdated: Arc::default(),
+        }
+    }
+
+    /// True if it asks for the same.
+    pub fn is_about(&self, snapshot: &FrameSnapshot) -> bool {
+        Arc::ptr_eq(&self.scene, &snapshot.scene)
+            && (self.camera, self.light) == (snapshot.camera, snapshot.light)
+            && self.primitives == snapshot.primitives
+    }
+}
+
+/// An answer.
+pub struct Answer {
+    /// To what.
+    pub question: Question,
+    /// It holds for one pixel of so many in each row and column.
+    pub stride: u32,
+    /// Ground truth of those pixels.
+    pub ground_truth: Result<GroundTruth, String>,
+}
+
+/// Asks the thread.
+pub struct GroundTruthThread {
+    questions: mpsc::Sender<Question>,
+    last: Option<Question>,
+}
+
+impl GroundTruthThread {
+    /// Starts the thread; it ends with this.
+    ///
+    /// # Errors
+    /// The system gives no thread.
+    pub fn start(tell: impl Fn(Answer) + Send + 'static) -> std::io::Result<Self> {
+        let (questions, asked) = mpsc::channel();
+        thread::Builder::new()
+            .name("reference".into())
+            .spawn(move || work(&asked, &tell))?;
+        Ok(Self {
+            questions,
+            last: None,
+        })
+    }
+
+    /// Asks about a frame, if that was not the last question; what was asked before is given up.
+    pub fn ask(&mut self, snapshot: &FrameSnapshot) {
+        if self
+            .last
+            .as_ref()
+            .is_some_and(|last| last.is_about(snapshot))
+        {
+            return;
+        }
+        self.forget();
+        let question = Question::new(snapshot);
+        // The thread ends before this only by a panic, which has been printed.
+        let _ = self.questions.send(question.clone());
+        self.last = Some(question);
+    }
+
+    /// Gives up what was asked last.
+    pub fn forget(&mut self) {
+        if let Some(last) = self.last.take() {
+            last.outdated.store(true, Ordering::Relaxed);
+        }
+    }
+}
+
+impl Drop for GroundTruthThread {
+    fn drop(&mut self) {
+        self.forget();
+    }
+}
+
+fn work(asked: &mpsc::Receiver<Question>, tell: &impl Fn(Answer)) {
+    let mut next = asked.recv().ok();
+    while let Some(first) = next.take() {
+        let scene = first.scene.clone();
+        // The hierarchy is built once for a scene.
+        let oracle = Oracle::new(&scene.mesh);
+        let mut question = first;
+        loop {
+            if Arc::ptr_eq(&question.scene, &scene) {
+                answer(&oracle, &question, tell);
+            } else {
+                next = Some(question);
+                break;
+            }
+            match asked.recv() {
+                Ok(another) => question = asked.try_iter().last().unwrap_or(another),
+                Err(_) => return,
+            }
+        }
+    }
+}
+
+fn answer(oracle: &Oracle, question: &Question, tell: &impl Fn(Answer)) {
+    let _ = STRIDES.into_iter().try_for_each(|stride| {
+        let Some((camera, primitives)) = thinned(&question.camera, &question.primitives, stride)
+        else {
+            return ControlFlow::Continue(());
+        };
+        let progress = Progress {
+            rows_done: &|_| (),
+            interrupted: &question.outdated,
+        };
+        let how = (OracleMode::Exact, SAMPLES);
+        let ground_truth = oracle.ground_truth(&camera, question.light, &primitives, how, progress);
+        if matches!(ground_truth, Err(Error::Interrupted)) {
+            return ControlFlow::Break(());
+        }
+        let question = question.clone();
+        tell(Answer {
+            question,
+            stride,
+            ground_truth: ground_truth.map_err(|error| error.to_string()),
+        });
+        ControlFlow::Continue(())
+    });
+}
+
+/// How many pixels of a row or column are left; the middle one of each `stride` is.
+pub fn thinned_size(size: [u32; 2], stride: u32) -> [u32; 2] {
+    size.map(|edge| edge / stride)
+}
+
+/// One value of `stride` in each row and column.
+pub fn thin<T: Copy>(values: &[T], size: [u32; 2], stride: u32) -> Vec<T> {
+    let [width, height] = thinned_size(size, stride).map(|edge| edge as usize);
+    let place = |at: usize| at * stride as usize + stride as usize / 2;
+    let rows = (0..height).map(|y| place(y) * size[0] as usize);
+    rows.flat_map(|row| (0..width).map(move |x| row + place(x)))
+        .map(|index| values[index])
+        .collect()
+}
+
+/// The camera whose pixels have the centres of those that are left, and their primitives; `None`
+/// where none are left.
+fn thinned(camera: &Camera, primitives: &[u32], stride: u32) -> Option<(Camera, Vec<u32>)> {
+    let size = camera.viewport;
+    let viewport = thinned_size(size, stride);
+    if viewport.contains(&0) {
+        return None;
+    }
+    let share = |axis: usize| f64::from(viewport[axis] * stride) / f64::from(size[axis]);
+    // The cut at the right and below moves the picture's middle.
+    let cut = |axis: usize| f64::from(viewport[axis] * stride) - f64::from(size[axis]);
+    let jitter = (camera.jitter * 2.0 + DVec2::new(cut(0), cut(1))) / (2.0 * f64::from(stride));
+    let camera = Camera {
+        viewport,
+        half_width: camera.half_width * share(0),
+        half_height: camera.half_height * share(1),
+        jitter,
+        ..*camera
+    };
+    Some((camera, thin(primitives, size, stride)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+    use skiagraph_scene::View;
+
+    #[test]
+    fn thinned_pixels_look_where_theirs_did() {
+        let view = View {
+            name: "main".into(),
+            eye: DVec3::new(1.0, 2.0, 3.0),
+            direction: DVec3::new(0.3, -0.2, -1.0),
+            up: DVec3::Y,
+            fov_y_degrees: 50.0,
+            near: 0.1,
+            far: 100.0,
+            light: None,
+        };
+        for size in [[64, 48], [27, 18], [61, 43]] {
+            let whole = view.camera(size);
+            let numbers: Vec<u32> = (0..size[0] * size[1]).collect();
+            for stride in STRIDES {
+                let (camera, kept) = thinned(&whole, &numbers, stride).unwrap();
+                let [width, height] = camera.viewport;
+                for (x, y) in [(0, 0), (width - 1, height - 1), (width / 2, 0)] {
+                    let number = kept[(y * width + x) as usize];
+                    let pixel = whole.pixel_direction(number % size[0], number / size[0]);
+                    let thin = camera.pixel_direction(x, y);
+                    assert!(
+                        thin.distance(pixel) < 1e-12,
+                        "{size:?} / {stride} at {x}, {y}"
+                    );
+                }
+            }
+        }
+        assert!(thinned(&view.camera([8, 8]), &[0; 64], 9).is_none());
+    }
+}

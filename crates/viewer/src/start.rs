@@ -1,0 +1,169 @@
+//! From what is asked for to running threads and the state that shows what they do.
+
+use crate::desired_state::{DesiredMethod, DesiredState};
+use crate::ground_truth::GroundTruthThread;
+use crate::state::{Channels, Choices, Viewer};
+use crate::worker::{Command, LoadScene, Worker};
+use skiagraph_compare::error::CompareError;
+use skiagraph_compare::files::watch::{self, Watch};
+use skiagraph_compare::graphs::argument::{Assignment, MethodArgument};
+use skiagraph_compare::graphs::{method, openings, preset};
+use skiagraph_compare::measuring::device::{self, GpuRequest};
+use skiagraph_compare::sink::Sink;
+use skiagraph_gpu::timing::Trust;
+use skiagraph_scene::SceneLibrary;
+use std::{
+    collections::BTreeSet,
+    sync::{Arc, mpsc},
+    thread,
+};
+
+/// Wakes the window when something has happened.
+pub type Wake = Arc<dyn Fn() + Send + Sync>;
+
+/// The methods and the scene that the window shows at first.
+pub struct Opening {
+    /// One or two methods as `compare` names them.
+    pub methods: Vec<String>,
+    /// Params that are set of both.
+    pub params: Vec<Assignment>,
+    /// Size of their shadow maps, texels.
+    pub map_size: Option<u32>,
+    /// Pixels that they run in.
+    pub size: [u32; 2],
+    /// The scene, as [`load_scene`](Self::load_scene) knows it.
+    pub scene: String,
+    /// Loads this scene, and others that are chosen in the window.
+    pub load_scene: LoadScene,
+    /// The GPU to open.
+    pub gpu: GpuRequest,
+}
+
+/// Starts the threads, and makes the state that shows what they do. The methods that are asked for
+/// need not be faultless: what is wrong with them is shown.
+///
+/// # Errors
+/// No GPU, a method that there is not, a param that it has not.
+pub fn start(
+    opening: Opening,
+    sink: &dyn Sink,
+    wake: Wake,
+) -> Result<(Viewer, Option<Watch>), CompareError> {
+    let methods = desired_methods(&opening, sink)?;
+    let opened = device::open(&opening.gpu, [])?;
+    let choices = choices(&opening, &opened, sink);
+    let (commands, command_receiver) = mpsc::channel();
+    let (tell, events) = mpsc::channel();
+    let woken = Arc::clone(&wake);
+    // A failed send is passed over: the window that no longer listens is about to end.
+    let tell = move |event| {
+        let _ = tell.send(event);
+        woken();
+    };
+    let worker = Worker::new(
+        opened,
+        (opening.gpu, opening.load_scene),
+        Box::new(preset::sources(sink)),
+        Box::new(tell),
+    );
+    let failed = |error: std::io::Error| CompareError::Input(format!("no thread: {error}"));
+    thread::Builder::new()
+        .name("methods".into())
+        .spawn(move || worker.work(&command_receiver))
+        .map_err(failed)?;
+    let (tell, answers) = mpsc::channel();
+    let ground_truth = GroundTruthThread::start(move |answer| {
+        let _ = tell.send(answer);
+        wake();
+    });
+    let again = commands.clone();
+    let folders = watch::folders(
+        opening
+            .methods
+            .iter()
+            .map(|it| it.split('@').next().unwrap_or(it)),
+    );
+    let watch = Watch::start(&folders, move || {
+        let _ = again.send(Command::Reload);
+    });
+    let desired = DesiredState {
+        scene: opening.scene,
+        view: None,
+        size: opening.size,
+        methods,
+        all_passes: false,
+        frame: 0,
+    };
+    let channels = Channels {
+        commands,
+        events,
+        ground_truth: ground_truth.map_err(failed)?,
+        answers,
+    };
+    let mut viewer = Viewer::new(channels, choices, desired);
+    let watch = match watch {
+        Ok(watch) => Some(watch),
+        Err(error) => {
+            viewer.notify_error(&format!("changed files are not noticed: {error}"));
+            None
+        }
+    };
+    Ok((viewer, watch))
+}
+
+/// The methods that are asked for with their settings. Without settings they need not be read
+/// before the window is there, which then shows what is wrong with them.
+fn desired_methods(opening: &Opening, sink: &dyn Sink) -> Result<Vec<DesiredMethod>, CompareError> {
+    let sources = preset::sources(sink);
+    let (arguments, params) = openings::arguments(&opening.methods, &opening.params, &sources)?;
+    for argument in &arguments {
+        preset::locate(&MethodArgument::new(&argument.preset).preset, &sources)?;
+    }
+    let map_sizes: Vec<u32> = opening.map_size.into_iter().collect();
+    let own = arguments.iter().any(|argument| !argument.own.is_empty());
+    if !own && map_sizes.is_empty() && params.is_empty() {
+        let plain = arguments.into_iter().map(|argument| DesiredMethod {
+            name: argument.preset,
+            params: Default::default(),
+            material: None,
+        });
+        return Ok(plain.collect());
+    }
+    let (methods, params) = (&opening.methods, &opening.params);
+    let methods = method::load(methods, params, &map_sizes, &sources, preset::load_all)?;
+    if methods.len() > 2 {
+        return Err(CompareError::Request(format!(
+            "these are {} methods and settings; the window shows two side by side",
+            methods.len()
+        )));
+    }
+    let desired = methods.into_iter().map(|method| DesiredMethod {
+        name: method.preset.name.clone(),
+        params: method.params,
+        material: None,
+    });
+    Ok(desired.collect())
+}
+
+fn choices(opening: &Opening, gpu: &skiagraph_gpu::device::Gpu, sink: &dyn Sink) -> Choices {
+    let presets = preset::names(&preset::sources(sink));
+    let named = opening
+        .methods
+        .iter()
+        .map(|it| MethodArgument::new(it).preset);
+    let methods: BTreeSet<String> = presets.into_iter().chain(named).collect();
+    let listed = SceneLibrary::from_environment().list();
+    let listed = listed.into_iter().filter(|scene| scene.mesh_found);
+    let mut scenes: BTreeSet<String> = listed.map(|scene| scene.name).collect();
+    scenes.insert(opening.scene.clone());
+    let info = gpu.adapter.get_info();
+    let adapter = match device::timestamp_trust(gpu) {
+        Trust::Trusted => info.name,
+        Trust::Untrusted { reason } => format!("{}; no GPU times: {reason}", info.name),
+    };
+    Choices {
+        scenes: scenes.into_iter().collect(),
+        methods: methods.into_iter().collect(),
+        adapter,
+    }
+}

@@ -1,0 +1,295 @@
+//! The thread of the graphs: it loads scenes and methods, and runs a frame whenever the desired
+//! state changes. It has a device of its own, so that the window never waits for a method.
+
+use crate::desired_state::{DesiredState, Event, FrameSnapshot, Loaded};
+use crate::slot::{How, Lost, Slot};
+use skiagraph_compare::error::{CompareError, explain, with_causes};
+use skiagraph_compare::measuring::{
+    device::{self, GpuRequest},
+    frame,
+    ground_truth::PrimaryVisibility,
+};
+use skiagraph_compare::pictures::colours::ClipPlanes;
+use skiagraph_compare::sink::{Session, Silent};
+use skiagraph_gpu::{Content, Executor, device::Gpu, timing::Trust};
+use skiagraph_graph::Sources;
+use skiagraph_passes::SceneProvider;
+use skiagraph_reference::{Progress, unshadowed};
+use skiagraph_scene::{Camera, Scene, View};
+use std::{
+    error::Error,
+    sync::{Arc, mpsc},
+    time::Instant,
+};
+
+/// Requests of the window to the thread.
+pub enum Command {
+    /// Show this.
+    Show(Box<DesiredState>),
+    /// Files may have changed.
+    Reload,
+}
+
+/// Loads a scene by its name, with the views of it that are shown first.
+pub type LoadScene =
+    Box<dyn Fn(&str) -> Result<(Scene, Vec<View>), Box<dyn Error + Send + Sync>> + Send>;
+
+/// How the thread tells the window something.
+pub type Tell = Box<dyn Fn(Event) + Send>;
+
+/// The scene that is there, and what stands on it.
+struct Stage {
+    name: String,
+    loaded: Loaded,
+    provider: SceneProvider,
+    /// Draws the primitive ids, in pictures of that size.
+    primitives: Option<(Executor, [u32; 2])>,
+}
+
+/// The thread's own.
+pub struct Worker {
+    request: GpuRequest,
+    load_scene: LoadScene,
+    gpu: Gpu,
+    timing: bool,
+    sources: Box<dyn Sources>,
+    stage: Option<Stage>,
+    /// A scene that could not be loaded.
+    failed_scene: Option<String>,
+    slots: Vec<Slot>,
+    began: Instant,
+    tell: Tell,
+}
+
+impl Worker {
+    /// On a GPU, which was opened as `request` says.
+    pub fn new(
+        gpu: Gpu,
+        (request, load_scene): (GpuRequest, LoadScene),
+        sources: Box<dyn Sources>,
+        tell: Tell,
+    ) -> Self {
+        Self {
+            timing: device::timestamp_trust(&gpu) == Trust::Trusted,
+            request,
+            load_scene,
+            gpu,
+            sources,
+            stage: None,
+            failed_scene: None,
+            slots: Vec::new(),
+            began: Instant::now(),
+            tell,
+        }
+    }
+
+    /// Works until the channel of commands closes.
+    pub fn work(mut self, commands: &mpsc::Receiver<Command>) {
+        let mut desired: Option<DesiredState> = None;
+        while let Ok(first) = commands.recv() {
+            let mut is_changed = false;
+            let mut reload = false;
+            // The last one of several counts.
+            for command in [first].into_iter().chain(commands.try_iter()) {
+                match command {
+                    Command::Show(next) => (desired, is_changed) = (Some(*next), true),
+                    Command::Reload => reload = true,
+                }
+            }
+            if reload {
+                for slot in &mut self.slots {
+                    is_changed |= slot.read(&*self.sources);
+                }
+            }
+            if let Some(desired) = desired.as_ref().filter(|_| is_changed)
+                && let Err(error) = self.show(desired)
+            {
+                (self.tell)(Event::Broken(error.to_string()));
+            }
+        }
+    }
+
+    fn show(&mut self, desired: &DesiredState) -> Result<(), CompareError> {
+        if !self.load(desired) {
+            return Ok(());
+        }
+        self.fill_slots(desired)?;
+        // A device that a method has lost is opened anew once, without that method.
+        for _ in 0..=desired.methods.len() {
+            match self.take_snapshot(desired)? {
+                Ok(snapshot) => {
+                    (self.tell)(Event::Frame(Box::new(snapshot)));
+                    return Ok(());
+                }
+                Err(Lost) => self.reopen()?,
+            }
+        }
+        Ok(())
+    }
+
+    /// Loads the scene, if it is another one; says whether there is one.
+    fn load(&mut self, desired: &DesiredState) -> bool {
+        if self
+            .stage
+            .as_ref()
+            .is_some_and(|stage| stage.name == desired.scene)
+        {
+            return true;
+        }
+        if self.failed_scene.as_ref() == Some(&desired.scene) {
+            return false;
+        }
+        match (self.load_scene)(&desired.scene) {
+            Ok((scene, views)) => {
+                let scene = Arc::new(scene);
+                let mut all = views;
+                let others = scene.views.iter();
+                let others: Vec<View> = others
+                    .filter(|view| all.iter().all(|known| known.name != view.name))
+                    .cloned()
+                    .collect();
+                all.extend(others);
+                let loaded = Loaded { scene, views: all };
+                (self.tell)(Event::Scene(desired.scene.clone(), Ok(loaded.clone())));
+                self.slots.iter_mut().for_each(Slot::forget_device);
+                self.failed_scene = None;
+                self.stage = Some(Stage {
+                    name: desired.scene.clone(),
+                    provider: SceneProvider::new(loaded.scene.clone()),
+                    loaded,
+                    primitives: None,
+                });
+                true
+            }
+            Err(error) => {
+                self.failed_scene = Some(desired.scene.clone());
+                let event = Event::Scene(desired.scene.clone(), Err(with_causes(&*error)));
+                (self.tell)(event);
+                false
+            }
+        }
+    }
+
+    /// A slot for each method; the device gets the features that they can make use of.
+    fn fill_slots(&mut self, desired: &DesiredState) -> Result<(), CompareError> {
+        let mut before = std::mem::take(&mut self.slots);
+        for method in &desired.methods {
+            let known = before.iter().position(|slot| slot.name() == method.name);
+            self.slots.push(match known {
+                Some(known) => before.swap_remove(known),
+                None => {
+                    let mut slot = Slot::new(&method.name);
+                    slot.read(&*self.sources);
+                    slot
+                }
+            });
+        }
+        let graphs = self.slots.iter().filter_map(Slot::graph);
+        let useful = graphs.fold(wgpu::Features::empty(), |all, it| all | it.features());
+        let experimental = wgpu::Features::all_experimental_mask();
+        let missing = (useful & self.gpu.adapter.features()) - self.gpu.device.features();
+        if (missing - experimental).is_empty() {
+            Ok(())
+        } else {
+            self.reopen()
+        }
+    }
+
+    /// Opens the device anew, with what the methods can make use of.
+    fn reopen(&mut self) -> Result<(), CompareError> {
+        let graphs: Vec<_> = self.slots.iter().filter_map(Slot::graph).collect();
+        let gpu = device::open(&self.request, graphs)?;
+        self.gpu = gpu;
+        self.slots.iter_mut().for_each(Slot::forget_device);
+        if let Some(stage) = &mut self.stage {
+            stage.provider = SceneProvider::new(stage.loaded.scene.clone());
+            stage.primitives = None;
+        }
+        Ok(())
+    }
+
+    fn take_snapshot(
+        &mut self,
+        desired: &DesiredState,
+    ) -> Result<Result<FrameSnapshot, Lost>, CompareError> {
+        let session = Session::new(&self.gpu, &Silent);
+        let Some(stage) = &mut self.stage else {
+            return Err(CompareError::Input("no scene is loaded".into()));
+        };
+        let view = desired.view.as_ref().or(stage.loaded.views.first());
+        let Some(view) = view.cloned() else {
+            return Err(CompareError::Input(format!("{} has no view", stage.name)));
+        };
+        view.check().map_err(CompareError::Input)?;
+        stage.provider.set_view(&view, desired.size);
+        let camera = view.camera(desired.size);
+        let primitives = stage.primitives(session, &*self.sources, desired.size)?;
+        let light = stage.provider.light();
+        let facing = stage.facing(&camera, &primitives)?;
+        let how = How {
+            size: desired.size,
+            timing: self.timing,
+            all_passes: desired.all_passes,
+            seconds: self.began.elapsed().as_secs_f32(),
+            planes: ClipPlanes::new(&view),
+        };
+        let mut methods = Vec::new();
+        for (slot, method) in self.slots.iter_mut().zip(&desired.methods) {
+            match slot.take_snapshot(session, &mut stage.provider, method, &how) {
+                Ok(snapshot) => methods.push(snapshot),
+                Err(lost) => return Ok(Err(lost)),
+            }
+        }
+        Ok(Ok(FrameSnapshot {
+            desired: desired.clone(),
+            camera,
+            light,
+            light_number: stage.provider.light_number(),
+            scene: stage.loaded.scene.clone(),
+            primitives: Arc::new(primitives),
+            facing: Arc::new(facing),
+            methods,
+        }))
+    }
+}
+
+impl Stage {
+    /// The primitive that each pixel shows.
+    fn primitives(
+        &mut self,
+        session: Session,
+        sources: &dyn Sources,
+        size: [u32; 2],
+    ) -> Result<Vec<u32>, CompareError> {
+        let wrong = |why: String| CompareError::Input(format!("no picture of the scene: {why}"));
+        let provider = &mut self.provider;
+        if self.primitives.as_ref().is_none_or(|(_, of)| *of != size) {
+            let plan = PrimaryVisibility::load(sources)?.plan(session, size, provider)?;
+            let executor = frame::executor(session, plan, provider);
+            self.primitives = Some((executor.map_err(|error| wrong(explain(&error)))?, size));
+        }
+        let Some((executor, _)) = &mut self.primitives else {
+            return Ok(Vec::new());
+        };
+        let read = executor
+            .refresh(provider)
+            .and_then(|_| frame::read(session, executor, &["primitive"]));
+        let contents = read.map_err(|error| {
+            self.primitives = None;
+            wrong(explain(&error))
+        })?;
+        let ids = contents.get("primitive").and_then(Content::as_u32);
+        ids.ok_or_else(|| wrong("its primitives are not integers".into()))
+    }
+
+    /// Computes which pixels face the light.
+    fn facing(
+        &self,
+        camera: &Camera,
+        primitives: &[u32],
+    ) -> Result<skiagraph_reference::GroundTruthPixels, CompareError> {
+        let (mesh, light) = (&self.loaded.scene.mesh, self.provider.light());
+        unshadowed(mesh, camera, &light, primitives, Progress::default())
+            .map_err(|error| CompareError::Input(error.to_string()))
+    }
+}

@@ -21,7 +21,7 @@ pub fn header(
     are_paths: bool,
 ) -> String {
     let dates = results.runs.iter().map(|run| run.date.as_str());
-    let dates: BTreeSet<&str> = dates.chain(today).filter(|date| !date.is_empty()).collect();
+    let dates: BTreeSet<&str> = dates.chain(today).collect();
     let date = match (dates.first(), dates.last()) {
         (Some(first), Some(last)) if first != last => format!("{first} to {last}"),
         (Some(first), _) => (*first).to_owned(),

@@ -1,6 +1,6 @@
 //! Notes below tables, wherever they stand.
 
-use skiagraph_compare::records::results::{Measured, Run};
+use skiagraph_compare::records::results::Run;
 use skiagraph_compare::records::sequence::{FrameCost, Sequence};
 use skiagraph_compare::wording::{frames, ms, thousands};
 use skiagraph_reference::BlockerCounts;
@@ -18,10 +18,10 @@ pub fn band_warning(run: &Run) -> Option<String> {
 /// That pixels of a view and viewport show what is not seen there, if any do. No method is to blame
 /// for it, and none is judged by it.
 pub fn surface_warning(run: &Run) -> Option<String> {
-    let count = run.wrong_surface.filter(|count| *count > 0)?;
     let background = run.pixels.background + run.pixels.facing_away;
     let all = background + run.pixels.facing_light;
-    Some(format!("warning: {}", wrong_surface(count, all)))
+    let text = || format!("warning: {}", wrong_surface(run.wrong_surface, all));
+    (run.wrong_surface > 0).then(text)
 }
 
 /// That so many of all pixels show what is not seen there.
@@ -43,7 +43,15 @@ pub fn certain_wrong(runs: &[Run]) -> Vec<String> {
     };
     runs.chunk_by(|one, other| one.preset == other.preset)
         .map(|runs| runs.iter().filter(|run| wrong(run)).collect::<Vec<_>>())
-        .filter_map(|runs| Some(format!("{}: {}", maps(&runs)?, blockers(&runs))))
+        .filter_map(|runs| {
+            let measured = runs.iter().filter_map(|run| run.measured.as_ref());
+            let counts = measured.map(|of| {
+                let blockers = of.certain_wrong_blockers.unwrap_or_default();
+                (of.wrong.certain, blockers)
+            });
+            let counts: Vec<_> = counts.collect();
+            Some(format!("{}: {}", maps(&runs)?, blocked_by(&counts)))
+        })
         .collect()
 }
 
@@ -61,45 +69,27 @@ fn maps(runs: &[&Run]) -> Option<String> {
     })
 }
 
-/// Certain wrong pixels of each run, then of each kind of blocker that one of them has.
-fn blockers(runs: &[&Run]) -> String {
-    type Kind = (&'static str, fn(&Measured) -> Option<u64>);
-    const KINDS: [Kind; 4] = [
-        ("certain wrong outside the band", |of| {
-            Some(of.wrong.certain)
-        }),
-        ("blocker in an open part", |of| {
-            Some(of.certain_wrong_blockers?.open_part)
-        }),
-        ("blocker in a closed part", |of| {
-            Some(of.certain_wrong_blockers?.closed_part)
-        }),
-        ("no blocker", |of| Some(of.certain_wrong_blockers?.none)),
-    ];
-    let measured = || runs.iter().filter_map(|run| run.measured.as_ref());
-    let kinds = KINDS.iter().filter_map(|(what, count)| {
-        // Files of older programs do not know the blockers.
-        let counts = measured().map(count).collect::<Option<Vec<u64>>>()?;
+/// The kinds of blocker, as notes name them.
+type Kind = (&'static str, fn(&BlockerCounts) -> u64);
+const KINDS: [Kind; 3] = [
+    ("blocker in an open part", |by| by.open_part),
+    ("blocker in a closed part", |by| by.closed_part),
+    ("no blocker", |by| by.none),
+];
+
+/// Says of certain wrong pixels, a count and its kinds of blocker for each run, how many they are
+/// and what blocks them; kinds that no run has are left out.
+pub fn blocked_by(counts: &[(u64, BlockerCounts)]) -> String {
+    let said = |name: &str, count: &dyn Fn(&(u64, BlockerCounts)) -> u64| {
+        let counts: Vec<u64> = counts.iter().map(count).collect();
         let text: Vec<String> = counts.iter().copied().map(thousands).collect();
         let any = counts.iter().any(|&count| count > 0);
-        any.then(|| format!("{what} {}", text.join(" / ")))
-    });
-    kinds.collect::<Vec<_>>().join(", ")
-}
-
-/// How many certain pixels are wrong, and what blocks them, as far as that is known.
-pub fn blocked_by(wrong: u64, by: Option<BlockerCounts>) -> String {
-    let kinds = by.map(|by| {
-        [
-            ("blocker in an open part", by.open_part),
-            ("blocker in a closed part", by.closed_part),
-            ("no blocker", by.none),
-        ]
-    });
-    let kinds = kinds.into_iter().flatten().filter(|(_, count)| *count > 0);
-    let kinds = kinds.map(|(what, count)| format!(", {what} {}", thousands(count)));
-    let kinds: String = kinds.collect();
-    format!("certain wrong outside the band {}{kinds}", thousands(wrong))
+        any.then(|| format!("{name} {}", text.join(" / ")))
+    };
+    let all = said("certain wrong outside the band", &|(wrong, _)| *wrong);
+    let kinds = KINDS.iter().map(|(name, of)| said(name, &|(_, by)| of(by)));
+    let parts: Vec<String> = [all].into_iter().chain(kinds).flatten().collect();
+    parts.join(", ")
 }
 
 /// Says what was judged of a method that remembers.
@@ -207,15 +197,12 @@ mod tests {
     fn surfaces_that_are_not_seen_are_said() {
         let mut run = sample().runs.remove(0);
         assert_eq!(surface_warning(&run), None);
-        run.wrong_surface = Some(1_234);
+        run.wrong_surface = 1_234;
         assert_eq!(
             surface_warning(&run).unwrap(),
             "warning: 1,234 of 131,072 pixels show a surface that another one hides, or none where \
              there is one; every method is judged on the surface that is shown"
         );
-        // From a file of an older program.
-        run.wrong_surface = None;
-        assert_eq!(surface_warning(&run), None);
     }
 
     #[test]
@@ -274,11 +261,7 @@ mod tests {
                  1,200 / 7, no blocker 0 / 2"
             ]
         );
-        // From a file of an older program.
         runs.truncate(1);
-        runs[0].measured.as_mut().unwrap().certain_wrong_blockers = None;
-        let expected = "nsm 512: certain wrong outside the band 1,200";
-        assert_eq!(certain_wrong(&runs), [expected]);
         runs[0].measured.as_mut().unwrap().wrong.certain = 0;
         assert_eq!(certain_wrong(&runs), [""; 0]);
     }

@@ -279,7 +279,10 @@ impl<'a> Summary<'a> {
 
     /// That promises end at open parts, and whose.
     fn open_parts(&self) -> Option<String> {
-        let parts = self.results.scene.parts.filter(|parts| parts.open > 0)?;
+        let parts = &self.results.scene.parts;
+        if parts.open == 0 {
+            return None;
+        }
         let closed_only = |run: &&&Run| {
             matches!(
                 run.promise,
@@ -330,27 +333,16 @@ impl<'a> Summary<'a> {
 
     /// Says what blocks the pixels of which a method was certain and wrong, over all views.
     fn certain_wrong(&self) -> Vec<String> {
-        let mut sums: BTreeMap<String, (u64, Option<BlockerCounts>)> = BTreeMap::new();
+        let mut sums: BTreeMap<String, (u64, BlockerCounts)> = BTreeMap::new();
         for run in self.runs.iter().filter(|run| run.is_hard()) {
             let measured = run.measured.as_ref();
-            let Some(of) = measured.filter(|of| of.wrong.certain > 0) else {
-                continue;
-            };
-            let sum = sums
-                .entry(run.method_label())
-                .or_insert((0, Some(Default::default())));
-            sum.0 += of.wrong.certain;
-            sum.1 = sum
-                .1
-                .zip(of.certain_wrong_blockers)
-                .map(|(one, other)| BlockerCounts {
-                    open_part: one.open_part + other.open_part,
-                    closed_part: one.closed_part + other.closed_part,
-                    none: one.none + other.none,
-                });
+            if let Some(of) = measured.filter(|of| of.wrong.certain > 0) {
+                let sum = sums.entry(run.method_label()).or_default();
+                sum.0 += of.wrong.certain;
+                sum.1 += of.certain_wrong_blockers.unwrap_or_default();
+            }
         }
-        let line =
-            |(label, (wrong, by)): (String, _)| format!("{label}: {}", blocked_by(wrong, by));
+        let line = |(label, sum): (String, _)| format!("{label}: {}", blocked_by(&[sum]));
         sums.into_iter().map(line).collect()
     }
 }

@@ -309,7 +309,7 @@ impl MeasureContext<'_> {
             promise: guarantee::promise(method),
             pixels: counts.pixels,
             band: counts.band,
-            wrong_surface: Some(self.wrong_surfaces),
+            wrong_surface: self.wrong_surfaces,
             area: area.map(|area| AreaReference::new(area, truth)),
             measured: None,
             unavailable: None,

@@ -73,7 +73,7 @@ pub fn draw_pictures(
     };
     let images = Images {
         frame: place.frame,
-        reference: Some(of_reference.name.clone()),
+        reference: of_reference.name.clone(),
         shaded: draw("shaded", Image::shaded(visibility, truth))?,
         visibility: draw(
             "visibility",

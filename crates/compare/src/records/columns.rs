@@ -119,7 +119,7 @@ const CSV: &[Figure] = &[
     ("every_pass_slowest_frame_ms",
         Measure(|of| path(of, |by| Some(Time(by.slowest_with_every_pass()?.1.ms()))))),
     ("worst_frame_rmse", Measure(|of| path(of, |by| Some(Real(by.worst()?.1.graded?.rmse))))),
-    ("wrong_surface", Always(|_, run| run.wrong_surface.map_or(Unknown, Count))),
+    ("wrong_surface", Always(|_, run| Count(run.wrong_surface))),
 ];
 
 /// Figures that only tables show.
@@ -270,7 +270,7 @@ fn median(times: Option<Spread>) -> Value {
     times.map_or(Unknown, |spread| Time(spread.median))
 }
 
-/// Certain wrong pixels of one kind of blocker; a file of an older program does not know.
+/// Certain wrong pixels of one kind of blocker; unknown of graded answers.
 fn blocked(measured: &Measured, count: fn(BlockerCounts) -> u64) -> Value {
     match measured.certain_wrong_blockers {
         Some(blockers) => Count(count(blockers)),

@@ -263,6 +263,7 @@ impl From<MemoryEntry> for Material {
 pub(crate) mod tests {
     use super::*;
     use crate::files::json;
+    use crate::records::results::OpenParts;
     use crate::records::statistics::tests::series;
 
     /// A profile with every field in use: one pass with all times, one without a GPU time.
@@ -302,7 +303,11 @@ pub(crate) mod tests {
             scene: Scene {
                 name: "park".into(),
                 triangles: 55_000,
-                parts: None,
+                parts: OpenParts {
+                    all: 40,
+                    open: 12,
+                    open_triangles: 5_000,
+                },
             },
             preset: "nsm".into(),
             view: "main".into(),

@@ -34,8 +34,7 @@ pub struct Results {
     pub warmup: u32,
     /// Timed frames in which only the camera moves, per run.
     pub cached_frames: u32,
-    /// The commands that measured it, the first one first. Empty in files of older programs.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    /// The commands that measured it, the first one first.
     pub commands: Vec<String>,
     /// One entry per view, viewport, preset and map size, in this order.
     pub runs: Vec<Run>,
@@ -64,9 +63,8 @@ pub struct Scene {
     pub name: String,
     /// Triangles in its mesh.
     pub triangles: u64,
-    /// How much of its mesh is open; absent in files of older programs.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub parts: Option<OpenParts>,
+    /// How much of its mesh is open.
+    pub parts: OpenParts,
 }
 
 /// The parts of a mesh, triangles that share edges, and which are open.
@@ -98,7 +96,7 @@ impl From<&skiagraph_scene::Scene> for Scene {
         Self {
             name: scene.name.clone(),
             triangles: scene.mesh.triangles.len() as u64,
-            parts: Some(OpenParts::new(&scene.mesh)),
+            parts: OpenParts::new(&scene.mesh),
         }
     }
 }
@@ -136,14 +134,11 @@ pub struct Run {
     pub params: BTreeMap<String, serde_json::Value>,
     /// Hash of everything else that the run depends on: the texts of the graph, of what it includes
     /// and of their shaders, the same of the graph that finds the visible triangles, mesh, light
-    /// and view. Empty in files of older programs.
-    #[serde(default)]
+    /// and view.
     pub fingerprint: String,
-    /// The day on which it was measured, `2026-11-21` (UTC). Empty in files of older programs.
-    #[serde(default)]
+    /// The day on which it was measured, `2026-11-21` (UTC).
     pub date: String,
-    /// The document's promise of its answers with these params; absent where it has none, and in
-    /// files of older programs.
+    /// The document's promise of its answers with these params; absent where it has none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub promise: Option<Promise>,
     /// The reference's pixels.
@@ -152,9 +147,8 @@ pub struct Run {
     /// casters.
     pub band: u64,
     /// Pixels that show a surface which is not seen there: another one stands before it by more
-    /// than rounding. All methods are judged on what is shown. Absent in files of older programs.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub wrong_surface: Option<u64>,
+    /// than rounding. All methods are judged on what is shown.
+    pub wrong_surface: u64,
     /// Sampling of the reference, of a light that has an extent; absent where it has none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub area: Option<AreaReference>,
@@ -233,11 +227,10 @@ pub struct Promise {
 }
 
 /// In what a method answers.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Answer {
     /// In 0 and 1: its visibility is a texture of integers.
-    #[default]
     Hard,
     /// In shares of light.
     Graded,
@@ -317,22 +310,20 @@ pub struct Measured {
     pub certain: CertainCounts,
     /// Pixels that it left to rays, or all that it traced.
     pub uncertain: u64,
-    /// Both by the reference's class, with those that are wrong; absent in files of older programs.
-    #[serde(default)]
+    /// Both by the reference's class, with those that are wrong.
     pub split: Split,
     /// Rays traced per frame; null where the graph does not count them.
     pub rays: Option<u64>,
     /// Pixels facing the light on which method and reference disagree.
     pub wrong: WrongCounts,
-    /// The pixels of `wrong.certain` by what blocks them; absent where there are none, and in files
-    /// of older programs.
+    /// The pixels of `wrong.certain` by what blocks them; absent where there are none, or where
+    /// answers are graded.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub certain_wrong_blockers: Option<BlockerCounts>,
     /// Pixels that face the light by the reference but not by the method, or the other way round.
     pub facing_mismatch: u64,
     /// In what the method answers. Of shares, `certain`, `split` and `wrong` are counted as if they
     /// were cut at one half.
-    #[serde(default)]
     pub answer: Answer,
     /// How far the shares are from the reference's, where the answer is graded or the light has an
     /// extent; absent where both are hard.
@@ -349,8 +340,7 @@ pub struct Measured {
     pub memory_bytes: u64,
     /// Bytes saved by letting materials share memory.
     pub saved_bytes: u64,
-    /// Bytes of what the scene gave: positions, indices, hierarchy … 0 in files of older programs.
-    #[serde(default)]
+    /// Bytes of the scene's resources: positions, indices, hierarchy …
     pub scene_bytes: u64,
     /// How a method that remembers came to its steady state; absent of one that does not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -449,9 +439,8 @@ pub struct Images {
     /// their names. Absent of a still view.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frame: Option<usize>,
-    /// The reference's shadows, the same of all methods; absent in files of older programs.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub reference: Option<String>,
+    /// The reference's shadows, the same of all methods.
+    pub reference: String,
     /// The scene in the method's shadow.
     pub shaded: String,
     /// The output `visibility`.
@@ -501,7 +490,7 @@ pub(crate) mod tests {
                 shadow: 40_000,
             },
             band: 12,
-            wrong_surface: Some(0),
+            wrong_surface: 0,
             area: None,
             measured: None,
             unavailable: None,
@@ -577,7 +566,7 @@ pub(crate) mod tests {
             sequence: None,
             images: gpu.then(|| Images {
                 frame: None,
-                reference: Some("reference.png".into()),
+                reference: "reference.png".into(),
                 shaded: format!("{name}-shaded.png"),
                 visibility: format!("{name}-visibility.png"),
                 error: format!("{name}-error.png"),
@@ -597,11 +586,11 @@ pub(crate) mod tests {
             scene: Scene {
                 name: "park".into(),
                 triangles: 55_000,
-                parts: Some(OpenParts {
+                parts: OpenParts {
                     all: 40,
                     open: 12,
                     open_triangles: 5_000,
-                }),
+                },
             },
             oracle: "exact".into(),
             frames: 10,

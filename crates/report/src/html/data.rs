@@ -128,7 +128,7 @@ fn conditions(source: &Source) -> Conditions<'_> {
         oracle,
         frames: timed_frames(&source.results, runs),
         warmup: *warmup,
-        dates: dates.filter(|date| !date.is_empty()).collect(),
+        dates: dates.collect(),
         commands,
         folders: source
             .folders

@@ -3,7 +3,7 @@
 use crate::html::sources::Source;
 use base64::{Engine, engine::general_purpose::STANDARD};
 use serde::Serialize;
-use skiagraph_compare::pictures::run_pictures::{graph_name, reference_name};
+use skiagraph_compare::pictures::run_pictures::graph_name;
 use skiagraph_compare::records::results::{Images, Run};
 use skiagraph_compare::wording::plural;
 use std::{collections::BTreeMap, fs};
@@ -206,11 +206,8 @@ fn candidates(sources: &[Source]) -> Vec<EmbedCandidate> {
 
 fn names(run: &Run, images: &Images) -> Vec<(Kind, String)> {
     let uncertain = images.uncertain.iter();
-    // Files of older programs do not name it.
-    let reference = images.reference.clone();
-    let reference = reference.unwrap_or_else(|| reference_name(&run.view, run.viewport));
     [
-        (Kind::Reference, reference),
+        (Kind::Reference, images.reference.clone()),
         (Kind::Error, images.error.clone()),
         (Kind::Shaded, images.shaded.clone()),
         (Kind::Graph, graph_name(&run.preset)),

@@ -13,7 +13,7 @@ use crate::sink::{Session, Step};
 use skiagraph_graph::Plan;
 use skiagraph_passes::SceneProvider;
 use skiagraph_scene::{Scene, View};
-use std::{sync::Arc, time::SystemTime};
+use std::sync::Arc;
 
 /// Times a method: so many frames after so many of warm-up. From the first frame on a stop ends it
 /// early, with what was timed until then.
@@ -41,7 +41,7 @@ pub fn profile(
         } else {
             "release".into()
         },
-        date: date::utc(SystemTime::now()),
+        date: date::now(),
         adapter: device::describe(session.gpu, device::timestamp_trust(session.gpu)),
         scene: (&**scene).into(),
         preset: method.name.clone(),

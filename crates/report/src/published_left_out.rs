@@ -5,7 +5,7 @@ use skiagraph_compare::records::published_row::Row;
 use skiagraph_compare::wording::size;
 use std::collections::BTreeSet;
 
-/// Views that a chart lacks.
+/// Views that a chart lacks which is drawn.
 pub fn views_left_out(
     cells: &[Cell],
     chart: &str,
@@ -14,7 +14,7 @@ pub fn views_left_out(
 ) -> Option<String> {
     let all: BTreeSet<String> = cells
         .iter()
-        .map(|cell| format!("{} {}", cell.scene, cell.run.view))
+        .map(|cell| format!("{} {}", cell.scene(), cell.run.view))
         .collect();
     let drawn = drawn
         .iter()
@@ -23,13 +23,11 @@ pub fn views_left_out(
     if lacking.is_empty() {
         return None;
     }
-    let groups = groups.plural();
-    let why = format!("no two {groups} of which there are figures on both sides");
-    Some(if lacking.len() == all.len() {
-        format!("not drawn: {chart}: {why}")
-    } else {
-        format!("not in {chart}: {}: {why}", lacking.join(", "))
-    })
+    Some(format!(
+        "not in {chart}: {}: no two {} of which there are figures on both sides",
+        lacking.join(", "),
+        groups.plural()
+    ))
 }
 
 /// Lists what only one side has: scenes, and in a scene views, viewports, map sizes and presets.
@@ -42,13 +40,13 @@ pub fn without_counterpart<'a>(
     let mut theirs: Vec<(&str, Sides)> = Vec::new();
     for cell in cells {
         let run = cell.run;
-        let sides = of_scene(&mut ours, cell.scene);
+        let sides = of_scene(&mut ours, cell.scene());
         sides.add(&run.view, run.viewport, run.map_size, &run.preset);
     }
     for row in rows {
         let (scene, view, viewport, map, preset, _) = row.key();
         let is_ours = |name: &String| {
-            let mut own = cells.iter().filter(|cell| cell.scene == scene);
+            let mut own = cells.iter().filter(|cell| cell.scene() == scene);
             own.any(|cell| cell.run.preset == *name)
         };
         // One of several presets is enough.

@@ -2,41 +2,41 @@
 
 use crate::charts::push;
 use skiagraph_chart::{Kind, Mark, Panel, Series};
-use skiagraph_compare::records::results::{Measured, Published, Results, Run};
+use skiagraph_compare::records::columns::figure;
+use skiagraph_compare::records::results::{Published, Results, Run};
 use skiagraph_compare::wording::size;
 use std::collections::BTreeSet;
 
-/// The tracer, of whose times others are shares: milliseconds of two machines have no axis in
-/// common.
-pub const TRACER: &str = "rt";
-
-/// A run with what was published about it, and the tracer's in its view and viewport.
+/// A run with what was published about it.
 pub struct Cell<'a> {
-    /// Name of the scene.
-    pub scene: &'a str,
-    /// The run.
+    /// All results that it is of.
+    pub results: &'a Results,
+    /// The run, which has measurements.
     pub run: &'a Run,
-    /// Its measurements.
-    pub measured: &'a Measured,
-    /// The tracer's.
-    pub tracer: Option<(&'a Run, &'a Measured)>,
 }
 
 /// All runs with measurements.
 pub fn cells(results: &Results) -> impl Iterator<Item = Cell<'_>> {
-    let runs = || {
-        let runs = results.runs.iter();
-        runs.filter_map(|run| Some((run, run.measured.as_ref()?)))
-    };
-    runs().map(move |(run, measured)| Cell {
-        scene: &results.scene.name,
-        run,
-        measured,
-        tracer: runs().find(|(tracer, _)| {
-            let same = (&tracer.view, tracer.viewport) == (&run.view, run.viewport);
-            tracer.preset == TRACER && same
-        }),
-    })
+    let runs = results.runs.iter().filter(|run| run.measured.is_some());
+    runs.map(move |run| Cell { results, run })
+}
+
+impl<'a> Cell<'a> {
+    /// Name of the scene.
+    pub fn scene(&self) -> &'a str {
+        &self.results.scene.name
+    }
+
+    /// The run of the same view and viewport that draws no map, and of which a quantity is
+    /// published.
+    pub fn whole(&self, quantity: &str) -> Option<&'a Run> {
+        let Run { view, viewport, .. } = self.run;
+        let mut runs = self.results.runs.iter();
+        runs.find(|run| {
+            (&run.view, &run.viewport, run.map_size) == (view, viewport, None)
+                && published(run, quantity).is_some()
+        })
+    }
 }
 
 /// The published figure of that quantity.
@@ -63,7 +63,8 @@ impl Groups {
         }
     }
 
-    fn axis(self) -> &'static str {
+    /// Name of the axis along which they stand.
+    pub fn axis(self) -> &'static str {
         match self {
             Self::Viewports => "viewport",
             Self::Maps => "map",
@@ -90,6 +91,26 @@ pub struct Bar<'a> {
     pub ours: f64,
 }
 
+impl<'a> Bar<'a> {
+    /// The bar that a figure of theirs and one of ours make, if there are both, each divided by a
+    /// whole.
+    pub fn new(
+        cell: &Cell<'a>,
+        quantity: &str,
+        (their_whole, our_whole): (f64, f64),
+    ) -> Option<Self> {
+        let theirs = published(cell.run, quantity)?;
+        let bar = Self {
+            series: cell.run.preset.clone(),
+            figure: theirs,
+            theirs: theirs.value / their_whole,
+            ours: figure(quantity, cell.results, cell.run)? / our_whole,
+        };
+        // Shares of nothing are none.
+        (bar.theirs.is_finite() && bar.ours.is_finite()).then_some(bar)
+    }
+}
+
 /// Content of one pair of panels.
 pub struct PanelRow<'a> {
     /// Name of the scene.
@@ -101,11 +122,11 @@ pub struct PanelRow<'a> {
     bars: Vec<([u32; 2], Bar<'a>)>,
 }
 
-/// Pairs of panels of at least two groups. `bars` may be none of a cell.
+/// Pairs of panels of at least two groups. `bar` may be none of a cell.
 pub fn rows<'a>(
     cells: &'a [Cell<'a>],
     groups: Groups,
-    bars: impl Fn(&'a Cell<'a>) -> Vec<Bar<'a>>,
+    bar: impl Fn(&'a Cell<'a>) -> Option<Bar<'a>>,
 ) -> Vec<PanelRow<'a>> {
     let mut rows: Vec<PanelRow> = Vec::new();
     for cell in cells {
@@ -116,8 +137,8 @@ pub fn rows<'a>(
             (Groups::Maps, Some(map)) => ([map; 2], format!(", {}", size(cell.run.viewport))),
             (Groups::Maps, None) => continue,
         };
-        let (scene, view) = (cell.scene, cell.run.view.as_str());
-        for bar in bars(cell) {
+        let (scene, view) = (cell.scene(), cell.run.view.as_str());
+        if let Some(bar) = bar(cell) {
             let key = (scene, view, &*place);
             let known = rows
                 .iter_mut()

@@ -136,8 +136,9 @@ pub struct ChartArgs {
     /// Only runs of this viewport size. Without it: all, each in a panel of its own.
     #[arg(long, value_name = "WxH")]
     pub size: Option<Size>,
-    /// Draws published figures beside ours instead, theirs left and ours right on the same axes: a
-    /// chart for each quantity that both have, times as shares of rt's. --out is a folder for them.
+    /// Draws published figures beside ours instead, theirs left and ours right on the same axes: by
+    /// map size and by viewport a chart for each quantity that both have, times as shares of those
+    /// of the method that draws no map. --out is a folder for them.
     #[arg(
         long,
         value_name = "LABEL:FILE.csv",

@@ -555,7 +555,7 @@ fn published_charts_say_what_is_missing() {
     assert!(stderr(&output).contains("file"), "{}", stderr(&output));
     let into_folder = ["chart", "two", "--beside", "D:twice.csv", "--out", "charts"];
     assert_exit(&skiagraph(folder, &into_folder), 0);
-    let svg = fs::read_to_string(folder.join("charts/wrong-by-map.svg")).unwrap();
+    let svg = fs::read_to_string(folder.join("charts/wrong-lit-by-map.svg")).unwrap();
     assert!(
         svg.contains("D: park, main, 512x256") && svg.contains("512²"),
         "{svg}"

@@ -1,13 +1,13 @@
 //! The columns of a comparison: for the terminal, for documents and for results.csv. Each figure
 //! is defined once; a table says in which order it shows which figures, and under which heads.
 
-use crate::records::results::{AreaReference, Measured, Part, Results, Run};
+use crate::records::results::{AreaReference, GBUFFER, Measured, Part, Results, Run};
 use crate::records::sequence::Sequence;
 use crate::records::statistics::Spread;
 use crate::records::steady::Steady;
 use crate::wording::{ms, thousands};
 use Source::{Always, Measure};
-use Value::{Count, OfPicture, Real, Share, Text, Time, Unknown};
+use Value::{Count, OfPicture, Rate, Real, Share, Text, Time, Unknown};
 use skiagraph_reference::{BlockerCounts, Graded};
 
 /// A name, and where the figure of that name comes from.
@@ -33,6 +33,8 @@ enum Value {
     Time(f64),
     /// A number that is small.
     Real(f64),
+    /// Frames per second.
+    Rate(f64),
 }
 
 /// The figures of results.csv in its order. Scripts rely on it: new ones stand at the end.
@@ -130,7 +132,7 @@ const IN_TABLES: &[Figure] = &[
     ("wrong_lit_percent", Always(|_, run| run.wrong_lit().map_or(Unknown, OfPicture))),
     ("wrong_shadow_percent", Always(|_, run| run.wrong_shadow().map_or(Unknown, OfPicture))),
     ("steps_ms", Measure(|of| of.steps_ms().map_or(Unknown, Time))),
-    ("fps", Measure(|of| of.fps().map_or(Unknown, |rate| text(&format!("{rate:.2}"))))),
+    ("fps", Measure(|of| of.fps().map_or(Unknown, Rate))),
     ("no_share", Measure(|of| graded(of, |by| Count(by.invalid.total())))),
 ];
 
@@ -250,9 +252,6 @@ pub const STEPS: [(&str, &str); 5] = [
     ("fix_pixels", "fix"),
 ];
 
-/// Two steps that are one with others, who detect while they draw the view.
-const DRAW_AND_DETECT: &str = "gbuffer+detect_uncertain";
-
 /// The head of a step's column, or of a sum of steps: `gbuffer+detect_uncertain`.
 pub fn step_head(step: &str) -> String {
     let heads = step.split('+').map(|step| {
@@ -365,6 +364,7 @@ impl Column {
             OfPicture(Part { count, of }) => share(count, of),
             Time(time) => ms(time),
             Real(number) => format!("{number:.5}"),
+            Rate(rate) => format!("{rate:.2}"),
         }
     }
 
@@ -375,7 +375,7 @@ impl Column {
             Text(text) => text,
             Count(count) | Share(count) | OfPicture(Part { count, .. }) => count.to_string(),
             Time(time) => format!("{time:.6}"),
-            Real(number) => format!("{number:.9}"),
+            Real(number) | Rate(number) => format!("{number:.9}"),
         }
     }
 }
@@ -426,15 +426,47 @@ pub fn document(
     })
 }
 
-/// Lists the quantities that can be published about a run and stand beside its figures.
+/// Lists the quantities that can be published about a run and stand beside its figures, but for
+/// sums of steps, `ms.gbuffer+detect_uncertain`.
 pub fn quantities() -> Vec<String> {
     let of_columns = DOCUMENT.iter().map(|(.., quantity)| quantity.to_string());
-    let steps = STEPS.iter().map(|(step, _)| *step);
-    let of_steps = steps
-        .chain([DRAW_AND_DETECT])
-        .map(|step| format!("ms.{step}"));
+    let of_steps = STEPS.iter().map(|(step, _)| format!("ms.{step}"));
     let all = of_columns.chain(of_steps);
     all.filter(|quantity| !quantity.is_empty()).collect()
+}
+
+/// The steps of a quantity that is their time: `ms.gbuffer+detect_uncertain`. `None` of all others.
+pub fn steps_of(quantity: &str) -> Option<&str> {
+    let steps = quantity.strip_prefix("ms.")?;
+    let is_known = |step| step == GBUFFER || STEPS.iter().any(|(known, _)| *known == step);
+    steps.split('+').all(is_known).then_some(steps)
+}
+
+/// The head of the column of a quantity.
+pub fn head_of(quantity: &str) -> String {
+    let mut entries = DOCUMENT.iter();
+    let entry = entries.find(|(.., known)| *known == quantity);
+    match (steps_of(quantity), entry) {
+        (Some(steps), _) => step_head(steps),
+        (None, Some((_, head, _))) => (*head).to_owned(),
+        (None, None) => quantity.to_owned(),
+    }
+}
+
+/// Our figure of a quantity, in its unit: percent, milliseconds, a count, a rate.
+pub fn figure(quantity: &str, results: &Results, run: &Run) -> Option<f64> {
+    if let Some(steps) = steps_of(quantity) {
+        return run.measured.as_ref()?.step_ms(steps);
+    }
+    let entry = DOCUMENT.iter().find(|(.., known)| *known == quantity)?;
+    let percent = |count: u64, of: u64| 100.0 * count as f64 / of as f64;
+    match Column::new(*entry)?.value(results, run) {
+        Unknown | Text(_) => None,
+        Count(count) => Some(count as f64),
+        Share(count) => Some(percent(count, run.pixels.facing_light)),
+        OfPicture(Part { count, of }) => Some(percent(count, of)),
+        Time(number) | Real(number) | Rate(number) => Some(number),
+    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! One line of a file of published figures: its fields, and what is wrong with them.
 
-use crate::records::columns::quantities;
+use crate::records::columns::{quantities, steps_of};
 use crate::records::results::{Published, Run};
 use crate::size::Size;
 use csv::StringRecord;
@@ -229,7 +229,7 @@ impl<'a> Fields<'a> {
 }
 
 fn is_of_run(quantity: &str) -> bool {
-    quantities().iter().any(|known| known == quantity)
+    steps_of(quantity).is_some() || quantities().iter().any(|known| known == quantity)
 }
 
 fn is_known(quantity: &str) -> bool {

@@ -364,7 +364,7 @@ pub fn step(pass: &str) -> &str {
 }
 
 /// The step that every preset begins with, and that is not the method's own work.
-const GBUFFER: &str = "gbuffer";
+pub const GBUFFER: &str = "gbuffer";
 
 impl Measured {
     /// The sum of the medians of a step's passes, or of several steps' in `one+another`; `None` if

@@ -8,6 +8,7 @@ use crate::notes::{
 use skiagraph_compare::records::columns::{self, Column, STEPS};
 use skiagraph_compare::records::published_row::PublishedFile;
 use skiagraph_compare::records::results::{Measured, Results, Run, step};
+use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::{command_line, frames, ms, share, thousands};
 use std::{collections::BTreeSet, env};
 
@@ -98,16 +99,31 @@ pub fn viewport(results: &Results, runs: &[Run]) -> String {
             let mut figures = measured.iter().flat_map(|(run, _)| &run.published);
             figures.any(|figure| figure.quantity == quantity)
         };
-        let table = Table {
-            columns: columns::document(is_hard, are_paths, is_published),
-            steps: steps(&measured),
-        };
-        text.push('\n');
-        text.push_str(&table.header_row());
-        for of in &measured {
-            let cells = table.cells(results, *of, &mut footnotes);
-            text.push_str(&line(&cells));
-        }
+        let columns = columns::document(is_hard, are_paths, is_published);
+        let steps = steps(&measured);
+        let heads = of_table(
+            &columns,
+            &steps,
+            |column| column.head.to_owned(),
+            columns::step_head,
+        );
+        let rows: Vec<Vec<String>> = measured
+            .iter()
+            .map(|(run, measured)| {
+                let figure = |column: &Column| {
+                    (column.cell(results, run, share), column.quantity.to_owned())
+                };
+                let time = |step: &str| {
+                    let ours = measured.step_ms(step).map_or_else(|| "–".to_owned(), ms);
+                    (ours, format!("ms.{step}"))
+                };
+                let cells = of_table(&columns, &steps, figure, time).into_iter();
+                cells
+                    .map(|(ours, quantity)| footnotes.with_published(ours, run, &quantity))
+                    .collect()
+            })
+            .collect();
+        text += &format!("\n{}", Table::new(heads, 1, rows).markdown());
     }
     let mut notes: Vec<String> = band_warning(first).into_iter().collect();
     notes.extend(surface_warning(first));
@@ -163,48 +179,16 @@ fn steps<'a>(runs: &[(&'a Run, &'a Measured)]) -> Vec<&'a str> {
     steps
 }
 
-/// The columns of a table.
-struct Table<'a> {
-    /// Before and behind the steps.
-    columns: [Vec<Column>; 2],
-    steps: Vec<&'a str>,
-}
-
-impl Table<'_> {
-    /// A row of what belongs to columns and to steps.
-    fn row<T>(&self, of_column: impl Fn(&Column) -> T, of_step: impl Fn(&str) -> T) -> Vec<T> {
-        let [front, back] = self
-            .columns
-            .each_ref()
-            .map(|part| part.iter().map(&of_column));
-        let steps = self.steps.iter().map(|step| of_step(step));
-        front.chain(steps).chain(back).collect()
-    }
-
-    fn header_row(&self) -> String {
-        let row = self.row(|column| column.head.to_owned(), columns::step_head);
-        format!("{}|---{}|\n", line(&row), "|---:".repeat(row.len() - 1))
-    }
-
-    fn cells<'a>(
-        &self,
-        results: &Results,
-        (run, measured): (&'a Run, &Measured),
-        footnotes: &mut Footnotes<'a>,
-    ) -> Vec<String> {
-        let figure = |column: &Column| {
-            let ours = column.cell(results, run, share);
-            (ours, column.quantity.to_owned())
-        };
-        let time = |step: &str| {
-            let ours = measured.step_ms(step).map_or_else(|| "–".to_owned(), ms);
-            (ours, format!("ms.{step}"))
-        };
-        let cells = self.row(figure, time).into_iter();
-        cells
-            .map(|(ours, quantity)| footnotes.with_published(ours, run, &quantity))
-            .collect()
-    }
+/// A row: the columns before the steps, the steps, and the columns behind them.
+fn of_table<T>(
+    columns: &[Vec<Column>; 2],
+    steps: &[&str],
+    of_column: impl Fn(&Column) -> T,
+    of_step: impl Fn(&str) -> T,
+) -> Vec<T> {
+    let [front, back] = columns.each_ref().map(|part| part.iter().map(&of_column));
+    let steps = steps.iter().map(|step| of_step(step));
+    front.chain(steps).chain(back).collect()
 }
 
 /// Footnotes of published figures, each once per table.
@@ -289,11 +273,6 @@ fn unavailable(runs: &[Run]) -> Vec<String> {
         format!("{preset}{maps} is unavailable: {reason}")
     };
     reasons.into_iter().map(text).collect()
-}
-
-fn line(cells: &[String]) -> String {
-    let cells: Vec<String> = cells.iter().map(|cell| cell.replace('|', "\\|")).collect();
-    format!("| {} |\n", cells.join(" | "))
 }
 
 fn list(lines: &[String]) -> String {

@@ -1,8 +1,8 @@
 //! `profile --csv`: a line per pass and one for the frame of each profile, for spreadsheets.
 
-use skiagraph_compare::files::csv;
 use skiagraph_compare::records::profile::{Conditions, PassProfile, Profile};
 use skiagraph_compare::records::statistics::Series;
+use skiagraph_compare::records::table::Table;
 
 /// A line: a pass, or the frame.
 struct Line<'a> {
@@ -93,14 +93,14 @@ fn six_digits(number: f64) -> String {
 /// The contents of the file; the frame's cell `pass` is empty.
 ///
 /// # Errors
-/// See [`csv::to_text`].
+/// See [`Table::csv`].
 pub fn to_csv(profiles: &[Profile]) -> Result<String, ::csv::Error> {
     let lines = profiles.iter().flat_map(|profile| {
         let passes = profile.passes.iter().map(Some).chain([None]);
         passes.map(move |pass| Line { profile, pass })
     });
-    let records = lines.map(|line| COLUMNS.iter().map(|(_, cell)| cell(&line)).collect());
-    csv::to_text(&COLUMNS.map(|(name, _)| name), records)
+    let rows = lines.map(|line| COLUMNS.iter().map(|(_, cell)| cell(&line)).collect());
+    Table::new(COLUMNS.map(|(name, _)| name), 0, rows).csv()
 }
 
 #[cfg(test)]

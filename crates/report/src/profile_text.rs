@@ -1,11 +1,12 @@
 //! A profile as text: conditions, passes, memory, and how it stands to an older one.
 
 use crate::notes::untimed;
-use crate::table::table;
+use crate::table::terminal;
 use skiagraph_compare::graphs::variants::MAP_SIZE;
 use skiagraph_compare::records::baseline::{Comparison, Difference, MIN_FRAMES, Ratio, Verdict};
 use skiagraph_compare::records::profile::{Conditions, Material, Profile};
 use skiagraph_compare::records::statistics::Series;
+use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::{bytes, frames, ms, size};
 
 /// Writes a profile as it is printed on standard output.
@@ -95,7 +96,7 @@ fn matrix(method: &str, profiles: &[&Profile]) -> String {
         .into_iter()
         .chain(wholes)
         .collect();
-    table(heads, 1, rows.chain([whole]))
+    terminal(&Table::new(heads, 1, rows.chain([whole])))
 }
 
 fn times(profile: &Profile) -> String {
@@ -115,7 +116,7 @@ fn times(profile: &Profile) -> String {
         &frame.cpu_ms,
     );
     let heads = "pass|kind|GPU min|median|p95|max|of frame|CPU median".split('|');
-    table(heads, 2, rows.chain([whole]))
+    terminal(&Table::new(heads, 2, rows.chain([whole])))
 }
 
 fn notes(profile: &Profile) -> impl Iterator<Item = String> {
@@ -209,7 +210,7 @@ fn memory(materials: &[Material]) -> String {
         ]
     };
     let heads = "material|format|shares memory with|size|memory".split('|');
-    table(heads, 3, materials.iter().map(row))
+    terminal(&Table::new(heads, 3, materials.iter().map(row)))
 }
 
 fn comparison(baseline: &Comparison, new: &Profile) -> String {
@@ -237,7 +238,7 @@ fn comparison(baseline: &Comparison, new: &Profile) -> String {
     add("CPU", "whole frame", Some(&baseline.frame.cpu));
     add("wall", "whole frame", Some(&baseline.frame.wall));
     let heads = "pass|clock|then|now|now / then|its spread|".split('|');
-    text += &format!("{}\n", table(heads, 2, rows));
+    text += &format!("{}\n", terminal(&Table::new(heads, 2, rows)));
     if baseline.frame.gpu.is_none() {
         let side = match new.frame.gpu_ms {
             Some(_) => "the older profile has none",

@@ -4,10 +4,11 @@ use crate::graded::{area_reference, by_answer, graded};
 use crate::notes::{
     band_warning, certain_wrong, path_costs, remembering, surface_warning, times_missing,
 };
-use crate::table::table;
+use crate::table::terminal;
 use skiagraph_compare::records::columns::{self, Column, are_paths};
 use skiagraph_compare::records::results::{Results, Run};
 use skiagraph_compare::records::statistics::Spread;
+use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::{frames, ms, percent, size, thousands};
 use std::collections::BTreeSet;
 
@@ -115,7 +116,7 @@ fn comparison(results: &Results, runs: &[&Run]) -> String {
         row
     };
     let heads = columns.iter().map(|column| column.head);
-    table(heads, 1, runs.iter().copied().map(row))
+    terminal(&Table::new(heads, 1, runs.iter().copied().map(row)))
 }
 
 fn passes(runs: &[Run]) -> String {
@@ -152,7 +153,7 @@ fn passes(runs: &[Run]) -> String {
         }
     }
     let heads = "method|pass|GPU min|GPU median|GPU p95|CPU median".split('|');
-    table(heads, 2, rows)
+    terminal(&Table::new(heads, 2, rows))
 }
 
 fn footnotes(results: &Results, runs: &[Run]) -> Vec<String> {

@@ -1,10 +1,11 @@
 //! The matrix for a terminal: a row per case, a column per method, and below it what failed.
 
 use crate::notes::wrong_surface;
-use crate::table::table;
+use crate::table::terminal;
 use skiagraph_compare::records::stress::{
     Case, Casters, Cell, Column, Guarantee, OutsideBand, Report, Verdict,
 };
+use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::{percent, size, thousands};
 
 /// The command that shows the pictures of a method on a case, and what to set for it besides.
@@ -78,7 +79,8 @@ fn matrix(report: &Report) -> String {
     });
     let heads = ["case", "PFL", "band"].into_iter();
     let heads = heads.chain(methods.iter().map(String::as_str));
-    table(heads, 1, rows.map(|(case, set)| row(case, set)))
+    let rows = rows.map(|(case, set)| row(case, set));
+    terminal(&Table::new(heads, 1, rows))
 }
 
 /// The rows of a case: as the methods are, then with what is set besides.

@@ -6,9 +6,10 @@ use crate::notes::{
 };
 use crate::summary::{Row, by_wall, rows};
 use crate::verdict::{Verdict, verdict};
-use crate::{graded, results_table::timed_frames, table::table};
+use crate::{graded, results_table::timed_frames, table::terminal};
 use skiagraph_compare::records::columns::are_paths;
 use skiagraph_compare::records::results::{Promise, Results, Run};
+use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::{bytes, ms, percent, plural, size, thousands};
 use skiagraph_reference::BlockerCounts;
 use std::collections::{BTreeMap, BTreeSet};
@@ -99,12 +100,11 @@ impl<'a> Summary<'a> {
         )];
         lines.extend(self.conditions());
         for group in &self.groups {
-            let (heads, cells) = self.cells(group);
             if self.groups.len() > 1 {
                 lines.push(String::new());
                 lines.push(group.title().into());
             }
-            lines.push(table(heads, 1, cells));
+            lines.push(terminal(&self.table(group)));
             lines.extend(group.verdict().sentences);
         }
         lines.extend(self.notes());
@@ -115,12 +115,7 @@ impl<'a> Summary<'a> {
     pub fn markdown(&self) -> String {
         let mut text = format!("\n## In short: {}, {}\n", self.what(), size(self.viewport));
         for group in &self.groups {
-            let (heads, cells) = self.cells(group);
-            let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
-            let heads: Vec<String> = heads.into_iter().map(Into::into).collect();
-            let rule: Vec<String> = heads.iter().map(|_| "---".into()).collect();
-            text += &format!("\n{}{}", line(&heads), line(&rule));
-            text.extend(cells.iter().map(|cells| line(cells)));
+            text += &format!("\n{}", self.table(group).markdown());
             let sentences = group.verdict().sentences;
             if !sentences.is_empty() {
                 text += &format!("\n{}\n", sentences.join("\n"));
@@ -170,7 +165,8 @@ impl<'a> Summary<'a> {
         lines
     }
 
-    fn cells(&self, group: &Group) -> (Vec<&'static str>, Vec<Vec<String>>) {
+    /// A row per method and setting, the fastest exact one with a star.
+    pub fn table(&self, group: &Group) -> Table {
         let are_paths = are_paths(self.runs.iter().copied());
         let by_wall = by_wall(&group.rows);
         let mut heads = vec!["method"];
@@ -224,8 +220,8 @@ impl<'a> Summary<'a> {
             cells.push(bytes(row.bytes()));
             cells
         };
-        let cells = group.rows.iter().enumerate().map(row).collect();
-        (heads, cells)
+        let rows: Vec<_> = group.rows.iter().enumerate().map(row).collect();
+        Table::new(heads, 1, rows)
     }
 
     /// Lists all further remarks, a line each.
@@ -431,7 +427,7 @@ fn matrix(method: &str, runs: &[&Run]) -> String {
         let cells = (0..columns.len()).map(cell);
         [name.to_string()].into_iter().chain(cells).collect()
     });
-    table(heads, 1, rows)
+    terminal(&Table::new(heads, 1, rows))
 }
 
 #[cfg(test)]

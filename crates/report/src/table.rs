@@ -1,19 +1,16 @@
 //! Tables for a terminal.
 
-use comfy_table::{Cell, CellAlignment, Table, presets};
+use comfy_table::{Cell, CellAlignment, presets};
+use skiagraph_compare::records::table::Table;
 
-/// A table whose first `left` columns hold words.
-pub fn table<'a>(
-    heads: impl IntoIterator<Item = &'a str>,
-    left: usize,
-    rows: impl IntoIterator<Item = Vec<String>>,
-) -> String {
-    let mut table = Table::new();
-    table.load_style(presets::UTF8_FULL_CONDENSED);
-    table.set_header(heads.into_iter().map(Cell::new));
-    table.add_rows(rows);
-    for column in table.column_iter_mut().skip(left) {
+/// The table in lines of box-drawing characters, numbers to the right.
+pub fn terminal(table: &Table) -> String {
+    let mut drawn = comfy_table::Table::new();
+    drawn.load_style(presets::UTF8_FULL_CONDENSED);
+    drawn.set_header(table.heads.iter().map(Cell::new));
+    drawn.add_rows(&table.rows);
+    for column in drawn.column_iter_mut().skip(table.words) {
         column.set_cell_alignment(CellAlignment::Right);
     }
-    table.to_string()
+    drawn.to_string()
 }

@@ -7,6 +7,7 @@ use skiagraph_compare::graphs::method::Method;
 use skiagraph_compare::graphs::planning::{Capabilities, placeholder};
 use skiagraph_compare::graphs::preset::{self, Preset, RAY_COUNT, VISIBILITY};
 use skiagraph_compare::measuring::guarantee;
+use skiagraph_compare::records::table::Table;
 use skiagraph_graph::{Graph, Param};
 use std::sync::Arc;
 
@@ -64,18 +65,11 @@ fn table(presets: &[Arc<Preset>]) -> Result<String, CliError> {
         "fits",
         "promises",
     ];
-    let mut lines = vec![heads.map(str::to_owned), heads.map(|_| "---".to_owned())];
-    for preset in presets {
-        lines.push(row(preset)?);
-    }
-    let line = |cells: &[String; 7]| {
-        let cells = cells.each_ref().map(|cell| cell.replace('|', "\\|"));
-        format!("| {} |\n", cells.join(" | "))
-    };
-    Ok(lines.iter().map(line).collect())
+    let rows: Result<Vec<_>, _> = presets.iter().map(row).collect();
+    Ok(Table::new(heads, heads.len(), rows?).markdown())
 }
 
-fn row(preset: &Arc<Preset>) -> Result<[String; 7], CliError> {
+fn row(preset: &Arc<Preset>) -> Result<Vec<String>, CliError> {
     let graph = &preset.graph;
     let provider = placeholder([64, 64], graph);
     let plan = preset.plan(
@@ -105,7 +99,7 @@ fn row(preset: &Arc<Preset>) -> Result<[String; 7], CliError> {
     let promise = guarantee::find(&method, &[])?;
     let promise = promise.map_or("–", |(guarantee, _)| guarantee.word());
     let description = graph.description().trim_end_matches('.').to_owned();
-    Ok([
+    Ok(vec![
         format!("`{}`", preset.name),
         description,
         lights,

@@ -2,7 +2,8 @@
 
 use crate::error::CliError;
 use crate::terminal::console::print;
-use skiagraph_report::table::table;
+use skiagraph_compare::records::table::Table;
+use skiagraph_report::table::terminal;
 use skiagraph_scene::{SceneLibrary, SceneListing};
 
 /// Lists the scenes with their views, camera paths and whether their meshes are at hand.
@@ -19,7 +20,7 @@ pub fn scenes() -> Result<(), CliError> {
         vec![scene.name, mesh.into(), views, paths, scene.description]
     };
     let heads = ["scene", "mesh", "views", "paths", "description"];
-    let table = table(heads, 5, listings.into_iter().map(row));
+    let table = terminal(&Table::new(heads, 5, listings.into_iter().map(row)));
     let hint = if missing {
         "\n`skiagraph doctor` says where missing meshes are searched.\n"
     } else {

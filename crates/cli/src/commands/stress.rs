@@ -20,12 +20,13 @@ use skiagraph_compare::measuring::{device, guarantee};
 use skiagraph_compare::pictures::run_pictures::{check_stems, reference_stem};
 use skiagraph_compare::records::results::PROGRAM;
 use skiagraph_compare::records::stress::{Column, Report, Verdict};
+use skiagraph_compare::records::table::Table;
 use skiagraph_compare::sink::Session;
 use skiagraph_compare::wording::{command_line, did_you_mean, plural};
 use skiagraph_gpu::{device::Gpu, timing::Trust};
 use skiagraph_passes::SceneProvider;
 use skiagraph_report::stress_matrix;
-use skiagraph_report::table::table;
+use skiagraph_report::table::terminal;
 use std::{path::Path, sync::Arc};
 
 /// Checks everything, then runs the matrix.
@@ -276,6 +277,10 @@ fn list() -> Result<(), CliError> {
         vec![case.name.into(), casters.into(), case.reason.into()]
     };
     let heads = ["case", "casters", "what it provokes"];
-    let table = table(heads, 3, skiagraph_cases::cases().into_iter().map(row));
+    let table = terminal(&Table::new(
+        heads,
+        3,
+        skiagraph_cases::cases().into_iter().map(row),
+    ));
     print(&format!("{table}\n"))
 }

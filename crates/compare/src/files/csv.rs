@@ -6,9 +6,9 @@ use csv::{Error, Writer};
 ///
 /// # Errors
 /// A record that is not as long as the header.
-pub fn to_text(
-    header: &[&str],
-    records: impl Iterator<Item = Vec<String>>,
+pub fn to_text<H: AsRef<[u8]>, C: AsRef<[u8]>, R: IntoIterator<Item = C>>(
+    header: impl IntoIterator<Item = H>,
+    records: impl IntoIterator<Item = R>,
 ) -> Result<String, Error> {
     let mut writer = Writer::from_writer(Vec::new());
     writer.write_record(header)?;

@@ -28,16 +28,13 @@ pub fn to_csv(bytes: &[u8], item: Option<&Item>, first: usize) -> Result<String,
         "" => "value",
         name => name,
     });
-    let header: Vec<&str> = ["item"].into_iter().chain(names).collect();
+    let header = ["item"].into_iter().chain(names);
     let items = bytes.chunks_exact((*stride).max(1)).enumerate();
     let records = items.map(|(index, bytes)| {
         let cells = fields.iter().map(|field| cell(bytes, field));
-        [(first + index).to_string()]
-            .into_iter()
-            .chain(cells)
-            .collect()
+        [(first + index).to_string()].into_iter().chain(cells)
     });
-    csv::to_text(&header, records)
+    csv::to_text(header, records)
 }
 
 /// A scalar in the shortest digits that read back as the same; empty if the bytes end before it.

@@ -15,3 +15,4 @@ pub mod sequence;
 pub mod statistics;
 pub mod steady;
 pub mod stress;
+pub mod table;

@@ -1,22 +1,24 @@
 //! `results.csv`, one line per run for spreadsheets, and `results.json` beside it.
 
 use crate::error::CompareError;
+use crate::files::json;
 use crate::files::write::write_whole;
-use crate::files::{csv, json};
 use crate::records::columns;
 use crate::records::results::Results;
+use crate::records::table::Table;
 use std::path::Path;
 
 /// The contents of `results.csv`: times are medians, empty cells are nulls.
 fn to_csv(results: &Results) -> Result<String, ::csv::Error> {
     let columns = columns::csv();
-    let names: Vec<&str> = columns.iter().map(|column| column.head).collect();
-    let cells = |run| {
+    let heads = columns.iter().map(|column| column.head);
+    let row = |run| {
         columns
             .iter()
-            .map(move |column| column.csv_cell(results, run))
+            .map(|column| column.csv_cell(results, run))
+            .collect()
     };
-    csv::to_text(&names, results.runs.iter().map(|run| cells(run).collect()))
+    Table::new(heads, 0, results.runs.iter().map(row)).csv()
 }
 
 /// Writes `results.json` and `results.csv` into `folder`; each is replaced whole or not at all.

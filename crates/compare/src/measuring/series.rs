@@ -244,20 +244,7 @@ impl<'a> Series<'a> {
             if is_done(&self.states[place]) {
                 continue;
             }
-            let provider = &mut self.provider;
-            let run = match view {
-                ViewOrPath::Still(_) => {
-                    context.measure(method, provider, |method, plan, provider, step| {
-                        context.still(method, plan, provider, step)
-                    })
-                }
-                ViewOrPath::Path(_) => {
-                    context.measure(method, provider, |method, plan, provider, step| {
-                        context.follow(method, plan, &frames, provider, step)
-                    })
-                }
-            };
-            let run = match run {
+            let run = match measured(&context, method, view, &frames, &mut self.provider) {
                 // The others are worth measuring all the same.
                 Err(CompareError::InvalidOutputs(reason)) => {
                     let run = context.unavailable(method, reason.clone());
@@ -454,4 +441,23 @@ fn unlit(view: &str, pixels: &PixelCounts) -> Option<String> {
         _ => return None,
     };
     Some(format!("warning: view `{view}` {what}"))
+}
+/// Measures a method on a still view, or along the frames of a path.
+fn measured(
+    context: &MeasureContext,
+    method: &Method,
+    view: &ViewOrPath,
+    frames: &sequence::Path,
+    provider: &mut SceneProvider,
+) -> Result<Run, CompareError> {
+    match view {
+        ViewOrPath::Still(_) => {
+            context.measure(method, provider, |method, plan, provider, step| {
+                context.still(method, plan, provider, step)
+            })
+        }
+        ViewOrPath::Path(_) => context.measure(method, provider, |method, plan, provider, step| {
+            context.follow(method, plan, frames, provider, step)
+        }),
+    }
 }

@@ -51,26 +51,6 @@ fn it_has_one_figure_whatever_is_timed() {
     }
 }
 
-#[test]
-fn it_is_right_where_the_camera_stands_and_late_where_it_moves() {
-    let folder = tempfile::tempdir().unwrap();
-    temporal(folder.path());
-    let line = "compare temporal.ron --size 48x48 --images none --frames 1 --out out";
-    let (runs, _) = results(folder.path(), line);
-    let run = &runs[0];
-    // Four frames until every pixel had its ray, and those that show it.
-    assert_eq!(run["steady"]["period"], 1);
-    assert_eq!(run["steady"]["judged"]["pictures"], 1);
-    assert!((33..40).contains(&run["steady"]["frames"].as_u64().unwrap()));
-    assert_eq!(run["wrong"]["total"], run["wrong"]["in_band"]);
-
-    let (runs, _) = results(folder.path(), &format!("{line} --path walk"));
-    let frames = runs[0]["sequence"]["frames"].as_array().unwrap();
-    assert_eq!(frames[0]["wrong_outside_band"], 0);
-    let late = |frame: &&Value| frame["wrong_outside_band"].as_u64().unwrap() > 0;
-    assert!(frames.iter().filter(late).count() > 12, "{frames:?}");
-}
-
 /// Documents that count frames: by the graph's number of them, or by a buffer that stays.
 const COUNTERS: [[&str; 3]; 2] = [
     [

@@ -12,7 +12,7 @@ use skiagraph_passes::EmbeddedSources;
 use skiagraph_scene::{DirectionalLight, Indexed, Light, Mesh, Scene, View};
 use std::{error::Error, sync::Arc};
 
-/// A roof, four corners above a floor, each of two triangles.
+/// A roof above a floor, each of two triangles.
 fn engine_scene() -> Result<Scene, Box<dyn Error>> {
     let square = |half: f32, y: f32| {
         [[-1.0, -1.0], [-1.0, 1.0], [1.0, 1.0], [1.0, -1.0]].map(|[x, z]| [x * half, y, z * half])

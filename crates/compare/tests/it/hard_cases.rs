@@ -1,6 +1,6 @@
 //! The hard cases, and whether methods keep what they guarantee.
 
-use crate::support::gpu;
+use crate::support::{TEMPORAL, gpu, sources};
 use serde_json::Value;
 use skiagraph_cases::{Casters, HardCase, case, cases};
 use skiagraph_compare::{
@@ -11,13 +11,14 @@ use skiagraph_compare::{
 };
 use skiagraph_passes::EmbeddedSources;
 
-/// Judges methods on a case, with viewport and maps of that side; as `stress.json` has it.
-fn judged(names: &[&str], name: &str, side: u32) -> Value {
-    let methods = load_methods(names, &[], &[side], &EmbeddedSources).unwrap();
+/// Judges methods on a case, those of `exact` as exact ones, with viewport and maps of that side; as
+/// `stress.json` has it.
+fn judged(names: &[&str], exact: &[String], name: &str, side: u32) -> Value {
+    let methods = load_methods(names, &[], &[side], &sources(TEMPORAL.as_ref())).unwrap();
     let features = gpu().device.features();
     let methods = methods.into_iter().map(|method| {
         let settled = method.at([side; 2]).settled(features);
-        MethodRun::new(settled, &[]).unwrap()
+        MethodRun::new(settled, exact).unwrap()
     });
     let methods: Vec<MethodRun> = methods.collect();
     let context = HardCaseContext {
@@ -33,11 +34,10 @@ fn judged(names: &[&str], name: &str, side: u32) -> Value {
 
 #[test]
 fn open_casters_are_judged_without_culling() {
-    let folder = tempfile::tempdir().unwrap();
     let is_open = |case: &HardCase| case.casters == Casters::Open;
     let open = cases().into_iter().find(is_open);
     let name = open.expect("the catalogue has open cases").name;
-    let report = judged(&["crsm", "nsm"], name, 32);
+    let report = judged(&["crsm", "nsm"], &[], name, 32);
     let cells = report["cells"].as_array().unwrap();
     let verdicts: Vec<_> = cells
         .iter()
@@ -49,4 +49,14 @@ fn open_casters_are_judged_without_culling() {
         [Some("nsm"), None, Some("unjudged")],
     ];
     assert_eq!(verdicts, expected);
+}
+
+#[test]
+fn a_method_that_remembers_is_judged_in_its_steady_state() {
+    let exact = ["temporal.ron".to_owned()];
+    let case = judged(&["temporal.ron"], &exact, "box_on_floor", 48);
+    assert_eq!(case["verdict"], "pass");
+    let cells = case["cells"].as_array().unwrap();
+    let verdicts: Vec<_> = cells.iter().map(|cell| &cell["verdict"]).collect();
+    assert_eq!(verdicts, ["pass"]);
 }

@@ -20,6 +20,9 @@ use std::{
     sync::{Arc, LazyLock},
 };
 
+/// The folder of `temporal.ron`, a method that remembers.
+pub const TEMPORAL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/foreign/temporal");
+
 /// The device of all tests.
 pub fn gpu() -> &'static Gpu {
     static GPU: LazyLock<Gpu> = LazyLock::new(|| {
@@ -44,7 +47,7 @@ pub fn park() -> Arc<Scene> {
     PARK.clone()
 }
 
-/// What a folder has, and what is built in.
+/// Documents of a folder, and those that are built in.
 pub fn sources(folder: &Path) -> LayeredSources {
     let own = FolderSources {
         root: folder.to_owned(),

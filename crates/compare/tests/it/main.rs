@@ -6,3 +6,4 @@ mod engine;
 mod hard_cases;
 mod paths;
 mod remembering;
+mod resume;

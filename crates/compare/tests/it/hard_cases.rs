@@ -11,8 +11,8 @@ use skiagraph_compare::{
 };
 use skiagraph_passes::EmbeddedSources;
 
-/// Judges methods on a case, those of `exact` as exact ones, with viewport and maps of that side; as
-/// `stress.json` has it.
+/// Judges methods on a case, those of `exact` as exact ones, with viewport and maps of that side;
+/// as `stress.json` has it.
 fn judged(names: &[&str], exact: &[String], name: &str, side: u32) -> Value {
     let methods = load_methods(names, &[], &[side], &sources(TEMPORAL.as_ref())).unwrap();
     let features = gpu().device.features();

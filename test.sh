@@ -7,7 +7,7 @@
 #   ./test.sh                          all tests but the suites that take minutes
 #   ./test.sh --all                    these, too
 #   ./test.sh --test graph extends::   some of one binary: graph, gpu, scene, draw, chart,
-#                                      reference, cli, or across (those of tests/)
+#                                      reference, compare, cli, or across (those of tests/)
 #
 # Tests on the meshes of Sponza and bench look for them in $SKIAGRAPH_ASSETS and say so where that is
 # not set.

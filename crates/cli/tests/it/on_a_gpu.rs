@@ -414,51 +414,6 @@ fn timeless(mut value: Value) -> Value {
 
 #[test]
 #[ignore = "a suite: `./test.sh --all` runs it"]
-fn a_resumed_comparison_is_the_one_in_one_go() {
-    let folder = tempfile::tempdir().unwrap();
-    let compare = |methods: &str, rest: &str| {
-        let line = format!("compare {methods} --size 24x16,16x16 --frames 1 --warmup 0 {rest}");
-        let output = skiagraph(folder.path(), &line);
-        String::from_utf8_lossy(&output.stderr).into_owned()
-    };
-    compare("rt nsm", "--map-size 8,16 --out whole");
-    compare("nsm", "--map-size 16 --out parts");
-    let parts = folder.path().join("parts");
-    let begun = results(&parts);
-    let text = compare("rt nsm", "--map-size 8,16 --out parts --resume");
-    assert!(text.contains("2 of 6 runs are kept"), "{text}");
-    let resumed = results(&parts);
-    assert_eq!(
-        timeless(resumed.clone()),
-        timeless(results(&folder.path().join("whole")))
-    );
-    assert_eq!(resumed["runs"][2], begun["runs"][0]);
-    assert_eq!(resumed["runs"][5], begun["runs"][1]);
-
-    // Nothing is left to do, so nothing is drawn.
-    let text = compare("rt nsm", "--map-size 8,16 --out parts --resume");
-    assert!(
-        text.contains("6 of 6 runs are kept") && !text.contains("starting"),
-        "{text}"
-    );
-    let again = results(&parts);
-    assert_eq!(again["runs"], resumed["runs"]);
-    assert_eq!(timeless(again), timeless(resumed));
-
-    // A shader that is not the same any more.
-    let shader = skiagraph(folder.path(), "show shadow_lookup.wgsl");
-    fs::create_dir(folder.path().join("shaders")).unwrap();
-    let text = [&shader.stdout[..], b"// changed\n"].concat();
-    fs::write(folder.path().join("shaders/shadow_lookup.wgsl"), text).unwrap();
-    let text = compare("rt nsm", "--map-size 8,16 --out parts --resume");
-    assert!(
-        text.contains("2 of 6 runs are kept") && text.contains("4 of the 6"),
-        "{text}"
-    );
-}
-
-#[test]
-#[ignore = "a suite: `./test.sh --all` runs it"]
 fn settings_stand_beside_each_other_and_runs_that_are_there_stay() {
     let folder = tempfile::tempdir().unwrap();
     let common = "--size 16x16 --map-size 8 --frames 1 --warmup 0 --out out";

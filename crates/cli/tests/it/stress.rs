@@ -2,7 +2,7 @@
 //! fails here with the program's own advice.
 
 use serde_json::Value;
-use skiagraph_cases::{Casters, HardCase, cases};
+use skiagraph_cases::cases;
 use std::{
     fs,
     path::Path,
@@ -200,27 +200,6 @@ fn what_this_adapter_cannot_run_is_said_once() {
     assert!(!text.contains("┆ nowhere.ron"), "no column: {text}");
     let (_, errors) = run(folder.path(), "nowhere.ron --size 8x8", 1);
     assert!(errors.contains("no method can run"), "{errors}");
-}
-
-#[test]
-fn open_casters_are_judged_without_culling() {
-    let folder = tempfile::tempdir().unwrap();
-    let is_open = |case: &HardCase| case.casters == Casters::Open;
-    let open = cases().into_iter().find(is_open);
-    let name = open.expect("the catalogue has open cases").name;
-    let line = format!("crsm nsm --case {name} --size 32x32 --map-size 32 --format json");
-    let report: Value = serde_json::from_str(&run(folder.path(), &line, 0).0).unwrap();
-    let cells = report["cases"][0]["cells"].as_array().unwrap();
-    let verdicts: Vec<_> = cells
-        .iter()
-        .map(|cell| [&cell["preset"], &cell["set"], &cell["verdict"]].map(Value::as_str))
-        .collect();
-    let expected = [
-        [Some("crsm"), None, Some("open")],
-        [Some("crsm"), Some("cull=none"), Some("pass")],
-        [Some("nsm"), None, Some("unjudged")],
-    ];
-    assert_eq!(verdicts, expected);
 }
 
 /// Ctrl-C after the first case: the cases that are done stay.

@@ -2,6 +2,7 @@
 
 use skiagraph_chart::{Figure, Kind, Mark, Panel, Series};
 use skiagraph_compare::error::CompareError;
+use skiagraph_compare::lists::unique;
 use skiagraph_compare::records::results::{Measured, Results, Run};
 use skiagraph_compare::wording::{frames, size};
 use std::{collections::BTreeSet, path::PathBuf};
@@ -194,13 +195,8 @@ fn is_drawn(run: &Run, viewport: Option<[u32; 2]>) -> bool {
 
 /// Viewports with something to draw, in the order of the file.
 fn viewports(results: &Results, wanted: Option<[u32; 2]>) -> Vec<[u32; 2]> {
-    let mut viewports = Vec::new();
-    for run in results.runs.iter().filter(|run| is_drawn(run, wanted)) {
-        if !viewports.contains(&run.viewport) {
-            viewports.push(run.viewport);
-        }
-    }
-    viewports
+    let drawn = results.runs.iter().filter(|run| is_drawn(run, wanted));
+    unique(&drawn.map(|run| run.viewport).collect::<Vec<_>>())
 }
 
 fn drawn(results: &Results, viewport: [u32; 2]) -> impl Iterator<Item = (&Run, &Measured)> {

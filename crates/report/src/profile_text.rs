@@ -3,6 +3,7 @@
 use crate::notes::untimed;
 use crate::table::terminal;
 use skiagraph_compare::graphs::variants::MAP_SIZE;
+use skiagraph_compare::lists::unique;
 use skiagraph_compare::records::baseline::{Comparison, Difference, MIN_FRAMES, Ratio, Verdict};
 use skiagraph_compare::records::profile::{Conditions, Material, Profile};
 use skiagraph_compare::records::statistics::Series;
@@ -47,23 +48,15 @@ pub fn matrices(profiles: &[Profile]) -> String {
             first.conditions.warmup
         );
     }
-    for method in unique(profiles, |profile| profile.conditions.preset.as_str()) {
+    let methods = profiles
+        .iter()
+        .map(|profile| profile.conditions.preset.as_str());
+    for method in unique(&methods.collect::<Vec<_>>()) {
         let columns = profiles.iter();
         let columns = columns.filter(|profile| profile.conditions.preset == method);
         text += &format!("\n{}\n", matrix(method, &columns.collect::<Vec<_>>()));
     }
     text
-}
-
-/// In the order in which they first appear.
-fn unique<'a, T>(list: &'a [T], name: impl Fn(&'a T) -> &'a str) -> Vec<&'a str> {
-    let mut names = Vec::new();
-    for item in list {
-        if !names.contains(&name(item)) {
-            names.push(name(item));
-        }
-    }
-    names
 }
 
 fn matrix(method: &str, profiles: &[&Profile]) -> String {
@@ -75,12 +68,8 @@ fn matrix(method: &str, profiles: &[&Profile]) -> String {
     };
     let heads: Vec<String> = profiles.iter().map(head).collect();
     let heads = [method].into_iter().chain(heads.iter().map(String::as_str));
-    let mut passes: Vec<&str> = Vec::new();
-    for pass in profiles.iter().flat_map(|profile| &profile.passes) {
-        if !passes.contains(&pass.name.as_str()) {
-            passes.push(&pass.name);
-        }
-    }
+    let passes = profiles.iter().flat_map(|profile| &profile.passes);
+    let passes = unique(&passes.map(|pass| pass.name.as_str()).collect::<Vec<_>>());
     let cell = |series: Option<&Series>| series.map_or("–".into(), |of| ms(of.median));
     let rows = passes.into_iter().map(|name| {
         let of = |profile: &&Profile| {

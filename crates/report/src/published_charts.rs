@@ -5,6 +5,7 @@ use crate::charts::{Kept, conditions};
 use crate::published_left_out::{views_left_out, without_counterpart};
 use crate::published_panels::{Bar, Cell, Groups, PanelRow, cells, published, rows};
 use skiagraph_chart::{Figure, Panel};
+use skiagraph_compare::lists::unique;
 use skiagraph_compare::records::columns::{figure, head_of, quantities};
 use skiagraph_compare::records::published_row::Row;
 use skiagraph_compare::records::results::Run;
@@ -40,12 +41,8 @@ pub fn draw(
         .collect();
     let theirs = published_rows.iter().filter(|row| is_in(row.key().2));
     let mut left_out = without_counterpart(&cells, theirs, label);
-    let mut methods: Vec<String> = Vec::new();
-    for Cell { run, .. } in &cells {
-        if !methods.contains(&run.preset) {
-            methods.push(run.preset.clone());
-        }
-    }
+    let methods: Vec<String> = cells.iter().map(|cell| cell.run.preset.clone()).collect();
+    let methods = unique(&methods);
     let mut charts = Vec::new();
     let mut add = |name: String, [title, note]: [String; 2], drawn: &[PanelRow], panels| {
         let whose = format!("Left: {label}, as published. Right: ours, measured as follows.");
@@ -68,18 +65,11 @@ pub fn draw(
     };
     for quantity in of_runs(&cells) {
         let head = head_of(&quantity);
-        let (y, note) = match whole_of(&quantity) {
-            None => (head.clone(), String::new()),
-            Some(whole) => {
-                let wholes = cells.iter().filter_map(|cell| cell.whole(whole));
-                let Some(method) = wholes.map(|run| &run.preset).next() else {
-                    let without = format!("no method without a map has {} there", head_of(whole));
-                    left_out.push(format!("not drawn: {quantity}: {without}"));
-                    continue;
-                };
-                let of = format!("{method}'s {}", head_of(whole));
-                let note = format!("Shares of {of} in the same view and viewport.");
-                (format!("{head}, % of {of}"), note)
+        let (y, note) = match axis(&cells, &quantity) {
+            Ok(words) => words,
+            Err(why) => {
+                left_out.push(format!("not drawn: {quantity}: {why}"));
+                continue;
             }
         };
         let mut lacking = Vec::new();
@@ -121,6 +111,26 @@ pub fn draw(
         panels.collect(),
     );
     Charts { charts, left_out }
+}
+
+/// The label of a quantity's axis, and a note on it.
+///
+/// # Errors
+/// Why it cannot be drawn: there is nothing that it is a share of.
+fn axis(cells: &[Cell], quantity: &str) -> Result<(String, String), String> {
+    let head = head_of(quantity);
+    let Some(whole) = whole_of(quantity) else {
+        return Ok((head, String::new()));
+    };
+    let whole_head = head_of(whole);
+    let mut wholes = cells.iter().filter_map(|cell| cell.whole(whole));
+    let method = &wholes
+        .next()
+        .ok_or_else(|| format!("no method without a map has {whole_head} there"))?
+        .preset;
+    let of = format!("{method}'s {whole_head}");
+    let note = format!("Shares of {of} in the same view and viewport.");
+    Ok((format!("{head}, % of {of}"), note))
 }
 
 /// The quantities that are published of these runs, but counts, which are shares, too.

@@ -7,6 +7,7 @@ use crate::notes::{
 use crate::summary::{Row, by_wall, rows};
 use crate::verdict::{Verdict, verdict};
 use crate::{graded, results_table::timed_frames, table::terminal};
+use skiagraph_compare::lists::unique;
 use skiagraph_compare::records::columns::are_paths;
 use skiagraph_compare::records::results::{Promise, Results, Run};
 use skiagraph_compare::records::table::Table;
@@ -34,13 +35,8 @@ pub struct Group<'a> {
 
 /// One summary per viewport, in the order of the results.
 pub fn summaries(results: &Results) -> Vec<Summary<'_>> {
-    let mut viewports: Vec<[u32; 2]> = Vec::new();
-    for run in &results.runs {
-        if !viewports.contains(&run.viewport) {
-            viewports.push(run.viewport);
-        }
-    }
-    let all = viewports.into_iter();
+    let viewports: Vec<[u32; 2]> = results.runs.iter().map(|run| run.viewport).collect();
+    let all = unique(&viewports).into_iter();
     all.map(|viewport| Summary::new(results, viewport))
         .collect()
 }
@@ -366,14 +362,9 @@ fn or_dash<T>(value: Option<T>, text: impl Fn(T) -> String) -> String {
 /// The time of each pass in each viewport and map, a table per method: medians of the GPU's ms,
 /// means where there are several views.
 pub fn passes(results: &Results) -> String {
-    let mut methods: Vec<String> = Vec::new();
-    for run in results.runs.iter().filter(|run| run.measured.is_some()) {
-        let name = run.preset.clone();
-        if !methods.contains(&name) {
-            methods.push(name);
-        }
-    }
-    let tables = methods.iter().map(|method| {
+    let measured = results.runs.iter().filter(|run| run.measured.is_some());
+    let methods: Vec<&String> = measured.map(|run| &run.preset).collect();
+    let tables = unique(&methods).into_iter().map(|method| {
         let runs = results.runs.iter().filter(|run| run.preset == *method);
         matrix(method, &runs.collect::<Vec<_>>())
     });

@@ -15,7 +15,7 @@ pub const FILE: &str = "report.html";
 /// Writes the page of one folder into it, and tells the sink which pictures had no room in it.
 ///
 /// # Errors
-/// Those of [`write`].
+/// Those of [`write`](write()).
 pub fn write_beside(folder: &Path, sink: &dyn Sink) -> Result<(), CompareError> {
     write(&[folder.to_path_buf()], &folder.join(FILE), sink)
 }

@@ -924,7 +924,7 @@ fn results_of_other_conditions_are_not_resumed() {
     };
     let first = compare("--frames 1 --resume");
     let text = String::from_utf8_lossy(&first.stderr);
-    assert!(text.contains("there is no ./results.json yet"), "{text}");
+    assert!(text.contains("./results.json is not there yet"), "{text}");
     let before = results(folder.path());
     let other = compare("--frames 2 --resume");
     let text = String::from_utf8_lossy(&other.stderr);

@@ -1,7 +1,10 @@
 //! [`Graph`]: a document with its shaders, ready to be planned.
 
 use crate::{
-    compose::reader::{IncludeSite, Reader, label},
+    compose::{
+        reader::{IncludeSite, Reader, label},
+        used::{Used, drop_unused},
+    },
     diagnostics::{
         diagnostic::{Diagnostic, Severity},
         list::Diagnostics,
@@ -23,7 +26,6 @@ use crate::{
     language::{name::Name, syntax::Leaf},
     shader::{
         expand::ShaderFiles,
-        reflect::Shader,
         store::{self, Shaders},
         unused,
     },
@@ -143,19 +145,29 @@ impl Graph {
     }
 
     /// The text of the document at `path` with all that it extends written out, each line with its
-    /// origin. It reads as the document does.
+    /// origin. It reads as the document does; one with mistakes keeps what nothing uses.
     ///
     /// # Errors
-    /// Mistakes in one of the documents, or in an edit.
-    pub fn flat(path: &str, sources: &dyn Sources) -> Result<String, Diagnostics> {
+    /// Mistakes in one of the documents as a file, or in an edit.
+    pub fn flat(
+        path: &str,
+        registry: &Registry,
+        sources: &dyn Sources,
+    ) -> Result<String, Diagnostics> {
         let mut reports = Reports::default();
-        let registry = Registry::default();
         let chosen = BTreeMap::new();
-        let mut reader = Reader::new(&registry, sources, &chosen, &mut reports);
+        let mut reader = Reader::new(registry, sources, &chosen, &mut reports);
         let document = reader.flat(path);
         let asked = std::mem::take(&mut reader.include_sites);
         match document {
-            Ok(document) if reports.errors() == 0 => Ok(flat(&document)),
+            Ok(mut document) if reports.errors() == 0 => {
+                if let Ok((graph, errors)) = Self::read(path, registry, sources, &chosen)
+                    && errors.is_empty()
+                {
+                    document.keep(&graph.document);
+                }
+                Ok(flat(&document))
+            }
             _ => {
                 let mut list = reports.into_list();
                 label(&mut list, path, &asked);
@@ -183,7 +195,7 @@ impl Graph {
         let root = reader.root(path);
         let included: Vec<Arc<Document>> = reader.documents().cloned().collect();
         let asked = std::mem::take(&mut reader.include_sites);
-        let Ok(root) = root else {
+        let Ok(mut root) = root else {
             let mut list = reports.into_list();
             label(&mut list, path, &asked);
             return Err(Diagnostics::new(list));
@@ -193,24 +205,28 @@ impl Graph {
             let place = root.file.span(end.saturating_sub(1)..end);
             reports.report(ComposeError::NoOutputs(place));
         }
-        let root = Arc::new(root);
-        let documents: Vec<&Document> = [&*root]
+        let documents: Vec<&Document> = [&root]
             .into_iter()
             .chain(included.iter().map(|d| &**d))
             .collect();
         let shaders = store::load(&root, ShaderFiles::new(sources), &mut reports);
         let pictures = load_pictures(&documents, sources, &mut reports);
+        let (required, asked_for) = (required(&documents), asked_for(&documents));
+        // The uses of a missing shader are not known.
+        let is_known = reports.errors() == 0;
+        if is_known {
+            drop_unused(&mut root, &shaders, &mut HashMap::new(), &mut reports);
+        }
         let mut graph = Self {
-            required: required(&documents),
-            asked_for: asked_for(&documents),
-            document: root,
+            required,
+            asked_for,
+            document: Arc::new(root),
             shaders: Arc::new(shaders),
             pictures: Arc::new(pictures),
             include_sites: Arc::new(asked),
             warnings: Vec::new(),
         };
-        // The uses of a missing shader are not known.
-        if reports.errors() == 0 {
+        if is_known {
             graph.unused(&mut reports);
         }
         let is_error = |diagnostic: &Diagnostic| diagnostic.severity == Severity::Error;
@@ -307,11 +323,10 @@ impl Graph {
     fn unused(&self, reports: &mut Reports) {
         let document = &self.document;
         let unused = |what, name| ComposeError::Unused { what, name };
-        let is_own = |span: &Span| span.file.name == document.file.name;
         let used = Used::new(document, &self.shaders);
         for material in &document.materials {
             let name = material.name();
-            if is_own(&name.span) && !used.materials.contains(name.as_str()) {
+            if document.is_own(&name.span) && !used.materials.contains(name.as_str()) {
                 let name = Located::new(name.value.to_string(), name.span.clone());
                 reports.warn(unused(Unused::Material, name));
             }
@@ -319,20 +334,22 @@ impl Graph {
         for (name, _) in &document.values {
             let is_used =
                 used.params.contains(name.as_str()) || used.materials.contains(name.as_str());
-            if is_own(&name.span) && !is_used {
+            if document.is_own(&name.span) && !is_used {
                 let name = Located::new(name.value.to_string(), name.span.clone());
                 reports.warn(unused(Unused::Value, name));
             }
         }
         for param in &document.params[..document.declared] {
-            if is_own(&param.name.span) && !used.params.contains(&param.name.value) {
+            if document.is_own(&param.name.span) && !used.params.contains(&param.name.value) {
                 reports.warn(unused(Unused::Param, param.name.clone()));
             }
         }
         let imported = self.shaders.imported();
         for entry in &document.imports {
             let path = self.shaders.module(&entry.of);
-            if is_own(&entry.of.span) && path.is_some_and(|path| !imported.contains(&**path)) {
+            if document.is_own(&entry.of.span)
+                && path.is_some_and(|path| !imported.contains(&**path))
+            {
                 reports.warn(unused(Unused::Import, entry.of.clone()));
             }
         }
@@ -380,59 +397,6 @@ impl Graph {
     /// The place of the document itself, for mistakes of a request.
     pub(crate) fn place(&self) -> Span {
         self.document.file.span(0..0)
-    }
-}
-
-/// Names that a document uses.
-#[derive(Default)]
-struct Used {
-    materials: BTreeSet<String>,
-    params: BTreeSet<String>,
-}
-
-impl Used {
-    fn new(document: &Document, shaders: &Shaders) -> Self {
-        let mut used = Self::default();
-        document.visit(&mut |leaf| match leaf {
-            Leaf::Param(name) => drop(used.params.insert(name.to_owned())),
-            Leaf::Word(name) => drop(used.params.insert(name.to_string())),
-            Leaf::Material(of) => drop(used.materials.insert(of.segments[0].name.to_string())),
-            Leaf::Constant(_) | Leaf::Has(_) => {}
-        });
-        each_entry(&document.entries, &mut |entry| match &entry.what {
-            What::Pass(pass) => {
-                let variants = pass.shaders.iter();
-                for shader in variants.flat_map(|shader| shaders.variants(document, shader)) {
-                    used.params.extend(shader.params().map(str::to_owned));
-                    used.materials
-                        .extend(shader.global_names().map(str::to_owned));
-                    used.choices(document, shader);
-                }
-            }
-            What::Include(include) => {
-                let Some(inner) = include.document() else {
-                    return;
-                };
-                let inputs = inner.inputs.iter().map(|input| input.name.to_string());
-                used.materials.extend(inputs);
-                let asked = inner.params.iter().filter(|param| param.default.is_none());
-                used.params
-                    .extend(asked.map(|param| param.name.value.clone()));
-            }
-            What::Group(_) => {}
-        });
-        used
-    }
-
-    /// Params of whose words the shader has constants.
-    fn choices(&mut self, document: &Document, shader: &Shader) {
-        let constants: BTreeSet<&str> = shader.constants().collect();
-        for param in &document.params {
-            let prefix = format!("{}_", param.name.value.replace('.', "_").to_uppercase());
-            if constants.iter().any(|name| name.starts_with(&prefix)) {
-                self.params.insert(param.name.value.clone());
-            }
-        }
     }
 }
 

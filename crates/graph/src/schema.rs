@@ -220,18 +220,6 @@ fn tagged(tags: impl IntoIterator<Item = (String, Value)>) -> Value {
     })
 }
 
-/// `Remove(name: …)` of a section.
-fn removed() -> (String, Value) {
-    let removed = json!({
-        "description": "Leaves out the item of this name of the extended document.",
-        "type": "object",
-        "properties": { "name": { "description": "Its name.", "type": "string" } },
-        "required": ["name"],
-        "additionalProperties": false,
-    });
-    ("Remove".to_owned(), removed)
-}
-
 struct Kinds<'k> {
     kinds: &'k [Kind],
     generator: &'k mut SchemaGenerator,
@@ -259,7 +247,7 @@ impl Kinds<'_> {
             "params" => {
                 let fields = self.schema::<ParamFields>();
                 let params = PARAM_TYPES.map(|tag| (tag.to_owned(), fields.clone()));
-                tagged(params.into_iter().chain([removed()]))
+                tagged(params)
             }
             "set" | "values" => self.map::<Expr>(),
             "narrow" => self.map::<Narrow>(),
@@ -268,13 +256,11 @@ impl Kinds<'_> {
                 ("Texture".to_owned(), self.schema::<TextureInput>()),
                 ("Buffer".to_owned(), self.schema::<BufferInput>()),
                 ("Sampler".to_owned(), self.schema::<SamplerInput>()),
-                removed(),
             ]),
             "materials" => tagged([
                 ("Texture".to_owned(), self.schema::<TextureEntry>()),
                 ("Buffer".to_owned(), self.schema::<BufferEntry>()),
                 ("Sampler".to_owned(), self.schema::<SamplerEntry>()),
-                removed(),
             ]),
             "passes" => self.passes(),
             "outputs" => self.list::<Output>(),

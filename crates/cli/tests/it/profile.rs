@@ -182,7 +182,7 @@ fn a_baseline_stands_beside_and_other_conditions_are_called_out() {
         "viewport: then 32x24, now 16x16",
         "method: then nsm, now rt",
         "Only then: create_shadow_map.fit_map.over_scene, create_shadow_map.draw[0], shadow_lookup",
-        "Only now: detect_facing, turn[0].fill_rays.clear, turn[0].fill_rays.compact, \
+        "Only now: detect_facing, turn[0].fill_rays.compact, \
          turn[0].fill_rays.dispatch_arguments, turn[0].trace_rays, turn[0].fix_pixels",
     ] {
         assert!(other.contains(part), "no {part:?} in\n{other}");

@@ -1,17 +1,26 @@
 //! A document as sections of raw pieces. [`extend`](super::extend) edits them, and
 //! [`typed`](super::typed) reads them.
 
-use super::ron::{Field, Node};
+use super::{
+    ron::{Field, Node},
+    typed::Document,
+};
 use crate::{
     diagnostics::reports::{ErrorGuaranteed, IntoDiagnostic, Reports},
-    errors::document::DocumentError,
+    errors::{document::DocumentError, edit::EditError},
     source::span::{Located, SourceFile, Span},
 };
-use std::collections::{HashMap, HashSet};
+use std::{
+    collections::{HashMap, HashSet},
+    sync::Arc,
+};
 
 /// Most entries of a list or map as it is written; each may name all others, so time may grow with
 /// the square.
 const MOST_ENTRIES: usize = 4096;
+
+/// The edit that takes a pass out.
+pub(crate) const REMOVE: &str = "Remove";
 
 /// The document format that is read.
 pub(crate) const FORMAT: u32 = 3;
@@ -23,6 +32,8 @@ pub(crate) type RawMap = Vec<(Located<String>, Node)>;
 #[derive(Debug)]
 pub(crate) struct RawDocument {
     pub file: SourceFile,
+    /// The paths of the documents that it extends, the nearest first.
+    pub extended: Vec<Arc<str>>,
     pub description: Option<Node>,
     pub extends: Option<Node>,
     pub requires: Vec<Node>,
@@ -76,6 +87,27 @@ fn name_of(fields: &[Field]) -> Option<Located<String>> {
     let field = fields.iter().find(|field| *field.name == "name")?;
     let name: String = field.node.parse().ok()?;
     Some(Located::new(name, field.node.span.clone()))
+}
+
+impl RawDocument {
+    /// Leaves out the params, values, inputs and materials that are not in `document`, which was
+    /// read from this one.
+    pub fn keep(&mut self, document: &Document) {
+        let params: Vec<&str> = document.params.iter().map(|it| it.name.as_str()).collect();
+        let materials = document.materials.iter().map(|it| it.name().as_str());
+        let inputs = document.inputs.iter().map(|it| it.name.as_str());
+        let values = document.values.iter().map(|(name, _)| name.as_str());
+        let names: Vec<&str> = materials.chain(inputs).chain(values).collect();
+        let is_kept = |item: &RawItem, names: &[&str]| {
+            item.name()
+                .is_none_or(|name| names.contains(&name.as_str()))
+        };
+        self.params.retain(|item| is_kept(item, &params));
+        self.inputs.retain(|item| is_kept(item, &names));
+        self.materials.retain(|item| is_kept(item, &names));
+        self.values
+            .retain(|(name, _)| names.contains(&name.as_str()));
+    }
 }
 
 impl RawItem {
@@ -196,6 +228,7 @@ pub(crate) fn split(
         passes: entries(passes, sections.reports),
         invalid_params: None,
         incomplete: sections.incomplete,
+        extended: Vec::new(),
         file,
     };
     (document.params, document.invalid_params) = params;
@@ -265,6 +298,9 @@ impl Sections<'_> {
         let (mut items, mut broken) = (Vec::new(), None);
         for node in self.list(section) {
             match item(&node, section) {
+                Ok(item) if *item.tag == REMOVE => {
+                    self.reports.report(EditError::RemovesItem(item.tag.span));
+                }
                 Ok(item) => items.push(item),
                 Err(error) => {
                     broken = Some(self.reports.emit(error));

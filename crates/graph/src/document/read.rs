@@ -2,7 +2,7 @@
 
 use super::{
     entries,
-    extend::{no_edits, no_removals},
+    extend::no_edits,
     fields::one_line,
     materials::{BufferInput, Input, Material, SamplerInput, TextureInput},
     params::Param,
@@ -27,14 +27,7 @@ use std::collections::BTreeSet;
 
 /// Reads a document and reports its mistakes. Its readable part is returned all the same, so that
 /// later phases find more mistakes in one go.
-pub(crate) fn document(
-    mut raw: RawDocument,
-    registry: &Registry,
-    reports: &mut Reports,
-) -> Document {
-    for items in [&mut raw.params, &mut raw.inputs, &mut raw.materials] {
-        no_removals(items, reports);
-    }
+pub(crate) fn document(raw: RawDocument, registry: &Registry, reports: &mut Reports) -> Document {
     let mut document = Document {
         description: String::new(),
         requires: Vec::new(),
@@ -57,6 +50,7 @@ pub(crate) fn document(
         incomplete: raw.incomplete,
         gives_values: BTreeSet::new(),
         include_depth: 0,
+        extended: raw.extended,
         file: raw.file,
     };
     if let Some(node) = &raw.description {

@@ -14,11 +14,8 @@ pub(crate) enum EditError {
         name: String,
         known: Vec<String>,
     },
-    #[error("the extended document has nothing called `{}` here", **name)]
-    NoSuchItem {
-        name: Located<String>,
-        known: Vec<String>,
-    },
+    #[error("`Remove` takes out passes alone")]
+    RemovesItem(Span),
     #[error("`narrow` brings back the word `{}` of `{}`", **word, **name)]
     Widens {
         name: Located<String>,
@@ -63,9 +60,10 @@ impl IntoDiagnostic for EditError {
             Self::NoSuchEntry { path, name, known } => {
                 diagnostic.at(path.span, "").suggest(&name, known)
             }
-            Self::NoSuchItem { name, known } => {
-                diagnostic.at(name.span.clone(), "").suggest(&name, known)
-            }
+            Self::RemovesItem(span) => diagnostic.at(span, "").help(
+                "leave it out: what the extended document declares goes by itself once nothing \
+                 uses it",
+            ),
             Self::Widens { word, first, .. } => diagnostic
                 .at(word.span, "widened here")
                 .at(first, "narrowed by the extended document")

@@ -275,12 +275,10 @@ impl IntoDiagnostic for InterfaceError {
             Self::WrittenInput(name, by) => diagnostic
                 .at(name.span.clone(), "an input")
                 .at(by, "written here")
-                .help(format!(
+                .help(
                     "name it among the `outputs`, so that its includers know; or make it a \
-                     material, and take the input of an extended document out: \
-                     `inputs: [Remove(name: \"{}\")]`",
-                    *name
-                )),
+                     material, which takes the place of an extended document's input",
+                ),
             Self::Unused { name, known, .. } => {
                 diagnostic.at(name.span.clone(), "").suggest(&name, known)
             }

@@ -9,7 +9,7 @@ use crate::{
     diagnostics::reports::Reports,
     kinds::{
         kind::Lowering,
-        step::{Names, ShaderUse, Step},
+        step::{Names, Operand, ShaderUse, Step},
     },
     resource::{Buffer, Origin, Resource, ResourceId, ResourceKind},
     source::span::Located,
@@ -79,6 +79,12 @@ fn lower_pass<'a>(
         &entry.bind,
         Some(&mut environment),
     );
+    for material in &pass.clear {
+        lowering.step(Step::Clear {
+            target: Operand::from(material),
+            value: [0.0; 4],
+        });
+    }
     pass.body.lower(&mut lowering);
     let (steps, scratch, diagnostics) = (lowering.steps, lowering.scratch, lowering.diagnostics);
     for diagnostic in diagnostics {

@@ -476,7 +476,7 @@ fn the_flat_text_is_the_document() {
             Clear(name: "new", before: "over", target: "second"),
         ]"#,
     );
-    let text = right(Graph::flat("graph.ron", &files));
+    let text = right(Graph::flat("graph.ron", &Registry::default(), &files));
     let flat = files.clone().with("graph.ron", text.clone());
     assert_eq!(all(&flat), all(&files));
     assert_eq!(right(plan(&flat)).outputs(), right(plan(&files)).outputs());

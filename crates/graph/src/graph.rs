@@ -12,7 +12,7 @@ use crate::{
         suggest::suggestion,
     },
     document::{
-        flat::flat,
+        flat::{flat, keep},
         materials::{Material, TextureEntry},
         params::{Param, ParamFault, ParamValue},
         typed::{Document, What, each_entry},
@@ -164,7 +164,7 @@ impl Graph {
                 if let Ok((graph, errors)) = Self::read(path, registry, sources, &chosen)
                     && errors.is_empty()
                 {
-                    document.keep(&graph.document);
+                    keep(&mut document, &graph.document);
                 }
                 Ok(flat(&document))
             }

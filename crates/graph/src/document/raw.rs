@@ -1,10 +1,7 @@
 //! A document as sections of raw pieces. [`extend`](super::extend) edits them, and
 //! [`typed`](super::typed) reads them.
 
-use super::{
-    ron::{Field, Node},
-    typed::Document,
-};
+use super::ron::{Field, Node};
 use crate::{
     diagnostics::reports::{ErrorGuaranteed, IntoDiagnostic, Reports},
     errors::{document::DocumentError, edit::EditError},
@@ -87,27 +84,6 @@ fn name_of(fields: &[Field]) -> Option<Located<String>> {
     let field = fields.iter().find(|field| *field.name == "name")?;
     let name: String = field.node.parse().ok()?;
     Some(Located::new(name, field.node.span.clone()))
-}
-
-impl RawDocument {
-    /// Leaves out the params, values, inputs and materials that are not in `document`, which was
-    /// read from this one.
-    pub fn keep(&mut self, document: &Document) {
-        let params: Vec<&str> = document.params.iter().map(|it| it.name.as_str()).collect();
-        let materials = document.materials.iter().map(|it| it.name().as_str());
-        let inputs = document.inputs.iter().map(|it| it.name.as_str());
-        let values = document.values.iter().map(|(name, _)| name.as_str());
-        let names: Vec<&str> = materials.chain(inputs).chain(values).collect();
-        let is_kept = |item: &RawItem, names: &[&str]| {
-            item.name()
-                .is_none_or(|name| names.contains(&name.as_str()))
-        };
-        self.params.retain(|item| is_kept(item, &params));
-        self.inputs.retain(|item| is_kept(item, &names));
-        self.materials.retain(|item| is_kept(item, &names));
-        self.values
-            .retain(|(name, _)| names.contains(&name.as_str()));
-    }
 }
 
 impl RawItem {

@@ -58,12 +58,31 @@ impl Diagnostic {
 
     /// Adds a place; the first one added is the mistake's own.
     #[must_use]
-    pub fn at(mut self, span: Span, text: impl Into<String>) -> Self {
+    pub fn at(mut self, place: impl Into<Span>, text: impl Into<String>) -> Self {
         self.labels.push(Label {
-            span,
+            span: place.into(),
             text: text.into(),
         });
         self
+    }
+
+    /// Adds a place that may not be known.
+    #[must_use]
+    pub(crate) fn at_any(self, place: Option<impl Into<Span>>, text: impl Into<String>) -> Self {
+        match place {
+            Some(place) => self.at(place, text),
+            None => self,
+        }
+    }
+
+    /// Adds several places.
+    #[must_use]
+    pub(crate) fn at_all<P: Into<Span>, T: Into<String>>(
+        self,
+        places: impl IntoIterator<Item = (P, T)>,
+    ) -> Self {
+        let places = places.into_iter();
+        places.fold(self, |diagnostic, (place, text)| diagnostic.at(place, text))
     }
 
     /// Says what to do, after what was said before.
@@ -77,13 +96,19 @@ impl Diagnostic {
         self
     }
 
-    /// Adds "did you mean …" if one of `known` is close to `word`, else a list of what there is.
+    /// Says what to do in some cases.
     #[must_use]
-    pub fn suggest<S: AsRef<str>>(self, word: &str, known: impl IntoIterator<Item = S>) -> Self {
-        match suggestion(word, known) {
+    pub(crate) fn help_any(self, text: Option<impl Into<String>>) -> Self {
+        match text {
             Some(text) => self.help(text),
             None => self,
         }
+    }
+
+    /// Adds "did you mean …" if one of `known` is close to `word`, else a list of what there is.
+    #[must_use]
+    pub fn suggest<S: AsRef<str>>(self, word: &str, known: impl IntoIterator<Item = S>) -> Self {
+        self.help_any(suggestion(word, known))
     }
 
     /// Key for sorting diagnostics: errors first, then by place.

@@ -7,10 +7,7 @@ use super::{
     typed::{Entry, Include, Pass, Run, What},
 };
 use crate::{
-    diagnostics::{
-        diagnostic::Diagnostic,
-        reports::{IntoDiagnostic, Reports},
-    },
+    diagnostics::{diagnostic::Diagnostic, reports::Reports},
     errors::document::DocumentError,
     kinds::{
         kind::{Lowering, OF_PASS},
@@ -40,7 +37,7 @@ pub(super) fn read(
         let entry = entry(raw, registry, reports);
         entry.map_err(|error| Invalid {
             is_include,
-            reported: reports.emit(error),
+            reported: reports.report(error),
         })
     };
     raw.into_iter().map(read).collect()
@@ -151,13 +148,13 @@ fn entry(
             .chain(COMPOSITION)
             .map(str::to_owned)
             .collect();
-        return Err(DocumentError::UnknownKind(raw.tag, known).into_diagnostic());
+        return Err(DocumentError::UnknownKind(raw.tag, known).into());
     }
     if let Some(passes) = raw.passes.take_if(|_| *raw.tag != "Group") {
         drop(passes);
         let name = Located::new("passes".to_owned(), raw.tag.span);
         let known = OF_PASS.map(str::to_owned).to_vec();
-        return Err(DocumentError::UnknownField(name, known).into_diagnostic());
+        return Err(DocumentError::UnknownField(name, known).into());
     }
     let (header, own): (Vec<Field>, Vec<Field>) = raw
         .fields
@@ -173,24 +170,24 @@ fn entry(
         "Group" => {
             let entries = raw.passes.ok_or_else(|| {
                 let missing = "passes".to_owned();
-                DocumentError::MissingField(raw.tag.span.clone(), missing).into_diagnostic()
+                DocumentError::MissingField(raw.tag.span.clone(), missing)
             })?;
             if let Some(field) = own.first() {
                 let known = OF_GROUP.map(str::to_owned).to_vec();
                 let error = DocumentError::UnknownField(field.name.clone(), known);
-                return Err(error.into_diagnostic());
+                return Err(error.into());
             }
-            let name = header.name.ok_or_else(|| unnamed().into_diagnostic())?;
+            let name = header.name.ok_or_else(unnamed)?;
             (name, What::Group(read(entries, registry, reports)))
         }
         _ => {
-            let name = header.name.ok_or_else(|| unnamed().into_diagnostic())?;
+            let name = header.name.ok_or_else(unnamed)?;
             let pass = pass(&raw.tag, &name, own, registry)?;
             (name, What::Pass(pass))
         }
     };
     if is_composed && RESERVED.contains(&name.as_str()) {
-        return Err(DocumentError::Reserved(name).into_diagnostic());
+        return Err(DocumentError::Reserved(name).into());
     }
     Ok(Entry {
         name,
@@ -222,7 +219,7 @@ fn pass(
     let common: PassFields = from_fields(&common, &tag.span)?;
     let kind = registry
         .get(tag)
-        .ok_or_else(|| DocumentError::UnknownKind(tag.clone(), Vec::new()).into_diagnostic())?;
+        .ok_or_else(|| DocumentError::UnknownKind(tag.clone(), Vec::new()))?;
     Mentions::take();
     let body = (kind.parse)(&own, &tag.span)?;
     let mut mentions = Mentions::take();
@@ -266,7 +263,7 @@ fn include(
             let span = fields.graph.span.clone();
             let name = Name::new(stem);
             let name = name.map_err(|_| DocumentError::Unnamed(span.clone(), stem.to_owned()));
-            Located::new(name.map_err(IntoDiagnostic::into_diagnostic)?, span)
+            Located::new(name?, span)
         }
     };
     let (exposes_all, expose) = match fields.expose {

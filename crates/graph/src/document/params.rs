@@ -5,7 +5,7 @@ use super::{
     ron::{Field, from_fields},
 };
 use crate::{
-    diagnostics::{diagnostic::Diagnostic, reports::IntoDiagnostic, suggest::likeness},
+    diagnostics::{diagnostic::Diagnostic, suggest::likeness},
     errors::document::DocumentError,
     language::{
         name::Name,
@@ -160,7 +160,7 @@ impl Param {
             "Vec3" => ParamType::Vec3,
             "Vec4" => ParamType::Vec4,
             "Choice" => ParamType::Choice(fields.words.iter().map(|w| w.value.clone()).collect()),
-            _ => return Err(DocumentError::UnknownParamType(tag.clone()).into_diagnostic()),
+            _ => return Err(DocumentError::UnknownParamType(tag.clone()).into()),
         };
         let mut different = HashSet::new();
         let repeats = !fields
@@ -174,16 +174,16 @@ impl Param {
             } else {
                 "only a Choice has `words`"
             };
-            return Err(wrong(why).into_diagnostic());
+            return Err(wrong(why).into());
         }
         if let (Some(min), Some(max)) = (fields.min, fields.max)
             && min.partial_cmp(&max).is_none_or(std::cmp::Ordering::is_gt)
         {
-            return Err(wrong(&format!("no value can lie in {min}..{max}")).into_diagnostic());
+            return Err(wrong(&format!("no value can lie in {min}..{max}")).into());
         }
         if *fields.name.value == *"index" {
             let why = "`index` is that of a repetition, and no param";
-            return Err(wrong(why).into_diagnostic());
+            return Err(wrong(why).into());
         }
         Ok(Self {
             name: Located::new(fields.name.value.to_string(), fields.name.span),

@@ -3,7 +3,7 @@
 
 use super::ron::{Field, Node};
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, IntoDiagnostic, Reports},
+    diagnostics::reports::{ErrorGuaranteed, Reports},
     errors::document::DocumentError,
     source::span::{Located, SourceFile, Span},
 };
@@ -164,7 +164,7 @@ pub(crate) fn split(
         return Err(reports.report(DocumentError::NoDocument(file)));
     }
     let fields = Node::root(&file).fields();
-    let fields = fields.map_err(|error| reports.emit(error))?;
+    let fields = fields.map_err(|error| reports.report(error))?;
     let mut sections = Sections {
         nodes: sections(fields, reports),
         incomplete: None,
@@ -240,7 +240,7 @@ impl Sections<'_> {
                 Err(self.reports.report(DocumentError::Format(place, other)))
             }
             Err(error) => {
-                self.reports.emit(error);
+                self.reports.report(error);
                 Ok(())
             }
         }
@@ -267,7 +267,7 @@ impl Sections<'_> {
             match item(&node, section) {
                 Ok(item) => items.push(item),
                 Err(error) => {
-                    broken = Some(self.reports.emit(error));
+                    broken = Some(self.reports.report(error));
                     self.incomplete = broken;
                 }
             }
@@ -301,13 +301,13 @@ fn item(node: &Node, section: &'static str) -> Result<RawItem, crate::diagnostic
         span: node.span.clone(),
         section,
     };
-    let (tag, body) = node.variant().ok_or_else(|| untagged().into_diagnostic())?;
+    let (tag, body) = node.variant().ok_or_else(untagged)?;
     let fields = body.fields()?;
     Ok(RawItem { tag, fields })
 }
 
 fn list(node: &Node, reports: &mut Reports) -> Result<Vec<Node>, ErrorGuaranteed> {
-    let nodes = node.list().map_err(|error| reports.emit(error))?;
+    let nodes = node.list().map_err(|error| reports.report(error))?;
     if let Some(first) = nodes.get(MOST_ENTRIES) {
         let span = first.span.clone();
         let count = nodes.len();
@@ -322,7 +322,7 @@ fn list(node: &Node, reports: &mut Reports) -> Result<Vec<Node>, ErrorGuaranteed
 }
 
 fn map(node: &Node, reports: &mut Reports) -> RawMap {
-    let entries = node.map().map_err(|error| reports.emit(error));
+    let entries = node.map().map_err(|error| reports.report(error));
     let entries = entries.unwrap_or_default();
     if let Some((first, _)) = entries.get(MOST_ENTRIES) {
         let span = first.span.clone();
@@ -356,7 +356,7 @@ fn entry(node: &Node, reports: &mut Reports) -> Result<RawEntry, Invalid> {
         let tag = node.variant().map(|(tag, _)| tag.value);
         Invalid {
             is_include: tag.is_some_and(|tag| tag == "Include"),
-            reported: reports.emit(error),
+            reported: reports.report(error),
         }
     })?;
     let mut entry = RawEntry {

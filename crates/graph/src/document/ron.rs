@@ -6,7 +6,7 @@
 //! the byte offset.
 
 use crate::{
-    diagnostics::{diagnostic::Diagnostic, reports::IntoDiagnostic},
+    diagnostics::diagnostic::Diagnostic,
     errors::document::DocumentError,
     panics::{Panicked, caught},
     source::span::{Located, SourceFile, Span},
@@ -40,8 +40,8 @@ fn fail(diagnostic: impl FnOnce(&SourceFile) -> Option<Diagnostic>) {
 }
 
 /// An error of serde's that is told as this mistake.
-pub(crate) fn refuse<E: serde::de::Error>(mistake: impl IntoDiagnostic) -> E {
-    let diagnostic = mistake.into_diagnostic();
+pub(crate) fn refuse<E: serde::de::Error>(mistake: impl Into<Diagnostic>) -> E {
+    let diagnostic = mistake.into();
     let message = diagnostic.message.clone();
     fail(|_| Some(diagnostic));
     E::custom(message)
@@ -218,9 +218,7 @@ impl Node {
 
     /// A panic of ron's as a diagnostic at the piece that it read.
     fn without_panic<T>(&self, result: Result<T, Panicked>) -> Result<T, Diagnostic> {
-        result.map_err(|panicked| {
-            DocumentError::Panicked(self.span.clone(), panicked).into_diagnostic()
-        })
+        result.map_err(|panicked| DocumentError::Panicked(self.span.clone(), panicked).into())
     }
 
     /// The entries of a list, `[…]`, or of a tuple, `(…)`.
@@ -443,7 +441,7 @@ pub fn from_some_fields<T: DeserializeOwned>(
                                 let known = expected.iter().chain(self.more);
                                 let known = known.map(|&name| name.to_owned()).collect();
                                 let name = Located::new(field.name.value.clone(), place);
-                                DocumentError::UnknownField(name, known).into_diagnostic()
+                                DocumentError::UnknownField(name, known).into()
                             }
                             error => explain(error, place),
                         })
@@ -482,7 +480,7 @@ pub fn from_some_fields<T: DeserializeOwned>(
         .find(|field| !seen.insert(field.name.as_str()))
     {
         let place = field.name.span.clone();
-        return Err(DocumentError::FieldTwice(place, field.name.value.clone()).into_diagnostic());
+        return Err(DocumentError::FieldTwice(place, field.name.value.clone()).into());
     }
     let node = Node {
         span: whole.clone(),
@@ -525,7 +523,7 @@ fn explain(error: &ron::Error, span: Span) -> Diagnostic {
         R::ExceededRecursionLimit => DocumentError::Nested(span),
         other => DocumentError::Syntax(span, lower_first(&other.to_string())),
     }
-    .into_diagnostic()
+    .into()
 }
 
 fn lower_first(text: &str) -> String {

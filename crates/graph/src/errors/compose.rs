@@ -1,7 +1,7 @@
 //! Documents that cannot be found, or do not go together.
 
 use crate::{
-    diagnostics::{code::Code, diagnostic::Diagnostic, reports::IntoDiagnostic},
+    diagnostics::{code::Code, diagnostic::Diagnostic},
     source::span::{Located, Span},
 };
 
@@ -121,7 +121,14 @@ fn same_name(name: &str, known: &str, what: &str) -> String {
     }
 }
 
-impl IntoDiagnostic for ComposeError {
+impl From<ComposeError> for Diagnostic {
+    fn from(mistake: ComposeError) -> Self {
+        let diagnostic = Self::error(mistake.code(), mistake.to_string());
+        mistake.explain(diagnostic)
+    }
+}
+
+impl ComposeError {
     fn code(&self) -> Code {
         match self {
             Self::Cycle { .. } => Code::IncludeCycle,

@@ -1,7 +1,7 @@
 //! Documents that cannot be read.
 
 use crate::{
-    diagnostics::{code::Code, diagnostic::Diagnostic, reports::IntoDiagnostic},
+    diagnostics::{code::Code, diagnostic::Diagnostic},
     language::name::{Name, NameFault, RESERVED},
     panics::Panicked,
     source::span::{Located, SourceFile, Span},
@@ -106,7 +106,14 @@ fn kinds(section: &str) -> (&'static str, &'static [&'static str]) {
     }
 }
 
-impl IntoDiagnostic for DocumentError {
+impl From<DocumentError> for Diagnostic {
+    fn from(mistake: DocumentError) -> Self {
+        let diagnostic = Self::error(mistake.code(), mistake.to_string());
+        mistake.explain(diagnostic)
+    }
+}
+
+impl DocumentError {
     fn code(&self) -> Code {
         match self {
             Self::Format(..) => Code::FormatVersion,

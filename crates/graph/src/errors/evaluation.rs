@@ -2,7 +2,7 @@
 
 use super::language::attributes;
 use crate::{
-    diagnostics::{code::Code, diagnostic::Diagnostic, reports::IntoDiagnostic},
+    diagnostics::{code::Code, diagnostic::Diagnostic},
     language::{
         name::Name,
         value::{Scalar, Value},
@@ -95,7 +95,14 @@ impl EvaluationError {
     }
 }
 
-impl IntoDiagnostic for EvaluationError {
+impl From<EvaluationError> for Diagnostic {
+    fn from(mistake: EvaluationError) -> Self {
+        let diagnostic = Self::error(mistake.code(), mistake.to_string());
+        mistake.explain(diagnostic)
+    }
+}
+
+impl EvaluationError {
     fn code(&self) -> Code {
         match self {
             Self::Unknown { .. } => Code::UnknownParam,

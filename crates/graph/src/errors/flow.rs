@@ -1,7 +1,7 @@
 //! Orders of passes that cannot be.
 
 use crate::{
-    diagnostics::{code::Code, diagnostic::Diagnostic, reports::IntoDiagnostic},
+    diagnostics::{code::Code, diagnostic::Diagnostic},
     source::span::{Located, Span},
 };
 
@@ -78,7 +78,14 @@ fn written(partly: bool) -> &'static str {
     }
 }
 
-impl IntoDiagnostic for OrderError {
+impl From<OrderError> for Diagnostic {
+    fn from(mistake: OrderError) -> Self {
+        let diagnostic = Self::error(mistake.code(), mistake.to_string());
+        mistake.explain(diagnostic)
+    }
+}
+
+impl OrderError {
     fn code(&self) -> Code {
         match self {
             Self::Capture { .. } => Code::Output,

@@ -1,7 +1,7 @@
 //! Mistakes between documents: params, inputs, outputs, names.
 
 use crate::{
-    diagnostics::{code::Code, diagnostic::Diagnostic, reports::IntoDiagnostic},
+    diagnostics::{code::Code, diagnostic::Diagnostic},
     document::params::{Param, ParamFault, ParamValue},
     source::span::{Located, Span},
 };
@@ -58,7 +58,14 @@ fn range(param: &Param) -> String {
     }
 }
 
-impl IntoDiagnostic for ParamError {
+impl From<ParamError> for Diagnostic {
+    fn from(mistake: ParamError) -> Self {
+        let diagnostic = Self::error(mistake.code(), mistake.to_string());
+        mistake.explain(diagnostic)
+    }
+}
+
+impl ParamError {
     fn code(&self) -> Code {
         match self {
             Self::Unknown(_) => Code::UnknownParam,
@@ -216,7 +223,14 @@ pub(crate) enum InterfaceError {
     },
 }
 
-impl IntoDiagnostic for InterfaceError {
+impl From<InterfaceError> for Diagnostic {
+    fn from(mistake: InterfaceError) -> Self {
+        let diagnostic = Self::error(mistake.code(), mistake.to_string());
+        mistake.explain(diagnostic)
+    }
+}
+
+impl InterfaceError {
     fn code(&self) -> Code {
         match self {
             Self::NoInput { .. }

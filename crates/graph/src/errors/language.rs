@@ -1,7 +1,7 @@
 //! Mistakes in expressions and references.
 
 use crate::{
-    diagnostics::{code::Code, diagnostic::Diagnostic, reports::IntoDiagnostic},
+    diagnostics::{code::Code, diagnostic::Diagnostic},
     language::{
         name::NameFault,
         syntax::{Attribute, Function},
@@ -48,7 +48,14 @@ fn text(span: &Span) -> &str {
     span.file.text.get(span.range.clone()).unwrap_or("")
 }
 
-impl IntoDiagnostic for SyntaxFault {
+impl From<SyntaxFault> for Diagnostic {
+    fn from(mistake: SyntaxFault) -> Self {
+        let diagnostic = Self::error(mistake.code(), mistake.to_string());
+        mistake.explain(diagnostic)
+    }
+}
+
+impl SyntaxFault {
     fn code(&self) -> Code {
         match self {
             Self::Name(..) => Code::Name,

@@ -1,7 +1,7 @@
 //! Buffers whose size or layout does not fit.
 
 use crate::{
-    diagnostics::{code::Code, diagnostic::Diagnostic, reports::IntoDiagnostic},
+    diagnostics::{code::Code, diagnostic::Diagnostic},
     source::span::{Located, Span},
 };
 
@@ -75,7 +75,14 @@ pub(crate) enum LayoutError {
     },
 }
 
-impl IntoDiagnostic for LayoutError {
+impl From<LayoutError> for Diagnostic {
+    fn from(mistake: LayoutError) -> Self {
+        let diagnostic = Self::error(mistake.code(), mistake.to_string());
+        mistake.explain(diagnostic)
+    }
+}
+
+impl LayoutError {
     fn code(&self) -> Code {
         match self {
             Self::NoCount { .. } | Self::TooLarge { .. } | Self::Copy { .. } => Code::Size,

@@ -1,7 +1,7 @@
 //! Shaders that ask more of a device than it has, or than WGSL promises of any.
 
 use crate::{
-    diagnostics::{code::Code, diagnostic::Diagnostic, reports::IntoDiagnostic},
+    diagnostics::{code::Code, diagnostic::Diagnostic},
     source::span::{Located, Span},
 };
 
@@ -97,7 +97,14 @@ pub(crate) enum LimitError {
     },
 }
 
-impl IntoDiagnostic for LimitError {
+impl From<LimitError> for Diagnostic {
+    fn from(mistake: LimitError) -> Self {
+        let diagnostic = Self::error(mistake.code(), mistake.to_string());
+        mistake.explain(diagnostic)
+    }
+}
+
+impl LimitError {
     fn code(&self) -> Code {
         match self {
             Self::NoVarying { .. } | Self::Attribute { .. } => Code::StageInterface,

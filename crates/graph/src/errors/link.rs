@@ -1,7 +1,7 @@
 //! Passes whose shaders, attachments, copies or dispatches do not fit.
 
 use crate::{
-    diagnostics::{code::Code, diagnostic::Diagnostic, reports::IntoDiagnostic},
+    diagnostics::{code::Code, diagnostic::Diagnostic},
     document::params::Param,
     shader::class::ScalarClass,
     source::span::{Located, Span},
@@ -464,7 +464,14 @@ impl LinkError {
     }
 }
 
-impl IntoDiagnostic for LinkError {
+impl From<LinkError> for Diagnostic {
+    fn from(mistake: LinkError) -> Self {
+        let diagnostic = Self::error(mistake.code(), mistake.to_string());
+        mistake.explain(diagnostic)
+    }
+}
+
+impl LinkError {
     fn code(&self) -> Code {
         self.kind()
     }

@@ -1,7 +1,7 @@
 //! Requests that a plan cannot meet.
 
 use crate::{
-    diagnostics::{code::Code, diagnostic::Diagnostic, reports::IntoDiagnostic},
+    diagnostics::{code::Code, diagnostic::Diagnostic},
     source::span::{Located, Span},
 };
 
@@ -79,7 +79,14 @@ pub(crate) enum OutputError {
     },
 }
 
-impl IntoDiagnostic for OutputError {
+impl From<OutputError> for Diagnostic {
+    fn from(mistake: OutputError) -> Self {
+        let diagnostic = Self::error(mistake.code(), mistake.to_string());
+        mistake.explain(diagnostic)
+    }
+}
+
+impl OutputError {
     fn code(&self) -> Code {
         match self {
             Self::UnwrittenOutput { .. } => Code::ReadBeforeWrite,

@@ -1,7 +1,7 @@
 //! Sizes and contents that a material cannot have.
 
 use crate::{
-    diagnostics::{code::Code, diagnostic::Diagnostic, reports::IntoDiagnostic},
+    diagnostics::{code::Code, diagnostic::Diagnostic},
     source::span::Located,
 };
 
@@ -88,7 +88,14 @@ pub(crate) enum SizeError {
     },
 }
 
-impl IntoDiagnostic for SizeError {
+impl From<SizeError> for Diagnostic {
+    fn from(mistake: SizeError) -> Self {
+        let diagnostic = Self::error(mistake.code(), mistake.to_string());
+        mistake.explain(diagnostic)
+    }
+}
+
+impl SizeError {
     fn code(&self) -> Code {
         match self {
             Self::NoPicture(..) | Self::Picture(..) => Code::MissingFile,

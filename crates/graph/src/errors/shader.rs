@@ -1,7 +1,7 @@
 //! Shaders that cannot be read, or are not valid.
 
 use crate::{
-    diagnostics::{code::Code, diagnostic::Diagnostic, reports::IntoDiagnostic},
+    diagnostics::{code::Code, diagnostic::Diagnostic},
     panics::Panicked,
     source::span::{Located, Span},
 };
@@ -37,7 +37,14 @@ pub(crate) enum ImportError {
     TooDeep(Span),
 }
 
-impl IntoDiagnostic for ImportError {
+impl From<ImportError> for Diagnostic {
+    fn from(mistake: ImportError) -> Self {
+        let diagnostic = Self::error(mistake.code(), mistake.to_string());
+        mistake.explain(diagnostic)
+    }
+}
+
+impl ImportError {
     fn code(&self) -> Code {
         match self {
             Self::Unquoted(_)
@@ -178,7 +185,14 @@ pub(crate) enum ShaderError {
     },
 }
 
-impl IntoDiagnostic for ShaderError {
+impl From<ShaderError> for Diagnostic {
+    fn from(mistake: ShaderError) -> Self {
+        let diagnostic = Self::error(mistake.code(), mistake.to_string());
+        mistake.explain(diagnostic)
+    }
+}
+
+impl ShaderError {
     fn code(&self) -> Code {
         match self {
             Self::Panicked { .. } => Code::LibraryPanic,

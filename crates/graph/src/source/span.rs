@@ -80,6 +80,12 @@ impl fmt::Debug for Span {
     }
 }
 
+impl From<&Span> for Span {
+    fn from(span: &Span) -> Self {
+        span.clone()
+    }
+}
+
 /// A value that knows where it stands.
 #[derive(Clone, PartialEq)]
 pub struct Located<T> {
@@ -100,6 +106,24 @@ impl<T> Deref for Located<T> {
     type Target = T;
     fn deref(&self) -> &T {
         &self.value
+    }
+}
+
+impl<T> From<Located<T>> for Span {
+    fn from(located: Located<T>) -> Self {
+        located.span
+    }
+}
+
+impl<T> From<&Located<T>> for Span {
+    fn from(located: &Located<T>) -> Self {
+        located.span.clone()
+    }
+}
+
+impl<T: fmt::Display> fmt::Display for Located<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.value.fmt(f)
     }
 }
 

@@ -15,7 +15,7 @@ use crate::{
         typed::{Document, What, each_entry},
     },
     errors::{
-        compose::{ComposeError, Unused},
+        compose::ComposeError,
         resource::SizeError,
         shader::ShaderError,
     },
@@ -306,14 +306,13 @@ impl Graph {
     /// includes or extends need not all be of use.
     fn unused(&self, reports: &mut Reports) {
         let document = &self.document;
-        let unused = |what, name| ComposeError::Unused { what, name };
         let is_own = |span: &Span| span.file.name == document.file.name;
         let used = Used::new(document, &self.shaders);
         for material in &document.materials {
             let name = material.name();
             if is_own(&name.span) && !used.materials.contains(name.as_str()) {
                 let name = Located::new(name.value.to_string(), name.span.clone());
-                reports.warn(unused(Unused::Material, name));
+                reports.warn(ComposeError::UnusedMaterial(name));
             }
         }
         for (name, _) in &document.values {
@@ -321,19 +320,19 @@ impl Graph {
                 used.params.contains(name.as_str()) || used.materials.contains(name.as_str());
             if is_own(&name.span) && !is_used {
                 let name = Located::new(name.value.to_string(), name.span.clone());
-                reports.warn(unused(Unused::Value, name));
+                reports.warn(ComposeError::UnusedValue(name));
             }
         }
         for param in &document.params[..document.declared] {
             if is_own(&param.name.span) && !used.params.contains(&param.name.value) {
-                reports.warn(unused(Unused::Param, param.name.clone()));
+                reports.warn(ComposeError::UnusedParam(param.name.clone()));
             }
         }
         let imported = self.shaders.imported();
         for entry in &document.imports {
             let path = self.shaders.module(&entry.of);
             if is_own(&entry.of.span) && path.is_some_and(|path| !imported.contains(&**path)) {
-                reports.warn(unused(Unused::Import, entry.of.clone()));
+                reports.warn(ComposeError::UnusedImport(entry.of.clone()));
             }
         }
         for (unused, shader) in self.unused_in_shaders() {

@@ -85,6 +85,21 @@ impl Diagnostic {
         places.fold(self, |diagnostic, (place, text)| diagnostic.at(place, text))
     }
 
+    /// Adds the reason, which is a mistake of its own: its kind is this one's.
+    #[must_use]
+    pub(crate) fn because(self, place: impl Into<Span>, reason: impl Into<Self>) -> Self {
+        let Self {
+            code,
+            message,
+            help,
+            ..
+        } = reason.into();
+        Self {
+            code,
+            ..self.at(place, message).help_any(help)
+        }
+    }
+
     /// Says what to do, after what was said before.
     #[must_use]
     pub fn help(mut self, text: impl Into<String>) -> Self {

@@ -22,7 +22,7 @@ macro_rules! mistakes {
             => $code:ident($($message:tt)+) $(.$add:ident($($argument:expr),+ $(,)?))*;
     )+) => {
         $(#[$doc])+
-        #[derive(Debug)]
+        #[derive(Clone, Debug)]
         pub(crate) enum $enum {
             $($(#[$note])* $mistake $(($($of),+))? $({ $($(#[$hint])* $field: $type),+ })?,)+
         }

@@ -27,6 +27,7 @@ macro_rules! mistakes {
             $($(#[$note])* $mistake $(($($of),+))? $({ $($(#[$hint])* $field: $type),+ })?,)+
         }
 
+        #[deny(unused_variables)]
         impl From<$enum> for $crate::diagnostics::Diagnostic {
             fn from(mistake: $enum) -> Self {
                 match mistake {

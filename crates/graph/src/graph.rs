@@ -14,11 +14,7 @@ use crate::{
         params::{Param, ParamFault, ParamValue},
         typed::{Document, What, each_entry},
     },
-    errors::{
-        compose::ComposeError,
-        resource::SizeError,
-        shader::ShaderError,
-    },
+    errors::{compose::ComposeError, resource::SizeError, shader::ShaderError},
     kinds::registry::Registry,
     language::{name::Name, syntax::Leaf},
     shader::{

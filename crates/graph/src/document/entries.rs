@@ -3,7 +3,10 @@
 use super::{
     fields::Mentions,
     raw::{Invalid, RawEntry, RawMap, stem},
-    ron::{Field, Node, from_fields, from_some_fields, raw, read as read_text, refuse},
+    ron::{
+        Field, Node, from_fields, from_some_fields, missing_field, raw, read as read_text, refuse,
+        unknown_field,
+    },
     typed::{Entry, Include, Pass, Run, What},
 };
 use crate::{
@@ -153,35 +156,29 @@ fn entry(
     if let Some(passes) = raw.passes.take_if(|_| *raw.tag != "Group") {
         drop(passes);
         let name = Located::new("passes".to_owned(), raw.tag.span);
-        let known = OF_PASS.map(str::to_owned).to_vec();
-        return Err(DocumentError::UnknownField(name, known).into());
+        return Err(unknown_field(&name, OF_PASS));
     }
     let (header, own): (Vec<Field>, Vec<Field>) = raw
         .fields
         .into_iter()
         .partition(|field| HEADER.contains(&field.name.as_str()));
     let header: Header = from_fields(&header, &raw.tag.span)?;
-    let unnamed = || DocumentError::MissingField(raw.tag.span.clone(), "name".to_owned());
+    let missing = |field| missing_field(&raw.tag, field);
     let (name, what) = match raw.tag.as_str() {
         "Include" => {
             let (include, name) = include(&raw.tag, &own, header.name)?;
             (name, What::Include(include))
         }
         "Group" => {
-            let entries = raw.passes.ok_or_else(|| {
-                let missing = "passes".to_owned();
-                DocumentError::MissingField(raw.tag.span.clone(), missing)
-            })?;
+            let entries = raw.passes.ok_or_else(|| missing("passes"))?;
             if let Some(field) = own.first() {
-                let known = OF_GROUP.map(str::to_owned).to_vec();
-                let error = DocumentError::UnknownField(field.name.clone(), known);
-                return Err(error.into());
+                return Err(unknown_field(&field.name, OF_GROUP));
             }
-            let name = header.name.ok_or_else(unnamed)?;
+            let name = header.name.ok_or_else(|| missing("name"))?;
             (name, What::Group(read(entries, registry, reports)))
         }
         _ => {
-            let name = header.name.ok_or_else(unnamed)?;
+            let name = header.name.ok_or_else(|| missing("name"))?;
             let pass = pass(&raw.tag, &name, own, registry)?;
             (name, What::Pass(pass))
         }

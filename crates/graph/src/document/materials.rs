@@ -3,7 +3,7 @@
 
 use super::{
     fields::Compare,
-    ron::{Node, raw, read, refuse},
+    ron::{Node, raw, read, refuse, unknown_word},
 };
 use crate::{
     errors::document::DocumentError,
@@ -142,10 +142,7 @@ impl<'de> Deserialize<'de> for FormatEntry {
             return read(text).map(Self::Expr);
         }
         let named = format_named(text).map(Self::Named);
-        let unknown = || {
-            let known = FORMATS.iter().map(|&name| name.to_owned()).collect();
-            DocumentError::UnknownWord(Located::new(text.to_owned(), span), known)
-        };
+        let unknown = || unknown_word(&Located::new(text.to_owned(), span), FORMATS);
         named.ok_or_else(|| refuse(unknown()))
     }
 }

@@ -1,7 +1,7 @@
 //! A document as sections of raw pieces. [`extend`](super::extend) edits them, and
 //! [`typed`](super::typed) reads them.
 
-use super::ron::{Field, Node};
+use super::ron::{Field, Node, field_twice, unknown_field};
 use crate::{
     diagnostics::reports::{ErrorGuaranteed, Reports},
     errors::document::DocumentError,
@@ -207,13 +207,14 @@ fn sections(fields: Vec<Field>, reports: &mut Reports) -> HashMap<String, Node> 
     for field in fields {
         let mut known = SECTIONS.iter().map(|(name, _)| *name);
         if !known.any(|known| *known == **field.name) {
-            let known = SECTIONS.map(|(name, _)| name.to_owned()).to_vec();
-            reports.report(DocumentError::UnknownField(field.name, known));
+            reports.report(unknown_field(&field.name, SECTIONS.map(|(name, _)| name)));
             continue;
         }
-        let name = field.name.value.clone();
-        if sections.insert(name.clone(), field.node).is_some() {
-            reports.report(DocumentError::FieldTwice(field.name.span, name));
+        if sections
+            .insert(field.name.value.clone(), field.node)
+            .is_some()
+        {
+            reports.report(field_twice(&field.name));
         }
     }
     sections
@@ -371,7 +372,7 @@ fn entry(node: &Node, reports: &mut Reports) -> Result<RawEntry, Invalid> {
         let name = field.name.value.clone();
         match name.as_str() {
             "bind" | "set" | "passes" if !seen.insert(name.clone()) => {
-                reports.report(DocumentError::FieldTwice(field.name.span, name));
+                reports.report(field_twice(&field.name));
             }
             "bind" => entry.bind = map(&field.node, reports),
             "set" => entry.set = map(&field.node, reports),

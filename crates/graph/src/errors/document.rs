@@ -2,7 +2,6 @@
 
 use crate::{
     language::name::{Name, NameFault, RESERVED},
-    panics::Panicked,
     source::span::{Located, SourceFile, Span},
 };
 
@@ -28,31 +27,6 @@ mistakes! {
             _ => "this version of Skiagraph reads `format: 3`",
         });
 
-    Syntax(place: Span, what: String) =>
-        Syntax("{what}").at(place, "here");
-
-    /// A library's mistake, not the author's.
-    Panicked(place: Span, panicked: Panicked) =>
-        LibraryPanic("ron panics while this is read: {}", panicked.message)
-        .at(place, "this brings it about").help(panicked.way_out());
-
-    Ends(place: Span) =>
-        Syntax("the text ends too early")
-        .at(place, "something is not closed").help("check that every bracket and quote is closed");
-
-    Nested(place: Span) =>
-        Syntax("values are nested too deep")
-        .at(place, "")
-        .help("no document needs so many brackets in brackets: is one of them never closed?");
-
-    UnknownField(name: Located<String>, known: Vec<String>) =>
-        UnknownField("unknown field `{name}`")
-        .at(&name, "not a field of this").suggest(&name, known);
-
-    UnknownWord(word: Located<String>, known: Vec<String>) =>
-        UnknownVariant("unknown word `{word}`")
-        .at(&word, "not one of the words that may stand here").suggest(&word, known);
-
     UnknownKind(tag: Located<String>, known: Vec<String>) =>
         UnknownVariant("unknown pass kind `{tag}`")
         .at(&tag, "no pass kind of this name is registered").suggest(&tag, known);
@@ -62,12 +36,6 @@ mistakes! {
 
     UnknownMaterial(tag: Located<String>) =>
         UnknownVariant("unknown kind of material `{tag}`").at(&tag, "").suggest(&tag, MATERIALS);
-
-    MissingField(place: Span, field: String) =>
-        MissingField("the field `{field}` is missing").at(place, "it must be given here");
-
-    FieldTwice(place: Span, field: String) =>
-        DuplicateName("the field `{field}` is given twice").at(place, "the second one");
 
     KeyTwice(key: Located<String>) =>
         DuplicateName("`{key}` is given twice").at(key, "the second one");

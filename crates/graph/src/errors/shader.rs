@@ -1,10 +1,8 @@
 //! Shaders that cannot be read, or are not valid.
 
 use super::compose::looked_for;
-use crate::{
-    panics::Panicked,
-    source::span::{Located, Span},
-};
+use crate::source::span::{Located, Span};
+use skiagraph_located_ron::panics::Panicked;
 
 mistakes! {
     /// A shader or an import that is not there.

@@ -8,7 +8,6 @@ use std::{collections::BTreeSet, path::Path};
 /// Mistakes whose message is that of another one, too, or has no words of its own, with a document
 /// that makes them.
 const BY_HAND: &[(&str, &str)] = &[
-    ("DocumentError::Syntax", "missing_comma"),
     ("DocumentError::Twice", "duplicate_material"),
     ("ComposeError::NoInclude", "include_missing"),
     ("ComposeError::SameName", "duplicate_pass"),
@@ -35,10 +34,6 @@ const ELSEWHERE: &[(&str, &str)] = &[
     (
         "DocumentError::TooMany",
         "`mistakes.rs`: lists of 4097 entries",
-    ),
-    (
-        "DocumentError::Panicked",
-        "`src/document/ron.rs`: no text is known on which ron panics",
     ),
     (
         "ComposeError::NoDocument",

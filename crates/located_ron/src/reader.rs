@@ -6,10 +6,9 @@
 //! the byte offset.
 
 use crate::{
-    diagnostics::diagnostic::Diagnostic,
-    errors::document::DocumentError,
+    diagnostics::{Code, Diagnostic},
     panics::{Panicked, caught},
-    source::span::{Located, SourceFile, Span},
+    span::{Located, SourceFile, Span},
 };
 use ron::value::RawValue;
 use serde::{
@@ -40,7 +39,7 @@ fn fail(diagnostic: impl FnOnce(&SourceFile) -> Option<Diagnostic>) {
 }
 
 /// An error of serde's that is told as this mistake.
-pub(crate) fn refuse<E: serde::de::Error>(mistake: impl Into<Diagnostic>) -> E {
+pub fn refuse<E: serde::de::Error>(mistake: impl Into<Diagnostic>) -> E {
     let diagnostic = mistake.into();
     let message = diagnostic.message.clone();
     fail(|_| Some(diagnostic));
@@ -125,9 +124,7 @@ fn word_around(text: &str, start: usize, end: usize, base: usize) -> Range<usize
 }
 
 /// The raw text of a value and its place in the file that is being read.
-pub(crate) fn raw<'de, D: Deserializer<'de>>(
-    deserializer: D,
-) -> Result<(&'de str, Span), D::Error> {
+pub fn raw<'de, D: Deserializer<'de>>(deserializer: D) -> Result<(&'de str, Span), D::Error> {
     let text = bare(<&RawValue>::deserialize(deserializer)?);
     let span = READING.with_borrow(|reading| {
         let reading = reading.as_ref()?;
@@ -138,7 +135,7 @@ pub(crate) fn raw<'de, D: Deserializer<'de>>(
 }
 
 /// Deserialises a value from its raw text.
-pub(crate) fn read<T: DeserializeOwned, E: serde::de::Error>(text: &str) -> Result<T, E> {
+pub fn read<T: DeserializeOwned, E: serde::de::Error>(text: &str) -> Result<T, E> {
     read_part(text).map_err(E::custom)
 }
 
@@ -218,7 +215,12 @@ impl Node {
 
     /// A panic of ron's as a diagnostic at the piece that it read.
     fn without_panic<T>(&self, result: Result<T, Panicked>) -> Result<T, Diagnostic> {
-        result.map_err(|panicked| DocumentError::Panicked(self.span.clone(), panicked).into())
+        result.map_err(|panicked| {
+            let what = format!("ron panics while this is read: {}", panicked.message);
+            Diagnostic::error(Code::LibraryPanic, what)
+                .at(&self.span, "this brings it about")
+                .help(panicked.way_out())
+        })
     }
 
     /// The entries of a list, `[…]`, or of a tuple, `(…)`.
@@ -438,10 +440,7 @@ pub fn from_some_fields<T: DeserializeOwned>(
                     fail(|_| {
                         Some(match error {
                             ron::Error::NoSuchStructField { expected, .. } => {
-                                let known = expected.iter().chain(self.more);
-                                let known = known.map(|&name| name.to_owned()).collect();
-                                let name = Located::new(field.name.value.clone(), place);
-                                DocumentError::UnknownField(name, known).into()
+                                unknown_field(&field.name, expected.iter().chain(self.more))
                             }
                             error => explain(error, place),
                         })
@@ -479,8 +478,7 @@ pub fn from_some_fields<T: DeserializeOwned>(
         .iter()
         .find(|field| !seen.insert(field.name.as_str()))
     {
-        let place = field.name.span.clone();
-        return Err(DocumentError::FieldTwice(place, field.name.value.clone()).into());
+        return Err(field_twice(&field.name));
     }
     let node = Node {
         span: whole.clone(),
@@ -495,35 +493,75 @@ pub fn from_some_fields<T: DeserializeOwned>(
     })
 }
 
+/// A field that is not one of those known.
+pub fn unknown_field<S: AsRef<str>>(
+    name: &Located<String>,
+    known: impl IntoIterator<Item = S>,
+) -> Diagnostic {
+    Diagnostic::error(Code::UnknownField, format!("unknown field `{name}`"))
+        .at(name, "not a field of this")
+        .suggest(name, known)
+}
+
+/// A word that is not one of those known.
+pub fn unknown_word<S: AsRef<str>>(
+    word: &Located<String>,
+    known: impl IntoIterator<Item = S>,
+) -> Diagnostic {
+    Diagnostic::error(Code::UnknownVariant, format!("unknown word `{word}`"))
+        .at(word, "not one of the words that may stand here")
+        .suggest(word, known)
+}
+
+/// A field that is not there.
+pub fn missing_field(place: impl Into<Span>, field: &str) -> Diagnostic {
+    let what = format!("the field `{field}` is missing");
+    Diagnostic::error(Code::MissingField, what).at(place, "it must be given here")
+}
+
+/// A field whose name is that of one before it.
+pub fn field_twice(field: &Located<String>) -> Diagnostic {
+    let what = format!("the field `{field}` is given twice");
+    Diagnostic::error(Code::DuplicateName, what).at(field, "the second one")
+}
+
 /// A ron error in our words.
 fn explain(error: &ron::Error, span: Span) -> Diagnostic {
     use ron::Error as R;
-    let names = |list: &[&str]| list.iter().map(|&name| name.to_owned()).collect();
-    let place = span.clone();
-    let needed = |what: &str| DocumentError::Syntax(place, format!("{what} is needed"));
-    match error {
+    let syntax = |what: String| Diagnostic::error(Code::Syntax, what);
+    let what = match error {
         R::NoSuchStructField {
             expected, found, ..
-        } => DocumentError::UnknownField(Located::new(found.clone(), span), names(expected)),
+        } => return unknown_field(&Located::new(found.clone(), span), *expected),
         R::NoSuchEnumVariant {
             expected, found, ..
-        } => DocumentError::UnknownWord(Located::new(found.clone(), span), names(expected)),
-        R::MissingStructField { field, .. } => DocumentError::MissingField(span, field.to_string()),
-        R::DuplicateStructField { field, .. } => DocumentError::FieldTwice(span, field.to_string()),
-        R::Eof => DocumentError::Ends(span),
-        R::ExpectedString => needed("a text in quotes"),
-        R::ExpectedArray => needed("a list `[…]`"),
-        R::ExpectedMap => needed("a map `{…}`"),
-        R::ExpectedStructLike | R::ExpectedNamedStructLike(_) => {
-            needed("what has fields, `(name: …)`,")
+        } => return unknown_word(&Located::new(found.clone(), span), *expected),
+        R::MissingStructField { field, .. } => return missing_field(span, field),
+        R::DuplicateStructField { field, .. } => {
+            return field_twice(&Located::new(field.to_string(), span));
         }
-        R::ExpectedBoolean => needed("`true` or `false`"),
-        R::ExpectedInteger | R::ExpectedFloat => needed("a number"),
-        R::InvalidValueForType { expected, .. } => needed(expected),
-        R::ExceededRecursionLimit => DocumentError::Nested(span),
-        other => DocumentError::Syntax(span, lower_first(&other.to_string())),
-    }
-    .into()
+        R::Eof => {
+            return syntax("the text ends too early".to_owned())
+                .at(span, "something is not closed")
+                .help("check that every bracket and quote is closed");
+        }
+        R::ExceededRecursionLimit => {
+            return syntax("values are nested too deep".to_owned())
+                .at(span, "")
+                .help(
+                    "no document needs so many brackets in brackets: is one of them never closed?",
+                );
+        }
+        R::ExpectedString => "a text in quotes",
+        R::ExpectedArray => "a list `[…]`",
+        R::ExpectedMap => "a map `{…}`",
+        R::ExpectedStructLike | R::ExpectedNamedStructLike(_) => "what has fields, `(name: …)`,",
+        R::ExpectedBoolean => "`true` or `false`",
+        R::ExpectedInteger | R::ExpectedFloat => "a number",
+        R::InvalidValueForType { expected, .. } => expected,
+        other => return syntax(lower_first(&other.to_string())).at(span, "here"),
+    };
+    syntax(format!("{what} is needed")).at(span, "here")
 }
 
 fn lower_first(text: &str) -> String {
@@ -537,7 +575,6 @@ fn lower_first(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnostics::code::Code;
 
     /// Panics as it is read, in the place of a library that does.
     #[derive(Debug)]

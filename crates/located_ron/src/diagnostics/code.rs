@@ -2,7 +2,7 @@
 
 macro_rules! codes {
     ($($(#[doc = $doc:literal])+ $name:ident = $text:literal, $remedy:literal;)+) => {
-        /// Kind of mistake that a [`Diagnostic`](crate::Diagnostic) is about, with a stable name
+        /// Kind of mistake that a [`Diagnostic`](crate::diagnostics::Diagnostic) is about, with a stable name
         /// for scripts.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         #[non_exhaustive]

@@ -1,7 +1,7 @@
 //! One mistake: its message, its places, and the way out.
 
 use super::{code::Code, suggest::suggestion};
-use crate::source::span::Span;
+use crate::span::Span;
 
 /// How bad it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -68,7 +68,7 @@ impl Diagnostic {
 
     /// Adds a place that may not be known.
     #[must_use]
-    pub(crate) fn at_any(self, place: Option<impl Into<Span>>, text: impl Into<String>) -> Self {
+    pub fn at_any(self, place: Option<impl Into<Span>>, text: impl Into<String>) -> Self {
         match place {
             Some(place) => self.at(place, text),
             None => self,
@@ -77,7 +77,7 @@ impl Diagnostic {
 
     /// Adds several places.
     #[must_use]
-    pub(crate) fn at_all<P: Into<Span>, T: Into<String>>(
+    pub fn at_all<P: Into<Span>, T: Into<String>>(
         self,
         places: impl IntoIterator<Item = (P, T)>,
     ) -> Self {
@@ -87,7 +87,7 @@ impl Diagnostic {
 
     /// Adds the reason, which is a mistake of its own: its kind is this one's.
     #[must_use]
-    pub(crate) fn because(self, place: impl Into<Span>, reason: impl Into<Self>) -> Self {
+    pub fn because(self, place: impl Into<Span>, reason: impl Into<Self>) -> Self {
         let Self {
             code,
             message,
@@ -113,7 +113,7 @@ impl Diagnostic {
 
     /// Says what to do in some cases.
     #[must_use]
-    pub(crate) fn help_any(self, text: Option<impl Into<String>>) -> Self {
+    pub fn help_any(self, text: Option<impl Into<String>>) -> Self {
         match text {
             Some(text) => self.help(text),
             None => self,

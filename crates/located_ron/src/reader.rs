@@ -15,10 +15,17 @@ use serde::{
     Deserialize, Deserializer,
     de::{
         DeserializeOwned, DeserializeSeed, Error as _, IntoDeserializer, MapAccess, SeqAccess,
-        Visitor,
+        Visitor, value::MapAccessDeserializer,
     },
 };
-use std::{cell::RefCell, collections::HashSet, fmt, ops::Range};
+use std::{
+    cell::{Cell, RefCell},
+    collections::HashSet,
+    fmt,
+    iter::Enumerate,
+    ops::Range,
+    slice,
+};
 
 /// The text that is being deserialised on this thread, and the innermost place where it went wrong
 /// with what is to be told (outer levels only see a text).
@@ -82,6 +89,10 @@ fn read_part<T: DeserializeOwned>(text: &str) -> Result<T, ron::Error> {
 
 /// Returns the place of a ron error, in bytes: `text` begins at `base`.
 fn place_of(text: &str, error: &ron::error::SpannedError, base: usize) -> Range<usize> {
+    // What is wrong with a value as a whole; ron stands at its end.
+    if let ron::Error::Message(_) = error.code {
+        return base..base + text.lines().next().map_or(0, str::len);
+    }
     let start = offset(text, error.span.start.line, error.span.start.col);
     let end = offset(text, error.span.end.line, error.span.end.col).max(start);
     // ron reports the end of a bad word as its place; a word is what the reader wants to see.
@@ -417,80 +428,140 @@ pub fn from_some_fields<T: DeserializeOwned>(
     whole: &Span,
     more: &[&str],
 ) -> Result<T, Diagnostic> {
-    struct Access<'a> {
-        fields: std::slice::Iter<'a, Field>,
-        value: Option<&'a Field>,
-        more: &'a [&'a str],
-    }
-    impl<'de> MapAccess<'de> for Access<'de> {
-        type Error = ron::Error;
-        fn next_key_seed<K: DeserializeSeed<'de>>(
-            &mut self,
-            seed: K,
-        ) -> Result<Option<K::Value>, ron::Error> {
-            let Some(field) = self.fields.next() else {
-                return Ok(None);
-            };
-            self.value = Some(field);
-            let name: &str = &field.name.value;
-            seed.deserialize(IntoDeserializer::<ron::Error>::into_deserializer(name))
-                .map(Some)
-                .inspect_err(|error| {
-                    let place = field.name.span.clone();
-                    fail(|_| {
-                        Some(match error {
-                            ron::Error::NoSuchStructField { expected, .. } => {
-                                unknown_field(&field.name, expected.iter().chain(self.more))
-                            }
-                            error => explain(error, place),
-                        })
-                    });
-                })
-        }
-        fn next_value_seed<V: DeserializeSeed<'de>>(
-            &mut self,
-            seed: V,
-        ) -> Result<V::Value, ron::Error> {
-            let field = self
-                .value
-                .take()
-                .ok_or_else(|| ron::Error::custom("a value without its key"))?;
-            // An extended document's field stands in that one's file.
-            let text = field.node.text();
-            let file = field.node.span.file.clone();
-            READING.with_borrow_mut(|reading| {
-                if let Some(reading) = reading {
-                    reading.file = file;
-                }
-            });
-            options().from_str_seed(text, seed).map_err(|error| {
-                fail(|file| {
-                    let place = place_of(text, &error, field.node.span.range.start);
-                    Some(explain(&error.code, file.span(place)))
-                });
-                error.code
-            })
-        }
-    }
     // ron would report it before it has the place of the second one.
     let mut seen = HashSet::new();
-    if let Some(field) = fields
-        .iter()
-        .find(|field| !seen.insert(field.name.as_str()))
-    {
-        return Err(field_twice(&field.name));
+    let mut names = fields.iter().map(|field| &field.name);
+    match names.find(|name| !seen.insert(name.as_str())) {
+        Some(twice) => Err(field_twice(twice)),
+        None => read_fields(fields, whole, more, &Fault::default()),
     }
-    let node = Node {
-        span: whole.clone(),
-    };
-    node.reading(|| {
+}
+
+/// [`from_some_fields`] that tells of every field that cannot be read: each is left out, until the
+/// rest can be.
+pub fn from_all_fields<T: DeserializeOwned>(
+    mut fields: Vec<Field>,
+    whole: &Span,
+    more: &[&str],
+    told: &mut Vec<Diagnostic>,
+) -> Option<T> {
+    let mut seen = HashSet::new();
+    fields.retain(|field| {
+        let is_first = seen.insert(field.name.value.clone());
+        told.extend((!is_first).then(|| field_twice(&field.name)));
+        is_first
+    });
+    let (mut left_out, mut is_misspelt) = (HashSet::new(), false);
+    loop {
+        let fault = Fault::default();
+        let error = match read_fields(&fields, whole, more, &fault) {
+            Ok(value) => return left_out.is_empty().then_some(value),
+            Err(error) => error,
+        };
+        match (fault.field.get(), fault.missing.get()) {
+            (Some((index, is_name)), _) => {
+                is_misspelt |= is_name;
+                left_out.insert(fields.remove(index).name.value);
+                told.push(error);
+            }
+            // It is then the misspelt one, or one that could not be read.
+            (None, Some(missing)) if is_misspelt || left_out.contains(missing) => return None,
+            (None, _) => {
+                told.push(error);
+                return None;
+            }
+        }
+    }
+}
+
+/// The part of a struct that could not be read.
+#[derive(Default)]
+struct Fault {
+    /// Number of the field, and whether it is its name.
+    field: Cell<Option<(usize, bool)>>,
+    /// Field that is not there.
+    missing: Cell<Option<&'static str>>,
+}
+
+fn read_fields<T: DeserializeOwned>(
+    fields: &[Field],
+    whole: &Span,
+    more: &[&str],
+    fault: &Fault,
+) -> Result<T, Diagnostic> {
+    Node::at(whole).reading(|| {
+        let fields = fields.iter().enumerate();
         let access = Access {
-            fields: fields.iter(),
+            fields,
             value: None,
             more,
+            fault,
         };
-        T::deserialize(serde::de::value::MapAccessDeserializer::new(access))
+        T::deserialize(MapAccessDeserializer::new(access)).inspect_err(|error| {
+            if let ron::Error::MissingStructField { field, .. } = error {
+                fault.missing.set(Some(field));
+            }
+        })
     })
+}
+
+/// Fields for serde.
+struct Access<'a> {
+    fields: Enumerate<slice::Iter<'a, Field>>,
+    value: Option<(usize, &'a Field)>,
+    more: &'a [&'a str],
+    fault: &'a Fault,
+}
+
+impl<'de> MapAccess<'de> for Access<'de> {
+    type Error = ron::Error;
+
+    fn next_key_seed<K: DeserializeSeed<'de>>(
+        &mut self,
+        seed: K,
+    ) -> Result<Option<K::Value>, ron::Error> {
+        self.value = self.fields.next();
+        let Some((index, field)) = self.value else {
+            return Ok(None);
+        };
+        let name: &str = &field.name.value;
+        let key = seed.deserialize(IntoDeserializer::<ron::Error>::into_deserializer(name));
+        key.map(Some).inspect_err(|error| {
+            self.fault.field.set(Some((index, true)));
+            fail(|_| {
+                Some(match error {
+                    ron::Error::NoSuchStructField { expected, .. } => {
+                        unknown_field(&field.name, expected.iter().chain(self.more))
+                    }
+                    error => explain(error, field.name.span.clone()),
+                })
+            });
+        })
+    }
+
+    fn next_value_seed<V: DeserializeSeed<'de>>(
+        &mut self,
+        seed: V,
+    ) -> Result<V::Value, ron::Error> {
+        let without_key = || ron::Error::custom("a value without its key");
+        let (index, field) = self.value.take().ok_or_else(without_key)?;
+        // An extended document's field stands in that one's file.
+        let text = field.node.text();
+        let file = field.node.span.file.clone();
+        READING.with_borrow_mut(|reading| {
+            if let Some(reading) = reading {
+                reading.file = file;
+            }
+        });
+        options().from_str_seed(text, seed).map_err(|error| {
+            self.fault.field.set(Some((index, false)));
+            fail(|file| {
+                let place = place_of(text, &error, field.node.span.range.start);
+                Some(explain(&error.code, file.span(place)))
+            });
+            error.code
+        })
+    }
 }
 
 /// A field that is not one of those known.

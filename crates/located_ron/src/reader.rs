@@ -184,6 +184,13 @@ impl Node {
         }
     }
 
+    /// The first line of it, which stands for the whole where that is to be shown.
+    pub fn head(&self) -> Span {
+        let start = self.span.range.start;
+        let length = self.text().lines().next().map_or(0, str::len);
+        self.span.file.span(start..start + length)
+    }
+
     /// Returns the node at a place.
     pub fn at(span: &Span) -> Self {
         Self { span: span.clone() }
@@ -627,6 +634,11 @@ fn explain(error: &ron::Error, span: Span) -> Diagnostic {
         R::ExpectedArray => "a list `[…]`",
         R::ExpectedMap => "a map `{…}`",
         R::ExpectedStructLike | R::ExpectedNamedStructLike(_) => "what has fields, `(name: …)`,",
+        R::ExpectedDifferentLength { expected, found } => {
+            let count = expected.trim_start_matches(|c: char| !c.is_ascii_digit());
+            let what = format!("{count} values are needed here, not {found}");
+            return syntax(what).at(span, "here");
+        }
         R::ExpectedBoolean => "`true` or `false`",
         R::ExpectedInteger | R::ExpectedFloat => "a number",
         R::InvalidValueForType { expected, .. } => expected,

@@ -126,6 +126,14 @@ impl Diagnostic {
         self.help_any(suggestion(word, known))
     }
 
+    /// Place and message in a line.
+    pub fn brief(&self) -> String {
+        match self.labels.first() {
+            Some(label) => format!("{}: {}", label.span, self.message),
+            None => self.message.clone(),
+        }
+    }
+
     /// Key for sorting diagnostics: errors first, then by place.
     pub(super) fn key(&self) -> (Severity, &str, usize) {
         let first = self.labels.first();

@@ -193,7 +193,7 @@ fn named<T: Item>(list: &Node, told: &mut Vec<Diagnostic>) -> Option<Vec<T>> {
     let items = kept(list.list(), told)?;
     if items.is_empty() && T::NEEDED {
         let what = format!("`{}` is empty; a scene needs one", T::LIST);
-        told.push(Diagnostic::error(Code::MissingField, what).at(&list.span, ""));
+        told.push(Diagnostic::error(Code::MissingField, what).at(list.head(), ""));
     }
     let (mut names, mut read) = (HashMap::new(), Vec::new());
     let mut complete = true;

@@ -89,7 +89,7 @@ fn read_part<T: DeserializeOwned>(text: &str) -> Result<T, ron::Error> {
 
 /// Returns the place of a ron error, in bytes: `text` begins at `base`.
 fn place_of(text: &str, error: &ron::error::SpannedError, base: usize) -> Range<usize> {
-    // What is wrong with a value as a whole; ron stands at its end.
+    // Such a mistake is the whole value's; ron stands at its end.
     if let ron::Error::Message(_) = error.code {
         return base..base + text.lines().next().map_or(0, str::len);
     }

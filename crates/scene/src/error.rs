@@ -112,8 +112,8 @@ pub enum SceneError {
         /// Largest coordinate.
         farthest: f64,
     },
-    /// A scene file is not valid RON, or its content makes no scene: all that is wrong with it, with
-    /// places; one mistake at least.
+    /// A scene file is not valid RON, or its content makes no scene: all that is wrong with it,
+    /// with places; one mistake at least.
     #[cfg(feature = "files")]
     #[error(transparent)]
     SceneFile(skiagraph_located_ron::diagnostics::Diagnostics),

@@ -3,10 +3,6 @@
 use super::{
     fields::Mentions,
     raw::{Invalid, RawEntry, RawMap, stem},
-    ron::{
-        Field, Node, from_fields, from_some_fields, missing_field, raw, read as read_text, refuse,
-        unknown_field,
-    },
     typed::{Entry, Include, Pass, Run, What},
 };
 use crate::{
@@ -24,6 +20,10 @@ use crate::{
     source::span::Located,
 };
 use serde::{Deserialize, Deserializer};
+use skiagraph_located_ron::reader::{
+    Field, Node, from_fields, from_some_fields, missing_field, raw, read as read_text, refuse,
+    unknown_field,
+};
 
 /// The tags that are no pass kinds.
 const COMPOSITION: [&str; 2] = ["Include", "Group"];

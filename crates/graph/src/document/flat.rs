@@ -1,10 +1,8 @@
 //! A document with all that it extends written out, each line with its origin.
 
-use super::{
-    raw::{Invalid, RawDocument, RawEntry, RawItem, RawMap},
-    ron::{Field, Node},
-};
+use super::raw::{Invalid, RawDocument, RawEntry, RawItem, RawMap};
 use crate::source::span::Span;
+use skiagraph_located_ron::reader::{Field, Node};
 
 /// The document as text in format 3, which reads as it does.
 pub(crate) fn flat(document: &RawDocument) -> String {

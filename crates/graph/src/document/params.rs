@@ -1,9 +1,6 @@
 //! Params: the typed knobs of a document.
 
-use super::{
-    fields::prose,
-    ron::{Field, from_fields},
-};
+use super::fields::prose;
 use crate::{
     diagnostics::{diagnostic::Diagnostic, suggest::likeness},
     errors::document::DocumentError,
@@ -15,6 +12,7 @@ use crate::{
     source::span::Located,
 };
 use serde::{Deserialize, Serialize};
+use skiagraph_located_ron::reader::{Field, from_fields};
 use std::{
     collections::{BTreeMap, HashSet},
     fmt,

@@ -1,12 +1,11 @@
 //! A document as sections of raw pieces. [`extend`](super::extend) edits them, and
 //! [`typed`](super::typed) reads them.
-
-use super::ron::{Field, Node, field_twice, unknown_field};
 use crate::{
     diagnostics::reports::{ErrorGuaranteed, Reports},
     errors::document::DocumentError,
     source::span::{Located, SourceFile, Span},
 };
+use skiagraph_located_ron::reader::{Field, Node, field_twice, unknown_field};
 use std::collections::{HashMap, HashSet};
 
 /// Most entries of a list or map as it is written; each may name all others, so time may grow with

@@ -7,7 +7,6 @@ use super::{
     materials::{BufferInput, Input, Material, SamplerInput, TextureInput},
     params::Param,
     raw::{RawDocument, RawItem, RawMap},
-    ron::{Node, from_fields},
     typed::Document,
 };
 use crate::{
@@ -23,6 +22,7 @@ use crate::{
     },
     source::span::Located,
 };
+use skiagraph_located_ron::reader::{Node, from_fields};
 use std::collections::BTreeSet;
 
 /// Reads a document and reports its mistakes. Its readable part is returned all the same, so that

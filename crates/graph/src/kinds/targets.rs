@@ -5,10 +5,7 @@ use super::{
     step::{ColorTarget, DepthTarget, Names, StencilTarget},
 };
 use crate::{
-    document::{
-        fields::{Compare, Load, short_or_long},
-        ron::{raw, refuse},
-    },
+    document::fields::{Compare, Load, short_or_long},
     errors::document::DocumentError,
     language::{
         syntax::{Expr, Reference},
@@ -17,6 +14,7 @@ use crate::{
     source::span::Located,
 };
 use serde::{Deserialize, Deserializer};
+use skiagraph_located_ron::reader::{raw, refuse};
 
 /// A colour attachment: `"image"`, or `(target: "image", load: …, blend: …, write: …, resolve: …)`.
 #[derive(Clone, Debug)]

@@ -5,6 +5,7 @@ use crate::args::values::LightArgument;
 use crate::error::CliError;
 use crate::terminal::console::note;
 use glam::DVec3;
+use skiagraph_compare::error::CompareError;
 use skiagraph_compare::measuring::view_or_path::under_lights;
 use skiagraph_compare::wording::did_you_mean;
 use skiagraph_scene::{
@@ -93,6 +94,10 @@ fn explain(error: SceneError, args: &SceneArgs, library: &SceneLibrary) -> CliEr
             let hint = did_you_mean(&args.scene, known.iter().map(|scene| scene.name.as_str()));
             CliError::Input(format!("{error}{hint}"))
         }
+        SceneError::SceneFile(found) => CliError::Compare(CompareError::Diagnostics {
+            faults: vec![found.iter().cloned().collect()],
+            summary: format!("cannot load the scene `{}`", args.scene),
+        }),
         error => CliError::Scene {
             name: args.scene.clone(),
             source: Box::new(error),

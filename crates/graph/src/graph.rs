@@ -17,11 +17,7 @@ use crate::{
         params::{Param, ParamFault, ParamValue},
         typed::{Document, What, each_entry},
     },
-    errors::{
-        compose::{ComposeError, Unused},
-        resource::SizeError,
-        shader::ShaderError,
-    },
+    errors::{compose::ComposeError, resource::SizeError, shader::ShaderError},
     kinds::registry::Registry,
     language::{name::Name, syntax::Leaf},
     shader::{
@@ -322,13 +318,12 @@ impl Graph {
     /// includes or extends need not all be of use.
     fn unused(&self, reports: &mut Reports) {
         let document = &self.document;
-        let unused = |what, name| ComposeError::Unused { what, name };
         let used = Used::new(document, &self.shaders);
         for material in &document.materials {
             let name = material.name();
             if document.is_own(&name.span) && !used.materials.contains(name.as_str()) {
                 let name = Located::new(name.value.to_string(), name.span.clone());
-                reports.warn(unused(Unused::Material, name));
+                reports.warn(ComposeError::UnusedMaterial(name));
             }
         }
         for (name, _) in &document.values {
@@ -336,12 +331,12 @@ impl Graph {
                 used.params.contains(name.as_str()) || used.materials.contains(name.as_str());
             if document.is_own(&name.span) && !is_used {
                 let name = Located::new(name.value.to_string(), name.span.clone());
-                reports.warn(unused(Unused::Value, name));
+                reports.warn(ComposeError::UnusedValue(name));
             }
         }
         for param in &document.params[..document.declared] {
             if document.is_own(&param.name.span) && !used.params.contains(&param.name.value) {
-                reports.warn(unused(Unused::Param, param.name.clone()));
+                reports.warn(ComposeError::UnusedParam(param.name.clone()));
             }
         }
         let imported = self.shaders.imported();
@@ -350,7 +345,7 @@ impl Graph {
             if document.is_own(&entry.of.span)
                 && path.is_some_and(|path| !imported.contains(&**path))
             {
-                reports.warn(unused(Unused::Import, entry.of.clone()));
+                reports.warn(ComposeError::UnusedImport(entry.of.clone()));
             }
         }
         for (unused, shader) in self.unused_in_shaders() {

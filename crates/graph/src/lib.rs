@@ -19,7 +19,6 @@ mod instantiate;
 mod kinds;
 mod language;
 mod link;
-mod panics;
 mod picture;
 mod plan;
 mod provided_kind;
@@ -44,7 +43,6 @@ pub use link::{
     Access, Attachment, BindTarget, Block, CAPTURE, Ids, LinkedBinding, LinkedPass, LinkedProgram,
     PassId, Usage,
 };
-pub use panics::{Panicked, caught};
 pub use plan::{CulledPass, MemoryEntry, OutputSummary, PartSummary, PassSummary, Plan, text};
 pub use provided_kind::ProvidedKind;
 pub use provider::{Describe, Import, NoProvider, Provided, ProvidedBinding};
@@ -54,6 +52,7 @@ pub use resource::{
     SubresourceRange, Target, Texture,
 };
 pub use shader::{Field, Item, ItemScalar, Shader};
+pub use skiagraph_located_ron::panics::{Panicked, caught};
 pub use source::{
     FolderSources, LayeredSources, Located, Picture, SourceFile, SourceText, Sources, Span,
 };

@@ -20,7 +20,6 @@ use crate::{
         name::Name,
         syntax::{Expr, Reference},
     },
-    source::span::Located,
 };
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::{Map, Value, json};
@@ -28,18 +27,6 @@ use std::borrow::Cow;
 
 /// A word of the language, to which a text in quotes is no alternative.
 const WORD: &str = "^[A-Z][A-Za-z0-9]*$";
-
-impl<T: JsonSchema> JsonSchema for Located<T> {
-    fn inline_schema() -> bool {
-        T::inline_schema()
-    }
-    fn schema_name() -> Cow<'static, str> {
-        T::schema_name()
-    }
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        T::json_schema(generator)
-    }
-}
 
 impl<T: JsonSchema> JsonSchema for Chosen<T> {
     fn inline_schema() -> bool {

@@ -112,14 +112,11 @@ pub enum SceneError {
         /// Largest coordinate.
         farthest: f64,
     },
-    /// A scene file is not valid RON, or its content makes no scene.
-    #[error("{}", lines(file, mistakes))]
-    SceneFile {
-        /// The scene file, or `<built-in NAME>`.
-        file: String,
-        /// All that is wrong with it, in the order of the text; one at least.
-        mistakes: Vec<SceneMistake>,
-    },
+    /// A scene file is not valid RON, or its content makes no scene: all that is wrong with it,
+    /// with places; one mistake at least.
+    #[cfg(feature = "files")]
+    #[error(transparent)]
+    SceneFile(skiagraph_located_ron::diagnostics::Diagnostics),
     /// The mesh of a scene file is in none of the places searched.
     #[error(
         "the mesh {file:?} of scene {scene:?} was not found; searched\n{}{}put it at {file:?} \
@@ -369,27 +366,4 @@ fn shorten(names: &[String]) -> String {
         text += &format!(", … ({} in all)", names.len());
     }
     text
-}
-
-/// Error at a place of a scene file.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SceneMistake {
-    /// Line, from 1.
-    pub line: usize,
-    /// Column, from 1.
-    pub column: usize,
-    /// Reason.
-    pub reason: String,
-}
-
-fn lines(file: &str, mistakes: &[SceneMistake]) -> String {
-    let lines = mistakes.iter().map(|mistake| {
-        let SceneMistake {
-            line,
-            column,
-            reason,
-        } = mistake;
-        format!("{file}:{line}:{column}: {reason}")
-    });
-    lines.collect::<Vec<_>>().join("\n")
 }

@@ -16,7 +16,6 @@ pub mod bvh;
 pub mod camera;
 pub mod error;
 #[cfg(feature = "files")]
-mod fields;
 pub mod generate;
 #[cfg(feature = "files")]
 pub mod gltf;
@@ -58,7 +57,7 @@ pub mod weld;
 pub use adjacency::{Adjacency, NO_NEIGHBOUR};
 pub use bvh::{Bvh, BvhNode, LightSpace, LightSpaceNode};
 pub use camera::{Camera, LEAST_DEPTH, View};
-pub use error::{SceneError, SceneMistake};
+pub use error::SceneError;
 #[cfg(feature = "files")]
 pub use gltf::load_gltf;
 pub use indexed::{Indexed, IndexedError};

@@ -16,6 +16,7 @@ use crate::{
     scene::Scene,
     scene_file::{MeshSource, SceneFile},
 };
+use skiagraph_located_ron::diagnostics::Diagnostic;
 use std::path::{Path, PathBuf};
 
 /// The environment variable that lists folders of meshes, separated as in `PATH`.
@@ -208,7 +209,14 @@ impl SceneLibrary {
             },
             Err(error) => SceneListing {
                 name,
-                description: error.to_string(),
+                description: match &error {
+                    SceneError::SceneFile(found) => found
+                        .iter()
+                        .map(Diagnostic::brief)
+                        .collect::<Vec<_>>()
+                        .join("\n"),
+                    error => error.to_string(),
+                },
                 views: Vec::new(),
                 paths: Vec::new(),
                 mesh_found: false,

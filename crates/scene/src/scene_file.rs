@@ -22,7 +22,6 @@
 use crate::{
     camera::View,
     error::SceneError,
-    fields::{Field, Reader},
     generate::Generator,
     light::DirectionalLight,
     light_kind::{Light, LightKind, PointLight, SpotLight},
@@ -32,8 +31,16 @@ use crate::{
     path::{CameraKey, CameraPath, LightKey},
 };
 use glam::DVec3;
-use serde::{Deserialize, Deserializer, de::Error};
-use std::collections::HashSet;
+use serde::{
+    Deserialize, Deserializer,
+    de::{DeserializeOwned, Error},
+};
+use skiagraph_located_ron::{
+    diagnostics::{Code, Diagnostic, Diagnostics},
+    reader::{Node, from_all_fields},
+    span::SourceFile,
+};
+use std::collections::HashMap;
 
 /// Content of a scene file. Everything in it is checked, but no mesh is loaded yet.
 #[derive(Clone, Debug)]
@@ -93,7 +100,7 @@ pub enum MeshSource {
         materials: ObjMaterials,
         /// Where the file can be downloaded, for the message that it is missing; absent for a mesh
         /// of one's own.
-        #[serde(default, deserialize_with = "given")]
+        #[serde(default)]
         source: Option<String>,
     },
     /// A glTF 2.0 file, `.gltf` or `.glb`.
@@ -104,7 +111,7 @@ pub enum MeshSource {
         #[serde(default)]
         materials: MaterialUse,
         /// As of `Obj`.
-        #[serde(default, deserialize_with = "given")]
+        #[serde(default)]
         source: Option<String>,
     },
     /// A mesh that this crate generates, by name: `"park"`, `"city:100000"`.
@@ -115,57 +122,51 @@ impl SceneFile {
     /// Reads the text of a scene file; `file` only serves messages.
     ///
     /// # Errors
-    /// [`SceneError::SceneFile`] with line and column of all that is not RON, not a scene's field,
-    /// or makes no camera or light.
+    /// [`SceneError::SceneFile`] with the places of all that is not RON, not a scene's field, or
+    /// makes no camera or light.
     pub fn parse(text: &str, file: &str) -> Result<Self, SceneError> {
-        let mut reader = Reader::new(text);
-        let scene = Self::read(text, &mut reader);
-        reader.finish(file, scene)
+        let mut told = Vec::new();
+        let scene = Self::read(&Node::root(&SourceFile::new(file, text)), &mut told);
+        let scene = scene.filter(|_| told.is_empty());
+        scene.ok_or_else(|| SceneError::SceneFile(Diagnostics::new(told)))
     }
 
-    fn read<'a>(text: &'a str, reader: &mut Reader<'a>) -> Option<Self> {
-        let fields = reader.fields(text)?;
-        if let Some((_, format)) = fields.iter().find(|(name, _)| *name == "format") {
-            match reader.value::<u32>(format)? {
-                1 => {}
+    fn read(root: &Node, told: &mut Vec<Diagnostic>) -> Option<Self> {
+        let fields = kept(root.fields(), told)?;
+        let field = |name| fields.iter().find(|field| field.name.as_str() == name);
+        if let Some(format) = field("format") {
+            let number: u32 = kept(format.node.parse(), told)?;
+            if number != 1 {
                 // Everything else in it would be a mistake, too.
-                other => {
-                    let reason = "is unknown; this program reads format 1";
-                    reader.wrong(format, format!("format {other} {reason}"));
-                    return None;
-                }
+                let what = format!("format {number} is unknown; this program reads format 1");
+                told.push(Diagnostic::error(Code::FormatVersion, what).at(&format.node.span, ""));
+                return None;
             }
         }
-        let (lists, head): (Vec<Field<'_>>, Vec<Field<'_>>) = fields
-            .into_iter()
-            .partition(|(name, _)| LISTS.contains(name));
-        let list = |name| {
-            lists
-                .iter()
-                .find(|field| field.0 == name)
-                .map(|field| field.1)
-        };
-        let one_light = head.iter().find(|field| field.0 == "light");
-        let lights = match (one_light, list("lights")) {
-            (_, Some(list)) => named(reader, list),
-            (None, None) => {
-                reader.wrong(text, "a scene needs a `light`, or `lights`");
-                None
+        let list = |name| field(name).map(|field| &field.node);
+        let lights = match (field("light"), list("lights")) {
+            (light, Some(list)) => {
+                told.extend(light.map(|light| {
+                    let what = "a scene has one `light`, or `lights`, not both";
+                    Diagnostic::error(Code::DuplicateName, what).at(&light.name, "")
+                }));
+                named(list, told)
             }
             (Some(_), None) => Some(Vec::new()),
+            (None, None) => {
+                told.push(lacks(root, "a scene needs a `light`, or `lights`"));
+                None
+            }
         };
-        if let (Some((name, _)), Some(_)) = (one_light, list("lights")) {
-            reader.wrong(name, "a scene has one `light`, or `lights`, not both");
-        }
-        let views = list("views").map(|list| named(reader, list));
+        let views = list("views").map(|list| named(list, told));
         if views.is_none() {
-            reader.wrong(
-                text,
-                "a scene needs at least one view: the field `views` is missing",
-            );
+            let what = "a scene needs at least one view: the field `views` is missing";
+            told.push(lacks(root, what));
         }
-        let paths = list("paths").map_or(Some(Vec::new()), |list| named(reader, list));
-        let head: Option<SceneText> = reader.record_of(text, head, &LISTS);
+        let paths = list("paths").map_or(Some(Vec::new()), |list| named(list, told));
+        let head = fields.into_iter();
+        let head = head.filter(|field| !LISTS.contains(&field.name.as_str()));
+        let head: Option<SceneText> = from_all_fields(head.collect(), &root.head(), &LISTS, told);
         let (head, lights) = (head?, lights?);
         Some(Self {
             name: head.name,
@@ -178,22 +179,37 @@ impl SceneFile {
     }
 }
 
+/// Keeps a value, or tells why there is none.
+fn kept<T>(read: Result<T, Diagnostic>, told: &mut Vec<Diagnostic>) -> Option<T> {
+    read.map_err(|wrong| told.push(wrong)).ok()
+}
+
+fn lacks(root: &Node, what: &str) -> Diagnostic {
+    Diagnostic::error(Code::MissingField, what).at(root.head(), "")
+}
+
 /// The items of a list, which have names, no two the same.
-fn named<'a, T: Item>(reader: &mut Reader<'a>, list: &'a str) -> Option<Vec<T>> {
-    let items = reader.list(list)?;
+fn named<T: Item>(list: &Node, told: &mut Vec<Diagnostic>) -> Option<Vec<T>> {
+    let items = kept(list.list(), told)?;
     if items.is_empty() && T::NEEDED {
-        reader.wrong(list, format!("`{}` is empty; a scene needs one", T::LIST));
+        let what = format!("`{}` is empty; a scene needs one", T::LIST);
+        told.push(Diagnostic::error(Code::MissingField, what).at(list.head(), ""));
     }
-    let (mut names, mut read) = (HashSet::new(), Vec::new());
+    let (mut names, mut read) = (HashMap::new(), Vec::new());
     let mut complete = true;
-    for part in items {
-        let Some(item) = T::read(reader, part) else {
+    for node in items {
+        let Some(item) = T::read(&node, told) else {
             complete = false;
             continue;
         };
-        if !names.insert(item.name().to_owned()) {
-            let (list, name) = (T::LIST, item.name());
-            reader.wrong(part, format!("two {list} are called {name:?}"));
+        if let Some(first) = names.insert(item.name().to_owned(), node.head()) {
+            let what = format!("two {} are called {:?}", T::LIST, item.name());
+            let twice = Diagnostic::error(Code::DuplicateName, what);
+            told.push(
+                twice
+                    .at(node.head(), "the second one")
+                    .at(first, "the first one"),
+            );
         }
         read.push(item);
     }
@@ -201,34 +217,32 @@ fn named<'a, T: Item>(reader: &mut Reader<'a>, list: &'a str) -> Option<Vec<T>> 
 }
 
 /// Item in a list of a scene file.
-trait Item: Sized {
+trait Item: DeserializeOwned {
     /// The list's name.
     const LIST: &str;
     /// True if it may not be empty.
     const NEEDED: bool;
-    fn read<'a>(reader: &mut Reader<'a>, part: &'a str) -> Option<Self>;
     fn name(&self) -> &str;
+    fn read(node: &Node, told: &mut Vec<Diagnostic>) -> Option<Self> {
+        let fields = kept(node.fields(), told)?;
+        from_all_fields(fields, &node.head(), &[], told)
+    }
 }
 
 impl Item for Light {
     const LIST: &str = "lights";
     const NEEDED: bool = true;
-    fn read<'a>(reader: &mut Reader<'a>, part: &'a str) -> Option<Self> {
-        let light = Self::from(reader.value::<NamedLightText>(part)?);
-        let checked = light.check().map_err(|reason| reader.wrong(part, reason));
-        checked.ok().map(|()| light)
-    }
     fn name(&self) -> &str {
         &self.name
+    }
+    fn read(node: &Node, told: &mut Vec<Diagnostic>) -> Option<Self> {
+        kept(node.parse(), told)
     }
 }
 
 impl Item for View {
     const LIST: &str = "views";
     const NEEDED: bool = true;
-    fn read<'a>(reader: &mut Reader<'a>, part: &'a str) -> Option<Self> {
-        reader.record(part)
-    }
     fn name(&self) -> &str {
         &self.name
     }
@@ -237,9 +251,6 @@ impl Item for View {
 impl Item for CameraPath {
     const LIST: &str = "paths";
     const NEEDED: bool = false;
-    fn read<'a>(reader: &mut Reader<'a>, part: &'a str) -> Option<Self> {
-        reader.record(part)
-    }
     fn name(&self) -> &str {
         &self.view.name
     }
@@ -336,6 +347,14 @@ impl From<NamedLightText> for Light {
             }
         };
         Self { name, kind }
+    }
+}
+
+impl<'de> Deserialize<'de> for Light {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let light = Self::from(NamedLightText::deserialize(deserializer)?);
+        light.check().map_err(D::Error::custom)?;
+        Ok(light)
     }
 }
 
@@ -451,9 +470,9 @@ struct RigidKeyText {
 #[serde(deny_unknown_fields, rename = "LightKey")]
 struct LightKeyText {
     at: f64,
-    #[serde(default, deserialize_with = "given")]
+    #[serde(default)]
     direction: Option<(f64, f64, f64)>,
-    #[serde(default, deserialize_with = "given")]
+    #[serde(default)]
     position: Option<(f64, f64, f64)>,
 }
 
@@ -510,13 +529,6 @@ impl<'de> Deserialize<'de> for CameraPath {
         path.check().map_err(D::Error::custom)?;
         Ok(path)
     }
-}
-
-/// Where `None` is said by leaving it out: RON would ask for `Some(…)`.
-fn given<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
-    deserializer: D,
-) -> Result<Option<T>, D::Error> {
-    T::deserialize(deserializer).map(Some)
 }
 
 fn generator<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Generator, D::Error> {

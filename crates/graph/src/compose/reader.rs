@@ -162,7 +162,7 @@ impl<'a> Reader<'a> {
             return Ok(own);
         };
         let name: Result<String, Diagnostic> = node.parse();
-        let name = name.map_err(|error| self.reports.emit(error))?;
+        let name = name.map_err(|error| self.reports.report(error))?;
         let name = Located::new(name, node.span.clone());
         let base = self.find(&name)?;
         let path = base.name.to_string();

@@ -45,10 +45,9 @@ pub(super) fn check(document: &Document, reports: &mut Reports) {
 fn check_value(document: &Document, name: &Located<Name>, reports: &mut Reports) {
     for param in &document.params {
         if *param.name.value == *name.value.as_str() {
-            reports.report(ComposeError::Clash {
+            reports.report(ComposeError::SameName {
                 what: "value",
                 name: name.value.to_string(),
-                known: name.value.to_string(),
                 span: name.span.clone(),
                 first: param.name.span.clone(),
             });
@@ -68,10 +67,9 @@ fn check_openings(document: &Document, reports: &mut Reports) {
     for (name, _) in document.openings() {
         let mut params = document.params.iter();
         if let Some(param) = params.find(|param| *param.name.value == *name.value.as_str()) {
-            reports.report(ComposeError::Clash {
+            reports.report(ComposeError::SameName {
                 what: "param and open include",
                 name: name.value.to_string(),
-                known: name.value.to_string(),
                 span: name.span.clone(),
                 first: param.name.span.clone(),
             });
@@ -165,12 +163,23 @@ impl Names {
             _ => name.to_owned(),
         };
         if let Some((known, first)) = self.seen.get(&spelling) {
-            reports.report(ComposeError::Clash {
-                what: self.what,
-                name: name.to_owned(),
-                known: known.clone(),
-                span: span.clone(),
-                first: first.clone(),
+            let (span, first) = (span.clone(), first.clone());
+            let (name, known) = (name.to_owned(), known.clone());
+            reports.report(if name == known {
+                let what = self.what;
+                ComposeError::SameName {
+                    what,
+                    name,
+                    span,
+                    first,
+                }
+            } else {
+                ComposeError::Clash {
+                    name,
+                    known,
+                    span,
+                    first,
+                }
             });
             return false;
         }

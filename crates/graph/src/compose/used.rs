@@ -6,7 +6,7 @@ use crate::{
         raw::Invalid,
         typed::{Document, Entry, Include, What, each_entry},
     },
-    errors::compose::{ComposeError, Unused},
+    errors::compose::ComposeError,
     language::syntax::Leaf,
     shader::{reflect::Shader, store::Shaders},
     source::span::{Located, Span},
@@ -120,9 +120,8 @@ pub(crate) fn drop_unused(
                 .as_ref()
                 .filter(|it| !is_kept && is_own(&it.span));
             if let Some(default) = default {
-                let (what, span) = (Unused::Param, default.span.clone());
-                let name = Located::new(param.name.value.clone(), span);
-                reports.warn(ComposeError::Unused { what, name });
+                let name = Located::new(param.name.value.clone(), default.span.clone());
+                reports.warn(ComposeError::UnusedParam(name));
             }
             is_kept
         });

@@ -1,10 +1,7 @@
 //! Where the phases report mistakes.
 
-use super::{
-    code::Code,
-    diagnostic::{Diagnostic, Severity},
-};
-use std::{collections::BTreeSet, fmt::Display};
+use super::diagnostic::{Diagnostic, Severity};
+use std::collections::BTreeSet;
 
 /// Number of mistakes at which the search for more ends.
 const ENOUGH: usize = 1000;
@@ -12,24 +9,6 @@ const ENOUGH: usize = 1000;
 /// Mistakes for which a document's names are searched: it may hold as many misspelt names as names,
 /// and to compare all with all takes minutes.
 const HINTED: usize = 50;
-
-/// A mistake of one phase: typed where it is found, put into words in `errors/`.
-pub(crate) trait IntoDiagnostic: Display {
-    /// Its kind.
-    fn code(&self) -> Code;
-
-    /// Adds places and the way out to what is told of it.
-    fn explain(self, diagnostic: Diagnostic) -> Diagnostic;
-
-    /// The whole of what is told.
-    fn into_diagnostic(self) -> Diagnostic
-    where
-        Self: Sized,
-    {
-        let diagnostic = Diagnostic::error(self.code(), self.to_string());
-        self.explain(diagnostic)
-    }
-}
 
 /// The proof that something is wrong and was reported, so that it need not be reported again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,26 +27,23 @@ pub(crate) struct Reports {
 }
 
 impl Reports {
-    pub fn report(&mut self, mistake: impl IntoDiagnostic) -> ErrorGuaranteed {
-        self.emit(mistake.into_diagnostic())
-    }
-
-    /// A mistake that was put into words before.
-    pub fn emit(&mut self, diagnostic: Diagnostic) -> ErrorGuaranteed {
+    /// Takes a mistake of a phase, which `errors/` puts into words, or one that has them already.
+    pub fn report(&mut self, mistake: impl Into<Diagnostic>) -> ErrorGuaranteed {
+        let diagnostic = mistake.into();
         self.errors += usize::from(diagnostic.severity == Severity::Error);
         self.list.push(diagnostic);
         ErrorGuaranteed(())
     }
 
-    pub fn warn(&mut self, mistake: impl IntoDiagnostic) {
-        self.emit(Diagnostic {
+    pub fn warn(&mut self, mistake: impl Into<Diagnostic>) {
+        self.report(Diagnostic {
             severity: Severity::Warning,
-            ..mistake.into_diagnostic()
+            ..mistake.into()
         });
     }
 
     /// Something that this adapter cannot do, and another one might.
-    pub fn unsupported(&mut self, mistake: impl IntoDiagnostic) -> Result<(), ErrorGuaranteed> {
+    pub fn unsupported(&mut self, mistake: impl Into<Diagnostic>) -> Result<(), ErrorGuaranteed> {
         if self.any_adapter {
             self.warn(mistake);
             return Ok(());

@@ -3,14 +3,10 @@
 use super::{
     fields::Mentions,
     raw::{Invalid, RawEntry, RawMap, stem},
-    ron::{Field, Node, from_fields, from_some_fields, raw, read as read_text, refuse},
     typed::{Entry, Include, Pass, Run, What},
 };
 use crate::{
-    diagnostics::{
-        diagnostic::Diagnostic,
-        reports::{IntoDiagnostic, Reports},
-    },
+    diagnostics::{diagnostic::Diagnostic, reports::Reports},
     errors::document::DocumentError,
     kinds::{
         kind::{Lowering, OF_PASS},
@@ -24,6 +20,10 @@ use crate::{
     source::span::Located,
 };
 use serde::{Deserialize, Deserializer};
+use skiagraph_located_ron::reader::{
+    Field, Node, from_fields, from_some_fields, missing_field, raw, read as read_text, refuse,
+    unknown_field,
+};
 
 /// The tags that are no pass kinds.
 const COMPOSITION: [&str; 2] = ["Include", "Group"];
@@ -40,7 +40,7 @@ pub(super) fn read(
         let entry = entry(raw, registry, reports);
         entry.map_err(|error| Invalid {
             is_include,
-            reported: reports.emit(error),
+            reported: reports.report(error),
         })
     };
     raw.into_iter().map(read).collect()
@@ -154,46 +154,40 @@ fn entry(
             .chain(COMPOSITION)
             .map(str::to_owned)
             .collect();
-        return Err(DocumentError::UnknownKind(raw.tag, known).into_diagnostic());
+        return Err(DocumentError::UnknownKind(raw.tag, known).into());
     }
     if let Some(passes) = raw.passes.take_if(|_| *raw.tag != "Group") {
         drop(passes);
         let name = Located::new("passes".to_owned(), raw.tag.span);
-        let known = OF_PASS.map(str::to_owned).to_vec();
-        return Err(DocumentError::UnknownField(name, known).into_diagnostic());
+        return Err(unknown_field(&name, OF_PASS));
     }
     let (header, own): (Vec<Field>, Vec<Field>) = raw
         .fields
         .into_iter()
         .partition(|field| HEADER.contains(&field.name.as_str()));
     let header: Header = from_fields(&header, &raw.tag.span)?;
-    let unnamed = || DocumentError::MissingField(raw.tag.span.clone(), "name".to_owned());
+    let missing = |field| missing_field(&raw.tag, field);
     let (name, what) = match raw.tag.as_str() {
         "Include" => {
             let (include, name) = include(&raw.tag, &own, header.name)?;
             (name, What::Include(include))
         }
         "Group" => {
-            let entries = raw.passes.ok_or_else(|| {
-                let missing = "passes".to_owned();
-                DocumentError::MissingField(raw.tag.span.clone(), missing).into_diagnostic()
-            })?;
+            let entries = raw.passes.ok_or_else(|| missing("passes"))?;
             if let Some(field) = own.first() {
-                let known = OF_GROUP.map(str::to_owned).to_vec();
-                let error = DocumentError::UnknownField(field.name.clone(), known);
-                return Err(error.into_diagnostic());
+                return Err(unknown_field(&field.name, OF_GROUP));
             }
-            let name = header.name.ok_or_else(|| unnamed().into_diagnostic())?;
+            let name = header.name.ok_or_else(|| missing("name"))?;
             (name, What::Group(read(entries, registry, reports)))
         }
         _ => {
-            let name = header.name.ok_or_else(|| unnamed().into_diagnostic())?;
+            let name = header.name.ok_or_else(|| missing("name"))?;
             let pass = pass(&raw.tag, &name, own, registry)?;
             (name, What::Pass(pass))
         }
     };
     if is_composed && RESERVED.contains(&name.as_str()) {
-        return Err(DocumentError::Reserved(name).into_diagnostic());
+        return Err(DocumentError::Reserved(name).into());
     }
     Ok(Entry {
         name,
@@ -226,7 +220,7 @@ fn pass(
     let common: PassFields = from_fields(&common, &tag.span)?;
     let kind = registry
         .get(tag)
-        .ok_or_else(|| DocumentError::UnknownKind(tag.clone(), Vec::new()).into_diagnostic())?;
+        .ok_or_else(|| DocumentError::UnknownKind(tag.clone(), Vec::new()))?;
     Mentions::take();
     let body = (kind.parse)(&own, &tag.span)?;
     let mut mentions = Mentions::take();
@@ -272,7 +266,7 @@ fn include(
             let span = fields.graph.span.clone();
             let name = Name::new(stem);
             let name = name.map_err(|_| DocumentError::Unnamed(span.clone(), stem.to_owned()));
-            Located::new(name.map_err(IntoDiagnostic::into_diagnostic)?, span)
+            Located::new(name?, span)
         }
     };
     let (exposes_all, expose) = match fields.expose {

@@ -2,10 +2,10 @@
 
 use super::{
     raw::{Invalid, REMOVE, RawDocument, RawEntry, RawItem, RawMap},
-    ron::Field,
     typed::Narrow,
 };
 use crate::{diagnostics::reports::Reports, errors::edit::EditError, source::span::Located};
+use skiagraph_located_ron::reader::Field;
 use std::collections::HashMap;
 
 type Entries = Vec<Result<RawEntry, Invalid>>;

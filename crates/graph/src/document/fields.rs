@@ -1,6 +1,4 @@
 //! Types of fields: names, expressions, references, words of the language.
-
-use super::ron::{Node, raw, read, refuse};
 use crate::{
     errors::{document::DocumentError, language::SyntaxFault},
     language::{
@@ -12,6 +10,7 @@ use crate::{
     source::span::{SourceFile, Span},
 };
 use serde::{Deserialize, Deserializer, de::DeserializeOwned};
+use skiagraph_located_ron::reader::{Node, raw, read, refuse};
 use std::{cell::RefCell, ops::Range};
 
 /// The range between the quotes of a string, which must have no escapes.

@@ -2,10 +2,10 @@
 
 use super::{
     raw::{Invalid, RawDocument, RawEntry, RawItem, RawMap},
-    ron::{Field, Node},
     typed::Document,
 };
 use crate::source::span::Span;
+use skiagraph_located_ron::reader::{Field, Node};
 
 /// The document as text in format 3, which reads as it does.
 pub(crate) fn flat(document: &RawDocument) -> String {

@@ -1,10 +1,7 @@
 //! Materials: the textures, buffers and samplers of a document ("material" is Nau3D's word for what
 //! passes share), and the inputs that an includer or the host gives.
 
-use super::{
-    fields::Compare,
-    ron::{Node, raw, read, refuse},
-};
+use super::fields::Compare;
 use crate::{
     errors::document::DocumentError,
     language::{
@@ -15,6 +12,7 @@ use crate::{
     source::span::Located,
 };
 use serde::{Deserialize, Deserializer};
+use skiagraph_located_ron::reader::{Node, raw, read, refuse, unknown_word};
 
 /// A declared material.
 #[derive(Clone, Debug)]
@@ -142,10 +140,7 @@ impl<'de> Deserialize<'de> for FormatEntry {
             return read(text).map(Self::Expr);
         }
         let named = format_named(text).map(Self::Named);
-        let unknown = || {
-            let known = FORMATS.iter().map(|&name| name.to_owned()).collect();
-            DocumentError::UnknownWord(Located::new(text.to_owned(), span), known)
-        };
+        let unknown = || unknown_word(&Located::new(text.to_owned(), span), FORMATS);
         named.ok_or_else(|| refuse(unknown()))
     }
 }

@@ -8,10 +8,11 @@ pub(crate) mod materials;
 pub(crate) mod params;
 pub(crate) mod raw;
 pub(crate) mod read;
-pub(crate) mod ron;
 pub(crate) mod typed;
 #[cfg(feature = "schema")]
 pub(crate) mod written;
+
+pub(crate) use skiagraph_located_ron::reader as ron;
 
 pub use fields::Chosen;
 pub use materials::{Address, Filter};

@@ -1,11 +1,8 @@
 //! Params: the typed knobs of a document.
 
-use super::{
-    fields::prose,
-    ron::{Field, from_fields},
-};
+use super::fields::prose;
 use crate::{
-    diagnostics::{diagnostic::Diagnostic, reports::IntoDiagnostic, suggest::likeness},
+    diagnostics::{diagnostic::Diagnostic, suggest::likeness},
     errors::document::DocumentError,
     language::{
         name::Name,
@@ -15,6 +12,7 @@ use crate::{
     source::span::Located,
 };
 use serde::{Deserialize, Serialize};
+use skiagraph_located_ron::reader::{Field, from_fields};
 use std::{
     collections::{BTreeMap, HashSet},
     fmt,
@@ -160,7 +158,7 @@ impl Param {
             "Vec3" => ParamType::Vec3,
             "Vec4" => ParamType::Vec4,
             "Choice" => ParamType::Choice(fields.words.iter().map(|w| w.value.clone()).collect()),
-            _ => return Err(DocumentError::UnknownParamType(tag.clone()).into_diagnostic()),
+            _ => return Err(DocumentError::UnknownParamType(tag.clone()).into()),
         };
         let mut different = HashSet::new();
         let repeats = !fields
@@ -174,16 +172,16 @@ impl Param {
             } else {
                 "only a Choice has `words`"
             };
-            return Err(wrong(why).into_diagnostic());
+            return Err(wrong(why).into());
         }
         if let (Some(min), Some(max)) = (fields.min, fields.max)
             && min.partial_cmp(&max).is_none_or(std::cmp::Ordering::is_gt)
         {
-            return Err(wrong(&format!("no value can lie in {min}..{max}")).into_diagnostic());
+            return Err(wrong(&format!("no value can lie in {min}..{max}")).into());
         }
         if *fields.name.value == *"index" {
             let why = "`index` is that of a repetition, and no param";
-            return Err(wrong(why).into_diagnostic());
+            return Err(wrong(why).into());
         }
         Ok(Self {
             name: Located::new(fields.name.value.to_string(), fields.name.span),

@@ -1,12 +1,11 @@
 //! A document as sections of raw pieces. [`extend`](super::extend) edits them, and
 //! [`typed`](super::typed) reads them.
-
-use super::ron::{Field, Node};
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, IntoDiagnostic, Reports},
+    diagnostics::reports::{ErrorGuaranteed, Reports},
     errors::{document::DocumentError, edit::EditError},
     source::span::{Located, SourceFile, Span},
 };
+use skiagraph_located_ron::reader::{Field, Node, field_twice, unknown_field};
 use std::{
     collections::{HashMap, HashSet},
     sync::Arc,
@@ -172,7 +171,7 @@ pub(crate) fn split(
         return Err(reports.report(DocumentError::NoDocument(file)));
     }
     let fields = Node::root(&file).fields();
-    let fields = fields.map_err(|error| reports.emit(error))?;
+    let fields = fields.map_err(|error| reports.report(error))?;
     let mut sections = Sections {
         nodes: sections(fields, reports),
         incomplete: None,
@@ -216,13 +215,14 @@ fn sections(fields: Vec<Field>, reports: &mut Reports) -> HashMap<String, Node> 
     for field in fields {
         let mut known = SECTIONS.iter().map(|(name, _)| *name);
         if !known.any(|known| *known == **field.name) {
-            let known = SECTIONS.map(|(name, _)| name.to_owned()).to_vec();
-            reports.report(DocumentError::UnknownField(field.name, known));
+            reports.report(unknown_field(&field.name, SECTIONS.map(|(name, _)| name)));
             continue;
         }
-        let name = field.name.value.clone();
-        if sections.insert(name.clone(), field.node).is_some() {
-            reports.report(DocumentError::FieldTwice(field.name.span, name));
+        if sections
+            .insert(field.name.value.clone(), field.node)
+            .is_some()
+        {
+            reports.report(field_twice(&field.name));
         }
     }
     sections
@@ -249,7 +249,7 @@ impl Sections<'_> {
                 Err(self.reports.report(DocumentError::Format(place, other)))
             }
             Err(error) => {
-                self.reports.emit(error);
+                self.reports.report(error);
                 Ok(())
             }
         }
@@ -279,7 +279,7 @@ impl Sections<'_> {
                 }
                 Ok(item) => items.push(item),
                 Err(error) => {
-                    broken = Some(self.reports.emit(error));
+                    broken = Some(self.reports.report(error));
                     self.incomplete = broken;
                 }
             }
@@ -313,13 +313,13 @@ fn item(node: &Node, section: &'static str) -> Result<RawItem, crate::diagnostic
         span: node.span.clone(),
         section,
     };
-    let (tag, body) = node.variant().ok_or_else(|| untagged().into_diagnostic())?;
+    let (tag, body) = node.variant().ok_or_else(untagged)?;
     let fields = body.fields()?;
     Ok(RawItem { tag, fields })
 }
 
 fn list(node: &Node, reports: &mut Reports) -> Result<Vec<Node>, ErrorGuaranteed> {
-    let nodes = node.list().map_err(|error| reports.emit(error))?;
+    let nodes = node.list().map_err(|error| reports.report(error))?;
     if let Some(first) = nodes.get(MOST_ENTRIES) {
         let span = first.span.clone();
         let count = nodes.len();
@@ -334,7 +334,7 @@ fn list(node: &Node, reports: &mut Reports) -> Result<Vec<Node>, ErrorGuaranteed
 }
 
 fn map(node: &Node, reports: &mut Reports) -> RawMap {
-    let entries = node.map().map_err(|error| reports.emit(error));
+    let entries = node.map().map_err(|error| reports.report(error));
     let entries = entries.unwrap_or_default();
     if let Some((first, _)) = entries.get(MOST_ENTRIES) {
         let span = first.span.clone();
@@ -368,7 +368,7 @@ fn entry(node: &Node, reports: &mut Reports) -> Result<RawEntry, Invalid> {
         let tag = node.variant().map(|(tag, _)| tag.value);
         Invalid {
             is_include: tag.is_some_and(|tag| tag == "Include"),
-            reported: reports.emit(error),
+            reported: reports.report(error),
         }
     })?;
     let mut entry = RawEntry {
@@ -383,7 +383,7 @@ fn entry(node: &Node, reports: &mut Reports) -> Result<RawEntry, Invalid> {
         let name = field.name.value.clone();
         match name.as_str() {
             "bind" | "set" | "passes" if !seen.insert(name.clone()) => {
-                reports.report(DocumentError::FieldTwice(field.name.span, name));
+                reports.report(field_twice(&field.name));
             }
             "bind" => entry.bind = map(&field.node, reports),
             "set" => entry.set = map(&field.node, reports),

@@ -7,13 +7,12 @@ use super::{
     materials::{BufferInput, Input, Material, SamplerInput, TextureInput},
     params::Param,
     raw::{RawDocument, RawItem, RawMap},
-    ron::{Node, from_fields},
     typed::Document,
 };
 use crate::{
     diagnostics::{
         diagnostic::Diagnostic,
-        reports::{ErrorGuaranteed, IntoDiagnostic, Reports},
+        reports::{ErrorGuaranteed, Reports},
     },
     errors::{document::DocumentError, language::SyntaxFault},
     kinds::registry::Registry,
@@ -23,6 +22,7 @@ use crate::{
     },
     source::span::Located,
 };
+use skiagraph_located_ron::reader::{Node, from_fields};
 use std::collections::BTreeSet;
 
 /// Reads a document and reports its mistakes. Its readable part is returned all the same, so that
@@ -66,7 +66,7 @@ pub(crate) fn document(raw: RawDocument, registry: &Registry, reports: &mut Repo
     for item in &raw.params {
         match Param::read(&item.tag, &item.fields) {
             Ok(param) => document.params.push(param),
-            Err(error) => document.invalid_params = Some(reports.emit(error)),
+            Err(error) => document.invalid_params = Some(reports.report(error)),
         }
     }
     document.declared = document.params.len();
@@ -74,14 +74,14 @@ pub(crate) fn document(raw: RawDocument, registry: &Registry, reports: &mut Repo
         let input = input(item).and_then(|input| free(input.name.clone(), input));
         match input {
             Ok(input) => document.inputs.push(input),
-            Err(error) => document.lacks(item.name(), reports.emit(error)),
+            Err(error) => document.lacks(item.name(), reports.report(error)),
         }
     }
     for item in &raw.materials {
         let material = material(item).and_then(|read| free(read.name().clone(), read));
         match material {
             Ok(material) => document.materials.push(material),
-            Err(error) => document.lacks(item.name(), reports.emit(error)),
+            Err(error) => document.lacks(item.name(), reports.report(error)),
         }
     }
     let mut passes = raw.passes;
@@ -90,7 +90,7 @@ pub(crate) fn document(raw: RawDocument, registry: &Registry, reports: &mut Repo
     for node in &raw.outputs {
         match node.parse() {
             Ok(output) => document.outputs.push(output),
-            Err(error) => document.broken_outputs = Some(reports.emit(error)),
+            Err(error) => document.broken_outputs = Some(reports.report(error)),
         }
     }
     for (name, node) in raw.set {
@@ -109,7 +109,7 @@ impl Document {
         for (name, node) in values {
             match value(name.clone(), &node) {
                 Ok(value) => self.values.push(value),
-                Err(error) => self.lacks(Some(name), reports.emit(error)),
+                Err(error) => self.lacks(Some(name), reports.report(error)),
             }
         }
         for (name, node) in narrow {
@@ -157,14 +157,14 @@ impl Document {
 fn keep<T>(result: Result<T, Diagnostic>, reports: &mut Reports, keep: impl FnOnce(T)) {
     match result {
         Ok(value) => keep(value),
-        Err(error) => drop(reports.emit(error)),
+        Err(error) => drop(reports.report(error)),
     }
 }
 
 /// A value whose name is free to be one.
 fn value(name: Located<String>, node: &Node) -> Result<(Located<Name>, Expr), Diagnostic> {
     let span = name.span.clone();
-    let wrong = |fault| DocumentError::Name(span, name.value.clone(), fault).into_diagnostic();
+    let wrong = |fault| DocumentError::Name(span, name.value.clone(), fault);
     let named = Located::new(Name::new(&name).map_err(wrong)?, name.span.clone());
     let value = node.parse()?;
     free(named.clone(), (named, value))
@@ -173,7 +173,7 @@ fn value(name: Located<String>, node: &Node) -> Result<(Located<Name>, Expr), Di
 /// A material whose name is free to be one.
 fn free<T>(name: Located<Name>, of: T) -> Result<T, Diagnostic> {
     if RESERVED.contains(&name.as_str()) {
-        Err(DocumentError::Reserved(name).into_diagnostic())
+        Err(DocumentError::Reserved(name).into())
     } else {
         Ok(of)
     }
@@ -183,7 +183,7 @@ fn feature(node: &Node) -> Result<(Located<String>, wgt::Features), Diagnostic> 
     let name = Located::new(node.parse::<String>()?, node.span.clone());
     match wgt::Features::from_name(&name) {
         Some(flag) => Ok((name, flag)),
-        None => Err(SyntaxFault::Feature(name).into_diagnostic()),
+        None => Err(SyntaxFault::Feature(name).into()),
     }
 }
 
@@ -193,7 +193,7 @@ fn material(item: &RawItem) -> Result<Material, Diagnostic> {
         "Texture" => from_fields(fields, &tag.span).map(Material::Texture),
         "Buffer" => from_fields(fields, &tag.span).map(Material::Buffer),
         "Sampler" => from_fields(fields, &tag.span).map(Material::Sampler),
-        _ => Err(DocumentError::UnknownMaterial(tag.clone()).into_diagnostic()),
+        _ => Err(DocumentError::UnknownMaterial(tag.clone()).into()),
     }
 }
 
@@ -202,10 +202,10 @@ fn input(item: &RawItem) -> Result<Input, Diagnostic> {
     match tag.as_str() {
         "Texture" => {
             let texture: TextureInput = from_fields(fields, &tag.span)?;
-            Input::try_from(texture).map_err(IntoDiagnostic::into_diagnostic)
+            Ok(Input::try_from(texture)?)
         }
         "Buffer" => from_fields::<BufferInput>(fields, &tag.span).map(Input::from),
         "Sampler" => from_fields::<SamplerInput>(fields, &tag.span).map(Input::from),
-        _ => Err(DocumentError::UnknownMaterial(tag.clone()).into_diagnostic()),
+        _ => Err(DocumentError::UnknownMaterial(tag.clone()).into()),
     }
 }

@@ -5,7 +5,6 @@ use super::{
     materials::{Input, Material},
     params::Param,
     raw::Invalid,
-    ron::{raw, read},
 };
 use crate::{
     diagnostics::reports::ErrorGuaranteed,
@@ -17,6 +16,7 @@ use crate::{
     source::span::{Located, SourceFile, Span},
 };
 use serde::{Deserialize, Deserializer};
+use skiagraph_located_ron::reader::{raw, read};
 use std::{collections::BTreeSet, sync::Arc};
 
 /// A document as its author wrote it.

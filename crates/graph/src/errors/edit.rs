@@ -1,91 +1,63 @@
 //! Edits of an extended document that cannot be made.
 
 use crate::{
-    diagnostics::{code::Code, diagnostic::Diagnostic, reports::IntoDiagnostic},
     language::name::Name,
     source::span::{Located, Span},
 };
 
-#[derive(Clone, Debug, thiserror::Error)]
-pub(crate) enum EditError {
-    #[error("the extended document has no entry `{}`", **path)]
-    NoSuchEntry {
-        path: Located<String>,
-        name: String,
-        known: Vec<String>,
-    },
-    #[error("`Remove` takes out passes alone")]
-    RemovesItem(Span),
-    #[error("`narrow` brings back the word `{}` of `{}`", **word, **name)]
-    Widens {
-        name: Located<String>,
-        word: Located<Name>,
-        first: Span,
-    },
-    #[error("`{}` stands behind the interface of `{entry}`", **path)]
-    Behind {
-        path: Located<String>,
-        entry: String,
-    },
-    #[error("a new `{}` needs a place", **.0)]
-    NoPlace(Located<String>),
-    #[error("a new `{}` has several places", **.0)]
-    TwoPlaces(Located<String>),
-    #[error("`{}` does not say which entry it is about", **.0)]
-    NoPath(Located<String>, &'static str),
-    #[error("an entry is named in quotes")]
-    NoString(Span),
-    #[error("`{1}` has no such field")]
-    Field(Located<String>, &'static str),
-    #[error("the entries of a group are changed one by one")]
-    Passes(Span),
-    #[error("`{}` edits an extended document, and this one extends none", **.0)]
-    NotExtending(Located<String>),
-    #[error("the document extends itself")]
-    Cycle(Span, Vec<String>),
-}
+const PLACES: &str = "say `before`, `after` or `instead: \"entry\"`; without one, an entry stands \
+    behind the new one above it";
 
-impl IntoDiagnostic for EditError {
-    fn code(&self) -> Code {
-        match self {
-            Self::Cycle(..) => Code::IncludeCycle,
-            _ => Code::Edit,
-        }
-    }
+mistakes! {
+    /// An edit that cannot be made.
+    EditError:
 
-    fn explain(self, diagnostic: Diagnostic) -> Diagnostic {
-        const PLACES: &str = "say `before`, `after` or `instead: \"entry\"`; without one, an entry \
-            stands behind the new one above it";
-        match self {
-            Self::NoSuchEntry { path, name, known } => {
-                diagnostic.at(path.span, "").suggest(&name, known)
-            }
-            Self::RemovesItem(span) => diagnostic.at(span, "").help(
-                "leave it out: what the extended document declares goes by itself once nothing \
-                 uses it",
-            ),
-            Self::Widens { word, first, .. } => diagnostic
-                .at(word.span, "widened here")
-                .at(first, "narrowed by the extended document")
-                .help("`narrow` only takes words away: leave it out"),
-            Self::Behind { path, entry } => diagnostic.at(path.span, "").help(format!(
-                "change the `graph` of `{entry}`; the new document may extend the old one"
-            )),
-            Self::NoPlace(tag) | Self::TwoPlaces(tag) => diagnostic.at(tag.span, "").help(PLACES),
-            Self::NoPath(tag, field) => {
-                diagnostic.at(tag.span, format!("give it `{field}: \"entry\"`"))
-            }
-            Self::NoString(span) => diagnostic.at(span, "for example `\"group.pass\"`"),
-            Self::Field(name, _) => diagnostic.at(name.span, "not a field of this"),
-            Self::Passes(span) => diagnostic
-                .at(span, "")
-                .help("name them by their paths: `pass: \"group.pass\"`"),
-            Self::NotExtending(word) => diagnostic
-                .at(word.span, "")
-                .help("begin the document with `extends: \"other.ron\"`"),
-            Self::Cycle(span, files) => diagnostic
-                .at(span, "extends it again")
-                .help(format!("the cycle is {}", files.join(" → "))),
-        }
-    }
+    NoSuchEntry { path: Located<String>, name: String, known: Vec<String> } =>
+        Edit("the extended document has no entry `{path}`").at(path, "").suggest(&name, known);
+
+    RemovesItem(place: Span) =>
+        Edit("`Remove` takes out passes alone")
+        .at(place, "").help(
+            "leave it out: what the extended document declares goes by itself once nothing uses it"
+        );
+
+    Widens { name: Located<String>, word: Located<Name>, first: Span } =>
+        Edit("`narrow` brings back the word `{word}` of `{name}`")
+        .at(word, "widened here").at(first, "narrowed by the extended document")
+        .help("`narrow` only takes words away: leave it out");
+
+    Behind { path: Located<String>, entry: String } =>
+        Edit("`{path}` stands behind the interface of `{entry}`")
+        .at(path, "")
+        .help(format!(
+            "change the `graph` of `{entry}`; the new document may extend the old one"
+        ));
+
+    NoPlace(tag: Located<String>) =>
+        Edit("a new `{tag}` needs a place").at(tag, "").help(PLACES);
+
+    TwoPlaces(tag: Located<String>) =>
+        Edit("a new `{tag}` has several places").at(tag, "").help(PLACES);
+
+    NoPath(tag: Located<String>, field: &'static str) =>
+        Edit("`{tag}` does not say which entry it is about")
+        .at(tag, format!("give it `{field}: \"entry\"`"));
+
+    NoString(place: Span) =>
+        Edit("an entry is named in quotes").at(place, "for example `\"group.pass\"`");
+
+    Field(name: Located<String>, of: &'static str) =>
+        Edit("`{of}` has no such field").at(name, "not a field of this");
+
+    Passes(place: Span) =>
+        Edit("the entries of a group are changed one by one")
+        .at(place, "").help("name them by their paths: `pass: \"group.pass\"`");
+
+    NotExtending(word: Located<String>) =>
+        Edit("`{word}` edits an extended document, and this one extends none")
+        .at(word, "").help("begin the document with `extends: \"other.ron\"`");
+
+    Cycle(place: Span, files: Vec<String>) =>
+        IncludeCycle("the document extends itself")
+        .at(place, "extends it again").help(format!("the cycle is {}", files.join(" → ")));
 }

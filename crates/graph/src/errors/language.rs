@@ -1,7 +1,6 @@
 //! Mistakes in expressions and references.
 
 use crate::{
-    diagnostics::{code::Code, diagnostic::Diagnostic, reports::IntoDiagnostic},
     language::{
         name::NameFault,
         syntax::{Attribute, Function},
@@ -9,91 +8,59 @@ use crate::{
     source::span::{Located, Span},
 };
 
-/// An expression or reference that cannot be read.
-#[derive(Clone, Debug, thiserror::Error)]
-pub(crate) enum SyntaxFault {
-    #[error("`{1}` has no meaning here")]
-    Sign(Span, char),
-    #[error("`{}` is not a number", text(.0))]
-    Number(Span),
-    #[error("the expression is too long")]
-    TooLong(Span, usize),
-    #[error("{expected} is expected, not {found}")]
-    Unexpected {
-        span: Span,
-        found: String,
-        expected: String,
-    },
-    #[error("`{}` is not a name", text(.0))]
-    Name(Span, NameFault),
-    #[error("unknown function `{}`", **.0)]
-    Function(Located<String>),
-    #[error("wgpu has no feature `{}`", **.0)]
-    Feature(Located<String>),
-    #[error("`{function}` takes {expected} arguments, not {found}")]
-    Arguments {
-        span: Span,
-        function: &'static str,
-        expected: usize,
-        found: usize,
-    },
+mistakes! {
+    /// An expression or reference that cannot be read.
+    SyntaxFault:
+
+    Sign(place: Span, sign: char) =>
+        Expression("`{sign}` has no meaning here").at(place, "here");
+
+    Number(place: Span) =>
+        Expression("`{}` is not a number", text(&place)).at(place, "here");
+
+    TooLong(place: Span, most: usize) =>
+        Expression("the expression is too long")
+        .at(place, "").help(format!("an expression has at most {most} words and signs"));
+
+    Unexpected { span: Span, found: String, expected: String } =>
+        Expression("{expected} is expected, not {found}").at(span, "here");
+
+    Name(place: Span, fault: NameFault) =>
+        Name("`{}` is not a name", text(&place)).at(place, fault.to_string());
+
+    Function(name: Located<String>) =>
+        Expression("unknown function `{name}`")
+        .at(&name, "")
+        .suggest(&name, Function::ALL.iter().map(|(name, ..)| *name).chain(["has"]));
+
+    Feature(name: Located<String>) =>
+        Feature("wgpu has no feature `{name}`")
+        .at(&name, "")
+        .suggest(&name, wgt::Features::all().iter_names().map(|(name, _)| name));
+
+    Arguments { span: Span, function: &'static str, expected: usize, found: usize } =>
+        Expression("`{function}` takes {expected} arguments, not {found}").at(span, "here");
+
     /// End of a reference that stands elsewhere, or in an expression.
-    #[error("`{}` does not stand here", text(.0))]
-    Part(Span, &'static str),
-    #[error("strings of the language have no escapes")]
-    Escape(Span),
+    Part(place: Span, part: &'static str) =>
+        Expression("`{}` does not stand here", text(&place))
+        .at(place, match part {
+            "number" => "a part of a material is not a number",
+            "attribute" => "an attribute, where a material is named",
+            "mip" => "`.mip[…]` follows the name of a material",
+            _ => "`.previous` and `.mip[…]` end a reference, in this order",
+        })
+        .help_any((part == "number").then(|| {
+            format!("ask for an attribute of it: {}", attributes())
+        }));
+
+    Escape(place: Span) =>
+        Expression("strings of the language have no escapes")
+        .at(place, "`\\` here").help("write the signs themselves");
 }
 
 fn text(span: &Span) -> &str {
     span.file.text.get(span.range.clone()).unwrap_or("")
-}
-
-impl IntoDiagnostic for SyntaxFault {
-    fn code(&self) -> Code {
-        match self {
-            Self::Name(..) => Code::Name,
-            Self::Feature(_) => Code::Feature,
-            _ => Code::Expression,
-        }
-    }
-
-    fn explain(self, diagnostic: Diagnostic) -> Diagnostic {
-        match self {
-            Self::Sign(span, _) | Self::Number(span) => diagnostic.at(span, "here"),
-            Self::TooLong(span, most) => diagnostic
-                .at(span, "")
-                .help(format!("an expression has at most {most} words and signs")),
-            Self::Unexpected { span, .. } | Self::Arguments { span, .. } => {
-                diagnostic.at(span, "here")
-            }
-            Self::Name(span, fault) => diagnostic.at(span, fault.to_string()),
-            Self::Function(name) => {
-                let known = Function::ALL.iter().map(|(name, ..)| *name).chain(["has"]);
-                diagnostic.at(name.span.clone(), "").suggest(&name, known)
-            }
-            Self::Feature(name) => {
-                let known = wgt::Features::all();
-                let known = known.iter_names().map(|(name, _)| name);
-                diagnostic.at(name.span.clone(), "").suggest(&name, known)
-            }
-            Self::Part(span, "number") => diagnostic
-                .at(span, "a part of a material is not a number")
-                .help(format!("ask for an attribute of it: {}", attributes())),
-            Self::Part(span, "attribute") => {
-                diagnostic.at(span, "an attribute, where a material is named")
-            }
-            Self::Part(span, "mip") => {
-                diagnostic.at(span, "`.mip[…]` follows the name of a material")
-            }
-            Self::Part(span, _) => diagnostic.at(
-                span,
-                "`.previous` and `.mip[…]` end a reference, in this order",
-            ),
-            Self::Escape(span) => diagnostic
-                .at(span, "`\\` here")
-                .help("write the signs themselves"),
-        }
-    }
 }
 
 /// The attributes in a sentence.

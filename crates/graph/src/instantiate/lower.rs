@@ -88,7 +88,7 @@ fn lower_pass<'a>(
     pass.body.lower(&mut lowering);
     let (steps, scratch, diagnostics) = (lowering.steps, lowering.scratch, lowering.diagnostics);
     for diagnostic in diagnostics {
-        reports.emit(diagnostic);
+        reports.report(diagnostic);
     }
     let own = Located::new(entry.name.value.to_string(), entry.name.span.clone());
     // A slash stands in no name: nothing in a document can mean this buffer.

@@ -1,12 +1,9 @@
 //! Names of entry points, or one of two by a condition.
 
 use super::kind::Lowering;
-use crate::{
-    document::ron::{raw, read},
-    language::syntax::Expr,
-    source::span::Located,
-};
+use crate::{language::syntax::Expr, source::span::Located};
 use serde::{Deserialize, Deserializer};
+use skiagraph_located_ron::reader::{raw, read};
 
 /// The name of a shader's entry point, or one of two: `"masked ? fragment_masked : none"`.
 #[derive(Clone, Debug)]

@@ -134,8 +134,8 @@ impl<'a> Lowering<'a> {
     }
 
     /// Reports a mistake in the body.
-    pub fn report(&mut self, diagnostic: Diagnostic) {
-        self.diagnostics.push(diagnostic);
+    pub fn report(&mut self, mistake: impl Into<Diagnostic>) {
+        self.diagnostics.push(mistake.into());
     }
 
     /// Reports a value that cannot be, at the expression that it is.

@@ -7,13 +7,11 @@ use super::{
     targets::{self, ColorEntry, DepthEntry, StencilEntry},
 };
 use crate::{
-    document::{
-        fields::Chosen,
-        ron::{raw, read},
-    },
+    document::fields::Chosen,
     language::syntax::{Expr, Reference},
 };
 use serde::{Deserialize, Deserializer};
+use skiagraph_located_ron::reader::{raw, read};
 
 /// One draw call, whose vertices the shader pulls by their index.
 #[derive(Clone, Debug, Deserialize)]

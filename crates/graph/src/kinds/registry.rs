@@ -8,12 +8,9 @@ use super::{
     kind::{OF_PASS, PassKind},
     raster::Raster,
 };
-use crate::{
-    diagnostics::diagnostic::Diagnostic,
-    document::ron::{Field, from_some_fields},
-    source::span::Span,
-};
+use crate::{diagnostics::diagnostic::Diagnostic, source::span::Span};
 use serde::de::DeserializeOwned;
+use skiagraph_located_ron::reader::{Field, from_some_fields};
 use std::{fmt, sync::Arc};
 
 /// How an entry of a kind is read.

@@ -5,11 +5,7 @@ use super::{
     step::{ColorTarget, DepthTarget, Names, StencilTarget},
 };
 use crate::{
-    diagnostics::reports::IntoDiagnostic,
-    document::{
-        fields::{Compare, Load, short_or_long},
-        ron::{raw, refuse},
-    },
+    document::fields::{Compare, Load, short_or_long},
     errors::document::DocumentError,
     language::{
         syntax::{Expr, Reference},
@@ -18,6 +14,7 @@ use crate::{
     source::span::Located,
 };
 use serde::{Deserialize, Deserializer};
+use skiagraph_located_ron::reader::{raw, refuse};
 
 /// A colour attachment: `"image"`, or `(target: "image", load: …, blend: …, write: …, resolve: …)`.
 #[derive(Clone, Debug)]
@@ -348,7 +345,7 @@ fn clear(
                 clear: values[0].span.clone(),
                 area: area.span.clone(),
             };
-            pass.report(mistake.into_diagnostic());
+            pass.report(mistake);
             return None;
         }
     };
@@ -418,7 +415,7 @@ pub(super) fn stencil(
 pub(super) fn canvas(size: &Expr, pass: &mut Lowering<'_>) -> Located<[u64; 2]> {
     let edges = pass.edges(size);
     let canvas = <[u64; 2]>::try_from(edges).unwrap_or_else(|_| {
-        pass.report(DocumentError::Canvas(size.span.clone()).into_diagnostic());
+        pass.report(DocumentError::Canvas(size.span.clone()));
         [1, 1]
     });
     Located::new(canvas, size.span.clone())
@@ -437,7 +434,7 @@ pub(super) fn area(entry: &Expr, pass: &mut Lowering<'_>) -> Option<[u32; 4]> {
     let edges: Option<Vec<u32>> = list.iter().map(edge).collect();
     let area = edges.and_then(|edges| <[u32; 4]>::try_from(edges).ok());
     if area.is_none() {
-        pass.report(DocumentError::Area(entry.span.clone()).into_diagnostic());
+        pass.report(DocumentError::Area(entry.span.clone()));
     }
     area
 }

@@ -2,7 +2,6 @@
 
 use super::{make::growing, plan::Plan, text};
 use crate::{
-    diagnostics::reports::IntoDiagnostic,
     errors::plan::OutputError,
     flow::aliases::Allocation,
     resource::{Growth, ResourceId, ResourceKind},
@@ -185,7 +184,7 @@ impl Plan {
     }
 
     /// Reports a plan that takes more memory than there is.
-    pub(super) fn check_memory(&self, limit: Option<u64>) -> Option<impl IntoDiagnostic + use<>> {
+    pub(super) fn check_memory(&self, limit: Option<u64>) -> Option<OutputError> {
         let takes = self.memory_bytes();
         let limit = limit.filter(|limit| takes > *limit)?;
         let largest = self

@@ -8,10 +8,7 @@ use super::{
     expand::Expanded,
     wgsl_errors::{function_range, parse_error, specialisation_error, validation_error},
 };
-use crate::{
-    errors::shader::ShaderError,
-    panics::{Panicked, caught},
-};
+use crate::errors::shader::ShaderError;
 use naga::{
     Module, ShaderStage,
     back::{
@@ -21,6 +18,7 @@ use naga::{
     proc::{BoundsCheckPolicies, BoundsCheckPolicy, GlobalCtx, Layouter},
     valid::{Capabilities, ModuleInfo, ValidationFlags, Validator},
 };
+use skiagraph_located_ron::panics::{Panicked, caught};
 use std::borrow::Cow;
 
 /// A module with what validation found of it.

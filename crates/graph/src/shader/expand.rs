@@ -5,7 +5,7 @@
 
 use super::text::{BREAKS, Comments};
 use crate::{
-    diagnostics::{diagnostic::Diagnostic, reports::IntoDiagnostic, suggest::likeness},
+    diagnostics::{diagnostic::Diagnostic, suggest::likeness},
     errors::shader::ImportError,
     source::{
         paths::{escapes, folder_of, import_candidates, module_candidates, shader_candidates},
@@ -118,17 +118,15 @@ impl<'a> ShaderFiles<'a> {
     ) -> Result<Expanded, Diagnostic> {
         let candidates = shader_candidates(folder_of(&name.span.file.name), name);
         if escapes(name) {
-            return Err(ImportError::Outside(name.clone()).into_diagnostic());
+            return Err(ImportError::Outside(name.clone()).into());
         }
         let file = match self.find(&candidates) {
             Ok(Some(file)) => file,
             Ok(None) => {
                 let likeness = self.likeness(&candidates, name);
-                return Err(
-                    ImportError::NoShader(name.clone(), candidates, likeness).into_diagnostic()
-                );
+                return Err(ImportError::NoShader(name.clone(), candidates, likeness).into());
             }
-            Err(why) => return Err(ImportError::Unreadable(name.clone(), why).into_diagnostic()),
+            Err(why) => return Err(ImportError::Unreadable(name.clone(), why).into()),
         };
         let mut expanded = Expanded {
             text: String::new(),
@@ -137,8 +135,7 @@ impl<'a> ShaderFiles<'a> {
             imports: Vec::new(),
         };
         let mut seen = vec![file.name.to_string()];
-        self.append(&file, replaced, &mut expanded, &mut seen, 0)
-            .map_err(IntoDiagnostic::into_diagnostic)?;
+        self.append(&file, replaced, &mut expanded, &mut seen, 0)?;
         Ok(expanded)
     }
 

@@ -6,7 +6,7 @@ use super::{
     reflect::Shader,
 };
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, IntoDiagnostic, Reports},
+    diagnostics::reports::{ErrorGuaranteed, Reports},
     document::typed::{Document, What, each_entry},
     errors::shader::ImportError,
     kinds::step::ShaderUse,
@@ -224,7 +224,7 @@ impl Loader<'_> {
             return;
         }
         let read = match self.files.expand(&shader.name, &replaced) {
-            Err(error) => Err(self.reports.emit(error)),
+            Err(error) => Err(self.reports.report(error)),
             Ok(source) => self.parse(source, constants),
         };
         let variants = self.shaders.shaders.entry(key).or_default();
@@ -266,7 +266,7 @@ impl Loader<'_> {
                 Some(path)
             }
             Err(error) => {
-                self.reports.emit(error.into_diagnostic());
+                self.reports.report(error);
                 None
             }
         }

@@ -2,7 +2,7 @@
 
 pub(crate) mod paths;
 pub(crate) mod sources;
-pub(crate) mod span;
 
+pub(crate) use skiagraph_located_ron::span;
+pub use skiagraph_located_ron::span::{Located, SourceFile, SourceText, Span};
 pub use sources::{FolderSources, LayeredSources, Picture, Sources};
-pub use span::{Located, SourceFile, SourceText, Span};

@@ -8,10 +8,9 @@ use std::{collections::BTreeSet, path::Path};
 /// Mistakes whose message is that of another one, too, or has no words of its own, with a document
 /// that makes them.
 const BY_HAND: &[(&str, &str)] = &[
-    ("DocumentError::Syntax", "missing_comma"),
     ("DocumentError::Twice", "duplicate_material"),
     ("ComposeError::NoInclude", "include_missing"),
-    ("ComposeError::Clash", "duplicate_pass"),
+    ("ComposeError::SameName", "duplicate_pass"),
     ("EvaluationError::Words", "param_cull"),
     ("EvaluationError::Unknown", "unknown_param"),
     ("InterfaceError::UnwrittenOutput", "include_unwritten"),
@@ -35,10 +34,6 @@ const ELSEWHERE: &[(&str, &str)] = &[
     (
         "DocumentError::TooMany",
         "`mistakes.rs`: lists of 4097 entries",
-    ),
-    (
-        "DocumentError::Panicked",
-        "`src/document/ron.rs`: no text is known on which ron panics",
     ),
     (
         "ComposeError::NoDocument",
@@ -173,21 +168,26 @@ fn pieces(template: &str) -> Vec<String> {
 /// The variants of a file of `src/errors` with their messages.
 fn variants(text: &str) -> Vec<Variant> {
     let mut variants = Vec::new();
-    for (at, _) in text.match_indices("#[error(") {
-        let before = &text[..at];
-        let of = before.rfind("enum ").expect("it is one of an enum") + 5;
-        let of = word(&text[of..]);
-        let start = at + text[at..].find('"').expect("it has a text");
-        let (template, rest) = literal(&text[start..]);
-        let end = rest.find(")]\n").expect("the attribute ends") + 3;
-        let own = rest[end..].lines().map(str::trim_start);
-        let own = own
-            .clone()
-            .find(|line| line.starts_with(char::is_uppercase));
-        variants.push(Variant {
-            name: format!("{of}::{}", word(own.expect("a variant follows"))),
-            literals: pieces(&template),
-        });
+    for declared in text.split("\nmistakes! {").skip(1) {
+        let declared = &declared[..declared.find("\n}\n").expect("it ends")];
+        let mut of = "";
+        for (at, _) in declared.match_indices("\n    ") {
+            let own = word(&declared[at + 5..]);
+            let rest = &declared[at + 5 + own.len()..];
+            if !own.starts_with(char::is_uppercase) {
+                continue;
+            }
+            if rest.starts_with(':') {
+                of = own;
+                continue;
+            }
+            let text = &rest[rest.find("=>\n").expect("an arm follows")..];
+            let text = &text[text.find('"').expect("it has a text")..];
+            variants.push(Variant {
+                name: format!("{of}::{own}"),
+                literals: pieces(&literal(text).0),
+            });
+        }
     }
     variants
 }

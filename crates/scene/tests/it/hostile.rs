@@ -2,6 +2,7 @@
 //! bounded time and memory.
 
 use crate::bounds::bounded;
+use skiagraph_located_ron::diagnostics::Diagnostic;
 use skiagraph_scene::{
     Bvh, Concave, ImportReport, Limit, MaterialUse, Mesh, ObjOptions, ObjSetup, QuadDiagonal,
     SceneError, SceneFile, SceneLibrary, SceneRequest, obj::parse_obj,
@@ -24,6 +25,16 @@ fn parse_with(text: &[u8], options: &ObjOptions) -> Result<(Mesh, ImportReport),
 #[track_caller]
 fn parse_scene(text: &str) -> Result<SceneFile, SceneError> {
     bounded(text, || SceneFile::parse(text, "garden.ron"))
+}
+
+/// A line per mistake of a scene file.
+#[track_caller]
+fn told(text: &str) -> String {
+    let lines: Vec<String> = match parse_scene(text) {
+        Err(SceneError::SceneFile(found)) => found.iter().map(Diagnostic::brief).collect(),
+        other => panic!("{other:?}"),
+    };
+    lines.join("\n")
 }
 
 /// Asserts that the error begins with `place` and holds `part`.
@@ -272,9 +283,7 @@ fn views_that_make_no_camera() {
         ),
     ] {
         assert!(SCENE.contains(from));
-        let error = parse_scene(&SCENE.replace(from, to))
-            .unwrap_err()
-            .to_string();
+        let error = told(&SCENE.replace(from, to));
         let line = 4 - usize::from(from == "direction: (0, -1, 0)");
         assert!(
             error.starts_with(&format!("garden.ron:{line}:")) && error.contains(part),
@@ -285,19 +294,18 @@ fn views_that_make_no_camera() {
 
 #[test]
 fn scene_files_of_nothing_and_without_end() {
-    let error = |text: &str| parse_scene(text).unwrap_err().to_string();
     for text in ["", " \n ", "\u{feff}", "\0", "(", &SCENE[..SCENE.len() - 1]] {
         assert!(
-            error(text).starts_with("garden.ron:"),
+            told(text).starts_with("garden.ron:"),
             "{text:?}: {}",
-            error(text)
+            told(text)
         );
     }
     for bracket in ["(", "[", "{", "Some("] {
         let nested = SCENE.replace("\"garden\"", &bracket.repeat(10_000));
-        assert!(error(&nested).starts_with("garden.ron:2:"), "{bracket}");
+        assert!(told(&nested).starts_with("garden.ron:2:"), "{bracket}");
         let nested = SCENE.replace("format: 1", &format!("other: {}", bracket.repeat(10_000)));
-        assert!(error(&nested).starts_with("garden.ron:2:"), "{bracket}");
+        assert!(told(&nested).starts_with("garden.ron:2:"), "{bracket}");
     }
     // Time must not grow with the square of the views.
     let view = |i: usize| {
@@ -309,7 +317,7 @@ fn scene_files_of_nothing_and_without_end() {
     let views: String = (0..50_000).map(view).collect();
     let many = SCENE.replace("views: [", &format!("views: [{views}"));
     assert_eq!(parse_scene(&many).unwrap().views.len(), 50_001);
-    assert!(error(&many.replace("\"a\"", "\"7\"")).contains("two views are called \"7\""));
+    assert!(told(&many.replace("\"a\"", "\"7\"")).contains("two views are called \"7\""));
 }
 
 /// Returns the message about a scene file or a bare mesh on disk.

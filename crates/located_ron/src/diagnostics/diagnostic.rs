@@ -1,7 +1,7 @@
 //! One mistake: its message, its places, and the way out.
 
 use super::{code::Code, suggest::suggestion};
-use crate::source::span::Span;
+use crate::span::Span;
 
 /// How bad it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -58,12 +58,46 @@ impl Diagnostic {
 
     /// Adds a place; the first one added is the mistake's own.
     #[must_use]
-    pub fn at(mut self, span: Span, text: impl Into<String>) -> Self {
+    pub fn at(mut self, place: impl Into<Span>, text: impl Into<String>) -> Self {
         self.labels.push(Label {
-            span,
+            span: place.into(),
             text: text.into(),
         });
         self
+    }
+
+    /// Adds a place that may not be known.
+    #[must_use]
+    pub fn at_any(self, place: Option<impl Into<Span>>, text: impl Into<String>) -> Self {
+        match place {
+            Some(place) => self.at(place, text),
+            None => self,
+        }
+    }
+
+    /// Adds several places.
+    #[must_use]
+    pub fn at_all<P: Into<Span>, T: Into<String>>(
+        self,
+        places: impl IntoIterator<Item = (P, T)>,
+    ) -> Self {
+        let places = places.into_iter();
+        places.fold(self, |diagnostic, (place, text)| diagnostic.at(place, text))
+    }
+
+    /// Adds the reason, which is a mistake of its own: its kind is this one's.
+    #[must_use]
+    pub fn because(self, place: impl Into<Span>, reason: impl Into<Self>) -> Self {
+        let Self {
+            code,
+            message,
+            help,
+            ..
+        } = reason.into();
+        Self {
+            code,
+            ..self.at(place, message).help_any(help)
+        }
     }
 
     /// Says what to do, after what was said before.
@@ -77,12 +111,26 @@ impl Diagnostic {
         self
     }
 
+    /// Says what to do in some cases.
+    #[must_use]
+    pub fn help_any(self, text: Option<impl Into<String>>) -> Self {
+        match text {
+            Some(text) => self.help(text),
+            None => self,
+        }
+    }
+
     /// Adds "did you mean …" if one of `known` is close to `word`, else a list of what there is.
     #[must_use]
     pub fn suggest<S: AsRef<str>>(self, word: &str, known: impl IntoIterator<Item = S>) -> Self {
-        match suggestion(word, known) {
-            Some(text) => self.help(text),
-            None => self,
+        self.help_any(suggestion(word, known))
+    }
+
+    /// Place and message in a line.
+    pub fn brief(&self) -> String {
+        match self.labels.first() {
+            Some(label) => format!("{}: {}", label.span, self.message),
+            None => self.message.clone(),
         }
     }
 

@@ -6,20 +6,26 @@
 //! the byte offset.
 
 use crate::{
-    diagnostics::{diagnostic::Diagnostic, reports::IntoDiagnostic},
-    errors::document::DocumentError,
+    diagnostics::{Code, Diagnostic},
     panics::{Panicked, caught},
-    source::span::{Located, SourceFile, Span},
+    span::{Located, SourceFile, Span},
 };
 use ron::value::RawValue;
 use serde::{
     Deserialize, Deserializer,
     de::{
         DeserializeOwned, DeserializeSeed, Error as _, IntoDeserializer, MapAccess, SeqAccess,
-        Visitor,
+        Visitor, value::MapAccessDeserializer,
     },
 };
-use std::{cell::RefCell, collections::HashSet, fmt, ops::Range};
+use std::{
+    cell::{Cell, RefCell},
+    collections::HashSet,
+    fmt,
+    iter::Enumerate,
+    ops::Range,
+    slice,
+};
 
 /// The text that is being deserialised on this thread, and the innermost place where it went wrong
 /// with what is to be told (outer levels only see a text).
@@ -40,8 +46,8 @@ fn fail(diagnostic: impl FnOnce(&SourceFile) -> Option<Diagnostic>) {
 }
 
 /// An error of serde's that is told as this mistake.
-pub(crate) fn refuse<E: serde::de::Error>(mistake: impl IntoDiagnostic) -> E {
-    let diagnostic = mistake.into_diagnostic();
+pub fn refuse<E: serde::de::Error>(mistake: impl Into<Diagnostic>) -> E {
+    let diagnostic = mistake.into();
     let message = diagnostic.message.clone();
     fail(|_| Some(diagnostic));
     E::custom(message)
@@ -83,6 +89,10 @@ fn read_part<T: DeserializeOwned>(text: &str) -> Result<T, ron::Error> {
 
 /// Returns the place of a ron error, in bytes: `text` begins at `base`.
 fn place_of(text: &str, error: &ron::error::SpannedError, base: usize) -> Range<usize> {
+    // Such a mistake is the whole value's; ron stands at its end.
+    if let ron::Error::Message(_) = error.code {
+        return base..base + text.lines().next().map_or(0, str::len);
+    }
     let start = offset(text, error.span.start.line, error.span.start.col);
     let end = offset(text, error.span.end.line, error.span.end.col).max(start);
     // ron reports the end of a bad word as its place; a word is what the reader wants to see.
@@ -125,9 +135,7 @@ fn word_around(text: &str, start: usize, end: usize, base: usize) -> Range<usize
 }
 
 /// The raw text of a value and its place in the file that is being read.
-pub(crate) fn raw<'de, D: Deserializer<'de>>(
-    deserializer: D,
-) -> Result<(&'de str, Span), D::Error> {
+pub fn raw<'de, D: Deserializer<'de>>(deserializer: D) -> Result<(&'de str, Span), D::Error> {
     let text = bare(<&RawValue>::deserialize(deserializer)?);
     let span = READING.with_borrow(|reading| {
         let reading = reading.as_ref()?;
@@ -138,7 +146,7 @@ pub(crate) fn raw<'de, D: Deserializer<'de>>(
 }
 
 /// Deserialises a value from its raw text.
-pub(crate) fn read<T: DeserializeOwned, E: serde::de::Error>(text: &str) -> Result<T, E> {
+pub fn read<T: DeserializeOwned, E: serde::de::Error>(text: &str) -> Result<T, E> {
     read_part(text).map_err(E::custom)
 }
 
@@ -174,6 +182,13 @@ impl Node {
         Self {
             span: file.span(start..file.text.len()),
         }
+    }
+
+    /// The first line of it, which stands for the whole where that is to be shown.
+    pub fn head(&self) -> Span {
+        let start = self.span.range.start;
+        let length = self.text().lines().next().map_or(0, str::len);
+        self.span.file.span(start..start + length)
     }
 
     /// Returns the node at a place.
@@ -219,7 +234,10 @@ impl Node {
     /// A panic of ron's as a diagnostic at the piece that it read.
     fn without_panic<T>(&self, result: Result<T, Panicked>) -> Result<T, Diagnostic> {
         result.map_err(|panicked| {
-            DocumentError::Panicked(self.span.clone(), panicked).into_diagnostic()
+            let what = format!("ron panics while this is read: {}", panicked.message);
+            Diagnostic::error(Code::LibraryPanic, what)
+                .at(&self.span, "this brings it about")
+                .help(panicked.way_out())
         })
     }
 
@@ -417,115 +435,216 @@ pub fn from_some_fields<T: DeserializeOwned>(
     whole: &Span,
     more: &[&str],
 ) -> Result<T, Diagnostic> {
-    struct Access<'a> {
-        fields: std::slice::Iter<'a, Field>,
-        value: Option<&'a Field>,
-        more: &'a [&'a str],
-    }
-    impl<'de> MapAccess<'de> for Access<'de> {
-        type Error = ron::Error;
-        fn next_key_seed<K: DeserializeSeed<'de>>(
-            &mut self,
-            seed: K,
-        ) -> Result<Option<K::Value>, ron::Error> {
-            let Some(field) = self.fields.next() else {
-                return Ok(None);
-            };
-            self.value = Some(field);
-            let name: &str = &field.name.value;
-            seed.deserialize(IntoDeserializer::<ron::Error>::into_deserializer(name))
-                .map(Some)
-                .inspect_err(|error| {
-                    let place = field.name.span.clone();
-                    fail(|_| {
-                        Some(match error {
-                            ron::Error::NoSuchStructField { expected, .. } => {
-                                let known = expected.iter().chain(self.more);
-                                let known = known.map(|&name| name.to_owned()).collect();
-                                let name = Located::new(field.name.value.clone(), place);
-                                DocumentError::UnknownField(name, known).into_diagnostic()
-                            }
-                            error => explain(error, place),
-                        })
-                    });
-                })
-        }
-        fn next_value_seed<V: DeserializeSeed<'de>>(
-            &mut self,
-            seed: V,
-        ) -> Result<V::Value, ron::Error> {
-            let field = self
-                .value
-                .take()
-                .ok_or_else(|| ron::Error::custom("a value without its key"))?;
-            // An extended document's field stands in that one's file.
-            let text = field.node.text();
-            let file = field.node.span.file.clone();
-            READING.with_borrow_mut(|reading| {
-                if let Some(reading) = reading {
-                    reading.file = file;
-                }
-            });
-            options().from_str_seed(text, seed).map_err(|error| {
-                fail(|file| {
-                    let place = place_of(text, &error, field.node.span.range.start);
-                    Some(explain(&error.code, file.span(place)))
-                });
-                error.code
-            })
-        }
-    }
     // ron would report it before it has the place of the second one.
     let mut seen = HashSet::new();
-    if let Some(field) = fields
-        .iter()
-        .find(|field| !seen.insert(field.name.as_str()))
-    {
-        let place = field.name.span.clone();
-        return Err(DocumentError::FieldTwice(place, field.name.value.clone()).into_diagnostic());
+    let mut names = fields.iter().map(|field| &field.name);
+    match names.find(|name| !seen.insert(name.as_str())) {
+        Some(twice) => Err(field_twice(twice)),
+        None => read_fields(fields, whole, more, &Fault::default()),
     }
-    let node = Node {
-        span: whole.clone(),
-    };
-    node.reading(|| {
+}
+
+/// [`from_some_fields`] that tells of every field that cannot be read: each is left out, until the
+/// rest can be.
+pub fn from_all_fields<T: DeserializeOwned>(
+    mut fields: Vec<Field>,
+    whole: &Span,
+    more: &[&str],
+    told: &mut Vec<Diagnostic>,
+) -> Option<T> {
+    let mut seen = HashSet::new();
+    fields.retain(|field| {
+        let is_first = seen.insert(field.name.value.clone());
+        told.extend((!is_first).then(|| field_twice(&field.name)));
+        is_first
+    });
+    let (mut left_out, mut is_misspelt) = (HashSet::new(), false);
+    loop {
+        let fault = Fault::default();
+        let error = match read_fields(&fields, whole, more, &fault) {
+            Ok(value) => return left_out.is_empty().then_some(value),
+            Err(error) => error,
+        };
+        match (fault.field.get(), fault.missing.get()) {
+            (Some((index, is_name)), _) => {
+                is_misspelt |= is_name;
+                left_out.insert(fields.remove(index).name.value);
+                told.push(error);
+            }
+            // It is then the misspelt one, or one that could not be read.
+            (None, Some(missing)) if is_misspelt || left_out.contains(missing) => return None,
+            (None, _) => {
+                told.push(error);
+                return None;
+            }
+        }
+    }
+}
+
+/// The part of a struct that could not be read.
+#[derive(Default)]
+struct Fault {
+    /// Number of the field, and whether it is its name.
+    field: Cell<Option<(usize, bool)>>,
+    /// Field that is not there.
+    missing: Cell<Option<&'static str>>,
+}
+
+fn read_fields<T: DeserializeOwned>(
+    fields: &[Field],
+    whole: &Span,
+    more: &[&str],
+    fault: &Fault,
+) -> Result<T, Diagnostic> {
+    Node::at(whole).reading(|| {
+        let fields = fields.iter().enumerate();
         let access = Access {
-            fields: fields.iter(),
+            fields,
             value: None,
             more,
+            fault,
         };
-        T::deserialize(serde::de::value::MapAccessDeserializer::new(access))
+        T::deserialize(MapAccessDeserializer::new(access)).inspect_err(|error| {
+            if let ron::Error::MissingStructField { field, .. } = error {
+                fault.missing.set(Some(field));
+            }
+        })
     })
+}
+
+/// Fields for serde.
+struct Access<'a> {
+    fields: Enumerate<slice::Iter<'a, Field>>,
+    value: Option<(usize, &'a Field)>,
+    more: &'a [&'a str],
+    fault: &'a Fault,
+}
+
+impl<'de> MapAccess<'de> for Access<'de> {
+    type Error = ron::Error;
+
+    fn next_key_seed<K: DeserializeSeed<'de>>(
+        &mut self,
+        seed: K,
+    ) -> Result<Option<K::Value>, ron::Error> {
+        self.value = self.fields.next();
+        let Some((index, field)) = self.value else {
+            return Ok(None);
+        };
+        let name: &str = &field.name.value;
+        let key = seed.deserialize(IntoDeserializer::<ron::Error>::into_deserializer(name));
+        key.map(Some).inspect_err(|error| {
+            self.fault.field.set(Some((index, true)));
+            fail(|_| {
+                Some(match error {
+                    ron::Error::NoSuchStructField { expected, .. } => {
+                        unknown_field(&field.name, expected.iter().chain(self.more))
+                    }
+                    error => explain(error, field.name.span.clone()),
+                })
+            });
+        })
+    }
+
+    fn next_value_seed<V: DeserializeSeed<'de>>(
+        &mut self,
+        seed: V,
+    ) -> Result<V::Value, ron::Error> {
+        let without_key = || ron::Error::custom("a value without its key");
+        let (index, field) = self.value.take().ok_or_else(without_key)?;
+        // An extended document's field stands in that one's file.
+        let text = field.node.text();
+        let file = field.node.span.file.clone();
+        READING.with_borrow_mut(|reading| {
+            if let Some(reading) = reading {
+                reading.file = file;
+            }
+        });
+        options().from_str_seed(text, seed).map_err(|error| {
+            self.fault.field.set(Some((index, false)));
+            fail(|file| {
+                let place = place_of(text, &error, field.node.span.range.start);
+                Some(explain(&error.code, file.span(place)))
+            });
+            error.code
+        })
+    }
+}
+
+/// A field that is not one of those known.
+pub fn unknown_field<S: AsRef<str>>(
+    name: &Located<String>,
+    known: impl IntoIterator<Item = S>,
+) -> Diagnostic {
+    Diagnostic::error(Code::UnknownField, format!("unknown field `{name}`"))
+        .at(name, "not a field of this")
+        .suggest(name, known)
+}
+
+/// A word that is not one of those known.
+pub fn unknown_word<S: AsRef<str>>(
+    word: &Located<String>,
+    known: impl IntoIterator<Item = S>,
+) -> Diagnostic {
+    Diagnostic::error(Code::UnknownVariant, format!("unknown word `{word}`"))
+        .at(word, "not one of the words that may stand here")
+        .suggest(word, known)
+}
+
+/// A field that is not there.
+pub fn missing_field(place: impl Into<Span>, field: &str) -> Diagnostic {
+    let what = format!("the field `{field}` is missing");
+    Diagnostic::error(Code::MissingField, what).at(place, "it must be given here")
+}
+
+/// A field whose name is that of one before it.
+pub fn field_twice(field: &Located<String>) -> Diagnostic {
+    let what = format!("the field `{field}` is given twice");
+    Diagnostic::error(Code::DuplicateName, what).at(field, "the second one")
 }
 
 /// A ron error in our words.
 fn explain(error: &ron::Error, span: Span) -> Diagnostic {
     use ron::Error as R;
-    let names = |list: &[&str]| list.iter().map(|&name| name.to_owned()).collect();
-    let place = span.clone();
-    let needed = |what: &str| DocumentError::Syntax(place, format!("{what} is needed"));
-    match error {
+    let syntax = |what: String| Diagnostic::error(Code::Syntax, what);
+    let what = match error {
         R::NoSuchStructField {
             expected, found, ..
-        } => DocumentError::UnknownField(Located::new(found.clone(), span), names(expected)),
+        } => return unknown_field(&Located::new(found.clone(), span), *expected),
         R::NoSuchEnumVariant {
             expected, found, ..
-        } => DocumentError::UnknownWord(Located::new(found.clone(), span), names(expected)),
-        R::MissingStructField { field, .. } => DocumentError::MissingField(span, field.to_string()),
-        R::DuplicateStructField { field, .. } => DocumentError::FieldTwice(span, field.to_string()),
-        R::Eof => DocumentError::Ends(span),
-        R::ExpectedString => needed("a text in quotes"),
-        R::ExpectedArray => needed("a list `[…]`"),
-        R::ExpectedMap => needed("a map `{…}`"),
-        R::ExpectedStructLike | R::ExpectedNamedStructLike(_) => {
-            needed("what has fields, `(name: …)`,")
+        } => return unknown_word(&Located::new(found.clone(), span), *expected),
+        R::MissingStructField { field, .. } => return missing_field(span, field),
+        R::DuplicateStructField { field, .. } => {
+            return field_twice(&Located::new(field.to_string(), span));
         }
-        R::ExpectedBoolean => needed("`true` or `false`"),
-        R::ExpectedInteger | R::ExpectedFloat => needed("a number"),
-        R::InvalidValueForType { expected, .. } => needed(expected),
-        R::ExceededRecursionLimit => DocumentError::Nested(span),
-        other => DocumentError::Syntax(span, lower_first(&other.to_string())),
-    }
-    .into_diagnostic()
+        R::Eof => {
+            return syntax("the text ends too early".to_owned())
+                .at(span, "something is not closed")
+                .help("check that every bracket and quote is closed");
+        }
+        R::ExceededRecursionLimit => {
+            return syntax("values are nested too deep".to_owned())
+                .at(span, "")
+                .help(
+                    "no document needs so many brackets in brackets: is one of them never closed?",
+                );
+        }
+        R::ExpectedString => "a text in quotes",
+        R::ExpectedArray => "a list `[…]`",
+        R::ExpectedMap => "a map `{…}`",
+        R::ExpectedStructLike | R::ExpectedNamedStructLike(_) => "what has fields, `(name: …)`,",
+        R::ExpectedDifferentLength { expected, found } => {
+            let count = expected.trim_start_matches(|c: char| !c.is_ascii_digit());
+            let what = format!("{count} values are needed here, not {found}");
+            return syntax(what).at(span, "here");
+        }
+        R::ExpectedBoolean => "`true` or `false`",
+        R::ExpectedInteger | R::ExpectedFloat => "a number",
+        R::InvalidValueForType { expected, .. } => expected,
+        other => return syntax(lower_first(&other.to_string())).at(span, "here"),
+    };
+    syntax(format!("{what} is needed")).at(span, "here")
 }
 
 fn lower_first(text: &str) -> String {
@@ -539,7 +658,6 @@ fn lower_first(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnostics::code::Code;
 
     /// Panics as it is read, in the place of a library that does.
     #[derive(Debug)]

@@ -80,6 +80,12 @@ impl fmt::Debug for Span {
     }
 }
 
+impl From<&Span> for Span {
+    fn from(span: &Span) -> Self {
+        span.clone()
+    }
+}
+
 /// A value that knows where it stands.
 #[derive(Clone, PartialEq)]
 pub struct Located<T> {
@@ -103,8 +109,39 @@ impl<T> Deref for Located<T> {
     }
 }
 
+impl<T> From<Located<T>> for Span {
+    fn from(located: Located<T>) -> Self {
+        located.span
+    }
+}
+
+impl<T> From<&Located<T>> for Span {
+    fn from(located: &Located<T>) -> Self {
+        located.span.clone()
+    }
+}
+
+impl<T: fmt::Display> fmt::Display for Located<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.value.fmt(f)
+    }
+}
+
 impl<T: fmt::Debug> fmt::Debug for Located<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.value.fmt(f)
+    }
+}
+
+#[cfg(feature = "schema")]
+impl<T: schemars::JsonSchema> schemars::JsonSchema for Located<T> {
+    fn inline_schema() -> bool {
+        T::inline_schema()
+    }
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        T::schema_name()
+    }
+    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        T::json_schema(generator)
     }
 }

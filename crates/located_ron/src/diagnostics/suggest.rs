@@ -64,9 +64,6 @@ pub fn suggestion<S: AsRef<str>>(word: &str, known: impl IntoIterator<Item = S>)
 }
 
 /// "did you mean …" alone, without a list of what there is.
-pub(crate) fn likeness<S: AsRef<str>>(
-    word: &str,
-    known: impl IntoIterator<Item = S>,
-) -> Option<String> {
+pub fn likeness<S: AsRef<str>>(word: &str, known: impl IntoIterator<Item = S>) -> Option<String> {
     suggestion(word, known).filter(|hint| hint.starts_with("did"))
 }

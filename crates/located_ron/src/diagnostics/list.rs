@@ -11,7 +11,8 @@ const MOST_SHOWN: usize = 200;
 pub struct Diagnostics(Vec<Diagnostic>);
 
 impl Diagnostics {
-    pub(crate) fn new(mut list: Vec<Diagnostic>) -> Self {
+    /// Sorts mistakes, and drops those that are told twice or too many.
+    pub fn new(mut list: Vec<Diagnostic>) -> Self {
         list.sort_by(|a, b| a.key().cmp(&b.key()));
         list.dedup_by(|a, b| a.message == b.message && a.key() == b.key());
         if let Some(first) = list.get(MOST_SHOWN) {

@@ -2,8 +2,8 @@
 
 macro_rules! codes {
     ($($(#[doc = $doc:literal])+ $name:ident = $text:literal, $remedy:literal;)+) => {
-        /// Kind of mistake that a [`Diagnostic`](crate::Diagnostic) is about, with a stable name
-        /// for scripts.
+        /// Kind of mistake that a [`Diagnostic`](super::diagnostic::Diagnostic) is about, with a
+        /// stable name for scripts.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         #[non_exhaustive]
         pub enum Code { $($(#[doc = $doc])+ $name,)+ }

@@ -19,7 +19,7 @@ pub struct Panicked {
 
 impl Panicked {
     /// The way out for an author.
-    pub(crate) fn way_out(&self) -> String {
+    pub fn way_out(&self) -> String {
         format!(
             "this is a mistake of the library ({}), which may take the same written differently",
             self.place
@@ -110,7 +110,10 @@ mod tests {
         let none: Result<u32, &str> = "a".parse::<u32>().map_err(|_| "no digit");
         let error = caught(|| none.expect("a number")).expect_err("there is none");
         assert_eq!(error.message, r#"a number: "no digit""#);
-        assert!(error.place.starts_with("graph/src/panics.rs:"), "{error}");
+        assert!(
+            error.place.starts_with("located_ron/src/panics.rs:"),
+            "{error}"
+        );
         assert_eq!(caught(|| 1), Ok(1));
     }
 

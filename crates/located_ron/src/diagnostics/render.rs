@@ -3,7 +3,7 @@
 use super::diagnostic::{Diagnostic, Label, Severity};
 use crate::{
     panics::caught,
-    source::span::{SourceFile, Span},
+    span::{SourceFile, Span},
 };
 use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, NamedSource};
 use std::{fmt, ops::Range};

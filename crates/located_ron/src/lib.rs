@@ -1,0 +1,25 @@
+//! RON whose values know their places, and mistakes told with the lines that they are about.
+//!
+//! [`reader`] splits a text into nodes and reads each by itself, so that one mistake does not hide
+//! the next; [`diagnostics`] tells them: kind, message, places, the way out.
+//!
+//! ```
+//! use serde::Deserialize;
+//! use skiagraph_located_ron::{reader::{Node, from_fields}, span::SourceFile};
+//!
+//! #[derive(Debug, Deserialize)]
+//! #[serde(deny_unknown_fields)]
+//! struct Lamp { height: f64 }
+//!
+//! let root = Node::root(&SourceFile::new("lamp.ron", "(hieght: 3)"));
+//! let error = from_fields::<Lamp>(&root.fields()?, &root.span).unwrap_err();
+//! assert_eq!(error.message, "unknown field `hieght`");
+//! assert_eq!(error.labels[0].span.to_string(), "lamp.ron:1:2");
+//! assert_eq!(error.help.as_deref(), Some("did you mean `height`?"));
+//! # Ok::<(), skiagraph_located_ron::diagnostics::Diagnostic>(())
+//! ```
+
+pub mod diagnostics;
+pub mod panics;
+pub mod reader;
+pub mod span;

@@ -72,6 +72,28 @@ pub struct Access {
     pub step: usize,
 }
 
+impl Access {
+    /// One that reads or writes a whole part.
+    pub(crate) fn new(
+        target: &Target,
+        (reads, writes, fully_overwrites): (bool, bool, bool),
+        usage: Usage,
+        span: &Span,
+    ) -> Self {
+        Self {
+            resource: target.id,
+            part: target.part.clone(),
+            reads,
+            writes,
+            fully_overwrites,
+            triggers: true,
+            usage,
+            span: span.clone(),
+            step: 0,
+        }
+    }
+}
+
 /// How a resource is bound; decides the usages it is created with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Usage {

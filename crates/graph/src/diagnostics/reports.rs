@@ -52,6 +52,14 @@ impl Reports {
         self.emit(mistake.into_diagnostic())
     }
 
+    /// A result whose mistake is reported.
+    pub fn check<T>(
+        &mut self,
+        result: Result<T, impl IntoDiagnostic>,
+    ) -> Result<T, ErrorGuaranteed> {
+        result.map_err(|mistake| self.report(mistake))
+    }
+
     /// A mistake that was put into words before.
     pub fn emit(&mut self, diagnostic: Diagnostic) -> ErrorGuaranteed {
         self.errors += usize::from(diagnostic.severity == Severity::Error);

@@ -5,7 +5,7 @@ use super::{
     canvas, dispatch,
     layouts::Layouts,
     limits,
-    pass::{Access, Attachment, Ids, LinkedPass, LinkedProgram, Usage},
+    pass::{Attachment, Ids, LinkedPass, LinkedProgram, Usage},
     programs,
     scope::PassScope,
     textures::scalar_of,
@@ -15,11 +15,11 @@ use crate::{
     errors::link::LinkError,
     kinds::step::{ColorTarget, DepthTarget, Draw, DrawCall, Names, StencilTarget},
     language::syntax::Reference,
-    resource::{ResourceKind, SubresourceRange, Texture},
+    resource::{ResourceKind, Target, Texture},
     shader::class::ScalarClass,
     source::span::{Located, Span},
 };
-use wgt::{TextureAspect, TextureFormat, TextureFormatFeatureFlags, TextureUsages};
+use wgt::{TextureAspect, TextureFormat, TextureFormatFeatureFlags as Flags, TextureUsages};
 
 const ATTACHMENT: Usage = Usage::Texture(TextureUsages::RENDER_ATTACHMENT);
 
@@ -47,18 +47,15 @@ pub(super) fn link(
         program = Err(reported);
     }
     let colors = colors(draw, program.as_ref().ok(), pass, scope, reports);
-    let depth = draw
-        .depth
-        .as_ref()
-        .map(|depth| link_depth(depth, pass, scope, reports))
-        .transpose();
-    let stencil = draw
-        .stencil
-        .as_ref()
-        .map(|entry| link_stencil(entry, pass, scope, reports))
-        .transpose();
+    let depth = draw.depth.as_ref();
+    let depth = depth.map(|depth| link_depth(depth, pass, scope, reports));
+    let stencil = draw.stencil.as_ref();
+    let stencil = stencil.map(|stencil| link_stencil(stencil, pass, scope, reports));
     let canvas = canvas::texture(draw, program.as_ref().ok(), pass, limits, reports);
-    let canvas = canvas.map(|texture| Some(canvas_of(texture?, draw, pass, scope)));
+    let canvas = canvas.map(|texture| {
+        let span = &draw.canvas.as_ref()?.span;
+        Some(canvas_of(texture?, span, pass, scope))
+    });
     let call = match &draw.call {
         DrawCall::Direct {
             vertices,
@@ -71,26 +68,26 @@ pub(super) fn link(
             dispatch::indirect(name, 16, pass, scope, layouts, reports).map(DrawCall::Indirect)
         }
     };
-    features(draw, pass, scope, reports)?;
+    features(draw, pass, scope.request().features, reports)?;
     let linked = Draw {
         program: program?,
         fullscreen: draw.fullscreen,
         colors: colors?,
-        depth: depth?,
-        stencil: stencil?,
+        depth: depth.transpose()?,
+        stencil: stencil.transpose()?,
         canvas: canvas?,
         area: draw.area,
         call: call?,
         primitive: draw.primitive,
     };
-    alike(&linked, pass, scope, reports)?;
+    reports.check(alike(&linked, pass, scope))?;
     Ok(linked)
 }
 
 /// The attachment of a draw that has no other.
 fn canvas_of(
     texture: Texture,
-    draw: &Draw<Names>,
+    span: &Span,
     pass: &mut LinkedPass,
     scope: &mut PassScope<'_>,
 ) -> Attachment {
@@ -102,12 +99,7 @@ fn canvas_of(
     let target = scope.add(name, ResourceKind::Texture(texture));
     // It is no content: nothing is written, and nothing of before is needed.
     let used = (false, false, true);
-    let span = draw
-        .canvas
-        .as_ref()
-        .map_or(&pass.name.span, |canvas| &canvas.span);
-    pass.accesses
-        .push(Access::new(&target, used, ATTACHMENT, span));
+    pass.access(&target, used, ATTACHMENT, span);
     Attachment {
         target,
         format,
@@ -119,7 +111,7 @@ fn canvas_of(
 fn features(
     draw: &Draw<Names>,
     pass: &LinkedPass,
-    scope: &mut PassScope<'_>,
+    features: wgt::Features,
     reports: &mut Reports,
 ) -> Result<(), ErrorGuaranteed> {
     let asked = [
@@ -137,7 +129,7 @@ fn features(
         ),
     ];
     for (is_asked, field, feature, name) in asked {
-        if is_asked && !scope.request().features.contains(feature) {
+        if is_asked && !features.contains(feature) {
             reports.unsupported(LinkError::DrawFeature {
                 pass: pass.name.clone(),
                 field,
@@ -188,8 +180,8 @@ fn colors(
             bytes_per_sample = bytes_per_sample.next_multiple_of(alignment.max(1)) + cost;
         }
         if let Some((outputs, span)) = &outputs {
-            let checked = check_output(location, &color.target, format, outputs, span, reports);
-            wrong = checked.err().or(wrong);
+            let checked = check_output(location, &color.target, format, outputs, span);
+            wrong = reports.check(checked).err().or(wrong);
         }
         colors.push(linked);
     }
@@ -214,26 +206,19 @@ fn link_color(
     let target = attachment(&color.target, pass, scope, reports)?;
     let format = target.format;
     let features = format.guaranteed_format_features(scope.request().features);
-    let drawable = features
-        .allowed_usages
-        .contains(TextureUsages::RENDER_ATTACHMENT);
-    if format.is_depth_stencil_format() || !drawable {
+    let usages = features.allowed_usages;
+    if format.is_depth_stencil_format() || !usages.contains(TextureUsages::RENDER_ATTACHMENT) {
         return Err(reports.report(LinkError::NotDrawable { name, format }));
     }
-    if color.blend.is_some()
-        && !features
-            .flags
-            .contains(TextureFormatFeatureFlags::BLENDABLE)
-    {
+    if color.blend.is_some() && !features.flags.contains(Flags::BLENDABLE) {
         return Err(reports.report(LinkError::NotBlendable { name, format }));
     }
     if let Some(value) = color.clear {
-        clear_value(&name, format, value, reports)?;
+        reports.check(clear_value(&name, format, value))?;
     }
     let clears = color.clear.is_some();
     let used = (!clears, true, clears);
-    pass.accesses
-        .push(Access::new(&target.target, used, ATTACHMENT, &name.span));
+    pass.access(&target.target, used, ATTACHMENT, &name.span);
     let resolve = match &color.resolve {
         Some(resolve) => Some(resolved(&target, resolve, pass, scope, reports)?),
         None => None,
@@ -257,19 +242,15 @@ fn resolved(
 ) -> Result<Attachment, ErrorGuaranteed> {
     let name = resolve.located();
     let resolved = attachment(resolve, pass, scope, reports)?;
-    let features = target
-        .format
-        .guaranteed_format_features(scope.request().features);
+    let format = target.format;
+    let features = format.guaranteed_format_features(scope.request().features);
     let why = if target.samples == 1 {
         Some("what is drawn to has one sample")
     } else if resolved.samples != 1 {
         Some("it has several samples itself")
-    } else if resolved.format != target.format {
+    } else if resolved.format != format {
         Some("it has another format than what is drawn to")
-    } else if !features
-        .flags
-        .contains(TextureFormatFeatureFlags::MULTISAMPLE_RESOLVE)
-    {
+    } else if !features.flags.contains(Flags::MULTISAMPLE_RESOLVE) {
         Some("this format cannot be resolved")
     } else {
         None
@@ -278,8 +259,7 @@ fn resolved(
         return Err(reports.report(LinkError::Resolve { name, why }));
     }
     let used = (false, true, true);
-    pass.accesses
-        .push(Access::new(&resolved.target, used, ATTACHMENT, &name.span));
+    pass.access(&resolved.target, used, ATTACHMENT, &name.span);
     Ok(resolved)
 }
 
@@ -289,22 +269,21 @@ fn check_output(
     format: TextureFormat,
     outputs: &[(u32, ScalarClass, u32)],
     entry: &Span,
-    reports: &mut Reports,
-) -> Result<(), ErrorGuaranteed> {
+) -> Result<(), LinkError> {
     let name = target.located();
     let Some((_, scalar, width)) = outputs.iter().find(|(at, ..)| *at == location) else {
-        return Err(reports.report(LinkError::NoFragmentOutput {
+        return Err(LinkError::NoFragmentOutput {
             name,
             location,
             entry: entry.clone(),
-        }));
+        });
     };
     let needed = u32::from(format.components());
     let expected = scalar_of(format, TextureAspect::All);
     if expected == Some(*scalar) && *width >= needed {
         return Ok(());
     }
-    Err(reports.report(LinkError::FragmentOutput {
+    Err(LinkError::FragmentOutput {
         name,
         format,
         expected: expected.map_or("…".to_owned(), |scalar| scalar.to_string()),
@@ -312,7 +291,7 @@ fn check_output(
         written: format!("{width} × {scalar}"),
         location,
         entry: entry.clone(),
-    }))
+    })
 }
 
 fn link_depth(
@@ -328,13 +307,12 @@ fn link_depth(
         return Err(reports.report(LinkError::NoDepth { name, format }));
     }
     if let Some(value) = depth.clear {
-        clear_value(&name, format, [value.into(), 0.0, 0.0, 0.0], reports)?;
+        reports.check(clear_value(&name, format, [value.into(), 0.0, 0.0, 0.0]))?;
     }
     let clears = depth.clear.is_some();
     let used = (!clears, depth.write || clears, clears);
-    let mut accessed = Access::new(&target.target, used, ATTACHMENT, &name.span);
-    accessed.part = aspect_of(&accessed.part, format, TextureAspect::DepthOnly);
-    pass.accesses.push(accessed);
+    let depth_of = aspect_of(&target.target, format, TextureAspect::DepthOnly);
+    pass.access(&depth_of, used, ATTACHMENT, &name.span);
     Ok(DepthTarget {
         target,
         clear: depth.clear,
@@ -367,9 +345,8 @@ fn link_stencil(
     let clears = stencil.clear.is_some();
     let writes = !stencil.state.is_read_only(None);
     let used = (!clears, writes || clears, clears);
-    let mut accessed = Access::new(&target.target, used, ATTACHMENT, &name.span);
-    accessed.part = aspect_of(&accessed.part, format, TextureAspect::StencilOnly);
-    pass.accesses.push(accessed);
+    let stencil_of = aspect_of(&target.target, format, TextureAspect::StencilOnly);
+    pass.access(&stencil_of, used, ATTACHMENT, &name.span);
     Ok(StencilTarget {
         target,
         clear: stencil.clear,
@@ -383,8 +360,7 @@ pub(super) fn clear_value(
     name: &Located<String>,
     format: TextureFormat,
     value: [f64; 4],
-    reports: &mut Reports,
-) -> Result<(), ErrorGuaranteed> {
+) -> Result<(), LinkError> {
     let mut channels = &value[..usize::from(format.components()).min(4)];
     let is_stencil = |v: &f64| v.fract() == 0.0 && (0.0..=255.0).contains(v);
     if format.is_combined_depth_stencil_format() && is_stencil(&value[1]) {
@@ -412,12 +388,12 @@ pub(super) fn clear_value(
     };
     match channels.iter().find(|value| !fits(value)) {
         None => Ok(()),
-        Some(&wrong) => Err(reports.report(LinkError::ClearValue {
+        Some(&wrong) => Err(LinkError::ClearValue {
             name: name.clone(),
             wrong,
             format,
             expected,
-        })),
+        }),
     }
 }
 
@@ -454,12 +430,7 @@ fn attachment(
 
 /// All attachments of a draw have one size and number of samples; the area lies in them; depth
 /// and stencil are one texture.
-fn alike(
-    draw: &Draw<Ids>,
-    pass: &LinkedPass,
-    scope: &mut PassScope<'_>,
-    reports: &mut Reports,
-) -> Result<(), ErrorGuaranteed> {
+fn alike(draw: &Draw<Ids>, pass: &LinkedPass, scope: &PassScope<'_>) -> Result<(), LinkError> {
     let colors = draw.colors.iter().map(|color| &color.target);
     let resolved = draw
         .colors
@@ -470,15 +441,15 @@ fn alike(
     let drawn = colors.chain(depth).chain(stencil).chain(&draw.canvas);
     let drawn: Vec<&Attachment> = drawn.collect();
     let Some(first) = drawn.first() else {
-        return Err(reports.report(LinkError::NoTargets {
+        return Err(LinkError::NoTargets {
             pass: pass.name.clone(),
             fullscreen: draw.fullscreen,
-        }));
+        });
     };
     if let (Some(depth), Some(stencil)) = (depth, stencil)
         && depth.target != stencil.target
     {
-        return Err(reports.report(LinkError::TwoDepthStencils(pass.name.clone())));
+        return Err(LinkError::TwoDepthStencils(pass.name.clone()));
     }
     let size = |attachment: &Attachment| match &scope.get(attachment.target.id).kind {
         ResourceKind::Texture(texture) => texture.mip_size(attachment.target.part.mips.start),
@@ -493,7 +464,7 @@ fn alike(
             names: [name(first), name(other)],
             sizes: [whole, size(other)],
         };
-        return Err(reports.report(error));
+        return Err(error);
     }
     if let Some(other) = drawn.iter().find(|other| other.samples != first.samples) {
         let error = LinkError::TargetSamples {
@@ -501,7 +472,7 @@ fn alike(
             names: [name(first), name(other)],
             samples: [first.samples, other.samples],
         };
-        return Err(reports.report(error));
+        return Err(error);
     }
     let Some([x, y, width, height]) = draw.area else {
         return Ok(());
@@ -512,23 +483,19 @@ fn alike(
     if fits(x, width, whole[0]) && fits(y, height, whole[1]) {
         Ok(())
     } else {
-        Err(reports.report(LinkError::AreaOutside {
+        Err(LinkError::AreaOutside {
             pass: pass.name.clone(),
             area: [x, y, width, height],
             whole,
-        }))
+        })
     }
 }
 
 /// One aspect of a texture that has two.
-fn aspect_of(
-    part: &SubresourceRange,
-    format: TextureFormat,
-    aspect: TextureAspect,
-) -> SubresourceRange {
+fn aspect_of(target: &Target, format: TextureFormat, aspect: TextureAspect) -> Target {
+    let mut target = target.clone();
     if format.is_combined_depth_stencil_format() {
-        part.of_aspect(aspect)
-    } else {
-        part.clone()
+        target.part = target.part.of_aspect(aspect);
     }
+    target
 }

@@ -3,7 +3,7 @@
 use super::{
     layouts::Layouts,
     params,
-    pass::{Access, BindTarget, Block, LinkedBinding, LinkedPass, LinkedProgram, Usage},
+    pass::{BindTarget, Block, LinkedBinding, LinkedPass, LinkedProgram, Usage},
     scope::PassScope,
     textures,
 };
@@ -15,7 +15,7 @@ use crate::{
     provider::ProvidedBinding,
     resource::{CLOCK_BYTES, FRAME_BYTES, ResourceKind, Sampler, SubresourceRange, Target},
     shader::{
-        class::{Class, Member, TextureClass},
+        class::{Class, Member},
         reflect::Global,
     },
 };
@@ -33,6 +33,7 @@ pub(super) fn bind(
     layouts: &mut Layouts,
     reports: &mut Reports,
 ) -> Result<LinkedBinding, ErrorGuaranteed> {
+    let features = scope.request().features;
     let bound = program
         .bind
         .iter()
@@ -65,14 +66,22 @@ pub(super) fn bind(
             )?;
             if global.writes {
                 scope.writable(target.id, &global.span, reports)?;
-                stage_may_write(global, scope, reports)?;
+                // Vertex shaders write nothing on most devices.
+                if global.stages.contains(wgt::ShaderStages::VERTEX)
+                    && !features.contains(wgt::Features::VERTEX_WRITABLE_STORAGE)
+                {
+                    reports.unsupported(LinkError::VertexWrites {
+                        global: global.name.clone(),
+                        span: global.span.clone(),
+                    })?;
+                }
             }
             let used = (global.reads, global.writes, false);
             let is_frame = scope.get(target.id).kind == ResourceKind::Frame;
-            pass.accesses.push(Access {
-                triggers: !is_frame || reads_clock(linked, global),
-                ..Access::new(&target, used, usage, &global.span)
-            });
+            pass.access(&target, used, usage, &global.span);
+            if let Some(access) = pass.accesses.last_mut() {
+                access.triggers = !is_frame || reads_clock(linked, global);
+            }
             (bound, ty)
         }
     };
@@ -83,42 +92,6 @@ pub(super) fn bind(
         ty,
         visibility: global.stages,
     })
-}
-
-/// Vertex shaders write nothing on most devices.
-fn stage_may_write(
-    global: &Global,
-    scope: &mut PassScope<'_>,
-    reports: &mut Reports,
-) -> Result<(), ErrorGuaranteed> {
-    let needed = wgt::Features::VERTEX_WRITABLE_STORAGE;
-    let has = scope.request().features.contains(needed);
-    if global.stages.contains(wgt::ShaderStages::VERTEX) && !has {
-        reports.unsupported(LinkError::VertexWrites {
-            global: global.name.clone(),
-            span: global.span.clone(),
-        })
-    } else {
-        Ok(())
-    }
-}
-
-/// Not every device queries rays.
-fn ray_query(
-    global: &Global,
-    pass: &LinkedPass,
-    scope: &mut PassScope<'_>,
-    reports: &mut Reports,
-) -> Result<(), ErrorGuaranteed> {
-    let needed = wgt::Features::EXPERIMENTAL_RAY_QUERY;
-    if scope.request().features.contains(needed) {
-        Ok(())
-    } else {
-        reports.unsupported(LinkError::RayQuery {
-            pass: pass.name.clone(),
-            span: global.span.clone(),
-        })
-    }
 }
 
 /// The pass's params as the shader's struct wants them.
@@ -153,6 +126,7 @@ fn binding(
     layouts: &mut Layouts,
     reports: &mut Reports,
 ) -> Result<Binding, ErrorGuaranteed> {
+    let features = scope.request().features;
     let resource = scope.get(target.id).clone();
     let needed = match (&global.class, &resource.kind) {
         (Class::Uniform { size, .. }, ResourceKind::Frame) => {
@@ -190,12 +164,8 @@ fn binding(
                 reports,
             )?;
             target.part.aspect = aspect;
-            let (TextureClass::Sampled { dimension, .. } | TextureClass::Storage { dimension, .. }) =
-                *class;
-            let bound = BindTarget::Texture {
-                target: target.clone(),
-                dimension,
-            };
+            let (target, dimension) = (target.clone(), class.dimension());
+            let bound = BindTarget::Texture { target, dimension };
             return Ok((bound, ty, Usage::Texture(usage)));
         }
         (Class::Sampler { comparison }, ResourceKind::Sampler(sampler)) => {
@@ -208,7 +178,13 @@ fn binding(
             }
         }
         (Class::AccelerationStructure, ResourceKind::AccelerationStructure) => {
-            ray_query(global, pass, scope, reports)?;
+            // Not every device queries rays.
+            if !features.contains(wgt::Features::EXPERIMENTAL_RAY_QUERY) {
+                reports.unsupported(LinkError::RayQuery {
+                    pass: pass.name.clone(),
+                    span: global.span.clone(),
+                })?;
+            }
             let ty = wgt::BindingType::AccelerationStructure {
                 vertex_return: false,
             };
@@ -237,7 +213,7 @@ fn uniform_buffer(
     target: &Target,
     size: u64,
     have: u64,
-    scope: &mut PassScope<'_>,
+    scope: &PassScope<'_>,
     reports: &mut Reports,
 ) -> Result<Binding, ErrorGuaranteed> {
     let most = scope.request().limits.max_uniform_buffer_binding_size;
@@ -270,7 +246,7 @@ fn uniform_buffer(
 fn aligned(
     global: &Global,
     target: &Target,
-    scope: &mut PassScope<'_>,
+    scope: &PassScope<'_>,
     reports: &mut Reports,
 ) -> Result<(), ErrorGuaranteed> {
     let ResourceKind::Provided(provided) = &scope.get(target.id).kind else {
@@ -295,7 +271,7 @@ fn storage_buffer(
     target: &Target,
     least: u64,
     read_only: bool,
-    scope: &mut PassScope<'_>,
+    scope: &PassScope<'_>,
     layouts: &mut Layouts,
     reports: &mut Reports,
 ) -> Result<Binding, ErrorGuaranteed> {

@@ -58,7 +58,7 @@ pub(super) fn link(
 fn copy_of(
     capture: &Capture,
     target: &Target,
-    scope: &mut PassScope<'_>,
+    scope: &PassScope<'_>,
     reports: &mut Reports,
 ) -> Result<ResourceKind, ErrorGuaranteed> {
     let name = capture.material.clone();

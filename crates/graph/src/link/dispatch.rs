@@ -2,7 +2,7 @@
 
 use super::{
     layouts::Layouts,
-    pass::{Access, Ids, LinkedPass, LinkedProgram, Usage},
+    pass::{Ids, LinkedPass, LinkedProgram, Usage},
     programs,
     scope::PassScope,
 };
@@ -70,12 +70,7 @@ pub(super) fn indirect(
     let id = scope.base(target.id);
     layouts.at_least(id, &target.part, bytes, &name.span);
     let usage = Usage::Buffer(wgt::BufferUsages::INDIRECT);
-    pass.accesses.push(Access::new(
-        &target,
-        (true, false, false),
-        usage,
-        &name.span,
-    ));
+    pass.access(&target, (true, false, false), usage, &name.span);
     Ok(target)
 }
 

@@ -17,18 +17,18 @@ use crate::{
     source::span::{Located, Span},
 };
 
-impl ScalarClass {
-    /// A number as the bits of one of this class; `None` where it is none.
-    fn word(self, scalar: Scalar) -> Option<u32> {
-        match (self, scalar) {
-            (Self::Float, scalar) => {
-                let number = scalar.number() as f32;
-                number.is_finite().then(|| number.to_bits())
-            }
-            (Self::Uint, Scalar::Whole(whole)) => u32::try_from(whole).ok(),
-            (Self::Sint, Scalar::Whole(whole)) => i32::try_from(whole).ok().map(i32::cast_unsigned),
-            _ => None,
+/// A number as the bits of one of a class; `None` where it is none.
+fn bits(class: ScalarClass, scalar: Scalar) -> Option<u32> {
+    match (class, scalar) {
+        (ScalarClass::Float, scalar) => {
+            let number = scalar.number() as f32;
+            number.is_finite().then(|| number.to_bits())
         }
+        (ScalarClass::Uint, Scalar::Whole(whole)) => u32::try_from(whole).ok(),
+        (ScalarClass::Sint, Scalar::Whole(whole)) => {
+            i32::try_from(whole).ok().map(i32::cast_unsigned)
+        }
+        _ => None,
     }
 }
 
@@ -79,7 +79,7 @@ pub(super) fn constants(
                 if let Some(bound) = scope.param(name) {
                     reports.depend_on(bound.roots.iter());
                 }
-                number(name, &asked, shader, &span, scope, reports)?
+                reports.check(number(name, &asked, shader, &span, scope))?
             }
             None => scope.kind(name),
         };
@@ -98,16 +98,14 @@ pub(super) fn constants(
 /// A value as one number of the override's type; `span` is the override's place.
 fn number(
     name: &str,
-    asked: &Asked<'_>,
+    asked: &Asked,
     shader: &Shader,
     span: &Span,
-    scope: &mut PassScope<'_>,
-    reports: &mut Reports,
-) -> Result<Option<f64>, ErrorGuaranteed> {
+    scope: &PassScope<'_>,
+) -> Result<Option<f64>, LinkError> {
     let (value, found, position) = match asked {
         Asked::Index(index) => return Ok(Some(f64::from(*index))),
         Asked::Param(param, value, _) => (param.value(value), value.to_string(), span),
-        Asked::Set(value, expr) => (value.clone(), value.to_string(), &expr.span),
         Asked::Value(value, span) => (value.clone(), value.to_string(), span),
     };
     let class = shader.override_class(name);
@@ -115,25 +113,25 @@ fn number(
         (Value::Bool(value), _, None | Some(ScalarClass::Uint)) => {
             Some(f64::from(u8::from(*value)))
         }
-        (Value::Word(_), Asked::Set(..) | Asked::Value(..), Some(ScalarClass::Uint)) => Some(
-            f64::from(word(name, &value, position, shader, scope, reports)?),
-        ),
+        (Value::Word(_), Asked::Value(..), Some(ScalarClass::Uint)) => {
+            Some(f64::from(word(name, &value, position, shader, scope)?))
+        }
         (Value::Word(_), Asked::Param(param, value, _), Some(ScalarClass::Uint)) => {
             param.as_u32(value).map(f64::from)
         }
-        (Value::Scalar(scalar), _, Some(class)) => class.word(*scalar).map(|_| scalar.number()),
+        (Value::Scalar(scalar), _, Some(class)) => bits(class, *scalar).map(|_| scalar.number()),
         _ => None,
     };
     if number.is_some() {
         return Ok(number);
     }
     let expected = class.map_or("true or false".to_owned(), |class| class.to_string());
-    Err(reports.report(LinkError::SetValue {
+    Err(LinkError::SetValue {
         name: name.to_owned(),
         expected,
         found,
         span: position.clone(),
-    }))
+    })
 }
 
 /// The number of a word: its place among those of the document's param of that name, or the
@@ -143,11 +141,10 @@ fn word(
     value: &Value,
     span: &Span,
     shader: &Shader,
-    scope: &mut PassScope<'_>,
-    reports: &mut Reports,
-) -> Result<u32, ErrorGuaranteed> {
+    scope: &PassScope<'_>,
+) -> Result<u32, LinkError> {
     let Value::Word(word) = value else {
-        return Err(wrong_value(name, "a word", value, span, reports));
+        return Err(wrong_value(name, "a word", value, span));
     };
     let words = scope.words(name);
     let among = words.and_then(|words| words.iter().position(|known| *known == word.word));
@@ -159,28 +156,22 @@ fn word(
         Some(Scalar::Whole(number)) if words.is_none() => {
             Ok(u32::try_from(number).unwrap_or(u32::MAX))
         }
-        _ => Err(reports.report(LinkError::UnknownWord {
+        _ => Err(LinkError::UnknownWord {
             name: name.to_owned(),
             word: word.word.to_string(),
             constant,
             span: span.clone(),
-        })),
+        }),
     }
 }
 
-fn wrong_value(
-    name: &str,
-    expected: &str,
-    found: &Value,
-    span: &Span,
-    reports: &mut Reports,
-) -> ErrorGuaranteed {
-    reports.report(LinkError::SetValue {
+fn wrong_value(name: &str, expected: &str, found: &Value, span: &Span) -> LinkError {
+    LinkError::SetValue {
         name: name.to_owned(),
         expected: expected.to_owned(),
         found: found.to_string(),
         span: span.clone(),
-    })
+    }
 }
 
 /// Fills the `params` uniform member by member by name.
@@ -227,21 +218,14 @@ fn member_words(
         }));
     };
     let (param, value, root) = match asked {
-        Asked::Set(value, expr) => {
-            let words = set_member(global, member, &value, &expr.span, scope, reports)?;
-            return Ok((words, None));
-        }
         Asked::Value(value, span) => {
             let words = set_member(global, member, &value, &span, scope, reports)?;
             return Ok((words, None));
         }
         Asked::Index(index) => {
-            let fits = matches!(member.vector, Some((ScalarClass::Uint, 1)));
-            let wrong = || LinkError::IndexMember(global.span.clone());
-            return if fits {
-                Ok((vec![index], None))
-            } else {
-                Err(reports.report(wrong()))
+            return match member.vector {
+                Some((ScalarClass::Uint, 1)) => Ok((vec![index], None)),
+                _ => Err(reports.report(LinkError::IndexMember(global.span.clone()))),
             };
         }
         Asked::Param(param, value, root) => (param, value, root),
@@ -266,7 +250,7 @@ fn set_member(
     member: &Member,
     value: &Value,
     span: &Span,
-    scope: &mut PassScope<'_>,
+    scope: &PassScope<'_>,
     reports: &mut Reports,
 ) -> Result<Vec<u32>, ErrorGuaranteed> {
     let Some((class, width)) = member.vector else {
@@ -285,17 +269,17 @@ fn set_member(
                 ..Program::default()
             };
             let shader = scope.shader(&program, reports)?;
-            let number = word(&member.name, value, span, &shader, scope, reports)?;
+            let number = reports.check(word(&member.name, value, span, &shader, scope))?;
             vec![Scalar::Whole(number.into())]
         }
         Value::Format(_) => Vec::new(),
     };
-    let words: Option<Vec<u32>> = list.iter().map(|scalar| class.word(*scalar)).collect();
+    let words: Option<Vec<u32>> = list.iter().map(|scalar| bits(class, *scalar)).collect();
     match words.filter(|words| words.len() == width as usize) {
         Some(words) => Ok(words),
         None => {
             let expected = format!("{width} × {class}");
-            Err(wrong_value(&member.name, &expected, value, span, reports))
+            Err(reports.report(wrong_value(&member.name, &expected, value, span)))
         }
     }
 }

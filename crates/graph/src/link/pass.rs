@@ -46,6 +46,27 @@ impl LinkedPass {
     pub fn is_capture(&self) -> bool {
         self.kind == CAPTURE
     }
+
+    /// Notes that a step reads or writes a whole part.
+    pub(crate) fn access(
+        &mut self,
+        target: &Target,
+        (reads, writes, fully_overwrites): (bool, bool, bool),
+        usage: Usage,
+        span: &Span,
+    ) {
+        self.accesses.push(Access {
+            resource: target.id,
+            part: target.part.clone(),
+            reads,
+            writes,
+            fully_overwrites,
+            triggers: true,
+            usage,
+            span: span.clone(),
+            step: 0,
+        });
+    }
 }
 
 /// One use of a part of a resource by a step.
@@ -70,28 +91,6 @@ pub struct Access {
     pub span: Span,
     /// Number of the step.
     pub step: usize,
-}
-
-impl Access {
-    /// One that reads or writes a whole part.
-    pub(crate) fn new(
-        target: &Target,
-        (reads, writes, fully_overwrites): (bool, bool, bool),
-        usage: Usage,
-        span: &Span,
-    ) -> Self {
-        Self {
-            resource: target.id,
-            part: target.part.clone(),
-            reads,
-            writes,
-            fully_overwrites,
-            triggers: true,
-            usage,
-            span: span.clone(),
-            step: 0,
-        }
-    }
 }
 
 /// How a resource is bound; decides the usages it is created with.

@@ -75,7 +75,7 @@ fn bound_globals(
     program: &Program,
     shader: &Shader,
     globals: &[Global],
-    scope: &mut PassScope<'_>,
+    scope: &PassScope<'_>,
     reports: &mut Reports,
 ) -> Result<(), ErrorGuaranteed> {
     let mut wrong = None;

@@ -1,4 +1,4 @@
-//! What names mean in the pass that is linked.
+//! Meaning of the names of the pass that is linked.
 
 use crate::{
     diagnostics::reports::{ErrorGuaranteed, Reports},
@@ -38,10 +38,8 @@ pub(super) struct PassScope<'a> {
 }
 
 /// A value that a shader asks for by name.
-pub(super) enum Asked<'e> {
-    /// Value from the entry or a group around it, with its expression.
-    Set(Value, &'e Expr),
-    /// A value of the document, with its expression's place.
+pub(super) enum Asked {
+    /// A value from the entry or a group around it, or one of the document, with its place.
     Value(Value, Span),
     /// A param of the document; which one of the root document it is, unchanged.
     Param(Box<Param>, ParamValue, Option<String>),
@@ -268,7 +266,7 @@ impl<'a> PassScope<'a> {
         &mut self,
         name: &str,
         reports: &mut Reports,
-    ) -> Option<Result<Asked<'a>, ErrorGuaranteed>> {
+    ) -> Option<Result<Asked, ErrorGuaranteed>> {
         self.asked.insert(name.to_owned());
         let own = self.set.iter().find(|(set, _)| **set == *name);
         let own = own.map(|(_, expr)| (expr, self.position));
@@ -279,7 +277,7 @@ impl<'a> PassScope<'a> {
         };
         if let Some((expr, position)) = own.or_else(said) {
             let value = expr.value(&mut self.symbols.at(position, None, reports));
-            return Some(value.map(|value| Asked::Set(value, expr)));
+            return Some(value.map(|value| Asked::Value(value, expr.span.clone())));
         }
         if name == "index"
             && let Some(index) = self.symbols.scopes.index(self.position, None)
@@ -290,8 +288,8 @@ impl<'a> PassScope<'a> {
             let scope = self.position.scope;
             let id = self.symbols.scopes.find_wgsl_value(scope, name)?;
             let value = self.symbols.value(id, reports);
-            let span = self.symbols.value_span(id).clone();
-            return Some(value.map(|value| Asked::Value(value, span)));
+            let span = self.symbols.value_span(id);
+            return Some(value.map(|value| Asked::Value(value, span.clone())));
         };
         let value = bound.value.clone();
         Some(value.map(|value| Asked::Param(bound.param.clone().into(), value, bound.root.clone())))

@@ -34,12 +34,8 @@ pub(super) fn texture(
     scope: &mut PassScope<'_>,
     reports: &mut Reports,
 ) -> Result<Bound, ErrorGuaranteed> {
-    let misfit = match class {
-        TextureClass::Sampled { dimension, .. } | TextureClass::Storage { dimension, .. } => {
-            let grows = scope.get(target.id).growth.is_some();
-            wrong_shape(*dimension, texture, target, grows)
-        }
-    };
+    let grows = scope.get(target.id).growth.is_some();
+    let misfit = wrong_shape(class.dimension(), texture, target, grows);
     let bound = match (misfit, class) {
         (Some(misfit), _) => Err(misfit),
         (None, TextureClass::Sampled { .. }) => {
@@ -166,7 +162,7 @@ fn storage(
     (declared, access, dimension): (&str, wgt::StorageTextureAccess, wgt::TextureViewDimension),
     texture: &Texture,
     target: &Target,
-    scope: &mut PassScope<'_>,
+    scope: &PassScope<'_>,
     reports: &mut Reports,
 ) -> Result<Bound, TextureMisfit> {
     let format = texture.format;

@@ -3,7 +3,7 @@
 use super::{
     attachments::clear_value,
     layouts::Layouts,
-    pass::{Access, Ids, LinkedPass, Usage},
+    pass::{Ids, LinkedPass, Usage},
     scope::PassScope,
 };
 use crate::{
@@ -64,9 +64,8 @@ pub(super) fn copy(
             }));
         }
     };
-    let read = Access::new(&source, (true, false, false), usages[0], &from.span);
-    let written = Access::new(&target, (false, true, true), usages[1], &to.span);
-    pass.accesses.extend([read, written]);
+    pass.access(&source, (true, false, false), usages[0], &from.span);
+    pass.access(&target, (false, true, true), usages[1], &to.span);
     Ok(Step::Copy {
         from: source,
         to: target,
@@ -90,7 +89,7 @@ pub(super) fn clear(
             if !features.allowed_usages.contains(needed) {
                 return Err(reports.report(LinkError::ClearFormat { name, format }));
             }
-            clear_value(&name, format, value, reports)?;
+            reports.check(clear_value(&name, format, value))?;
             Usage::Texture(needed)
         }
         ResourceKind::Buffer(_) if value != [0.0; 4] => {
@@ -102,7 +101,6 @@ pub(super) fn clear(
             return Err(reports.report(LinkError::ClearKind { name, found }));
         }
     };
-    pass.accesses
-        .push(Access::new(&target, (false, true, true), usage, &name.span));
+    pass.access(&target, (false, true, true), usage, &name.span);
     Ok(Step::Clear { target, value })
 }

@@ -43,6 +43,14 @@ pub(crate) enum TextureClass {
     },
 }
 
+impl TextureClass {
+    pub fn dimension(&self) -> wgt::TextureViewDimension {
+        match self {
+            Self::Sampled { dimension, .. } | Self::Storage { dimension, .. } => *dimension,
+        }
+    }
+}
+
 /// Type of one channel of a texture in a shader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ScalarClass {

@@ -155,8 +155,8 @@ impl Environment for ParamsAlone<'_> {
         Err(self.report(EvaluationError::NoShader(span.clone())))
     }
 
-    fn report(&mut self, error: EvaluationError) -> ErrorGuaranteed {
-        self.reports.report(error)
+    fn reports(&mut self) -> &mut Reports {
+        self.reports
     }
 }
 

@@ -6,8 +6,10 @@ use super::{
     value::{Scalar, Value, Word},
 };
 use crate::{
-    diagnostics::reports::ErrorGuaranteed, errors::evaluation::EvaluationError,
-    provided_kind::ProvidedKind, source::span::Span,
+    diagnostics::reports::{ErrorGuaranteed, Reports},
+    errors::evaluation::EvaluationError,
+    provided_kind::ProvidedKind,
+    source::span::Span,
 };
 
 /// Values of names in an expression at its place.
@@ -43,7 +45,11 @@ pub(crate) trait Environment {
         None
     }
 
-    fn report(&mut self, error: EvaluationError) -> ErrorGuaranteed;
+    fn reports(&mut self) -> &mut Reports;
+
+    fn report(&mut self, error: EvaluationError) -> ErrorGuaranteed {
+        self.reports().report(error)
+    }
 }
 
 type Evaluated<T> = Result<T, ErrorGuaranteed>;

@@ -119,7 +119,11 @@ impl Graph {
             interfaces(&linked, reports);
         }
         let written = |target: &Target| !is_complete || !order.final_writers(target).is_empty();
-        let readable = readable(self, request, &mut linked.symbols, written, reports);
+        let root = linked.symbols.root();
+        let readable = {
+            let mut at = linked.symbols.at(root, None, reports);
+            readable(self, request, &mut at, written)
+        };
         if !is_complete || reports.errors() > 0 {
             return None;
         }

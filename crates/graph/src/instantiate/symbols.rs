@@ -3,7 +3,7 @@
 use super::{
     growth::Sizing,
     materials, parts,
-    scopes::{Position, ScopeId, Scopes, Symbol, ValueId},
+    scopes::{Instance, Position, ScopeId, Scopes, Symbol, ValueId},
     state::{Declared, DeclaredValue, State, ValueState},
 };
 use crate::{
@@ -572,6 +572,29 @@ pub(crate) struct At<'w, 'a, 'r> {
 impl<'a> At<'_, 'a, '_> {
     pub fn symbols(&self) -> &SymbolTable<'a> {
         self.symbols
+    }
+
+    pub fn scope(&self) -> ScopeId {
+        self.position.scope
+    }
+
+    /// The instance of a document that the place stands in.
+    pub fn instance(&self) -> &Instance {
+        self.symbols.scopes.document(self.position.scope)
+    }
+
+    /// Another place, without a shader.
+    pub fn elsewhere(&mut self, position: Position) -> At<'_, 'a, '_> {
+        self.symbols.at(position, None, self.reports)
+    }
+
+    pub fn value(&mut self, id: ValueId) -> Result<Value, ErrorGuaranteed> {
+        self.symbols.value(id, self.reports)
+    }
+
+    /// Finds the target of a name of the scene.
+    pub fn find_scene(&mut self, name: &str) -> Option<Result<Target, ErrorGuaranteed>> {
+        self.symbols.find_scene(name, self.position.scope)
     }
 
     /// Finds the target of a name in a command.

@@ -22,7 +22,7 @@ use crate::{
     language::{name::Name, syntax::Leaf},
     provider::Import,
     request::PlanRequest,
-    resource::{Buffer, Origin, Resource, ResourceKind, Sampler, Target, Texture},
+    resource::{Buffer, Origin, Resource, ResourceKind, Sampler, Texture},
     shader::expand::Replaced,
     source::span::Located,
 };

@@ -1,6 +1,8 @@
 //! From a graph to a plan: one phase after the other, each with what the one before has made.
 
 use super::{
+    backend::not_proven,
+    memory::growing,
     plan::{CulledPass, Plan},
     readable::{check_captures, readable},
     usages,
@@ -63,7 +65,7 @@ impl Graph {
             reports.report(OutputError::NoViewport(self.place()));
         }
         let backend = request.partial_backend.as_ref();
-        if let Some(error) = backend.and_then(|backend| self.not_proven(backend)) {
+        if let Some(error) = backend.and_then(|backend| not_proven(self, backend)) {
             reports.report(error);
             return Outcome::lacking(reports, PlanInputs::default());
         }
@@ -112,10 +114,10 @@ impl Graph {
     ) -> Option<Scheduled> {
         let is_complete = linked.first_invalid.is_none();
         let first_invalid = linked.first_invalid.unwrap_or(linked.passes.len());
-        let order = order(linked.view(), first_invalid, reports);
+        let order = order(view(&linked), first_invalid, reports);
         if is_complete {
-            never_written(linked.view(), &order, reports);
-            check_counters(linked.view(), &order, reports);
+            never_written(view(&linked), &order, reports);
+            check_counters(view(&linked), &order, reports);
             interfaces(&linked, reports);
         }
         let written = |target: &Target| !is_complete || !order.final_writers(target).is_empty();
@@ -267,12 +269,10 @@ fn lacks_features(reports: &Reports) -> bool {
     reports.iter().any(is_lacking)
 }
 
-impl Linked<'_> {
-    fn view(&self) -> GraphView<'_> {
-        GraphView {
-            passes: &self.passes,
-            resources: &self.symbols.resources,
-        }
+fn view<'l>(linked: &'l Linked<'_>) -> GraphView<'l> {
+    GraphView {
+        passes: &linked.passes,
+        resources: &linked.symbols.resources,
     }
 }
 
@@ -329,21 +329,6 @@ fn writers(view: GraphView<'_>, target: &Target) -> BTreeSet<PassId> {
     let passes = view.ids();
     let writers = passes.filter(|(_, pass)| pass.accesses.iter().any(writes));
     writers.map(|(id, _)| id).collect()
-}
-
-/// Those of some resources that grow; last frame's version of one is no other.
-pub(super) fn growing<'a>(
-    ids: impl Iterator<Item = &'a ResourceId>,
-    resources: &'a [Resource],
-) -> impl Iterator<Item = (ResourceId, &'a Growth)> {
-    ids.filter_map(|id| match &resources[id.index()] {
-        Resource {
-            origin: Origin::Own,
-            growth: Some(growth),
-            ..
-        } => Some((*id, growth)),
-        _ => None,
-    })
 }
 
 /// The resources that are last frame's version of another one, with that one.

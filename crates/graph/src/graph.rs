@@ -21,6 +21,7 @@ use crate::{
     },
     kinds::registry::Registry,
     language::{name::Name, syntax::Leaf},
+    picture::Picture,
     shader::{
         expand::ShaderFiles,
         reflect::Shader,
@@ -29,7 +30,7 @@ use crate::{
     },
     source::{
         paths::{escapes, include_candidates},
-        sources::{Picture, Sources},
+        sources::Sources,
         span::{Located, Span},
     },
 };

@@ -45,6 +45,7 @@ pub use link::{
     PassId, Usage,
 };
 pub use panics::{Panicked, caught};
+pub use picture::Picture;
 pub use plan::{CulledPass, MemoryEntry, OutputSummary, PartSummary, PassSummary, Plan, text};
 pub use provided_kind::ProvidedKind;
 pub use provider::{Describe, Import, NoProvider, Provided, ProvidedBinding};
@@ -53,7 +54,7 @@ pub use resource::{
     Buffer, FRAME_BYTES, Growth, Origin, Resource, ResourceId, ResourceKind, Sampler,
     SubresourceRange, Target, Texture,
 };
+#[cfg(feature = "schema")]
+pub use schema::schema;
 pub use shader::{Field, Item, ItemScalar, Shader};
-pub use source::{
-    FolderSources, LayeredSources, Located, Picture, SourceFile, SourceText, Sources, Span,
-};
+pub use source::{FolderSources, LayeredSources, Located, SourceFile, SourceText, Sources, Span};

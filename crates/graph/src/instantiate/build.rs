@@ -19,7 +19,7 @@ use crate::{
     },
     errors::instantiate::InterfaceError,
     graph::Graph,
-    language::{name::Name, syntax::Leaf},
+    language::{eval, name::Name, syntax::Leaf},
     provider::Import,
     request::PlanRequest,
     resource::{Buffer, Origin, Resource, ResourceKind, Sampler, Texture},
@@ -312,7 +312,7 @@ impl<'a> Builder<'a, '_> {
         }
         let count = match &entry.repeat {
             None => 1,
-            Some(repeat) => repeat.count32(&mut at)?,
+            Some(repeat) => eval::count32(repeat, &mut at)?,
         };
         self.spent = self.spent.saturating_add(count as usize);
         if self.spent > MOST {
@@ -541,7 +541,10 @@ impl<'a> Builder<'a, '_> {
             Some(RunEntry::OnChange) => return Ok(Some((Run::OnChange, true))),
             Some(RunEntry::When(condition)) => condition,
         };
-        let enabled = condition.boolean(&mut self.symbols.at(position, None, self.reports))?;
+        let enabled = eval::boolean(
+            condition,
+            &mut self.symbols.at(position, None, self.reports),
+        )?;
         let instance = self.symbols.scopes.document(position.scope);
         let params = Arc::clone(&instance.params);
         let outer = instance.outer.as_ref();
@@ -571,7 +574,7 @@ impl<'a> Builder<'a, '_> {
                 None => name.to_owned(),
             },
             _ => {
-                let value = leaf.value(&mut self.symbols.at(position, None, self.reports));
+                let value = eval::value(leaf, &mut self.symbols.at(position, None, self.reports));
                 value.map_or_else(|_| leaf.text().to_owned(), |value| value.to_string())
             }
         });

@@ -8,6 +8,7 @@ use crate::{
     diagnostics::reports::ErrorGuaranteed,
     document::typed::{Entry, Pass},
     language::{
+        eval,
         name::Name,
         syntax::{Expr, Leaf, Reference},
     },
@@ -160,6 +161,6 @@ impl PlanInputs {
                 self.features |= feature;
             }
         });
-        condition.boolean(at)
+        eval::boolean(condition, at)
     }
 }

@@ -4,7 +4,10 @@ use crate::{
     diagnostics::reports::ErrorGuaranteed,
     document::materials::{BufferEntry, GrowEntry, TextureEntry},
     errors::resource::SizeError,
-    language::{eval::Environment, syntax::Reference},
+    language::{
+        eval::{self, Environment},
+        syntax::Reference,
+    },
     resource::{Buffer, Growth, Origin, Resource, ResourceKind, Target, Texture},
     source::span::Located,
 };
@@ -72,7 +75,7 @@ fn growth(name: &str, grow: &GrowEntry, at: &mut impl Sizing) -> Result<Growth, 
         let name = grow.counter.located();
         return Err(at.reports().report(SizeError::Counter { name, what }));
     }
-    let max = match grow.max.count(at)? {
+    let max = match eval::count(&grow.max, at)? {
         0 if grow.max.is_taken() => 1,
         0 => {
             let name = Located::new(name.to_owned(), grow.max.span.clone());

@@ -15,7 +15,7 @@ use crate::{
     },
     errors::instantiate::InterfaceError,
     language::{
-        eval::Environment,
+        eval::{self, Environment},
         name::Name,
         syntax::{Expr, ExprKind, Reference},
     },
@@ -184,7 +184,7 @@ pub(super) fn params(
         let params = &at.symbols().scopes.document(place.scope).params;
         let value = match params.forwarded(expr) {
             Some(value) => value,
-            None => expr.value(&mut at.elsewhere(*place)),
+            None => eval::value(expr, &mut at.elsewhere(*place)),
         };
         let given = SetParam {
             roots: at.symbols().roots(place.scope, expr),

@@ -9,13 +9,11 @@ use crate::{
     document::materials::{BufferEntry, FormatEntry, Material, Mips, SamplerEntry, TextureEntry},
     errors::{evaluation::EvaluationError, resource::SizeError},
     graph::Graph,
-    language::{syntax::Expr, value::Value},
+    language::{eval, syntax::Expr, value::Value},
+    picture::Picture,
     request::PlanRequest,
     resource::{Buffer, Growth, ResourceKind, Sampler, Texture},
-    source::{
-        sources::Picture,
-        span::{Located, Span},
-    },
+    source::span::{Located, Span},
 };
 use std::sync::Arc;
 
@@ -79,11 +77,11 @@ fn texture(
     };
     let edges = match (&entry.size, &picture) {
         (_, Some(picture)) => picture.size.map(u64::from).to_vec(),
-        (Some(size), None) => size.edges(at)?,
+        (Some(size), None) => eval::edges(size, at)?,
         (None, None) => at.viewport().map(u64::from).to_vec(),
     };
     let mut one = |expr: &Option<Expr>| match expr {
-        Some(expr) => expr.count32(at),
+        Some(expr) => eval::count32(expr, at),
         None => Ok(1),
     };
     let (layers, samples) = (one(&entry.layers)?, one(&entry.samples)?);
@@ -104,7 +102,7 @@ fn texture(
             let longest = size[0].max(size[1]).max(if is_3d { depth } else { 1 });
             longest.max(1).ilog2() + 1
         }
-        Mips::Number(expr) => expr.count32(at)?,
+        Mips::Number(expr) => eval::count32(expr, at)?,
     };
     if is_3d && layers != 1 {
         let name = Located::new(name.to_string(), entry.name.span.clone());
@@ -122,7 +120,7 @@ fn texture(
 }
 
 fn named_format(expr: &Expr, at: &mut impl Sizing) -> Result<wgt::TextureFormat, ErrorGuaranteed> {
-    match expr.value(at)? {
+    match eval::value(expr, at)? {
         Value::Format(format) => Ok(format),
         found => Err(at.reports().report(EvaluationError::Type {
             span: expr.span.clone(),
@@ -168,7 +166,7 @@ fn buffer(entry: &BufferEntry, at: &mut impl Sizing) -> Result<Buffer, ErrorGuar
         }
         (None, Some(data)) => Some(data.0.len() as u64),
         (None, None) => None,
-        (Some(expr), None) => match expr.count(at)? {
+        (Some(expr), None) => match eval::count(expr, at)? {
             // As for what a host provides: wgpu binds nothing of size zero.
             0 if expr.is_taken() => Some(1),
             0 => return Err(at.reports().report(SizeError::NoItems(name(&expr.span)))),

@@ -12,7 +12,7 @@ use crate::{
     errors::{evaluation::EvaluationError, instantiate::ParamError},
     graph::{Claim, Graph},
     language::{
-        eval::Environment,
+        eval::{self, Environment},
         name::{Name, wgsl_identifier},
         syntax::{Attribute, Expr, Leaf, Reference},
         value::Value,
@@ -182,7 +182,7 @@ fn default(
         context,
         reports,
     };
-    let value = default.value(&mut environment)?;
+    let value = eval::value(default, &mut environment)?;
     param.convert(&value).map_err(|why| {
         reports.report(ParamError::Default {
             param: Located::new(param.name.value.clone(), default.span.clone()),
@@ -422,7 +422,7 @@ impl Graph {
                     reports: &mut reports,
                 };
                 let condition = claim.condition.as_ref();
-                let holds = condition.map_or(Ok(true), |c| c.boolean(&mut environment));
+                let holds = condition.map_or(Ok(true), |c| eval::boolean(c, &mut environment));
                 claims.extend(holds.ok().map(|holds| Claim {
                     name: name.value.clone(),
                     condition: condition.map_or("", |c| c.text()).to_owned(),

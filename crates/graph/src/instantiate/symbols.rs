@@ -11,7 +11,7 @@ use crate::{
     errors::{evaluation::EvaluationError, instantiate::InterfaceError},
     graph::Graph,
     language::{
-        eval::Environment,
+        eval::{self, Environment},
         name::{Name, wgsl_identifier},
         parser,
         syntax::{Attribute, Expr, Leaf, Reference, Segment, Selection},
@@ -155,7 +155,7 @@ impl<'a> SymbolTable<'a> {
         };
         let expr = declared.expr().clone();
         self.resolving.push(id);
-        let value = expr.value(&mut self.at(position, None, reports));
+        let value = eval::value(&expr, &mut self.at(position, None, reports));
         self.resolving.pop();
         self.values[id.0].state = ValueState::Known(value.clone());
         value
@@ -607,7 +607,7 @@ impl<'a> At<'_, 'a, '_> {
         let mut reference = reference;
         while let Some(otherwise) = &reference.otherwise {
             let (condition, other) = &**otherwise;
-            if condition.boolean(self)? {
+            if eval::boolean(condition, self)? {
                 break;
             }
             reference = other;
@@ -710,7 +710,7 @@ impl<'a> At<'_, 'a, '_> {
             let name = Located::new(name.value.to_string(), name.span.clone());
             return Err(self.reports.report(InterfaceError::Namespace(name)));
         };
-        let index = expr.count(self)?;
+        let index = eval::count(expr, self)?;
         let index = usize::try_from(index).ok().filter(|index| *index < count);
         index.ok_or_else(|| {
             self.reports.report(InterfaceError::Range {
@@ -760,7 +760,7 @@ impl<'a> At<'_, 'a, '_> {
         let provider = self.symbols.request.provider;
         provider.describe(&format!("{list}.0"))?;
         let count = provider.describe(list)?.items?;
-        let number = match number.count(self) {
+        let number = match eval::count(number, self) {
             Ok(number) => number,
             Err(reported) => return Some(Err(reported)),
         };
@@ -801,12 +801,15 @@ impl<'a> At<'_, 'a, '_> {
     ) -> Result<Range<u32>, ErrorGuaranteed> {
         let selected = match selection {
             Selection::One(one) => {
-                let first = one.count(self)?;
+                let first = eval::count(one, self)?;
                 (first..first.saturating_add(1), &one.span)
             }
             Selection::Range(ends) => {
                 let [first, end] = &**ends;
-                (first.count(self)?..end.count(self)?, &end.span)
+                (
+                    eval::count(first, self)?..eval::count(end, self)?,
+                    &end.span,
+                )
             }
         };
         let resource = self.symbols.get(target.id);

@@ -16,6 +16,7 @@ use crate::{
     resource::{CLOCK_BYTES, FRAME_BYTES, ResourceKind, Sampler, SubresourceRange, Target},
     shader::{
         class::{Class, Member},
+        members::reads_below,
         reflect::Global,
     },
 };
@@ -300,11 +301,7 @@ fn storage_buffer(
 /// True if a program reads number or time of the uniform `frame`, which differ in every frame.
 fn reads_clock(linked: &LinkedProgram, global: &Global) -> bool {
     let mut entries = linked.entries.iter();
-    entries.any(|entry| {
-        linked
-            .shader
-            .reads_below(*entry, global.handle, CLOCK_BYTES)
-    })
+    entries.any(|entry| reads_below(&linked.shader, *entry, global.handle, CLOCK_BYTES))
 }
 
 /// How a sampler is bound, or what the shader needs instead.

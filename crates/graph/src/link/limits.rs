@@ -147,11 +147,17 @@ pub(super) fn stages(
     let most = limits.max_color_attachments;
     // Too many targets were reported already.
     if draw.colors.len() <= most as usize {
-        check_locations(&at, "writes", &shader.outputs(fragment), most, reports)?;
+        check_locations(
+            &at,
+            "writes",
+            &Varyings::outputs(shader, fragment),
+            most,
+            reports,
+        )?;
     }
-    let given = vertex.map_or_else(Varyings::default, |index| shader.outputs(index));
+    let given = vertex.map_or_else(Varyings::default, |index| Varyings::outputs(shader, index));
     let mut wrong = None;
-    for taken in &shader.inputs(fragment).locations {
+    for taken in &Varyings::inputs(shader, fragment).locations {
         if let Some(why) = misfit(taken, &given.locations) {
             wrong = Some(reports.report(LimitError::NoVarying {
                 entry: at.clone(),
@@ -172,13 +178,13 @@ fn check_vertex(
     limits: &wgt::Limits,
     reports: &mut Reports,
 ) -> Result<(), ErrorGuaranteed> {
-    if let Some(attribute) = shader.inputs(index).locations.first() {
+    if let Some(attribute) = Varyings::inputs(shader, index).locations.first() {
         return Err(reports.report(LimitError::Attribute {
             entry: at.clone(),
             location: attribute.location,
         }));
     }
-    let outputs = shader.outputs(index);
+    let outputs = Varyings::outputs(shader, index);
     let locations = limits
         .max_inter_stage_shader_variables
         .saturating_sub(outputs.builtins);
@@ -200,7 +206,7 @@ fn check_fragment(
     limits: &wgt::Limits,
     reports: &mut Reports,
 ) -> Result<(), ErrorGuaranteed> {
-    let inputs = shader.inputs(index);
+    let inputs = Varyings::inputs(shader, index);
     check_locations(
         at,
         "reads",

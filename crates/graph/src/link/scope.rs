@@ -10,6 +10,7 @@ use crate::{
     },
     kinds::step::{Operand, Program, ShaderUse},
     language::{
+        eval,
         name::{Name, wgsl_identifier},
         syntax::{Expr, Reference},
         value::Value,
@@ -276,7 +277,7 @@ impl<'a> PassScope<'a> {
             Some((said.value, said.position))
         };
         if let Some((expr, position)) = own.or_else(said) {
-            let value = expr.value(&mut self.symbols.at(position, None, reports));
+            let value = eval::value(expr, &mut self.symbols.at(position, None, reports));
             return Some(value.map(|value| Asked::Value(value, expr.span.clone())));
         }
         if name == "index"

@@ -394,14 +394,8 @@ impl Plan {
 }
 
 fn is_same_pass((one, other): (&LinkedPass, &LinkedPass)) -> bool {
-    let params = |pass: &LinkedPass| {
-        let steps = pass.steps.iter();
-        steps
-            .map(|step| step.params().map(<[u8]>::to_vec))
-            .collect::<Vec<_>>()
-    };
     one.name.value == other.name.value
         && (one.enabled, &one.run) == (other.enabled, &other.run)
         && one.steps == other.steps
-        && params(one) == params(other)
+        && one.params().eq(other.params())
 }

@@ -8,7 +8,7 @@ use crate::{
         lower::LoweredPass,
         symbols::{At, SymbolTable},
     },
-    language::eval::Environment,
+    language::eval::{self, Environment},
     request::PlanRequest,
     resource::{ResourceKind, Target},
     source::span::Located,
@@ -34,7 +34,7 @@ pub(super) fn readable(
     }
     for output in graph.document.material_outputs() {
         if let Some(condition) = &output.condition {
-            match condition.boolean(at) {
+            match eval::boolean(condition, at) {
                 Ok(true) => {}
                 Ok(false) | Err(_) => continue,
             }

@@ -4,5 +4,5 @@ pub(crate) mod paths;
 pub(crate) mod sources;
 pub(crate) mod span;
 
-pub use sources::{FolderSources, LayeredSources, Picture, Sources};
+pub use sources::{FolderSources, LayeredSources, Sources};
 pub use span::{Located, SourceFile, SourceText, Span};

@@ -32,12 +32,12 @@ mod shader;
 mod source;
 
 pub use diagnostics::{Code, Diagnostic, Diagnostics, Label, Severity};
-pub use document::{Address, Chosen, Filter, Param, ParamFault, ParamType, ParamValue};
+pub use document::{Address, Chosen, Filter, Param, ParamError, ParamFault, ParamType, ParamValue};
 pub use flow::{
     Aliases, Allocation, Conditions, Dependences, Hazard, Lifetime, Lifetimes, Schedule, When,
 };
-pub use graph::{Claim, Graph, ParamError};
-pub use instantiate::Run;
+pub use graph::Graph;
+pub use instantiate::{Claim, Run};
 pub use kinds::{Lowering, PassKind, Registry, step};
 pub use language::{Expr, Name, Reference, Scalar, Value, Word, wgsl_identifier};
 pub use link::{

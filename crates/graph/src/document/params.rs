@@ -5,7 +5,11 @@ use super::{
     ron::{Field, from_fields},
 };
 use crate::{
-    diagnostics::{diagnostic::Diagnostic, reports::IntoDiagnostic, suggest::likeness},
+    diagnostics::{
+        diagnostic::Diagnostic,
+        reports::IntoDiagnostic,
+        suggest::{likeness, suggestion},
+    },
     errors::document::DocumentError,
     language::{
         name::Name,
@@ -20,6 +24,49 @@ use std::{
     fmt,
     sync::Arc,
 };
+
+/// Why a param cannot be set.
+#[derive(Clone, Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ParamError {
+    /// The graph has no such param.
+    #[error("`{graph}` has no param `{name}`{hint}")]
+    Unknown {
+        /// The graph's path.
+        graph: String,
+        /// The name.
+        name: String,
+        /// A suggestion, or the list of params.
+        hint: String,
+    },
+    /// The value has the wrong type or is out of range.
+    #[error("param `{name}` of `{graph}`: {why}")]
+    Value {
+        /// The graph's path.
+        graph: String,
+        /// The name.
+        name: String,
+        /// The expected type or range.
+        why: ParamFault,
+    },
+}
+
+/// The param of that name, of a graph's.
+pub(crate) fn find<'p>(
+    params: &'p [Param],
+    name: &str,
+    graph: &str,
+) -> Result<&'p Param, ParamError> {
+    let known = params.iter().find(|param| param.name.value == name);
+    known.ok_or_else(|| {
+        let hint = suggestion(name, params.iter().map(|param| param.name.as_str()));
+        ParamError::Unknown {
+            graph: graph.to_owned(),
+            name: name.to_owned(),
+            hint: hint.map_or(", it has none".to_owned(), |hint| format!(": {hint}")),
+        }
+    })
+}
 
 /// Type of a param.
 #[derive(Clone, Debug, PartialEq, Eq)]

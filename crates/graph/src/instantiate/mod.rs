@@ -17,3 +17,4 @@ pub(crate) mod state;
 pub(crate) mod symbols;
 
 pub use flat::Run;
+pub use params::Claim;

@@ -10,7 +10,6 @@ use crate::{
     document::{
         flat::flat,
         materials::{Material, TextureEntry},
-        params::{Param, ParamError, ParamValue, find},
         typed::{Document, What, each_entry},
     },
     errors::{
@@ -21,6 +20,7 @@ use crate::{
     instantiate::params::{Claim, Surroundings, checked, claims},
     kinds::registry::Registry,
     language::{name::Name, syntax::Leaf},
+    param::{Param, ParamError, ParamValue, find},
     picture::Picture,
     shader::{
         expand::ShaderFiles,

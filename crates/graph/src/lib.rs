@@ -13,6 +13,7 @@ mod compose;
 pub mod diagnostics;
 mod document;
 mod errors;
+mod expressions;
 mod flow;
 mod graph;
 mod instantiate;
@@ -20,19 +21,21 @@ mod kinds;
 mod language;
 mod link;
 mod panics;
+mod param;
 mod picture;
 mod plan;
 mod provided_kind;
 mod provider;
 mod request;
 mod resource;
+mod scalar_class;
 #[cfg(feature = "schema")]
 mod schema;
 mod shader;
 mod source;
 
 pub use diagnostics::{Code, Diagnostic, Diagnostics, Label, Severity};
-pub use document::{Address, Chosen, Filter, Param, ParamError, ParamFault, ParamType, ParamValue};
+pub use document::{Address, Chosen, Filter};
 pub use flow::{
     Aliases, Allocation, Conditions, Dependences, Hazard, Lifetime, Lifetimes, Schedule, When,
 };
@@ -45,6 +48,7 @@ pub use link::{
     PassId, Usage,
 };
 pub use panics::{Panicked, caught};
+pub use param::{Param, ParamError, ParamFault, ParamType, ParamValue};
 pub use picture::Picture;
 pub use plan::{CulledPass, MemoryEntry, OutputSummary, PartSummary, PassSummary, Plan, text};
 pub use provided_kind::ProvidedKind;

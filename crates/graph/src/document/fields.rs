@@ -3,9 +3,9 @@
 use super::ron::{Node, raw, read, refuse};
 use crate::{
     errors::{document::DocumentError, language::SyntaxFault},
+    expressions::parser,
     language::{
         name::Name,
-        parser,
         syntax::{Expr, ExprKind, Reference},
         value::{Scalar, Value},
     },

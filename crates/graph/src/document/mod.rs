@@ -15,4 +15,3 @@ pub(crate) mod written;
 
 pub use fields::Chosen;
 pub use materials::{Address, Filter};
-pub use params::{Param, ParamError, ParamFault, ParamType, ParamValue};

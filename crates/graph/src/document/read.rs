@@ -5,7 +5,7 @@ use super::{
     extend::{no_edits, no_removals},
     fields::one_line,
     materials::{BufferInput, Input, Material, SamplerInput, TextureInput},
-    params::Param,
+    params,
     raw::{RawDocument, RawItem, RawMap},
     ron::{Node, from_fields},
     typed::Document,
@@ -70,7 +70,7 @@ pub(crate) fn document(
         });
     }
     for item in &raw.params {
-        match Param::read(&item.tag, &item.fields) {
+        match params::read(&item.tag, &item.fields) {
             Ok(param) => document.params.push(param),
             Err(error) => document.invalid_params = Some(reports.emit(error)),
         }

@@ -3,7 +3,6 @@
 use super::{
     fields::{Mentions, prose, short_or_long},
     materials::{Input, Material},
-    params::Param,
     raw::Invalid,
     ron::{raw, read},
 };
@@ -14,6 +13,7 @@ use crate::{
         name::Name,
         syntax::{Expr, Leaf, Reference},
     },
+    param::Param,
     source::span::{Located, SourceFile},
 };
 use serde::{Deserialize, Deserializer};

@@ -2,7 +2,7 @@
 
 use crate::{
     diagnostics::{code::Code, diagnostic::Diagnostic, reports::IntoDiagnostic},
-    document::params::{Param, ParamFault, ParamValue},
+    param::{Param, ParamFault, ParamValue},
     source::span::{Located, Span},
 };
 

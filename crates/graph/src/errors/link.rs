@@ -2,8 +2,8 @@
 
 use crate::{
     diagnostics::{code::Code, diagnostic::Diagnostic, reports::IntoDiagnostic},
-    document::params::Param,
-    shader::class::ScalarClass,
+    param::Param,
+    scalar_class::ScalarClass,
     source::span::{Located, Span},
 };
 use wgt::TextureFormat;

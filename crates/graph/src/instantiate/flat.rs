@@ -7,8 +7,8 @@ use super::{
 use crate::{
     diagnostics::reports::ErrorGuaranteed,
     document::typed::{Entry, Pass},
+    expressions::eval,
     language::{
-        eval,
         name::Name,
         syntax::{Expr, Leaf, Reference},
     },

@@ -4,10 +4,8 @@ use crate::{
     diagnostics::reports::ErrorGuaranteed,
     document::materials::{BufferEntry, GrowEntry, TextureEntry},
     errors::resource::SizeError,
-    language::{
-        eval::{self, Environment},
-        syntax::Reference,
-    },
+    expressions::eval::{self, Environment},
+    language::syntax::Reference,
     resource::{Buffer, Growth, Origin, Resource, ResourceKind, Target, Texture},
     source::span::Located,
 };

@@ -14,8 +14,8 @@ use crate::{
         typed::{Document, Entry, Include, Output},
     },
     errors::instantiate::InterfaceError,
+    expressions::eval::{self, Environment},
     language::{
-        eval::{self, Environment},
         name::Name,
         syntax::{Expr, ExprKind, Reference},
     },

@@ -7,10 +7,8 @@ use super::{
 };
 use crate::{
     diagnostics::reports::ErrorGuaranteed,
-    document::{
-        params::ParamValue,
-        typed::{Document, Include},
-    },
+    document::typed::{Document, Include},
+    param::ParamValue,
     resource::Target,
     shader::expand::Replaced,
 };

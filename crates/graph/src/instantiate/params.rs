@@ -2,17 +2,15 @@
 
 use crate::{
     diagnostics::reports::{ErrorGuaranteed, Reports},
-    document::{
-        params::{Param, ParamValue, find},
-        typed::Document,
-    },
+    document::typed::Document,
     errors::{evaluation::EvaluationError, instantiate::ParamError},
+    expressions::eval::{self, Environment},
     language::{
-        eval::{self, Environment},
         name::{Name, wgsl_identifier},
         syntax::{Attribute, Expr, Leaf, Reference},
         value::Value,
     },
+    param::{Param, ParamValue, find},
     source::span::{Located, Span},
 };
 use std::collections::{BTreeMap, BTreeSet};

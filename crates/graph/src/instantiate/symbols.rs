@@ -9,11 +9,13 @@ use super::{
 use crate::{
     diagnostics::reports::{ErrorGuaranteed, Reports},
     errors::{evaluation::EvaluationError, instantiate::InterfaceError},
+    expressions::{
+        eval::{self, Environment},
+        parser,
+    },
     graph::Graph,
     language::{
-        eval::{self, Environment},
         name::{Name, wgsl_identifier},
-        parser,
         syntax::{Attribute, Expr, Leaf, Reference, Segment, Selection},
         value::Value,
     },

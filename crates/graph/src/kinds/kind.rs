@@ -5,8 +5,8 @@ use crate::{
     diagnostics::{code::Code, diagnostic::Diagnostic, reports::ErrorGuaranteed},
     document::fields::Chosen,
     errors::evaluation::EvaluationError,
+    expressions::eval::{self, Environment},
     language::{
-        eval::{self, Environment},
         name::Name,
         syntax::{Attribute, Expr, ExprKind, Reference, Subject},
         value::{Scalar, Value},

@@ -16,7 +16,7 @@ use crate::{
     kinds::step::{ColorTarget, DepthTarget, Draw, DrawCall, Names, StencilTarget},
     language::syntax::Reference,
     resource::{ResourceKind, Target, Texture},
-    shader::class::ScalarClass,
+    scalar_class::ScalarClass,
     source::span::{Located, Span},
 };
 use wgt::{TextureAspect, TextureFormat, TextureFormatFeatureFlags as Flags, TextureUsages};

@@ -6,12 +6,13 @@ use super::{
 };
 use crate::{
     diagnostics::reports::{ErrorGuaranteed, Reports},
-    document::params::{Param, ParamValue},
     errors::link::LinkError,
     kinds::step::Program,
     language::value::{Scalar, Value},
+    param::{Param, ParamValue},
+    scalar_class::ScalarClass,
     shader::{
-        class::{Member, ScalarClass},
+        class::Member,
         reflect::{Global, Shader},
     },
     source::span::{Located, Span},

@@ -2,19 +2,19 @@
 
 use crate::{
     diagnostics::reports::{ErrorGuaranteed, Reports},
-    document::params::{Param, ParamType, ParamValue},
     errors::{instantiate::InterfaceError, link::LinkError},
+    expressions::eval,
     instantiate::{
         flat::Inherited, lower::LoweredPass, params::BoundParam, scopes::Position,
         symbols::SymbolTable,
     },
     kinds::step::{Operand, Program, ShaderUse},
     language::{
-        eval,
         name::{Name, wgsl_identifier},
         syntax::{Expr, Reference},
         value::Value,
     },
+    param::{Param, ParamType, ParamValue},
     request::PlanRequest,
     resource::{Origin, Resource, ResourceId, ResourceKind, Sampler, Target},
     shader::reflect::{Global, Shader},

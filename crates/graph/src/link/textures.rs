@@ -7,10 +7,8 @@ use crate::{
     errors::link::{LinkError, TextureMisfit},
     kinds::step::Program,
     resource::{Target, Texture},
-    shader::{
-        class::{ScalarClass, TextureClass},
-        reflect::Global,
-    },
+    scalar_class::ScalarClass,
+    shader::{class::TextureClass, reflect::Global},
 };
 use wgt::{TextureAspect, TextureFormat, TextureFormatFeatureFlags, TextureUsages};
 

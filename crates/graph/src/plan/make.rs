@@ -195,7 +195,7 @@ fn finish(
     graph: &Graph,
     scheduled: Scheduled,
     request: &PlanRequest<'_>,
-    values: BTreeMap<String, crate::document::params::ParamValue>,
+    values: BTreeMap<String, crate::param::ParamValue>,
     (mut reports, plan_inputs): (Reports, PlanInputs),
 ) -> Outcome {
     let mut plan = Plan {

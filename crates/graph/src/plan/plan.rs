@@ -10,7 +10,6 @@ use super::{
 };
 use crate::{
     diagnostics::{diagnostic::Diagnostic, list::Diagnostics, reports::Reports},
-    document::params::{ParamType, ParamValue},
     errors::plan::OutputError,
     flow::{
         order::{Dependences, dependences},
@@ -22,6 +21,7 @@ use crate::{
         params::words,
         pass::{LinkedPass, PassId},
     },
+    param::{ParamType, ParamValue},
     provider::Import,
     request::{PartialBackend, PlanRequest, Request},
     resource::{Growth, Origin, Resource, ResourceId, ResourceKind, Target},

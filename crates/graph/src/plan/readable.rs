@@ -3,12 +3,12 @@
 use crate::{
     diagnostics::reports::Reports,
     errors::plan::OutputError,
+    expressions::eval::{self, Environment},
     graph::Graph,
     instantiate::{
         lower::LoweredPass,
         symbols::{At, SymbolTable},
     },
-    language::eval::{self, Environment},
     request::PlanRequest,
     resource::{ResourceKind, Target},
     source::span::Located,

@@ -1,13 +1,13 @@
 //! Values of expressions.
 
-use super::{
-    name::Name,
-    syntax::{Attribute, Binary, Expr, ExprKind, Function, Reference, Subject, Unary},
-    value::{Scalar, Value, Word},
-};
 use crate::{
     diagnostics::reports::{ErrorGuaranteed, Reports},
     errors::evaluation::EvaluationError,
+    language::{
+        name::Name,
+        syntax::{Attribute, Binary, Expr, ExprKind, Function, Reference, Subject, Unary},
+        value::{Scalar, Value, Word},
+    },
     provided_kind::ProvidedKind,
     source::span::Span,
 };

@@ -9,17 +9,18 @@ use crate::{
         diagnostic::{Diagnostic, Severity},
         list::Diagnostics,
         reports::{ErrorGuaranteed, Reports},
-        suggest::suggestion,
     },
     document::{
         flat::{flat, keep},
         materials::{Material, TextureEntry},
-        params::{Param, ParamFault, ParamValue},
         typed::{Document, What, each_entry},
     },
     errors::{compose::ComposeError, resource::SizeError, shader::ShaderError},
+    instantiate::params::{Claim, Surroundings, checked, claims},
     kinds::registry::Registry,
     language::{name::Name, syntax::Leaf},
+    param::{Param, ParamError, ParamValue, find},
+    picture::Picture,
     shader::{
         expand::ShaderFiles,
         store::{self, Shaders},
@@ -27,7 +28,7 @@ use crate::{
     },
     source::{
         paths::{escapes, include_candidates},
-        sources::{Picture, Sources},
+        sources::Sources,
         span::{Located, Span},
     },
 };
@@ -65,45 +66,6 @@ impl Pictures {
         let key = (Arc::clone(&document.file.name), file.value.clone());
         self.0[&key].clone()
     }
-}
-
-/// Why a param cannot be set.
-#[derive(Clone, Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum ParamError {
-    /// The graph has no such param.
-    #[error("`{graph}` has no param `{name}`{hint}")]
-    Unknown {
-        /// The graph's path.
-        graph: String,
-        /// The name.
-        name: String,
-        /// A suggestion, or the list of params.
-        hint: String,
-    },
-    /// The value has the wrong type or is out of range.
-    #[error("param `{name}` of `{graph}`: {why}")]
-    Value {
-        /// The graph's path.
-        graph: String,
-        /// The name.
-        name: String,
-        /// The expected type or range.
-        why: ParamFault,
-    },
-}
-
-/// Promise of a method about itself. The graph knows no meaning of it: its caller judges it.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Claim {
-    /// The promise, a word that the judge knows.
-    pub name: String,
-    /// The condition as the document writes it; empty without one.
-    pub condition: String,
-    /// Why it holds, as the document says.
-    pub because: String,
-    /// True if the condition holds for these values of params.
-    pub holds: bool,
 }
 
 impl Graph {
@@ -302,16 +264,50 @@ impl Graph {
     }
 
     pub(crate) fn param(&self, name: &str) -> Result<&Param, ParamError> {
-        let params = self.params();
-        let known = params.iter().find(|param| param.name.value == name);
-        known.ok_or_else(|| {
-            let hint = suggestion(name, params.iter().map(|param| param.name.as_str()));
-            ParamError::Unknown {
-                graph: self.path().to_owned(),
-                name: name.to_owned(),
-                hint: hint.map_or(", it has none".to_owned(), |hint| format!(": {hint}")),
-            }
-        })
+        find(self.params(), name, self.path())
+    }
+
+    /// The value of every param: that which is asked for, else the default for this viewport on a
+    /// device with these features.
+    ///
+    /// # Errors
+    /// If there is no such param, or a value does not fit.
+    pub fn values(
+        &self,
+        asked: &BTreeMap<String, ParamValue>,
+        viewport: [u32; 2],
+        features: wgt::Features,
+    ) -> Result<BTreeMap<String, ParamValue>, Diagnostics> {
+        let mut reports = Reports::default();
+        let context = Surroundings { viewport, features };
+        match checked(&self.document, asked, context, &mut reports) {
+            Ok(params) => Ok(params
+                .list
+                .into_iter()
+                .filter_map(|bound| Some((bound.param.name.value, bound.value.ok()?)))
+                .collect()),
+            Err(_) => Err(self.diagnostics(reports.into_list())),
+        }
+    }
+
+    /// Returns the promises of the document about itself for these values of params and this
+    /// viewport, on a device with these features.
+    ///
+    /// # Errors
+    /// If a value does not fit, or a condition has no value.
+    pub fn claims(
+        &self,
+        asked: &BTreeMap<String, ParamValue>,
+        viewport: [u32; 2],
+        features: wgt::Features,
+    ) -> Result<Vec<Claim>, Diagnostics> {
+        let mut reports = Reports::default();
+        let context = Surroundings { viewport, features };
+        let claims = claims(&self.document, asked, context, &mut reports);
+        match reports.errors() {
+            0 => Ok(claims),
+            _ => Err(self.diagnostics(reports.into_list())),
+        }
     }
 
     /// Warns of materials and params of the document that nothing names; those of documents that it

@@ -118,18 +118,12 @@ written!(ClaimEntry, "Claim", generator => {
     json_schema!({ "anyOf": [condition, long] })
 });
 
-impl Registry {
-    /// Returns the JSON Schema (draft 2020-12) of documents of these kinds. RON has no schemas of
-    /// its own; for it `Kind(field: value)` is `{"Kind": {"field": value}}`, a bare word is a text,
-    /// a tuple is a list. The schema knows neither names nor values of expressions:
-    /// `skiagraph check` does.
-    pub fn schema(&self) -> Value {
-        document(self.all())
-    }
-}
-
-/// Returns the schema of documents of these kinds.
-fn document(kinds: &[Kind]) -> Value {
+/// Returns the JSON Schema (draft 2020-12) of documents of a registry's kinds. RON has no schemas
+/// of its own; for it `Kind(field: value)` is `{"Kind": {"field": value}}`, a bare word is a text,
+/// a tuple is a list. The schema knows neither names nor values of expressions:
+/// `skiagraph check` does.
+pub fn schema(registry: &Registry) -> Value {
+    let kinds = registry.all();
     let mut generator = SchemaGenerator::default();
     let mut sections = Map::new();
     let mut kinds = Kinds {

@@ -10,7 +10,7 @@ use skiagraph_report::language;
 /// # Errors
 /// Standard output.
 pub fn schema(args: &SchemaArgs) -> Result<(), CliError> {
-    let schema = skiagraph_passes::registry().schema();
+    let schema = skiagraph_graph::schema(&skiagraph_passes::registry());
     match args.format {
         SchemaFormat::Json => print(&format!("{schema:#}\n")),
         SchemaFormat::Markdown => print(&language::markdown(&schema)),

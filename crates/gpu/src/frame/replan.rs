@@ -224,8 +224,7 @@ fn has_same_pipelines(old: &LinkedPass, new: &LinkedPass) -> bool {
 
 /// Returns true if all steps of a pass have the bytes of params that they had.
 fn has_same_params(old: &LinkedPass, new: &LinkedPass) -> bool {
-    let old = old.steps.iter().map(Step::params);
-    old.eq(new.steps.iter().map(Step::params))
+    old.params().eq(new.params())
 }
 
 /// Parts of an executor's state that a new plan keeps.

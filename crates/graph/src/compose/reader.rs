@@ -9,7 +9,6 @@ use crate::{
     },
     document::{
         extend::extend,
-        params::Param,
         raw::{self, Invalid, RawDocument},
         read,
         typed::{Document, Entry, Include, What},
@@ -17,6 +16,7 @@ use crate::{
     errors::compose::ComposeError,
     kinds::registry::Registry,
     language::{name::Name, syntax::Expr},
+    param::Param,
     source::{
         paths::{escapes, folder_of, include_candidates},
         sources::{self, Sources},

@@ -16,4 +16,3 @@ pub(crate) use skiagraph_located_ron::reader as ron;
 
 pub use fields::Chosen;
 pub use materials::{Address, Filter};
-pub use params::{Param, ParamFault, ParamType, ParamValue};

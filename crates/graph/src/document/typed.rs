@@ -3,7 +3,6 @@
 use super::{
     fields::{Mentions, prose, short_or_long},
     materials::{Input, Material},
-    params::Param,
     raw::Invalid,
 };
 use crate::{
@@ -13,6 +12,7 @@ use crate::{
         name::Name,
         syntax::{Expr, Leaf, Reference},
     },
+    param::Param,
     source::span::{Located, SourceFile, Span},
 };
 use serde::{Deserialize, Deserializer};

@@ -1,7 +1,7 @@
 //! Mistakes between documents: params, inputs, outputs, names.
 
 use crate::{
-    document::params::{Param, ParamFault, ParamValue},
+    param::{Param, ParamFault, ParamValue},
     source::span::{Located, Span},
 };
 

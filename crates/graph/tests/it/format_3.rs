@@ -25,7 +25,7 @@ fn width(plan: &Plan, name: &str) -> u32 {
 fn program(plan: &Plan) -> (Vec<(String, f64)>, Vec<u32>) {
     let step = &plan.live().next().expect("a pass").steps[0];
     let program = step.program().expect("a program");
-    let words = step.params().unwrap_or_default().chunks_exact(4);
+    let words = program.params().unwrap_or_default().chunks_exact(4);
     let words = words.map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]));
     (program.constants.clone(), words.collect())
 }

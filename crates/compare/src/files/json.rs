@@ -1,4 +1,23 @@
 //! JSON files of ours: writing them, and the place of a mistake in one that is read back.
+//!
+//! ```
+//! use skiagraph_compare::files::json::{Mistake, to_text};
+//! use skiagraph_graph::SourceFile;
+//!
+//! let text = to_text(&[1, 2]);
+//! assert_eq!(text, "[\n  1,\n  2\n]\n");
+//!
+//! let broken = "{\"schema\": 1,}";
+//! let error = serde_json::from_str::<serde_json::Value>(broken).unwrap_err();
+//! let file = SourceFile::new("results.json", broken);
+//! let shown = Mistake::from_serde(broken, &error).in_file(
+//!     &file,
+//!     "results.json",
+//!     "compare anew",
+//!     "the results cannot be used",
+//! );
+//! assert_eq!(shown.to_string(), "the results cannot be used");
+//! ```
 
 use crate::error::CompareError;
 use serde::Serialize;

@@ -1,5 +1,23 @@
 //! From an argument to a graph that can run: presets and params, planning, what a shadow method
 //! must hand out. Nothing here runs on a GPU.
+//!
+//! ```
+//! use skiagraph_compare::{
+//!     graphs::{planning::{Capabilities, placeholder}, shadow_method},
+//!     lists::unique,
+//! };
+//! use skiagraph_passes::EmbeddedSources;
+//!
+//! let methods = shadow_method::load_methods(&["nsm", "crsm@n=1"], &[], &[1024], &EmbeddedSources)?;
+//! let names: Vec<&str> = methods.iter().map(|method| method.name.as_str()).collect();
+//! assert_eq!(unique(&names), ["nsm", "crsm"]);
+//! for method in &methods {
+//!     let scene = placeholder([64, 64], &method.preset.graph);
+//!     let plan = method.plan([64, 64], Capabilities::greatest(), &scene)?;
+//!     assert_eq!(plan.outputs()[0].name, "visibility");
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod argument;
 pub mod faults;

@@ -1,5 +1,15 @@
 //! Open includes: with another document in one a graph is a method of its own,
 //! `contact.ron@over=msm`.
+//!
+//! ```
+//! use skiagraph_compare::graphs::openings::arguments;
+//! use skiagraph_passes::EmbeddedSources;
+//!
+//! let (methods, for_all) = arguments(["contact@over=msm", "nsm"], &["bias=0".parse()?], &EmbeddedSources)?;
+//! assert_eq!(methods[0].preset, "contact@over=msm");
+//! assert_eq!(for_all[0].name, "bias");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::error::CompareError;
 use crate::graphs::argument::Assignment;

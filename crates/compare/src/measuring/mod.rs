@@ -2,7 +2,6 @@
 //! plain data, in `records`.
 
 pub mod camera_pose;
-
 pub mod date;
 pub mod device;
 pub mod frame;
@@ -12,13 +11,12 @@ pub mod hard_case;
 pub mod mesh_frames;
 pub mod poison;
 pub mod profiling;
-pub mod results_folder;
+mod results_folder;
 pub mod resume;
-pub mod run;
-
-pub mod sequence;
+mod run;
+mod sequence;
 pub mod series;
-pub mod steady;
-pub mod stop;
-pub mod timing;
+mod steady;
+mod stop;
+mod timing;
 pub mod view_or_path;

@@ -3,6 +3,6 @@
 pub mod buffer_csv;
 pub mod colours;
 pub mod material;
-pub mod png;
+mod png;
 pub mod run_pictures;
 pub mod save;

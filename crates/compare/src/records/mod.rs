@@ -9,7 +9,7 @@ pub mod published;
 pub mod published_row;
 pub mod read_back;
 pub mod results;
-pub mod results_csv;
+pub(crate) mod results_csv;
 pub mod samples;
 pub mod sequence;
 pub mod statistics;

@@ -4,19 +4,14 @@
 //! use skiagraph_compare::files::json::{Mistake, to_text};
 //! use skiagraph_graph::SourceFile;
 //!
-//! let text = to_text(&[1, 2]);
-//! assert_eq!(text, "[\n  1,\n  2\n]\n");
+//! assert_eq!(to_text(&[1, 2]), "[\n  1,\n  2\n]\n");
 //!
-//! let broken = "{\"schema\": 1,}";
-//! let error = serde_json::from_str::<serde_json::Value>(broken).unwrap_err();
-//! let file = SourceFile::new("results.json", broken);
-//! let shown = Mistake::from_serde(broken, &error).in_file(
-//!     &file,
-//!     "results.json",
-//!     "compare anew",
-//!     "the results cannot be used",
-//! );
-//! assert_eq!(shown.to_string(), "the results cannot be used");
+//! let text = "{\"schema\": 1,}";
+//! let error = serde_json::from_str::<serde_json::Value>(text).unwrap_err();
+//! let file = SourceFile::new("out/results.json", text);
+//! let (what, help) = ("results.json", "compare anew");
+//! let shown = Mistake::from_serde(text, &error).in_file(&file, what, help, "nothing to resume");
+//! assert!(shown.to_string().contains("out/results.json:1:14"), "{shown}");
 //! ```
 
 use crate::error::CompareError;

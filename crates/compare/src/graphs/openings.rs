@@ -3,11 +3,19 @@
 //!
 //! ```
 //! use skiagraph_compare::graphs::openings::arguments;
+//! use skiagraph_graph::{FolderSources, LayeredSources};
 //! use skiagraph_passes::EmbeddedSources;
 //!
-//! let (methods, for_all) = arguments(["contact@over=msm", "nsm"], &["bias=0".parse()?], &EmbeddedSources)?;
-//! assert_eq!(methods[0].preset, "contact@over=msm");
-//! assert_eq!(for_all[0].name, "bias");
+//! # let root = tempfile::tempdir()?;
+//! let step = r#"(format: 3, outputs: ["visibility"], passes: [
+//!     Include(graph: "nsm.ron", open: "over", expose: All)])"#;
+//! std::fs::create_dir(root.path().join("pipelines"))?;
+//! std::fs::write(root.path().join("pipelines/step.ron"), step)?;
+//! let folder = FolderSources { root: root.path().into() };
+//! let sources = LayeredSources(vec![Box::new(folder), Box::new(EmbeddedSources)]);
+//! let (methods, _) = arguments(["step"], &["over=pcf,nsm".parse()?], &sources)?;
+//! let names: Vec<&str> = methods.iter().map(|it| it.preset.as_str()).collect();
+//! assert_eq!(names, ["step@over=pcf", "step@over=nsm"]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 

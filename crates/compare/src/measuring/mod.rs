@@ -1,5 +1,25 @@
 //! Runs graphs on a GPU, times them, and judges them against the reference. What comes out is
 //! plain data, in `records`.
+//!
+//! ```no_run
+//! use skiagraph_compare::{
+//!     graphs::{method::{Method, load_one}, planning::Capabilities},
+//!     measuring::{device::{self, GpuRequest}, frame},
+//!     sink::{Session, Silent},
+//! };
+//! use skiagraph_passes::{EmbeddedSources, SceneProvider};
+//!
+//! # fn wrong(mut provider: SceneProvider) -> Result<(), Box<dyn std::error::Error>> {
+//! let (preset, params) = load_one("nsm", &[], Some(1024), &EmbeddedSources)?;
+//! let gpu = device::open(&GpuRequest::default(), [&preset.graph])?;
+//! let method = Method::new(preset, params).settled(gpu.device.features());
+//! let plan = method.plan([512, 512], Capabilities::new(&gpu), &provider)?;
+//! let session = Session::new(&gpu, &Silent);
+//! let (contents, _) = frame::render(session, "nsm", plan, &mut provider, &["visibility"])?;
+//! println!("{:?}", contents["visibility"].size());
+//! # Ok(())
+//! # }
+//! ```
 
 pub mod camera_pose;
 pub mod date;

@@ -17,7 +17,7 @@
 //! # }
 //!
 //! /// Written in documents as `Reset(name: "reset", target: "image")`.
-//! #[derive(Deserialize)]
+//! #[derive(Debug, Deserialize)]
 //! struct Reset {
 //!     target: Reference,
 //! }

@@ -5,7 +5,8 @@
 //! use skiagraph_gpu::{Executor, device::Gpu, import};
 //! use skiagraph_graph::{Graph, NoProvider, PlanRequest};
 //!
-//! # fn executor(graph: &Graph, gpu: &Gpu, depth: wgpu::Texture) -> Result<(), Box<dyn std::error::Error>> {
+//! # type Done = Result<(), Box<dyn std::error::Error>>;
+//! # fn executor(graph: &Graph, gpu: &Gpu, depth: wgpu::Texture) -> Done {
 //! // `graph` has `inputs: [Texture(name: "depth")]`.
 //! let mut request = PlanRequest::new([1024, 768], &NoProvider);
 //! request.limits = gpu.device.limits();

@@ -1,13 +1,14 @@
 //! The names of what a scene gives, and what each depends on.
 //!
-//! A light of another kind makes another graph of many methods; a plan says whether it asks for one:
+//! A plan says which of them it asks for:
 //!
 //! ```
 //! use skiagraph_graph::{Graph, PlanRequest};
 //! use skiagraph_passes::{EmbeddedSources, SceneProvider, names::LIGHT, registry};
 //! # use skiagraph_scene::{DirectionalLight, Indexed, Mesh};
-//! # let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]];
-//! # let mesh = Mesh::indexed(&Indexed { positions: &corners, normals: &[], indices: &[0, 1, 2] })?;
+//! # let positions = &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]];
+//! # let indices = &[0, 1, 2];
+//! # let mesh = Mesh::indexed(&Indexed { positions, normals: &[], indices })?;
 //! # let sun = DirectionalLight::new(glam::DVec3::NEG_Y);
 //!
 //! let provider = SceneProvider::of_mesh(mesh, sun);

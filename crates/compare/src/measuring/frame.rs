@@ -6,8 +6,8 @@
 //! use skiagraph_graph::Plan;
 //! use skiagraph_passes::SceneProvider;
 //!
-//! # fn time(session: Session, plan: Plan, provider: &mut SceneProvider) -> Result<(), ExecuteError> {
-//! let (mut executor, growth) = frame::settled(session, plan, provider)?;
+//! # fn time(session: Session, plan: Plan, scene: &mut SceneProvider) -> Result<(), ExecuteError> {
+//! let (mut executor, growth) = frame::settled(session, plan, scene)?;
 //! print!("{}", growth.text());
 //! for _ in 0..10 {
 //!     let (report, wall) = frame::run(session, &mut executor, &Frame::default())?;

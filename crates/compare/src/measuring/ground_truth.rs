@@ -13,8 +13,8 @@
 //! let ids = vec![0; 8 * 8];
 //! let oracle = Oracle::new(&scene.mesh);
 //! let tracing = Tracing { mode: OracleMode::Exact, samples: 1 };
-//! let progress = heard(&Silent, &|_rows| {});
-//! let truth = ground_truth(&oracle, &view.camera([8, 8]), &light, &ids, tracing, progress, "main")?;
+//! let (camera, progress) = (view.camera([8, 8]), heard(&Silent, &|_rows| {}));
+//! let truth = ground_truth(&oracle, &camera, &light, &ids, tracing, progress, "main")?;
 //! assert_eq!(truth.pixels.classes.len(), 64);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

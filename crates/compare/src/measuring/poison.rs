@@ -9,7 +9,8 @@
 //! use skiagraph_passes::SceneProvider;
 //! # use skiagraph_passes::EmbeddedSources;
 //!
-//! # fn check(session: Session, mut scene: SceneProvider) -> Result<(), Box<dyn std::error::Error>> {
+//! # type Done = Result<(), Box<dyn std::error::Error>>;
+//! # fn check(session: Session, mut scene: SceneProvider) -> Done {
 //! let (preset, params) = load_one("my/method.ron", &[], None, &EmbeddedSources)?;
 //! let mut request = Capabilities::new(session.gpu).request([256, 256], &scene);
 //! request.params = params;

@@ -5,7 +5,8 @@
 //! use skiagraph_scene::Scene;
 //! use std::sync::Arc;
 //!
-//! # fn time(session: Session, method: &Method, scene: Arc<Scene>) -> Result<(), Box<dyn std::error::Error>> {
+//! # type Done = Result<(), Box<dyn std::error::Error>>;
+//! # fn time(session: Session, method: &Method, scene: Arc<Scene>) -> Done {
 //! let (profile, _) = profile(session, [5, 100], method, &scene, &scene.views[0])?;
 //! for pass in &profile.passes {
 //!     println!("{}: {:.3} ms on the CPU", pass.name, pass.cpu_ms.median);

@@ -8,7 +8,8 @@
 //! };
 //! use std::path::Path;
 //!
-//! # fn measure(comparison: &Comparison, session: Session) -> Result<(), Box<dyn std::error::Error>> {
+//! # type Done = Result<(), Box<dyn std::error::Error>>;
+//! # fn measure(comparison: &Comparison, session: Session) -> Done {
 //! comparison.check(session)?;
 //! let mut series = Series::new(comparison, session, Some((Path::new("out"), Kept::Others)))?;
 //! for view in 0..comparison.views.len() {

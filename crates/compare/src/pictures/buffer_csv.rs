@@ -3,8 +3,8 @@
 //! ```
 //! use skiagraph_compare::pictures::buffer_csv::to_csv;
 //!
-//! let words: Vec<u8> = [7_u32, 1.5_f32.to_bits()].iter().flat_map(|it| it.to_le_bytes()).collect();
-//! let lines = to_csv(&words, None, 0)?;
+//! let bytes = [7_u32, 1.5_f32.to_bits()].map(u32::to_le_bytes).concat();
+//! let lines = to_csv(&bytes, None, 0)?;
 //! assert_eq!(lines.lines().next(), Some("item,u32,i32,f32"));
 //! assert_eq!(lines.lines().nth(2), Some("1,1069547520,1069547520,1.5"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -6,7 +6,8 @@
 //! use skiagraph_graph::Plan;
 //! use skiagraph_scene::View;
 //!
-//! # fn save(plan: &Plan, view: &View, content: &Content) -> Result<(), Box<dyn std::error::Error>> {
+//! # type Done = Result<(), Box<dyn std::error::Error>>;
+//! # fn save(plan: &Plan, view: &View, content: &Content) -> Done {
 //! let save: Save = "depth=out/depth.png".parse()?;
 //! let decoding = Decoding::new(plan, &capture(&save).name(), ClipPlanes::new(view));
 //! println!("{}", write(&save, content, &decoding)?);

@@ -11,7 +11,8 @@
 //! # impl Sources for Files {
 //! #     fn read(&self, _: &str) -> Result<Option<std::sync::Arc<str>>, String> {
 //! #         Ok(Some("(format: 3, materials: [Texture(name: \"image\", format: R32Float)],
-//! #             passes: [Reset(name: \"reset\", target: \"image\")], outputs: [\"image\"])".into()))
+//! #             passes: [Reset(name: \"reset\", target: \"image\")],
+//! #             outputs: [\"image\"])".into()))
 //! #     }
 //! #     fn list(&self, _: &str) -> Vec<String> { Vec::new() }
 //! # }

@@ -405,11 +405,7 @@ fn on_gl_only_what_is_proven_there_is_planned() {
     assert!(partial(wgpu::Backend::Vulkan).is_none());
     let mut proven = Vec::new();
     for preset in presets() {
-        let graph = Graph::load(
-            &preset.path,
-            &registry(),
-            &EmbeddedSources,
-        );
+        let graph = Graph::load(&preset.path, &registry(), &EmbeddedSources);
         let graph = graph.unwrap_or_else(|error| panic!("{error}"));
         match graph.plan(&request) {
             Ok(_) => proven.push(preset.name),

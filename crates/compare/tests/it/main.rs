@@ -4,6 +4,7 @@ mod support;
 
 mod engine;
 mod hard_cases;
+mod judging;
 mod paths;
 mod remembering;
 mod resume;

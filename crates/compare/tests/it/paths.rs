@@ -1,16 +1,6 @@
 //! Every frame of a camera path, judged.
 
-use crate::support::{along, park_comparison, runs, timed};
-use serde_json::Value;
-
-/// A folder without documents: methods are built in.
-const NOWHERE: &str = "no folder of documents";
-
-fn count(value: &Value) -> u64 {
-    value
-        .as_u64()
-        .unwrap_or_else(|| panic!("{value} is not a count"))
-}
+use crate::support::{NOWHERE, along, count, park_comparison, runs, timed};
 
 #[test]
 #[ignore = "a suite: `./test.sh --all` runs it"]

@@ -11,23 +11,6 @@ use skiagraph_compare::{
 use skiagraph_graph::Sources;
 use std::{fs, path::Path, sync::Mutex};
 
-/// Keeps notes, and the names of steps that begin.
-#[derive(Default)]
-struct Heard {
-    notes: Mutex<String>,
-    steps: Mutex<Vec<String>>,
-}
-
-impl Sink for Heard {
-    fn note(&self, text: &str) {
-        *self.notes.lock().unwrap() += text;
-    }
-
-    fn begin_step(&self, name: &str, _total: u64, _unit: &'static str) {
-        self.steps.lock().unwrap().push(name.to_owned());
-    }
-}
-
 /// Results without times, and without the commands that measured them.
 fn timeless(mut value: Value) -> Value {
     fn clear(value: &mut Value) {
@@ -57,29 +40,12 @@ fn compare(
     out: &Path,
     kept: Kept,
 ) -> (String, Vec<String>, Value) {
-    let methods = load_methods(methods, &[], map_sizes, &sources(own)).unwrap();
-    let mut comparison = Comparison::new(park(), methods).unwrap();
-    comparison.views.truncate(1);
+    let mut comparison = comparison(park(), methods, own, map_sizes);
     comparison.viewports = vec![[24, 16], [16, 16]];
-    (comparison.protocol.frames, comparison.protocol.warmup) = (1, 0);
-    (
-        comparison.protocol.cached_frames,
-        comparison.protocol.pictures,
-    ) = (1, true);
-    let heard = Heard::default();
-    let session = Session::new(crate::support::gpu(), &heard);
-    comparison.check(session).unwrap();
-    fs::create_dir_all(out).unwrap();
-    let mut series = Series::new(&comparison, session, Some((out, kept))).unwrap();
-    for viewport in 0..comparison.viewports.len() {
-        series.measure(0, viewport).unwrap();
-    }
-    series.save(&[]).unwrap();
-    drop(series);
-    let text = fs::read_to_string(out.join("results.json")).unwrap();
-    let notes = heard.notes.into_inner().unwrap();
-    let steps = heard.steps.into_inner().unwrap();
-    (notes, steps, serde_json::from_str(&text).unwrap())
+    comparison.protocol.cached_frames = 1;
+    comparison.protocol.pictures = true;
+    let (heard, results) = keep(&comparison, out, kept).unwrap();
+    (heard.notes(), heard.steps(), results)
 }
 
 #[test]

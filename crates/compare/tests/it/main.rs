@@ -5,6 +5,8 @@ mod support;
 mod engine;
 mod hard_cases;
 mod judging;
+mod lights;
 mod paths;
+mod poison;
 mod remembering;
 mod resume;

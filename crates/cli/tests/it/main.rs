@@ -20,7 +20,6 @@ mod report;
 mod saves;
 mod schema;
 mod stress;
-mod surfaces;
 mod together;
 mod tutorial;
 mod watch;

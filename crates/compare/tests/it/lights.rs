@@ -4,14 +4,14 @@ use crate::support::{Heard, LIT, NOWHERE, comparison, count, gpu, keep, runs, sc
 use serde_json::Value;
 use skiagraph_compare::{
     comparison::Comparison,
-    graphs::{idle_params::IdleParams, planning::Capabilities},
+    graphs::{idle_params::IdleParams, planning::Capabilities, shadow_method::load_methods},
     measuring::{
         resume::Kept,
         view_or_path::{ViewOrPath, under_lights},
     },
     sink::Session,
 };
-use skiagraph_passes::SceneProvider;
+use skiagraph_passes::{EmbeddedSources, SceneProvider};
 use std::fs;
 
 /// Park under a spot light, a point light and a directional one.
@@ -177,8 +177,9 @@ fn a_layer_for_each_light_is_judged_by_itself() {
 /// A `fit` under a light that has but one.
 #[test]
 fn params_without_effect_are_told_once() {
-    let fit = ["nsm@fit=camera", "rt"];
-    let mut comparison = comparison(scene(LAMPS, None), &fit, NOWHERE.as_ref(), &[]);
+    let fit = ["fit=camera".parse().unwrap()];
+    let methods = load_methods(&["nsm", "rt"], &fit, &[], &EmbeddedSources).unwrap();
+    let mut comparison = Comparison::new(scene(LAMPS, None), methods).unwrap();
     comparison.viewports = vec![[16, 16]];
     let told = |heard: &Heard| {
         let text = heard.notes();

@@ -15,7 +15,6 @@ mod on_a_gpu;
 mod paths;
 mod profile;
 mod recording;
-mod remembering;
 mod report;
 mod saves;
 mod schema;

@@ -3,6 +3,7 @@
 mod support;
 
 mod engine;
+mod frames;
 mod hard_cases;
 mod judging;
 mod lights;

@@ -1,6 +1,6 @@
 //! `run --frames`: a numbered sequence of pictures. Needs an adapter.
 
-use crate::support::{skiagraph, temporal};
+use crate::support::skiagraph;
 use std::{fs, path::Path};
 
 fn run(folder: &Path, line: &str) -> String {

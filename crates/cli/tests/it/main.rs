@@ -16,7 +16,6 @@ mod paths;
 mod profile;
 mod recording;
 mod report;
-mod saves;
 mod schema;
 mod stress;
 mod together;

@@ -145,32 +145,6 @@ fn run_saves_outputs_and_materials_and_says_what_ran() {
 }
 
 #[test]
-fn run_shows_a_mesh_of_ones_own() {
-    let folder = tempfile::tempdir().unwrap();
-    // A floor at y = 0 and a lid over its middle at y = 1, seen from above and lit from above.
-    let quad = |y: f32, half: f32| {
-        format!(
-            "v {0} {y} {0}\nv {1} {y} {0}\nv {1} {y} {1}\nv {0} {y} {1}\n",
-            -half, half
-        )
-    };
-    let mesh = format!("{}{}f 4 3 2 1\nf 8 7 6 5\n", quad(0.0, 2.0), quad(1.0, 0.5));
-    fs::write(folder.path().join("lid.obj"), mesh).unwrap();
-    let line = "run rt --scene lid.obj --eye -3,5,0 --look 3,-5,0 --light 0,-1,0 --size 64x64 \
-        --save visibility=v.png --save status=s.png";
-    skiagraph(folder.path(), line);
-    let picture = png(&folder.path().join("s.png"));
-    let statuses: std::collections::BTreeSet<_> = picture.pixels().map(|pixel| pixel.0).collect();
-    assert!(statuses.len() > 1, "floor and background: {statuses:?}");
-    let visibility = png(&folder.path().join("v.png"));
-    let lit = visibility
-        .pixels()
-        .filter(|pixel| pixel.0 == [255; 3])
-        .count();
-    assert!(lit > 100 && lit < 64 * 64, "{lit} lit pixels");
-}
-
-#[test]
 fn an_unwritable_file_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let output = Command::new(env!("CARGO_BIN_EXE_skiagraph"))
@@ -191,26 +165,6 @@ fn an_unwritable_file_is_named() {
         text.contains("nowhere/v.png") || text.contains("nowhere\\v.png"),
         "{text}"
     );
-}
-
-#[test]
-fn a_buffer_has_no_picture_but_bytes() {
-    let folder = tempfile::tempdir().unwrap();
-    let save = |file: &str| {
-        Command::new(env!("CARGO_BIN_EXE_skiagraph"))
-            .args(["run", "rt", "--size", "8x8", "--save"])
-            .arg(format!("ray_count={file}"))
-            .current_dir(folder.path())
-            .output()
-            .unwrap()
-    };
-    let picture = save("count.png");
-    assert_eq!(picture.status.code(), Some(1));
-    assert!(String::from_utf8_lossy(&picture.stderr).contains("save it as .csv or .bin"));
-    assert_eq!(save("count.bin").status.code(), Some(0));
-    let count = fs::read(folder.path().join("count.bin")).unwrap();
-    let count = u32::from_le_bytes(count.try_into().unwrap());
-    assert!(count > 0 && count <= 64, "{count} rays for 64 pixels");
 }
 
 fn results(folder: &Path) -> Value {

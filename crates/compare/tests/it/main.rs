@@ -11,3 +11,4 @@ mod paths;
 mod poison;
 mod remembering;
 mod resume;
+mod saves;

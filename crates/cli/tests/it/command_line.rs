@@ -87,18 +87,6 @@ fn check_needs_no_gpu_and_shows_the_faults_of_all_files() {
 }
 
 #[test]
-fn check_tells_which_params_a_kind_of_light_has_no_use_for() {
-    let folder = tempfile::tempdir().unwrap();
-    let output = skiagraph(folder.path(), &["check", "nsm", "crsm", "rt"]);
-    assert_exit(&output, 0);
-    let text = stdout(&output);
-    let line = |name: &str| text.lines().find(|line| line.starts_with(name)).unwrap();
-    let told = "; under a spot light fit has no effect; under a point light fit has no effect";
-    assert!(line("nsm:").ends_with(told), "{text}");
-    assert!(!line("rt:").contains("no effect"), "{text}");
-}
-
-#[test]
 fn check_tells_programs_what_it_tells_people() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("good.ron"), CLEARED).unwrap();

@@ -216,20 +216,6 @@ fn a_driver_without_memory_names_the_material_with_the_table() {
 }
 
 #[test]
-fn compare_measures_what_fits_and_says_why_the_rest_does_not() {
-    let folder = folder();
-    let line = "compare light.ron nsm --size 16x16 --frames 1 --memory-limit 1MiB --images none";
-    let (code, stdout, stderr) = run(folder.path(), line);
-    assert_eq!(code, 0, "{stderr}");
-    let why = "nsm 1024 is unavailable: the materials of `pipelines/nsm.ron` take 4.0 MiB, but \
-        there are only 1.0 MiB";
-    assert!(stdout.contains(why), "{stdout}");
-    let (code, stdout, stderr) = run(folder.path(), &line.replace("light.ron ", ""));
-    assert_eq!((code, &*stdout), (1, ""), "nothing is left to measure");
-    assert!(stderr.contains("shadow_map"), "{stderr}");
-}
-
-#[test]
 #[ignore = "a suite: `./test.sh --all` runs it"]
 fn a_shader_that_never_ends_is_given_up_and_finished_runs_are_kept() {
     let folder = folder();

@@ -92,13 +92,17 @@ fn a_bare_compare_takes_the_presets_that_presets_lists() {
 #[ignore = "a suite: `./test.sh --all` runs it"]
 fn a_bare_stress_takes_the_presets_that_presets_lists() {
     let (folder, listed) = presets_on_disk();
-    let line = "stress --case box_on_floor --size 16x16 --map-size 8 --format json";
+    let line = "stress --case box_on_floor --size 16x16 --map-size 8 --out out --format json";
     let output = Command::new(env!("CARGO_BIN_EXE_skiagraph"))
         .args(line.split_whitespace())
         .current_dir(folder.path())
         .output()
         .unwrap();
-    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let file = fs::read(folder.path().join("out/stress.json")).unwrap();
+    assert!(output.stdout == file, "--format json prints the file");
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(!told.contains("box_on_floor"), "quiet in a pipe: {told}");
+    let report: Value = serde_json::from_slice(&file).unwrap();
     assert_eq!(preset_names(&report["methods"]), listed);
     let cells = report["cases"][0]["cells"].as_array().unwrap();
     let own = cells
@@ -142,6 +146,23 @@ fn run_saves_outputs_and_materials_and_says_what_ran() {
         fs::read(folder.path().join("ids.bin")).unwrap().len(),
         48 * 32 * 4
     );
+}
+
+#[test]
+fn outputs_that_break_the_contract_are_an_error_at_the_end() {
+    let folder = tempfile::tempdir().unwrap();
+    let odd = LIT.replace("value: 2", "value: 7");
+    fs::write(folder.path().join("odd.ron"), odd).unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_skiagraph"))
+        .args("compare odd.ron nsm --size 16x16 --map-size 16 --frames 1 --out .".split(' '))
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(text.contains("`odd.ron`"), "{text}");
+    let results = results(folder.path());
+    assert_eq!(preset_names(&results["runs"]), ["odd.ron", "nsm"]);
 }
 
 #[test]

@@ -7,7 +7,12 @@ use glam::DVec3;
 use serde_json::Value;
 use skiagraph_compare::{
     comparison::Comparison,
-    measuring::{ground_truth::PrimaryVisibility, resume::Kept, series},
+    measuring::{
+        device::{self, GpuRequest},
+        ground_truth::PrimaryVisibility,
+        resume::Kept,
+        series,
+    },
     sink::{Session, Silent},
 };
 use skiagraph_graph::Sources;
@@ -284,4 +289,28 @@ fn a_surface_that_another_one_hides_is_counted() {
     let csv = fs::read_to_string(folder.path().join("results.csv")).unwrap();
     assert!(csv.lines().next().unwrap().ends_with(",wrong_surface"));
     assert!(csv.lines().nth(1).unwrap().ends_with(&format!(",{hidden}")));
+}
+
+#[test]
+fn what_fits_is_measured_and_the_rest_says_why_it_does_not() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("lit.ron"), LIT).unwrap();
+    let request = GpuRequest {
+        memory_limit: Some(1 << 20),
+        ..GpuRequest::default()
+    };
+    let compare = |methods: &[&str]| {
+        let mut comparison = comparison(park(), methods, folder.path(), &[]);
+        comparison.viewports = vec![[16, 16]];
+        let graphs = comparison.methods.iter().map(|method| &method.preset.graph);
+        let gpu = device::open(&request, graphs).unwrap();
+        series::run(&comparison, Session::new(&gpu, &Silent))
+    };
+    let runs = compare(&["lit.ron", "nsm"]).unwrap().runs;
+    assert!(runs[0].measured.is_some());
+    let reason = runs[1].unavailable.as_deref().unwrap();
+    let why = "the materials of `pipelines/nsm.ron` take 4.0 MiB, but there are only 1.0 MiB";
+    assert!(reason.contains(why), "{reason}");
+    let text = compare(&["nsm"]).unwrap_err().to_string();
+    assert!(text.contains("shadow_map"), "{text}");
 }

@@ -4,7 +4,11 @@ use crate::support::{Heard, LIT, NOWHERE, comparison, count, gpu, keep, runs, sc
 use serde_json::Value;
 use skiagraph_compare::{
     comparison::Comparison,
-    graphs::{idle_params::IdleParams, planning::Capabilities, shadow_method::load_methods},
+    graphs::{
+        idle_params::{IdleParams, under_other_lights},
+        planning::Capabilities,
+        shadow_method::load_methods,
+    },
     measuring::{
         resume::Kept,
         view_or_path::{ViewOrPath, under_lights},
@@ -205,4 +209,13 @@ fn params_without_effect_are_told_once() {
     idle.note_of(&heard, "nsm", &plan, provider.light());
     assert_eq!(told(&heard), 1);
     assert_eq!(checked(&under(lamp, "moon")), 0);
+}
+
+#[test]
+fn params_that_a_kind_of_light_has_no_use_for_are_named() {
+    let methods = load_methods(&["nsm", "rt"], &[], &[], &EmbeddedSources).unwrap();
+    let [nsm, rt] = [0, 1].map(|at| under_other_lights(&methods[at].preset.graph));
+    let told = "; under a spot light fit has no effect; under a point light fit has no effect";
+    assert_eq!(nsm, told);
+    assert!(!rt.contains("no effect"), "{rt}");
 }

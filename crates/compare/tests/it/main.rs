@@ -9,6 +9,7 @@ mod judging;
 mod lights;
 mod paths;
 mod poison;
+mod profile;
 mod remembering;
 mod resume;
 mod saves;

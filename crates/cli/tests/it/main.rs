@@ -6,7 +6,6 @@ mod support;
 
 mod backends;
 mod command_line;
-mod dissertation;
 mod endless_files;
 mod faults;
 mod foreign_files;
@@ -16,7 +15,6 @@ mod paths;
 mod profile;
 mod recording;
 mod report;
-mod schema;
 mod stress;
 mod together;
 mod tutorial;

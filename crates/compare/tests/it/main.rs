@@ -2,6 +2,8 @@
 
 mod support;
 
+mod checking;
+mod dissertation;
 mod engine;
 mod frames;
 mod hard_cases;
@@ -13,3 +15,4 @@ mod profile;
 mod remembering;
 mod resume;
 mod saves;
+mod schema;

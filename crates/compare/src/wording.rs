@@ -1,4 +1,13 @@
 //! Numbers, suggestions and command lines in words.
+//!
+//! ```
+//! use skiagraph_compare::wording::{did_you_mean, ms, percent, thousands};
+//!
+//! assert_eq!(ms(12.3456), "12.3");
+//! assert_eq!(percent(1, 1_000_000), "<0.001 %");
+//! assert_eq!(thousands(207_377), "207,377");
+//! assert_eq!(did_you_mean("nsn", ["nsm", "rt"].into_iter()), "; did you mean `nsm`?");
+//! ```
 
 use skiagraph_graph::diagnostics::closest;
 use std::ffi::OsString;

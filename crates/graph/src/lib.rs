@@ -1,5 +1,39 @@
 //! A render graph for wgpu, written in RON and WGSL: from documents to a plan, without a GPU.
 //!
+//! ```
+//! use skiagraph_graph::{Graph, NoProvider, PlanRequest, Registry, Sources};
+//! use std::sync::Arc;
+//!
+//! /// A document and its shader; `FolderSources` reads those of a folder.
+//! struct Ramp;
+//!
+//! impl Sources for Ramp {
+//!     fn read(&self, path: &str) -> Result<Option<Arc<str>>, String> {
+//!         Ok(match path {
+//!             "ramp.ron" => Some(
+//!                 r#"(format: 3, materials: [Texture(name: "image", format: R32Float)],
+//!                     passes: [Fullscreen(name: "ramp", color: ["image"])], outputs: ["image"])"#,
+//!             ),
+//!             "shaders/ramp.wgsl" => Some(
+//!                 "@fragment fn fragment(@builtin(position) at: vec4<f32>) -> @location(0) f32 {
+//!                     return at.x / 64.0; }",
+//!             ),
+//!             _ => None,
+//!         }
+//!         .map(Arc::from))
+//!     }
+//!     fn list(&self, _folder: &str) -> Vec<String> {
+//!         vec![]
+//!     }
+//! }
+//!
+//! let graph = Graph::load("ramp.ron", &Registry::standard(), &Ramp)?;
+//! let plan = graph.plan(&PlanRequest::new([64, 32], &NoProvider))?;
+//! assert_eq!(plan.passes()[0].name, "ramp");
+//! assert_eq!(plan.outputs()[0].size, [64, 32]);
+//! # Ok::<(), skiagraph_graph::Diagnostics>(())
+//! ```
+//!
 //! A document names *materials* (textures, buffers, samplers) and *passes*; bindings and access
 //! come from the shaders by reflection, order from what passes read and write. The phases are a
 //! folder each, in this order: `document` (with `compose`, which reads what it extends and

@@ -1,4 +1,21 @@
 //! How a frame of a shadow method compares with the ground truth.
+//!
+//! ```no_run
+//! use skiagraph_compare::graphs::{ground_truth::Judgement, shadow_method::Outputs};
+//! use skiagraph_reference::{Error, GroundTruth};
+//!
+//! # fn best(truth: &GroundTruth, frames: &[Outputs]) -> Result<(), Error> {
+//! let mut best: Option<Judgement> = None;
+//! for outputs in frames {
+//!     let judged = Judgement::new(outputs, truth)?;
+//!     println!("{} pixels wrong", judged.counts.wrong.total);
+//!     if best.as_ref().is_none_or(|best| best.is_worse_than(&judged)) {
+//!         best = Some(judged);
+//!     }
+//! }
+//! # Ok(())
+//! # }
+//! ```
 
 use crate::error::CompareError;
 use crate::graphs::preset::Preset;

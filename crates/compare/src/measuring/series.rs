@@ -1,4 +1,28 @@
 //! The runs of a comparison, one after the other; whatever is measured is on disk at once.
+//!
+//! ```no_run
+//! use skiagraph_compare::{
+//!     comparison::Comparison,
+//!     measuring::{resume::Kept, series::Series},
+//!     sink::Session,
+//! };
+//! use std::path::Path;
+//!
+//! # type Done = Result<(), Box<dyn std::error::Error>>;
+//! # fn measure(comparison: &Comparison, session: Session) -> Done {
+//! comparison.check(session)?;
+//! let mut series = Series::new(comparison, session, Some((Path::new("out"), Kept::Others)))?;
+//! for view in 0..comparison.views.len() {
+//!     for viewport in 0..comparison.viewports.len() {
+//!         series.measure(view, viewport)?; // and writes `out/results.json`
+//!         for run in series.runs(view, viewport) {
+//!             println!("{}", run.label());
+//!         }
+//!     }
+//! }
+//! # Ok(())
+//! # }
+//! ```
 
 use crate::comparison::Comparison;
 use crate::error::CompareError;

@@ -1,4 +1,19 @@
 //! The schema of `profile --json`, version 1. `--baseline` reads it: extend it, rename nothing.
+//!
+//! ```
+//! use skiagraph_compare::records::read_back;
+//!
+//! # let out = tempfile::tempdir()?;
+//! # let name = "skiagraph_compare__records__profile__tests__the_schema_is_pinned_and_reads_back";
+//! # let pinned = std::fs::read_to_string(format!("src/records/snapshots/{name}.snap"))?;
+//! # std::fs::write(out.path().join("nsm.json"), &pinned[pinned.find('{').unwrap_or(0)..])?;
+//! let (old, new) = (out.path().join("nsm.json"), out.path().join("nsm.json"));
+//! let profile = read_back::profile(&new)?;
+//! println!("{} on {}", profile.conditions.preset, profile.conditions.adapter);
+//! let beside = profile.against(&old, &read_back::profile(&old)?);
+//! assert_eq!(beside.frame.wall.ratio, 1.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::records::baseline::{Comparison, Difference, FrameRatio, PassRatio, Ratio};
 use crate::records::results::{Adapter, Scene};

@@ -1,4 +1,18 @@
 //! Decoding back what `compare` and `profile --json` wrote.
+//!
+//! ```
+//! use skiagraph_compare::records::read_back;
+//!
+//! # let out = tempfile::tempdir()?;
+//! # let name = "skiagraph_compare__records__results__tests__the_schema_is_pinned_and_reads_back";
+//! # let pinned = std::fs::read_to_string(format!("src/records/snapshots/{name}.snap"))?;
+//! # std::fs::write(out.path().join("results.json"), &pinned[pinned.find('{').unwrap_or(0)..])?;
+//! let results = read_back::results(&out.path().join("results.json"))?.ok_or("there are some")?;
+//! assert_eq!(results.scene.name, "park");
+//! assert!(read_back::kept("no/such/folder".as_ref()).is_err());
+//! assert!(read_back::stress(out.path())?.is_none(), "there is no stress.json");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::error::CompareError;
 use crate::files::json::{Mistake, check_schema};

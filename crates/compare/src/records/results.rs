@@ -1,5 +1,22 @@
 //! The schema of `results.json` and `results.csv`, version 1. Scripts rely on it: extend it, rename
 //! nothing.
+//!
+//! ```
+//! use skiagraph_compare::records::{read_back, results::step};
+//!
+//! # let out = tempfile::tempdir()?;
+//! # let name = "skiagraph_compare__records__results__tests__the_schema_is_pinned_and_reads_back";
+//! # let pinned = std::fs::read_to_string(format!("src/records/snapshots/{name}.snap"))?;
+//! # std::fs::write(out.path().join("results.json"), &pinned[pinned.find('{').unwrap_or(0)..])?;
+//! let results = read_back::kept(out.path())?;
+//! let measured = results.runs[0].measured.as_ref().ok_or("it ran")?;
+//! assert_eq!(measured.wrong_outside_band(), 497);
+//! for pass in &measured.passes {
+//!     println!("{}, of the step {}", pass.name, step(&pass.name));
+//! }
+//! assert_eq!(measured.step_ms("gbuffer+create_shadow_map"), Some(0.75));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::records::sequence::Sequence;
 use crate::records::statistics::{FrameTimes, Spread};

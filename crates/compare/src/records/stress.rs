@@ -1,5 +1,22 @@
 //! The schema of `stress.json`, version 1, and what is judged of it. Scripts rely on it: extend it,
 //! rename nothing.
+//!
+//! ```
+//! use skiagraph_compare::records::{read_back, stress::{Report, Verdict}};
+//!
+//! # let out = tempfile::tempdir()?;
+//! # let pinned = "skiagraph_compare__records__stress__tests__the_schema_is_pinned";
+//! # let pinned = std::fs::read_to_string(format!("src/records/snapshots/{pinned}.snap"))?;
+//! # std::fs::write(out.path().join("stress.json"), &pinned[pinned.find('{').unwrap_or(0)..])?;
+//! let matrix = read_back::stress(out.path())?.ok_or("there is no stress.json")?;
+//! let report: Report = serde_json::from_value(matrix)?;
+//! for case in &report.cases {
+//!     let failed = case.cells.iter().filter(|cell| cell.verdict == Verdict::Fail);
+//!     println!("{}: {} failed", case.name, failed.count());
+//! }
+//! assert_eq!(report.count(Verdict::Fail), 2);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::records::results::{Adapter, Images};
 use serde::{Deserialize, Serialize};

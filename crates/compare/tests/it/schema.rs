@@ -1,6 +1,5 @@
-//! `skiagraph schema`: all presets are documents by it, and what is misspelt is none.
+//! The JSON Schema of documents: all presets are documents by it, and what is misspelt is none.
 
-use crate::support::skiagraph;
 use jsonschema::Validator;
 use serde_json::{Map, Value};
 use std::{fs, path::Path};
@@ -126,9 +125,7 @@ impl<'t> Ron<'t> {
 }
 
 fn validator() -> Validator {
-    let output = skiagraph(Path::new("."), "schema");
-    assert!(output.status.success());
-    let schema = serde_json::from_slice(&output.stdout).unwrap();
+    let schema = skiagraph_passes::registry().schema();
     jsonschema::meta::validate(&schema).unwrap();
     jsonschema::validator_for(&schema).unwrap()
 }
@@ -162,17 +159,6 @@ fn every_preset_is_a_document() {
         }
     }
     assert!(count > 25, "{count} documents");
-}
-
-#[test]
-fn the_reference_of_the_language_is_that_of_its_types() {
-    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/reference.md");
-    let output = skiagraph(Path::new("."), "schema --format markdown");
-    let same = fs::read(page).unwrap() == output.stdout;
-    assert!(
-        same,
-        "skiagraph schema --format markdown > docs/reference.md"
-    );
 }
 
 /// A document with one pass, material and param, into which mistakes are put.

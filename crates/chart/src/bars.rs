@@ -1,7 +1,7 @@
 //! A panel of bars: linear from 0, grouped, each under the mark of its series.
 
 use crate::{
-    canvas::{Root, failed, style, words},
+    canvas::{AXIS, Root, failed, style, words},
     data::{Panel, Series},
     error::Error,
     marker::Look,
@@ -54,7 +54,7 @@ pub(crate) fn draw(
         .y_label_formatter(&tick)
         .bold_line_style(GRID[0])
         .light_line_style(GRID[1])
-        .axis_style(RGBColor(90, 90, 90))
+        .axis_style(AXIS)
         .label_style(style(BODY))
         .axis_desc_style(style(HEAD))
         .x_desc(clean(&panel.x))

@@ -72,7 +72,7 @@ pub struct Series {
 }
 
 /// A measurement.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mark {
     /// To the right: finite and above 0; in [`Kind::Bars`] the index of the group.
     pub x: f64,
@@ -80,4 +80,13 @@ pub struct Mark {
     pub y: f64,
     /// Index into [`Figure::sizes`]; 0 where these are empty.
     pub size: usize,
+    /// Lines that a page tells of it, the first one its name.
+    pub about: String,
+}
+
+impl Mark {
+    /// Name: the first line of what there is to tell of it.
+    pub(crate) fn name(&self) -> &str {
+        self.about.lines().next().unwrap_or_default()
+    }
 }

@@ -1,14 +1,14 @@
 //! Colours and shapes: 7 × 6 of them before a pair returns.
 
 use crate::{
-    canvas::{Root, failed},
+    canvas::{AXIS, Root, failed},
     error::Error,
 };
 use plotters::prelude::*;
 
 /// Okabe and Ito, "Color Universal Design" (2008), without its black and with a darker yellow:
 /// theirs is hard to see on white.
-const COLOURS: [RGBColor; 7] = [
+pub(crate) const COLOURS: [RGBColor; 7] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),
@@ -63,7 +63,7 @@ impl Look {
     /// Creates the look that belongs to no series.
     pub fn neutral() -> Self {
         Self {
-            colour: RGBColor(90, 90, 90),
+            colour: AXIS,
             shape: 0,
         }
     }

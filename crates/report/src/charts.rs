@@ -83,6 +83,7 @@ fn front_panel(kept: &Kept, viewport: [u32; 2], maps: &[u32]) -> Result<Panel, C
             x: ms / views,
             y: 100.0 * wrong as f64 / pixels as f64,
             size: map.unwrap_or(0),
+            ..Mark::default()
         };
         push(&mut series, &run.preset, mark);
     }
@@ -147,7 +148,15 @@ pub fn growth(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, Compa
         let heights = [time(kept, measured)?, bytes as f64 / 1e6];
         for (panel, y) in panels[index].iter_mut().zip(heights) {
             let x = scene.triangles as f64;
-            push(&mut panel.series, &name, Mark { x, y, size: 0 });
+            push(
+                &mut panel.series,
+                &name,
+                Mark {
+                    x,
+                    y,
+                    ..Mark::default()
+                },
+            );
         }
     }
     for series in panels
@@ -267,7 +276,7 @@ mod tests {
         let mark = Mark {
             x: 1.125,
             y: share,
-            size: 0,
+            ..Mark::default()
         };
         assert_eq!((nsm.name.as_str(), &nsm.marks[..]), ("nsm", &[mark][..]));
         assert_eq!(figure.sizes, ["map 1024²"]);

@@ -1,6 +1,7 @@
-//! Tables for a terminal.
+//! Tables for a terminal and for a page.
 
 use comfy_table::{Cell, CellAlignment, presets};
+use skiagraph_chart::xml;
 use skiagraph_compare::records::table::Table;
 
 /// The table in lines of box-drawing characters, numbers to the right.
@@ -13,4 +14,28 @@ pub fn terminal(table: &Table) -> String {
         column.set_cell_alignment(CellAlignment::Right);
     }
     drawn.to_string()
+}
+
+/// The table for a page. Cells with words are heads of their row; `row` gives the attributes of a
+/// row, `class` the class of a cell by its column's head and its text.
+pub fn html<'a>(
+    table: &Table,
+    row: impl Fn(usize) -> &'a str,
+    class: impl Fn(&str, &str) -> &'static str,
+) -> String {
+    let heads = table.heads.iter();
+    let heads = heads.map(|head| format!("<th scope=\"col\">{}</th>", xml(head)));
+    let mut body = String::new();
+    for (index, cells) in table.rows.iter().enumerate() {
+        body += &format!("<tr {}>", row(index));
+        for (column, (cell, head)) in cells.iter().zip(&table.heads).enumerate() {
+            body += &match column < table.words {
+                true => format!("<th scope=\"row\">{}</th>", xml(cell)),
+                false => format!("<td class=\"{}\">{}</td>", class(head, cell), xml(cell)),
+            };
+        }
+        body += "</tr>\n";
+    }
+    let heads: String = heads.collect();
+    format!("<table><thead><tr>{heads}</tr></thead><tbody>\n{body}</tbody></table>")
 }

@@ -5,7 +5,12 @@ use roxmltree::{Document, Node};
 use skiagraph_chart::{Error, Figure, Kind, Mark, Panel, Series};
 
 fn series(name: &str, marks: &[(f64, f64)]) -> Series {
-    let mark = |(size, &(x, y))| Mark { x, y, size };
+    let mark = |(size, &(x, y))| Mark {
+        x,
+        y,
+        size,
+        ..Mark::default()
+    };
     Series {
         name: name.into(),
         marks: marks.iter().enumerate().map(mark).collect(),
@@ -64,7 +69,7 @@ fn growth() -> Figure {
         let marks = [1e4, 1e5, 1e6, 1e7f64].map(|x| Mark {
             x,
             y: base * (x / 1e4).powf(power),
-            size: 0,
+            ..Mark::default()
         });
         Series {
             name: name.into(),
@@ -103,7 +108,7 @@ fn bars() -> Figure {
             let mark = |(group, &y): (usize, &f64)| Mark {
                 x: group as f64,
                 y: y * scale,
-                size: 0,
+                ..Mark::default()
             };
             Series {
                 name: name.into(),
@@ -389,9 +394,11 @@ fn what_is_no_bar_is_refused_by_name() {
         (1.0, f64::NAN),
     ] {
         let mut figure = bars();
-        figure.panels[1].series[2]
-            .marks
-            .push(Mark { x, y, size: 0 });
+        figure.panels[1].series[2].marks.push(Mark {
+            x,
+            y,
+            ..Mark::default()
+        });
         let message = figure.to_svg().unwrap_err().to_string();
         let named = message.contains("\"ours: sponza, main\"") && message.contains("\"crsma\"");
         assert!(named && message.contains("4 groups"), "{message}");
@@ -421,7 +428,12 @@ fn what_has_no_place_is_refused_by_name() {
         figure.panels[0].series[1].marks = vec![mark];
         figure.to_svg()
     };
-    let mark = |x, y, size| Mark { x, y, size };
+    let mark = |x, y, size| Mark {
+        x,
+        y,
+        size,
+        ..Mark::default()
+    };
     let told = |result: Result<String, Error>| result.unwrap_err().to_string();
     for (x, y) in [
         (0.0, 1.0),

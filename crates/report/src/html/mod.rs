@@ -1,21 +1,30 @@
 //! `report.html`: everything that `compare` and `stress` kept, in one file that needs no network.
-//! Every figure is worked out here, by the same rules as the tables; the page only draws it.
+//! Every figure is worked out here, by the same rules as the tables, and the charts and tables are
+//! written here; the page's script shows what is chosen of them.
 //!
 //! | | |
 //! |-|-|
 //! | `sources` | folders that were measured alike become one |
-//! | `data` | what the page draws, as JSON |
+//! | `shown` | tables to choose from, and parts of the page that are of some of them |
+//! | `charts`, `steps`, `rows` | these parts: charts, bars of steps, tables |
+//! | `data` | all other words, as JSON |
 //! | `pictures` | which pictures go in, as far as there is room |
 //! | `report.html`, `.css`, `*.js` | the page |
 
+mod charts;
 mod data;
 mod pictures;
+mod rows;
+mod shown;
 mod sources;
+mod steps;
 
 pub use sources::{Source, sources};
 
+use crate::summary_table::{Summary, summaries};
 use pictures::Pictures;
 use serde_json::Value;
+use shown::shown;
 
 /// The most that a page may have: more is slow to open, and too large for a mail.
 pub const LIMIT: usize = 30_000_000;
@@ -24,7 +33,7 @@ pub const LIMIT: usize = 30_000_000;
 const SCRIPTS: [&str; 7] = [
     include_str!("page.js"),
     include_str!("figures.js"),
-    include_str!("charts.js"),
+    include_str!("shown.js"),
     include_str!("table.js"),
     include_str!("picture.js"),
     include_str!("viewer.js"),
@@ -45,20 +54,35 @@ pub fn page(sources: &[Source], stress: &[Value]) -> Page {
 }
 
 fn page_within(sources: &[Source], stress: &[Value], limit: usize) -> Page {
-    let empty = filled(&data::text(sources, stress, &Pictures::default()));
-    let pictures = Pictures::embed(sources, limit.saturating_sub(empty.len()));
-    Page {
-        html: filled(&data::text(sources, stress, &pictures)),
-        left_out: pictures.left_out,
-    }
-}
-
-/// The template with its parts put in; the data last, in which anything may stand.
-fn filled(data: &str) -> String {
-    include_str!("report.html")
+    let all = sources.iter().enumerate().flat_map(|(index, source)| {
+        let summaries = summaries(&source.results).into_iter();
+        summaries.map(move |summary| (index, summary))
+    });
+    let all: Vec<(usize, Summary)> = all.collect();
+    let tables = shown(sources, &all);
+    let frame = include_str!("report.html")
         .replace("/*STYLE*/", include_str!("report.css"))
         .replace("/*SCRIPT*/", &SCRIPTS.concat())
-        .replacen("/*DATA*/", data, 1)
+        // Names are escaped: none looks like a comment.
+        .replace("<!--FRONTS-->", &charts::fronts(&tables))
+        .replace("<!--LEGEND-->", &charts::legend(&tables))
+        .replace("<!--TABLES-->", &rows::tables(&tables))
+        .replace("<!--STEPS-->", &steps::bars(&tables))
+        .replace("<!--GROWTHS-->", &charts::growths(&tables));
+    let filled = |pictures: &Pictures| {
+        // Last, since anything may stand in it.
+        frame.replacen(
+            "<!--DATA-->",
+            &data::text(sources, &tables, stress, pictures),
+            1,
+        )
+    };
+    let empty = filled(&Pictures::default());
+    let pictures = Pictures::embed(sources, limit.saturating_sub(empty.len()));
+    Page {
+        html: filled(&pictures),
+        left_out: pictures.left_out,
+    }
 }
 
 #[cfg(test)]

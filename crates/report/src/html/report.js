@@ -10,6 +10,7 @@ function drawHead() {
   // Text between backquotes is a name.
   const words = (text) => text.split('`').map((part, index) => (index % 2 === 1 ? el('code', {}, part) : part));
   byId('verdict').replaceChildren(...table().sentences.map((text) => el('p', {}, ...words(text))));
+  byId('notes').replaceChildren(...table().notes.map((text) => el('li', { class: lineClass(text) }, text)));
 }
 
 /** Warnings stand out. */
@@ -17,7 +18,7 @@ const lineClass = (text) => (text.startsWith('warning: ') ? 'warning' : 'quiet')
 
 function headControls() {
   const names = data.tables.map((of) => (data.tables.some((other) => other.hard !== of.hard)
-    ? `${where(of)}: ${of.title.toLowerCase()}` : where(of)));
+    ? `${of.of}: ${of.title.toLowerCase()}` : of.of));
   if (names.length > 1) {
     byId('choice').replaceChildren(choice('table-choice', 'Shown', names, state.table, (chosen) => {
       state.table = chosen;
@@ -26,7 +27,7 @@ function headControls() {
       changed();
     }));
   }
-  if (data.tables.some((of) => of.rows.some((row) => row.kept_ms !== null))) {
+  if (all('[data-time="kept"]').length > 0) {
     byId('front-controls').replaceChildren(toggle('time', [
       ['frame', 'light or meshes move'], ['kept', 'only the camera moves'],
     ], () => state.time, (value) => {
@@ -107,13 +108,9 @@ function drawConditions() {
 if (data.tables.length > 0) {
   headControls();
   tableControls();
-  drawers.push(drawHead, drawLegend, drawFront, drawTable, drawViewer, drawPasses, drawGrowth, drawGraph);
+  drawers.push(drawHead, show, drawViewer, drawGraph);
   changed();
-  addEventListener('resize', () => {
-    drawFront();
-    drawPasses();
-    paint();
-  });
+  addEventListener('resize', paint);
 } else {
   for (const id of ['front', 'table', 'pictures', 'passes', 'growth', 'graph']) byId(`${id}-section`).hidden = true;
 }

@@ -12,6 +12,8 @@ pub struct Figure {
     /// Names of series that look the same in all figures with this list, whichever of them are
     /// drawn.
     pub looks: Vec<String>,
+    /// Values that have labels along logarithmic horizontal axes, with these; none: decades.
+    pub ticks: Vec<(f64, String)>,
     /// Panels of the figure, row by row. Panels in which a series has the same name give it the
     /// same colour and shape.
     pub panels: Vec<Panel>,
@@ -28,6 +30,7 @@ impl Default for Figure {
             notes: Vec::new(),
             sizes: Vec::new(),
             looks: Vec::new(),
+            ticks: Vec::new(),
             panels: Vec::new(),
             columns: 1,
             shared_axes: false,

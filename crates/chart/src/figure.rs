@@ -103,7 +103,7 @@ impl Figure {
                     Kind::Bars(groups) => {
                         canvas.draw(|root| bars::draw(panel, groups, fitted, root, place, look))?;
                     }
-                    _ => panel::draw(panel, fitted, canvas, place, look)?,
+                    _ => panel::draw(panel, fitted, &self.ticks, canvas, place, look)?,
                 }
             }
             top += tall;

@@ -60,11 +60,13 @@ type Axes<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<Scale, Scale>>;
 pub(crate) fn draw(
     panel: &Panel,
     fitted: &[Panel],
+    ticks: &[(f64, String)],
     canvas: &mut Canvas,
     (corner, size): ((i32, i32), (i32, i32)),
     look: impl Fn(&str) -> Look,
 ) -> Result<(), Error> {
-    let (x, y) = scales(fitted);
+    let (mut x, y) = scales(fitted);
+    x.named = ticks.to_vec();
     let (places, frame) = canvas.draw(|root| {
         let axes = axes(panel, root, &root.clone().shrink(corner, size), (&x, &y))?;
         let (across, down) = axes.plotting_area().get_pixel_range();
@@ -108,6 +110,8 @@ pub(crate) fn draw(
         Kind::Front if canvas.is_embedded => names(&marks, &places, &best, frame),
         _ => vec![String::new(); marks.len()],
     };
+    // A finger must hit it.
+    let larger = if canvas.is_embedded { 1 } else { 0 };
     // So that no mark hides another: small ones lie on large ones.
     let mut order: Vec<usize> = (0..marks.len()).collect();
     order.sort_by_key(|index| (Reverse(marks[*index].1.size), is_full(index)));
@@ -120,7 +124,7 @@ pub(crate) fn draw(
             xml(&mark.about)
         );
         canvas.group(&of, &names[index], |root| {
-            look(&series.name).draw(root, places[index], mark.size, is_full(&index))
+            look(&series.name).draw(root, places[index], mark.size + larger, is_full(&index))
         })?;
     }
     Ok(())
@@ -142,9 +146,12 @@ fn names(
         let (x, y) = places[index];
         let name = marks[index].1.name();
         let wide = width(name, BODY);
-        let lefts = [(x + 11, y), (x - 11 - wide, y)];
-        let beside = [(x - wide / 2, y - 15), (x - wide / 2, y + 16)];
-        let boxes = lefts.into_iter().chain(beside);
+        // The front's line comes to a mark from above and leaves it to the right.
+        let off_the_line = [(x + 7, y - 13), (x - 7 - wide, y + 13)];
+        let off_the_line = off_the_line.into_iter().filter(|_| best.contains(&index));
+        let beside = [(x + 11, y), (x - 11 - wide, y)];
+        let around_it = [(x - wide / 2, y - 17), (x - wide / 2, y + 17)];
+        let boxes = off_the_line.chain(beside).chain(around_it);
         let mut boxes = boxes.map(|(left, middle)| [left, middle - 7, left + wide, middle + 7]);
         let is_free = |place: &[i32; 4]| {
             let [left, top, right, bottom] = *place;

@@ -142,10 +142,16 @@ pub fn growths(tables: &[Shown]) -> String {
                 let tables = alike.iter().map(|index| &tables[*index]);
                 panels.insert(0, (alike.clone(), by_viewport(tables, *time)));
             }
-            for (of, mut panel) in panels {
+            for (of, (mut panel, ticks)) in panels {
                 panel.series.retain(|series| series.marks.len() > 1);
                 if !panel.series.is_empty() {
-                    let svg = drawn(figure(tables, vec![panel]).to_page_svg(HALF));
+                    let svg = drawn(
+                        Figure {
+                            ticks,
+                            ..figure(tables, vec![panel])
+                        }
+                        .to_page_svg(HALF),
+                    );
                     html += &part("growth", &of, Some(*time), &svg);
                 }
             }
@@ -154,7 +160,7 @@ pub fn growths(tables: &[Shown]) -> String {
     html
 }
 
-fn by_viewport<'a>(tables: impl Iterator<Item = &'a Shown<'a>>, time: Time) -> Panel {
+fn by_viewport<'a>(tables: impl Iterator<Item = &'a Shown<'a>>, time: Time) -> Grown {
     let mut lines = Lines::default();
     for table in tables {
         let [width, height] = table.summary.viewport.map(f64::from);
@@ -172,14 +178,14 @@ fn by_viewport<'a>(tables: impl Iterator<Item = &'a Shown<'a>>, time: Time) -> P
             lines.add(line, (table, row), time, place);
         }
     }
-    lines.panel("By viewport".into(), "pixels of the viewport")
+    lines.panel("By viewport".into(), "viewport")
 }
 
-fn by_map(table: &Shown, time: Time) -> Panel {
+fn by_map(table: &Shown, time: Time) -> Grown {
     let mut lines = Lines::default();
     for row in &table.group.rows {
         if let Some(map) = row.map_size() {
-            let place = (map.into(), format!("map {map}"));
+            let place = (map.into(), map.to_string());
             lines.add(&row.method, (table, row), time, place);
         }
     }
@@ -187,9 +193,15 @@ fn by_map(table: &Shown, time: Time) -> Panel {
     lines.panel(title, "edge of the map, texels")
 }
 
+/// A panel, and the names of places along it.
+type Grown = (Panel, Vec<(f64, String)>);
+
 /// Lines of a panel, each with its name; several may be of one method.
 #[derive(Default)]
-struct Lines(Vec<(String, Series)>);
+struct Lines {
+    lines: Vec<(String, Series)>,
+    places: Vec<(f64, String)>,
+}
 
 impl Lines {
     fn add(
@@ -203,33 +215,37 @@ impl Lines {
             return;
         };
         let about = format!("{line}\n{place}: {} ms", ms(y));
+        if !self.places.iter().any(|(known, _)| *known == x) {
+            self.places.push((x, place));
+        }
         let mark = Mark {
             x,
             y,
             about,
             ..Mark::default()
         };
-        let known = self.0.iter().position(|(known, _)| known == line);
+        let known = self.lines.iter().position(|(known, _)| known == line);
         let at = known.unwrap_or_else(|| {
             let name = row.method.clone();
             let marks = Vec::new();
-            self.0.push((line.into(), Series { name, marks }));
-            self.0.len() - 1
+            self.lines.push((line.into(), Series { name, marks }));
+            self.lines.len() - 1
         });
-        self.0[at].1.marks.push(mark);
+        self.lines[at].1.marks.push(mark);
     }
 
-    fn panel(self, title: String, x: &str) -> Panel {
-        let mut series: Vec<Series> = self.0.into_iter().map(|(_, series)| series).collect();
+    fn panel(self, title: String, x: &str) -> Grown {
+        let mut series: Vec<Series> = self.lines.into_iter().map(|(_, series)| series).collect();
         for series in &mut series {
             series.marks.sort_by(|one, other| one.x.total_cmp(&other.x));
         }
-        Panel {
+        let panel = Panel {
             title,
             kind: Kind::Growth,
             x: x.into(),
             y: "ms".into(),
             series,
-        }
+        };
+        (panel, self.places)
     }
 }

@@ -17,21 +17,21 @@ pub fn terminal(table: &Table) -> String {
 }
 
 /// The table for a page. Cells with words are heads of their row; `row` gives the attributes of a
-/// row, `class` the class of a cell by its column's head and its text.
-pub fn html<'a>(
+/// row by its index, `cell` those of a cell with a number by the indices of row and column.
+pub fn html(
     table: &Table,
-    row: impl Fn(usize) -> &'a str,
-    class: impl Fn(&str, &str) -> &'static str,
+    row: impl Fn(usize) -> String,
+    cell: impl Fn(usize, usize) -> String,
 ) -> String {
     let heads = table.heads.iter();
     let heads = heads.map(|head| format!("<th scope=\"col\">{}</th>", xml(head)));
     let mut body = String::new();
     for (index, cells) in table.rows.iter().enumerate() {
         body += &format!("<tr {}>", row(index));
-        for (column, (cell, head)) in cells.iter().zip(&table.heads).enumerate() {
+        for (column, text) in cells.iter().map(|text| xml(text)).enumerate() {
             body += &match column < table.words {
-                true => format!("<th scope=\"row\">{}</th>", xml(cell)),
-                false => format!("<td class=\"{}\">{}</td>", class(head, cell), xml(cell)),
+                true => format!("<th scope=\"row\">{text}</th>"),
+                false => format!("<td {}>{text}</td>", cell(index, column)),
             };
         }
         body += "</tr>\n";

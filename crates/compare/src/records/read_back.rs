@@ -5,6 +5,7 @@ use crate::files::json::{Mistake, check_schema};
 use crate::records::profile::{KIND, Profile};
 use crate::records::results::{Results, Run};
 use crate::records::statistics::Series;
+use crate::records::stress::Report;
 use serde::{Deserialize, de::DeserializeOwned};
 use serde_json::Value;
 use skiagraph_graph::SourceFile;
@@ -106,7 +107,7 @@ pub fn kept(folder: &Path) -> Result<Results, CompareError> {
 ///
 /// # Errors
 /// A file that cannot be read or is not a stress.json; with the place.
-pub fn stress(folder: &Path) -> Result<Option<Value>, CompareError> {
+pub fn stress(folder: &Path) -> Result<Option<Report>, CompareError> {
     let path = folder.join("stress.json");
     let name = path.display().to_string();
     let text = match KEPT.read_text(&path) {
@@ -121,16 +122,14 @@ pub fn stress(folder: &Path) -> Result<Option<Value>, CompareError> {
     })
 }
 
-fn parse_stress(text: &str) -> Result<Value, Mistake> {
-    let value: Value = parse(text)?;
-    check_schema(text, value.get("schema").cloned())?;
-    let has = |name: &str| value.get(name).is_some_and(Value::is_array);
-    if has("methods") && has("cases") {
-        Ok(value)
-    } else {
+fn parse_stress(text: &str) -> Result<Report, Mistake> {
+    let head: Head = parse(text)?;
+    check_schema(text, head.schema)?;
+    if head.methods.is_none() || head.cases.is_none() {
         let what = "\"methods\" or \"cases\" is missing".into();
-        Err(Mistake::at_field(text, "{", what))
+        return Err(Mistake::at_field(text, "{", what));
     }
+    parse(text)
 }
 
 fn profile_of(file: &SourceFile) -> Result<Profile, CompareError> {
@@ -160,6 +159,8 @@ struct Head {
     kind: Option<Value>,
     oracle: Option<Value>,
     runs: Option<Value>,
+    methods: Option<Value>,
+    cases: Option<Value>,
 }
 
 fn parse<T: DeserializeOwned>(text: &str) -> Result<T, Mistake> {

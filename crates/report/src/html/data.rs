@@ -6,7 +6,6 @@ use crate::html::sources::Source;
 use crate::results_table::timed_frames;
 use crate::summary::Row;
 use serde::Serialize;
-use serde_json::Value;
 use skiagraph_compare::records::results::{PROGRAM, Results};
 use std::collections::BTreeSet;
 
@@ -17,7 +16,6 @@ struct Data<'a> {
     sources: Vec<Conditions<'a>>,
     tables: Vec<Table<'a>>,
     pictures: &'a Pictures,
-    stress: &'a [Value],
     left_out: &'a [String],
 }
 
@@ -62,13 +60,12 @@ struct Line<'a> {
 }
 
 /// As text that may stand in a script element.
-pub fn text(sources: &[Source], tables: &[Shown], stress: &[Value], pictures: &Pictures) -> String {
+pub fn text(sources: &[Source], tables: &[Shown], pictures: &Pictures) -> String {
     let data = Data {
         program: PROGRAM,
         sources: sources.iter().map(conditions).collect(),
         tables: tables.iter().map(table).collect(),
         pictures,
-        stress,
         left_out: &pictures.left_out,
     };
     let json = serde_json::to_string(&data).expect("plain structs with string keys serialise");

@@ -7,6 +7,7 @@
 //! | `sources` | folders that were measured alike become one |
 //! | `shown` | tables to choose from, and parts of the page that are of some of them |
 //! | `charts`, `steps`, `rows` | these parts: charts, bars of steps, tables |
+//! | `stress` | matrices of hard cases |
 //! | `data` | all other words, as JSON |
 //! | `pictures` | which pictures go in, as far as there is room |
 //! | `report.html`, `.css`, `*.js` | the page |
@@ -18,21 +19,21 @@ mod rows;
 mod shown;
 mod sources;
 mod steps;
+mod stress;
 
 pub use sources::{Source, sources};
 
 use crate::summary_table::{Summary, summaries};
 use pictures::Pictures;
-use serde_json::Value;
 use shown::shown;
+use skiagraph_compare::records::stress::Report;
 
 /// The most that a page may have: more is slow to open, and too large for a mail.
 pub const LIMIT: usize = 30_000_000;
 
 /// In the order in which they need each other.
-const SCRIPTS: [&str; 7] = [
+const SCRIPTS: [&str; 6] = [
     include_str!("page.js"),
-    include_str!("figures.js"),
     include_str!("shown.js"),
     include_str!("table.js"),
     include_str!("picture.js"),
@@ -48,12 +49,12 @@ pub struct Page {
     pub left_out: Vec<String>,
 }
 
-/// The page of these sources, and of these contents of `stress.json`.
-pub fn page(sources: &[Source], stress: &[Value]) -> Page {
-    page_within(sources, stress, LIMIT)
+/// The page of these sources, and of these matrices of hard cases.
+pub fn page(sources: &[Source], reports: &[Report]) -> Page {
+    page_within(sources, reports, LIMIT)
 }
 
-fn page_within(sources: &[Source], stress: &[Value], limit: usize) -> Page {
+fn page_within(sources: &[Source], reports: &[Report], limit: usize) -> Page {
     let all = sources.iter().enumerate().flat_map(|(index, source)| {
         let summaries = summaries(&source.results).into_iter();
         summaries.map(move |summary| (index, summary))
@@ -68,14 +69,11 @@ fn page_within(sources: &[Source], stress: &[Value], limit: usize) -> Page {
         .replace("<!--LEGEND-->", &charts::legend(&tables))
         .replace("<!--TABLES-->", &rows::tables(&tables))
         .replace("<!--STEPS-->", &steps::bars(&tables))
-        .replace("<!--GROWTHS-->", &charts::growths(&tables));
+        .replace("<!--GROWTHS-->", &charts::growths(&tables))
+        .replace("<!--STRESS-->", &stress::matrices(reports));
     let filled = |pictures: &Pictures| {
         // Last, since anything may stand in it.
-        frame.replacen(
-            "<!--DATA-->",
-            &data::text(sources, &tables, stress, pictures),
-            1,
-        )
+        frame.replacen("<!--DATA-->", &data::text(sources, &tables, pictures), 1)
     };
     let empty = filled(&Pictures::default());
     let pictures = Pictures::embed(sources, limit.saturating_sub(empty.len()));
@@ -90,6 +88,7 @@ mod tests {
     use super::*;
     use crate::charts::Kept;
     use crate::samples::results as sample;
+    use serde_json::Value;
     use skiagraph_compare::records::results::Results;
     use std::path::Path;
 

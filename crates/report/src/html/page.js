@@ -21,6 +21,9 @@ const changed = () => drawers.forEach((draw) => draw());
 const byId = (id) => document.getElementById(id);
 const all = (selector) => [...document.querySelectorAll(selector)];
 
+const size = ([width, height]) => `${width}x${height}`;
+const table = () => data.tables[state.table];
+
 /** An element with attributes and children; strings become text. */
 function el(name, attributes = {}, ...children) {
   const element = document.createElement(name);

@@ -61,10 +61,10 @@ fn rows(table: &Shown) -> Vec<String> {
 }
 
 fn with_rows(table: &Table, rows: &[String]) -> String {
-    let class = |head: &str, cell: &str| match (head, cell) {
-        ("wrong outside band", "0") => "zero",
-        ("wrong outside band", _) => "wrong",
-        _ => "",
+    let class = |row: usize, column: usize| match &*table.heads[column] {
+        "wrong outside band" if table.rows[row][column] == "0" => "class=\"zero\"".into(),
+        "wrong outside band" => "class=\"wrong\"".into(),
+        _ => String::new(),
     };
-    html(table, |index| &rows[index], class)
+    html(table, |row| rows[row].clone(), class)
 }

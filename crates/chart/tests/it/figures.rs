@@ -206,6 +206,71 @@ fn no_text_covers_another_and_none_leaves_the_picture() {
     }
 }
 
+/// `time_against_error()` with marks that a page tells of, one named with what XML escapes.
+fn of_a_page() -> Figure {
+    let mut figure = time_against_error();
+    figure.panels.truncate(1);
+    figure.columns = 1;
+    for series in &mut figure.panels[0].series {
+        for mark in &mut series.marks {
+            mark.about = format!("{} {}\n{} <ms> & \"more\"", series.name, mark.size, mark.x);
+        }
+    }
+    figure
+}
+
+#[test]
+fn a_page_finds_marks_their_names_and_what_they_tell() {
+    for width in [1100, 400] {
+        let svg = of_a_page().to_page_svg(width).unwrap();
+        assert!(!svg.contains("\"#"), "colours are the page's: {svg}");
+        let svg = Document::parse(&svg).unwrap();
+        let marks = svg
+            .descendants()
+            .filter(|node| node.attribute("class") == Some("mark"));
+        let marks: Vec<Node> = marks.collect();
+        assert_eq!(marks.len(), 17);
+        let rt = marks
+            .iter()
+            .find(|mark| mark.attribute("data-series") == Some("rt"))
+            .unwrap();
+        assert_eq!(rt.attribute("data-name"), Some("rt 0"));
+        let told = rt.attribute("aria-label").unwrap();
+        assert_eq!(told, "rt 0\n1205 <ms> & \"more\"");
+        // Names stand in their marks' groups, cover nothing and leave the picture nowhere.
+        let is_name = |node: &Node| node.attribute("class") == Some("name");
+        let names: Vec<Node> = svg.descendants().filter(is_name).collect();
+        assert!(names.len() > 6, "{}", names.len());
+        for (index, name) in names.iter().enumerate() {
+            let of = name.parent().and_then(|mark| mark.attribute("data-name"));
+            assert_eq!(name.text(), of);
+            let [left, top, right, bottom] = text_box(*name);
+            assert!(left >= 0.0 && right <= f64::from(width) && top >= 0.0);
+            for other in &names[..index] {
+                let [l, t, r, b] = text_box(*other);
+                assert!(right <= l || r <= left || bottom <= t || b <= top);
+            }
+        }
+        let lines = svg
+            .descendants()
+            .filter(|node| node.has_tag_name("polyline"));
+        let front = lines.filter(|node| node.attribute("stroke") == Some("var(--front)"));
+        assert_eq!(front.count(), 1);
+    }
+}
+
+#[test]
+fn ticks_may_have_names() {
+    let mut figure = growth();
+    figure.ticks = vec![(1e4, "small".into()), (1e6, "<large>".into())];
+    let svg = svg(&figure);
+    let svg = Document::parse(&svg).unwrap();
+    let of = |name: &str| texts(&svg).iter().filter(|(text, _)| *text == name).count();
+    assert_eq!((of("small"), of("<large>"), of("10⁷")), (3, 3, 0));
+    let sign = figure.sign("nsm").unwrap();
+    assert!(sign.contains("\"var(--s1)\"") && Document::parse(&sign).is_ok());
+}
+
 #[test]
 fn zeros_stand_in_the_strip_each_series_in_a_lane_and_nothing_else_does() {
     let figure = Figure {

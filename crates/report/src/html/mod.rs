@@ -87,7 +87,7 @@ fn page_within(sources: &[Source], reports: &[Report], limit: usize) -> Page {
 mod tests {
     use super::*;
     use crate::charts::Kept;
-    use crate::samples::results as sample;
+    use crate::samples::{results as sample, stress};
     use serde_json::Value;
     use skiagraph_compare::records::results::Results;
     use std::path::Path;
@@ -116,6 +116,12 @@ mod tests {
         assert_eq!(data["sources"][0]["scene"], name);
         let rows = data["tables"][0]["rows"].as_array().unwrap();
         assert!(rows.iter().any(|row| row["method"] == name), "{rows:?}");
+        // In the legend, the charts, the tables.
+        assert!(
+            html.matches("&lt;/script&gt;&lt;b onload=x&gt;&amp;")
+                .count()
+                > 3
+        );
     }
 
     #[test]
@@ -177,9 +183,12 @@ mod tests {
     }
 
     #[test]
-    fn the_data_is_pinned() {
-        let html = page(&source(Path::new("nowhere"), sample()), &[]).html;
+    fn the_data_and_the_tables_are_pinned() {
+        let html = page(&source(Path::new("nowhere"), sample()), &[stress()]).html;
         let text = serde_json::to_string_pretty(&data_of(&html)).unwrap();
-        insta::assert_snapshot!(text);
+        insta::assert_snapshot!("data", text);
+        let tables = html.split("<table>").skip(1);
+        let tables = tables.filter_map(|table| Some(table.split_once("</table>")?.0));
+        insta::assert_snapshot!("tables", tables.collect::<Vec<_>>().join("\n"));
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::html::shown::{Shown, part};
 use crate::summary::Row;
+use crate::summary_table::NOT_THERE;
 use crate::table::html;
 use skiagraph_chart::xml;
 use skiagraph_compare::records::table::Table;
@@ -14,7 +15,13 @@ pub fn tables(tables: &[Shown]) -> String {
         let of = rows(of);
         written += &part("one", &[index], None, &with_rows(table, &of));
     }
-    for is_hard in [true, false] {
+    // Of a single table it would be the same.
+    let kinds: &[bool] = if tables.len() > 1 {
+        &[true, false]
+    } else {
+        &[]
+    };
+    for is_hard in kinds.iter().copied() {
         let alike = (0..tables.len()).filter(|index| tables[*index].group.is_hard == is_hard);
         let alike: Vec<usize> = alike.collect();
         // Tables of paths have columns that others lack.
@@ -61,10 +68,13 @@ fn rows(table: &Shown) -> Vec<String> {
 }
 
 fn with_rows(table: &Table, rows: &[String]) -> String {
-    let class = |row: usize, column: usize| match &*table.heads[column] {
-        "wrong outside band" if table.rows[row][column] == "0" => "class=\"zero\"".into(),
-        "wrong outside band" => "class=\"wrong\"".into(),
-        _ => String::new(),
+    let class = |row: usize, column: usize| {
+        let text = table.rows[row][column].as_str();
+        match (table.heads[column].as_str(), text) {
+            ("wrong outside band", "0") => "class=\"zero\"".into(),
+            ("wrong outside band", text) if text != NOT_THERE => "class=\"wrong\"".into(),
+            _ => String::new(),
+        }
     };
     html(table, |row| rows[row].clone(), class)
 }

@@ -4,6 +4,7 @@ use crate::stress_matrix::{HEADS, cell_of, columns, failures, heading, matrix, r
 use crate::table::html;
 use skiagraph_chart::xml;
 use skiagraph_compare::records::stress::{Report, Verdict};
+use skiagraph_compare::wording::percent;
 
 /// All matrices, each with its remarks.
 pub fn matrices(reports: &[Report]) -> String {
@@ -18,10 +19,10 @@ fn of_report(report: &Report) -> String {
         let (verdict, told) = match method.map(|method| cell_of(rows[row], method)) {
             Some(None) => return String::new(),
             Some(Some(cell)) => {
-                let uncertain = cell.counts.as_ref().map(|counts| {
-                    let share = 100.0 * counts.uncertain_share;
-                    format!("uncertain {share:.3} %")
-                });
+                let facing = rows[row].0.pixels.facing_light;
+                let counts = cell.counts.as_ref();
+                let uncertain =
+                    counts.map(|counts| format!("uncertain {}", percent(counts.uncertain, facing)));
                 (cell.verdict, uncertain.or(cell.failed.clone()))
             }
             None if column + 1 == HEADS && rows[row].1.is_none() => {

@@ -16,12 +16,7 @@ pub fn tables(tables: &[Shown]) -> String {
         written += &part("one", &[index], None, &with_rows(table, &of));
     }
     // Of a single table it would be the same.
-    let kinds: &[bool] = if tables.len() > 1 {
-        &[true, false]
-    } else {
-        &[]
-    };
-    for is_hard in kinds.iter().copied() {
+    for is_hard in [true, false].into_iter().filter(|_| tables.len() > 1) {
         let alike = (0..tables.len()).filter(|index| tables[*index].group.is_hard == is_hard);
         let alike: Vec<usize> = alike.collect();
         // Tables of paths have columns that others lack.

@@ -1,11 +1,12 @@
 //! A panel of bars: linear from 0, grouped, each under the mark of its series.
 
 use crate::{
-    canvas::{AXIS, Root, failed, style, words},
+    canvas::{Root, failed, style, words},
+    colours::{AXIS, GRID},
     data::{Panel, Series},
     error::Error,
     marker::Look,
-    panel::{ABOVE, BESIDE, GRID, LABELS, RIGHT},
+    panel::{ABOVE, BESIDE, LABELS, RIGHT},
     text::{BODY, HEAD, clean, width},
 };
 use plotters::prelude::*;

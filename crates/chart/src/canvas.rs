@@ -1,9 +1,8 @@
 //! Drawing area, colours and text of all figures.
 
 use crate::{
+    colours::{INK, as_variables},
     error::Error,
-    marker::COLOURS,
-    panel::{GRID, STRIP},
     text::{HEAD, clean},
 };
 use plotters::{
@@ -18,14 +17,6 @@ pub(crate) type Root<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 /// Width of a figure that is a file, pixels.
 pub(crate) const WIDTH: i32 = 800;
-/// Words.
-const INK: RGBColor = RGBColor(30, 30, 30);
-/// Lines of axes.
-pub(crate) const AXIS: RGBColor = RGBColor(90, 90, 90);
-/// The Pareto front's line.
-pub(crate) const FRONT: RGBColor = RGBColor(70, 70, 70);
-/// The line of slope 1.
-pub(crate) const GUIDE: RGBColor = RGBColor(120, 120, 120);
 /// plotters writes text of this share of the size that it is told.
 const TOLD: f64 = 1.24;
 
@@ -86,28 +77,11 @@ impl Canvas {
              xmlns=\"http://www.w3.org/2000/svg\">\n{}</svg>\n",
             self.elements
         );
-        if !self.is_embedded {
-            return svg;
+        if self.is_embedded {
+            as_variables(svg)
+        } else {
+            svg
         }
-        let looks = COLOURS.into_iter().enumerate();
-        let looks = looks.map(|(index, colour)| (colour, format!("s{index}")));
-        let others = [
-            (INK, "ink"),
-            (AXIS, "quiet"),
-            (GUIDE, "quiet"),
-            (FRONT, "front"),
-            (GRID[0], "line"),
-            (GRID[1], "faint"),
-            (STRIP, "strip"),
-            (WHITE, "card"),
-        ];
-        let others = others.map(|(colour, name)| (colour, name.to_owned()));
-        // Words are escaped: a colour between quotes is one.
-        looks.chain(others).fold(svg, |svg, (colour, name)| {
-            let RGBColor(red, green, blue) = colour;
-            let known = format!("\"#{red:02X}{green:02X}{blue:02X}\"");
-            svg.replace(&known, &format!("\"var(--{name})\""))
-        })
     }
 }
 

@@ -38,6 +38,7 @@
 
 mod bars;
 mod canvas;
+mod colours;
 mod data;
 mod error;
 mod figure;

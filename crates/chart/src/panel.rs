@@ -1,7 +1,8 @@
 //! One panel: axes, strip for zero, lines, front, marks.
 
 use crate::{
-    canvas::{AXIS, Canvas, FRONT, GUIDE, Root, failed, style, words},
+    canvas::{Canvas, Root, failed, style, words},
+    colours::{AXIS, FRONT, GRID, GUIDE, STRIP},
     data::{Kind, Mark, Panel, Series},
     error::Error,
     front::front,
@@ -11,9 +12,6 @@ use crate::{
 };
 use plotters::{coord::cartesian::Cartesian2d, element::DashedPathElement, prelude::*};
 use std::{cmp::Reverse, ops::Range};
-
-pub(crate) const STRIP: RGBColor = RGBColor(238, 238, 238);
-pub(crate) const GRID: [RGBColor; 2] = [RGBColor(205, 205, 205), RGBColor(234, 234, 234)];
 
 /// Height of the axes without strip, and of those of bars, pixels.
 const AXES: i32 = 300;

@@ -50,7 +50,7 @@ pub fn heading(report: &Report) -> String {
     )
 }
 
-/// What could not run, what to be warned of, and what came of all, a line each.
+/// Methods that could not run, warnings, and the outcome of all cells, a line each.
 pub fn remarks(report: &Report) -> Vec<String> {
     let unavailable = report.methods.iter().filter_map(|column| {
         let reason = column.unavailable.as_ref()?;

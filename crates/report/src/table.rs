@@ -29,9 +29,10 @@ pub fn html(
     for (index, cells) in table.rows.iter().enumerate() {
         body += &format!("<tr {}>", row(index));
         for (column, text) in cells.iter().map(|text| xml(text)).enumerate() {
-            body += &match column < table.words {
-                true => format!("<th scope=\"row\">{text}</th>"),
-                false => format!("<td {}>{text}</td>", cell(index, column)),
+            body += &if column < table.words {
+                format!("<th scope=\"row\">{text}</th>")
+            } else {
+                format!("<td {}>{text}</td>", cell(index, column))
             };
         }
         body += "</tr>\n";

@@ -15,7 +15,7 @@ pub fn tables(tables: &[Shown]) -> String {
         let of = rows(of);
         written += &part("one", &[index], None, &with_rows(table, &of));
     }
-    // Of a single table it would be the same.
+    // A single table would be repeated.
     for is_hard in [true, false].into_iter().filter(|_| tables.len() > 1) {
         let alike = (0..tables.len()).filter(|index| tables[*index].group.is_hard == is_hard);
         let alike: Vec<usize> = alike.collect();

@@ -21,6 +21,8 @@ mod saves;
 mod schema;
 mod stress;
 mod surfaces;
+#[path = "../../../compare/tests/it/timeless.rs"]
+mod timeless;
 mod together;
 mod tutorial;
 mod watch;

@@ -1,6 +1,7 @@
 //! `compare` and `run` for real. They need an adapter; a machine without one fails here with the
 //! program's own advice.
 
+use crate::timeless::timeless;
 use serde_json::Value;
 use std::{
     fs,
@@ -390,26 +391,6 @@ fn a_buffer_has_no_picture_but_bytes() {
 fn results(folder: &Path) -> Value {
     let text = fs::read_to_string(folder.join("results.json")).unwrap();
     serde_json::from_str(&text).unwrap()
-}
-
-/// Results without times, and without the commands that measured them.
-fn timeless(mut value: Value) -> Value {
-    fn clear(value: &mut Value) {
-        match value {
-            Value::Object(fields) if fields.contains_key("p95") => *value = Value::Null,
-            Value::Object(fields) => {
-                fields.remove("date");
-                fields.remove("commands");
-                // The reason has times in it.
-                fields.remove("gpu_unavailable");
-                fields.values_mut().for_each(clear);
-            }
-            Value::Array(items) => items.iter_mut().for_each(clear),
-            _ => {}
-        }
-    }
-    clear(&mut value);
-    value
 }
 
 #[test]

@@ -235,14 +235,21 @@ mod tests {
     use crate::files::json::to_text;
     use crate::records::{profile, results};
 
+    /// What is said of each of these texts, each of which differs from a good one.
     fn refused<T>(
         read: fn(&SourceFile) -> Result<T, CompareError>,
         name: &str,
-        text: String,
+        good: &str,
+        texts: &[String],
     ) -> String {
-        let error = read(&SourceFile::new(name, text)).err().expect("refused");
-        assert!(matches!(error, CompareError::Diagnostics { .. }), "{error}");
-        error.to_string()
+        let said = texts.iter().map(|text| {
+            assert_ne!(text, good);
+            let error = read(&SourceFile::new(name, text.clone()));
+            let error = error.err().expect("refused");
+            assert!(matches!(error, CompareError::Diagnostics { .. }), "{error}");
+            error.to_string()
+        });
+        said.collect::<Vec<_>>().join("\n")
     }
 
     #[test]
@@ -264,12 +271,7 @@ mod tests {
             good.replacen("        4.0,\n        5.0,\n        4.5\n", "", 1),
             good.replacen("        2.0,", "        -2.0,", 1),
         ];
-        assert!(texts.iter().all(|text| *text != good));
-        insta::assert_snapshot!(
-            texts
-                .map(|text| refused(profile_of, "old.json", text))
-                .join("\n")
-        );
+        insta::assert_snapshot!(refused(profile_of, "old.json", &good, &texts));
     }
 
     #[test]
@@ -283,11 +285,6 @@ mod tests {
             "{\"schema\": 1, \"kind\": \"profile\"}\n".to_owned(),
             String::new(),
         ];
-        assert!(texts.iter().all(|text| *text != good));
-        insta::assert_snapshot!(
-            texts
-                .map(|text| refused(results_of, "results.json", text))
-                .join("\n")
-        );
+        insta::assert_snapshot!(refused(results_of, "results.json", &good, &texts));
     }
 }

@@ -7,3 +7,4 @@ mod hard_cases;
 mod paths;
 mod remembering;
 mod resume;
+mod timeless;

@@ -1,6 +1,7 @@
 //! Results in a folder, and going on from those that are there.
 
 use crate::support::{park, sources};
+use crate::timeless::timeless;
 use serde_json::Value;
 use skiagraph_compare::{
     comparison::Comparison,
@@ -26,26 +27,6 @@ impl Sink for Heard {
     fn begin_step(&self, name: &str, _total: u64, _unit: &'static str) {
         self.steps.lock().unwrap().push(name.to_owned());
     }
-}
-
-/// Results without times, and without the commands that measured them.
-fn timeless(mut value: Value) -> Value {
-    fn clear(value: &mut Value) {
-        match value {
-            Value::Object(fields) if fields.contains_key("p95") => *value = Value::Null,
-            Value::Object(fields) => {
-                fields.remove("date");
-                fields.remove("commands");
-                // The reason has times in it.
-                fields.remove("gpu_unavailable");
-                fields.values_mut().for_each(clear);
-            }
-            Value::Array(items) => items.iter_mut().for_each(clear),
-            _ => {}
-        }
-    }
-    clear(&mut value);
-    value
 }
 
 /// Compares methods, those of a folder first, and keeps the results in a folder; returns what was

@@ -11,30 +11,14 @@ use skiagraph_compare::wording::{percent, size, thousands};
 /// The command that shows the pictures of a method on a case, and what to set for it besides.
 pub type CommandFor<'a> = &'a dyn Fn(&Column, &str, Option<&str>) -> String;
 
-/// Columns of the matrix that are of the case.
-pub const HEADS: usize = 3;
-
-/// Something that failed, in words; of a method with the case, and with what is set besides.
-pub struct Failure<'a> {
-    /// The words.
-    pub what: String,
-    of: Option<(&'a Column, &'a str, Option<&'a str>)>,
-}
-
 /// A heading, the matrix, and what there is to say of it.
 pub fn render(report: &Report, command_for: CommandFor) -> String {
-    let table = terminal(&matrix(report));
-    let remarks = remarks(report).join("\n");
-    let mut text = format!("{}\n{table}\n{remarks}\n", heading(report));
-    let failures = failures(report);
+    let table = terminal(&matrix(report).0);
+    let (heading, remarks) = (heading(report), remarks(report));
+    let mut text = format!("{heading}\n{table}\n{remarks}\n");
+    let failures = failures(report, command_for);
     if !failures.is_empty() {
-        text += "\nFailed\n";
-    }
-    for Failure { what, of } in failures {
-        text += &format!("  {what}\n");
-        if let Some((column, case, set)) = of {
-            text += &format!("    {}\n", command_for(column, case, set));
-        }
+        text += &format!("\nFailed\n{failures}");
     }
     text
 }
@@ -51,22 +35,24 @@ pub fn heading(report: &Report) -> String {
 }
 
 /// Methods that could not run, warnings, and the outcome of all cells, a line each.
-pub fn remarks(report: &Report) -> Vec<String> {
-    let unavailable = report.methods.iter().filter_map(|column| {
-        let reason = column.unavailable.as_ref()?;
-        Some(format!(
-            "{} is unavailable: {reason}",
-            named(report, column)
-        ))
-    });
-    let warned = report.cases.iter().filter(|case| case.wrong_surface > 0);
-    let warnings = warned.map(|case| {
-        let pixels = report.viewport.map(u64::from).iter().product();
-        let surface = wrong_surface(case.wrong_surface, pixels);
-        format!("{}: warning: {surface}", case.name)
-    });
-    let all = unavailable.chain(warnings).chain([summary(report)]);
-    all.collect()
+pub fn remarks(report: &Report) -> String {
+    let mut text = String::new();
+    for column in &report.methods {
+        if let Some(reason) = &column.unavailable {
+            text += &format!("{} is unavailable: {reason}\n", named(report, column));
+        }
+    }
+    for case in report.cases.iter().filter(|case| case.wrong_surface > 0) {
+        text += &format!(
+            "{}: warning: {}\n",
+            case.name,
+            wrong_surface(
+                case.wrong_surface,
+                report.viewport.map(u64::from).iter().product()
+            )
+        );
+    }
+    text + &summary(report)
 }
 
 /// The size of all maps, if they have the same.
@@ -84,41 +70,37 @@ fn named(report: &Report, column: &Column) -> String {
     }
 }
 
-/// Methods that ran.
-pub fn columns(report: &Report) -> Vec<&Column> {
-    let all = report.methods.iter();
-    all.filter(|column| column.unavailable.is_none()).collect()
-}
+/// A case with the cells of a row, one per method that ran.
+pub type MatrixRow<'a> = (&'a Case, Vec<Option<&'a Cell>>);
 
-/// Rows: each case as the methods are, then with what is set besides.
-pub fn rows(report: &Report) -> Vec<(&Case, Option<&str>)> {
-    let of = |case| {
-        let sets = sets(case).into_iter();
-        sets.map(move |set| (case, set))
-    };
-    report.cases.iter().flat_map(of).collect()
-}
-
-/// The cell of a method in a row.
-pub fn cell_of<'a>((case, set): (&'a Case, Option<&str>), column: &Column) -> Option<&'a Cell> {
-    let mut cells = case.cells.iter();
-    cells.find(|cell| cell.is_of(column) && cell.set.as_deref() == set)
-}
-
-/// The matrix: [`HEADS`] columns of the case, then one of each method.
-pub fn matrix(report: &Report) -> Table {
-    let columns = columns(report);
+/// The matrix, and what its rows are of: three columns of the case, then one of each method.
+pub fn matrix(report: &Report) -> (Table, Vec<MatrixRow<'_>>) {
+    let can_run = report.methods.iter();
+    let columns: Vec<&Column> = can_run
+        .filter(|column| column.unavailable.is_none())
+        .collect();
     let head = |column: &&Column| {
         let guarantee = column.guarantee.map_or("", Guarantee::word);
         format!("{}\n{guarantee}", named(report, column))
     };
-    let methods: Vec<String> = columns.iter().map(head).collect();
-    let rows = rows(report).into_iter().map(|row| {
-        let cells = columns.iter().map(|column| cell(row, column));
-        heads(row).into_iter().chain(cells).collect()
-    });
-    let heads = ["case", "PFL", "band"].map(str::to_owned);
-    Table::new(heads.into_iter().chain(methods), 1, rows)
+    let heads = ["case", "PFL", "band"].map(str::to_owned).into_iter();
+    let mut table = Table::new(heads.chain(columns.iter().map(head)), 1, []);
+    let mut rows = Vec::new();
+    for case in &report.cases {
+        for set in sets(case) {
+            let found = |column: &&Column| {
+                let mut cells = case.cells.iter();
+                cells.find(|cell| cell.is_of(column) && cell.set.as_deref() == set)
+            };
+            let found: Vec<Option<&Cell>> = columns.iter().map(found).collect();
+            let cells = found.iter().map(|of| cell(case, *of, set));
+            table
+                .rows
+                .push(heads_of(case, set).into_iter().chain(cells).collect());
+            rows.push((case, found));
+        }
+    }
+    (table, rows)
 }
 
 /// The rows of a case: as the methods are, then with what is set besides.
@@ -132,7 +114,7 @@ fn sets(case: &Case) -> Vec<Option<&str>> {
     sets
 }
 
-fn heads((case, set): (&Case, Option<&str>)) -> [String; HEADS] {
+fn heads_of(case: &Case, set: Option<&str>) -> [String; 3] {
     if let Some(set) = set {
         return [format!("  {set}"), String::new(), String::new()];
     }
@@ -155,8 +137,8 @@ fn heads((case, set): (&Case, Option<&str>)) -> [String; HEADS] {
     ]
 }
 
-fn cell((case, set): (&Case, Option<&str>), column: &Column) -> String {
-    let Some(cell) = cell_of((case, set), column) else {
+fn cell(case: &Case, cell: Option<&Cell>, set: Option<&str>) -> String {
+    let Some(cell) = cell else {
         return set.map_or("–".into(), |_| String::new());
     };
     let Some(counts) = &cell.counts else {
@@ -203,22 +185,21 @@ fn summary(report: &Report) -> String {
     text
 }
 
-/// All that failed, case by case.
-pub fn failures(report: &Report) -> Vec<Failure<'_>> {
-    let mut failures = Vec::new();
-    let of_case = |what| Failure { what, of: None };
+/// All that failed, case by case, with the commands that show it.
+pub fn failures(report: &Report, command_for: CommandFor) -> String {
+    let mut text = String::new();
     for case in &report.cases {
         if let Some(reason) = &case.failed {
-            failures.push(of_case(format!("{}: no reference: {reason}", case.name)));
+            text += &format!("  {}: no reference: {reason}\n", case.name);
         }
         if case.exceeds_cap() {
-            failures.push(of_case(format!(
-                "{}: {} pixels in the band, {} of PFL; at most {} % may be",
+            text += &format!(
+                "  {}: {} pixels in the band, {} of PFL; at most {} % may be\n",
                 case.name,
                 thousands(case.band),
                 percent(case.band, case.pixels.facing_light),
                 (case.band_cap * 100.0) as f32
-            )));
+            );
         }
         let pairs = report.methods.iter().flat_map(|column| {
             let cells = case.cells.iter().filter(|cell| cell.is_of(column));
@@ -244,13 +225,15 @@ pub fn failures(report: &Report) -> Vec<Failure<'_>> {
                 (None, Some(reason)) => reason.clone(),
                 (None, None) => "did not run".into(),
             };
-            failures.push(Failure {
-                what: format!("{}{with} on {}: {what}", named(report, column), case.name),
-                of: Some((column, &case.name, set)),
-            });
+            text += &format!(
+                "  {}{with} on {}: {what}\n    {}\n",
+                named(report, column),
+                case.name,
+                command_for(column, &case.name, set)
+            );
         }
     }
-    failures
+    text
 }
 
 #[cfg(test)]

@@ -1,11 +1,11 @@
 //! Charts of the page, one for each choice that it offers.
 
-use crate::html::shown::{Shown, Time, part, times};
+use crate::html::shown::{Shown, part, times};
 use crate::summary::Row;
 use skiagraph_chart::{Error, Figure, Kind, Mark, Panel, Series, xml};
 use skiagraph_compare::lists::unique;
 use skiagraph_compare::wording::{bytes, ms, percent, size, thousands};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Widths of a chart for classes of windows, pixels.
 const WIDTHS: [(&str, u16); 2] = [("broad", 1100), ("narrow", 400)];
@@ -32,11 +32,11 @@ fn drawn(svg: Result<String, Error>) -> String {
 pub fn fronts(tables: &[Shown]) -> String {
     let mut html = String::new();
     for (index, table) in tables.iter().enumerate() {
-        for time in times(tables) {
-            let figure = figure(tables, vec![front(table, *time)]);
+        for kept in times(tables).iter().copied() {
+            let figure = figure(tables, vec![front(table, kept)]);
             for (class, width) in WIDTHS {
                 let svg = drawn(figure.to_page_svg(width));
-                html += &part(class, &[index], Some(*time), &svg);
+                html += &part(class, &[index], Some(kept), &svg);
             }
         }
     }
@@ -44,27 +44,26 @@ pub fn fronts(tables: &[Shown]) -> String {
 }
 
 /// Each row is a series, so that it has a lane of its own where it is exact.
-fn front(table: &Shown, time: Time) -> Panel {
+fn front(table: &Shown, kept: bool) -> Panel {
     let row = |row: &Row| {
-        let (x, y) = (time.of(table, row)?, table.error(row)?);
-        let about = about(table, row);
-        let mark = Mark {
-            x,
-            y,
-            about,
-            ..Mark::default()
-        };
+        let (x, y) = (table.ms(row, kept)?, table.error(row)?);
         y.is_finite().then(|| Series {
             name: row.method.clone(),
-            marks: vec![mark],
+            marks: vec![Mark {
+                x,
+                y,
+                about: about(table, row),
+                ..Mark::default()
+            }],
         })
     };
     let mut series: Vec<Series> = table.group.rows.iter().filter_map(row).collect();
     series.sort_by(|one, other| one.marks[0].x.total_cmp(&other.marks[0].x));
     let clock = if table.by_wall { "wall clock" } else { "GPU" };
-    let frame = match time {
-        Time::Frame => "every pass run",
-        Time::Kept => "only the camera moves",
+    let frame = if kept {
+        "only the camera moves"
+    } else {
+        "every pass run"
     };
     let error = if table.group.is_hard {
         "wrong pixels, % of those facing the light"
@@ -104,148 +103,113 @@ fn about(table: &Shown, row: &Row) -> String {
     lines.into_iter().flatten().collect::<Vec<_>>().join("\n")
 }
 
-/// A button for each method, which shows it or not.
-pub fn legend(tables: &[Shown]) -> String {
-    let names = tables.iter().flat_map(|table| &table.group.rows);
-    let names: Vec<&String> = names.map(|row| &row.method).collect();
+/// Buttons for the methods of each table, which show a method or not.
+pub fn legends(tables: &[Shown]) -> String {
     let figure = figure(tables, Vec::new());
-    let button = |name: &&String| {
-        let has = |table: &Shown| {
-            let mut rows = table.group.rows.iter();
-            rows.any(|row| row.method == **name && row.views() > 0)
-        };
-        let of = (0..tables.len()).filter(|index| has(&tables[*index]));
-        let of: Vec<String> = of.map(|index| index.to_string()).collect();
-        let sign = drawn(figure.sign(name));
-        let (of, name) = (of.join(" "), xml(name));
+    let button = |name: &String| {
+        let (sign, name) = (drawn(figure.sign(name)), xml(name));
         format!(
-            "<button type=\"button\" aria-pressed=\"true\" data-table=\"{of}\" \
-             data-method=\"{name}\">{sign}{name}</button>\n"
+            "<button type=\"button\" aria-pressed=\"true\" data-method=\"{name}\">{sign}{name}\
+             </button>\n"
         )
     };
-    unique(&names).iter().map(button).collect()
+    let legend = |(index, table): (usize, &Shown)| {
+        let rows = table.group.rows.iter().filter(|row| row.views() > 0);
+        let methods: Vec<String> = rows.map(|row| row.method.clone()).collect();
+        let buttons: String = unique(&methods).iter().map(button).collect();
+        part("legend", &[index], None, &buttons)
+    };
+    tables.iter().enumerate().map(legend).collect()
 }
 
 /// How time grows with the viewport and with the map, where several were measured.
 pub fn growths(tables: &[Shown]) -> String {
     let mut html = String::new();
     for (index, table) in tables.iter().enumerate() {
-        let is_alike = |other: &Shown| {
-            let of = |table: &Shown| (table.source, table.group.is_hard, table.summary.what());
-            of(other) == of(table)
-        };
-        let alike = (0..tables.len()).filter(|other| is_alike(&tables[*other]));
+        let key = |table: &Shown| (table.source, table.group.is_hard, table.summary.what());
+        let alike = (0..tables.len()).filter(|other| key(&tables[*other]) == key(table));
         let alike: Vec<usize> = alike.collect();
-        for time in times(tables) {
-            let mut panels = vec![(vec![index], by_map(table, *time))];
+        let viewport = size(table.summary.viewport);
+        let mut add = |of: &[usize], [title, x]: [&str; 2], kept, place: Place| {
+            let rows = of.iter().flat_map(|index| {
+                let table = &tables[*index];
+                table.group.rows.iter().map(move |row| (table, row))
+            });
+            let (panel, ticks) = growth(rows, [title, x], kept, place);
+            if !panel.series.is_empty() {
+                let panels = figure(tables, vec![panel]);
+                let svg = Figure { ticks, ..panels }.to_page_svg(HALF);
+                html += &part("growth", of, Some(kept), &drawn(svg));
+            }
+        };
+        for kept in times(tables).iter().copied() {
             if alike[0] == index {
-                let tables = alike.iter().map(|index| &tables[*index]);
-                panels.insert(0, (alike.clone(), by_viewport(tables, *time)));
+                add(&alike, ["By viewport", "viewport"], kept, by_viewport);
             }
-            for (of, (mut panel, ticks)) in panels {
-                panel.series.retain(|series| series.marks.len() > 1);
-                if !panel.series.is_empty() {
-                    let svg = drawn(
-                        Figure {
-                            ticks,
-                            ..figure(tables, vec![panel])
-                        }
-                        .to_page_svg(HALF),
-                    );
-                    html += &part("growth", &of, Some(*time), &svg);
-                }
-            }
+            let title = format!("By map, {viewport}");
+            add(&[index], [&title, "edge of the map, texels"], kept, by_map);
         }
     }
     html
 }
 
-fn by_viewport<'a>(tables: impl Iterator<Item = &'a Shown<'a>>, time: Time) -> Grown {
-    let mut lines = Lines::default();
-    for table in tables {
-        let [width, height] = table.summary.viewport.map(f64::from);
-        let rows = &table.group.rows;
-        for row in rows {
-            // A method may choose its map by the viewport: then rows differ in it and are one
-            // method all the same.
-            let maps = rows.iter().filter(|other| other.method == row.method);
-            let line = if maps.count() > 1 {
-                &row.label
-            } else {
-                &row.method
-            };
-            let place = (width * height, size(table.summary.viewport));
-            lines.add(line, (table, row), time, place);
-        }
-    }
-    lines.panel("By viewport".into(), "viewport")
+/// Returns the line that a row is on, and its place along it, with that place's name.
+type Place = for<'a> fn(&Shown, &'a Row) -> Option<(&'a str, f64, String)>;
+
+fn by_viewport<'a>(table: &Shown, row: &'a Row) -> Option<(&'a str, f64, String)> {
+    // A method may choose its map by the viewport: then rows differ in it and are one method all
+    // the same.
+    let rows = table.group.rows.iter();
+    let maps = rows.filter(|other| other.method == row.method).count();
+    let line = if maps > 1 { &row.label } else { &row.method };
+    let viewport = table.summary.viewport;
+    let pixels = viewport.map(f64::from).iter().product();
+    Some((line, pixels, size(viewport)))
 }
 
-fn by_map(table: &Shown, time: Time) -> Grown {
-    let mut lines = Lines::default();
-    for row in &table.group.rows {
-        if let Some(map) = row.map_size() {
-            let place = (map.into(), map.to_string());
-            lines.add(&row.method, (table, row), time, place);
-        }
-    }
-    let title = format!("By map, {}", size(table.summary.viewport));
-    lines.panel(title, "edge of the map, texels")
+fn by_map<'a>(_: &Shown, row: &'a Row) -> Option<(&'a str, f64, String)> {
+    let map = row.map_size()?;
+    Some((&row.method, map.into(), map.to_string()))
 }
 
-/// A panel, and the names of places along it.
-type Grown = (Panel, Vec<(f64, String)>);
-
-/// Lines of a panel, each with its name; several may be of one method.
-#[derive(Default)]
-struct Lines {
-    lines: Vec<(String, Series)>,
-    places: Vec<(f64, String)>,
-}
-
-impl Lines {
-    fn add(
-        &mut self,
-        line: &str,
-        (table, row): (&Shown, &Row),
-        time: Time,
-        (x, place): (f64, String),
-    ) {
-        let (Some(y), Some(_)) = (time.of(table, row), table.error(row)) else {
-            return;
+/// A panel of lines of two marks and more, and the names of places along it.
+fn growth<'a>(
+    rows: impl Iterator<Item = (&'a Shown<'a>, &'a Row<'a>)>,
+    [title, x]: [&str; 2],
+    kept: bool,
+    place: Place,
+) -> (Panel, Vec<(f64, String)>) {
+    let mut lines: BTreeMap<&str, Series> = BTreeMap::new();
+    let mut ticks = Vec::new();
+    for (table, row) in rows.filter(|(table, row)| table.error(row).is_some()) {
+        let (Some(y), Some((line, x, name))) = (table.ms(row, kept), place(table, row)) else {
+            continue;
         };
-        let about = format!("{line}\n{place}: {} ms", ms(y));
-        if !self.places.iter().any(|(known, _)| *known == x) {
-            self.places.push((x, place));
-        }
-        let mark = Mark {
+        let line = lines.entry(line).or_insert_with(|| Series {
+            name: row.method.clone(),
+            marks: Vec::new(),
+        });
+        line.marks.push(Mark {
             x,
             y,
-            about,
+            about: format!("{}\n{name}: {} ms", row.label, ms(y)),
             ..Mark::default()
-        };
-        let known = self.lines.iter().position(|(known, _)| known == line);
-        let at = known.unwrap_or_else(|| {
-            let name = row.method.clone();
-            let marks = Vec::new();
-            self.lines.push((line.into(), Series { name, marks }));
-            self.lines.len() - 1
         });
-        self.lines[at].1.marks.push(mark);
+        ticks.push((x, name));
     }
-
-    fn panel(self, title: String, x: &str) -> Grown {
-        let mut series: Vec<Series> = self.lines.into_iter().map(|(_, series)| series).collect();
-        for series in &mut series {
-            series.marks.sort_by(|one, other| one.x.total_cmp(&other.x));
-        }
-        let panel = Panel {
-            title,
-            kind: Kind::Growth,
-            x: x.into(),
-            y: "ms".into(),
-            series,
-        };
-        (panel, self.places)
+    let mut series: Vec<Series> = lines.into_values().collect();
+    series.retain(|series| series.marks.len() > 1);
+    for series in &mut series {
+        series.marks.sort_by(|one, other| one.x.total_cmp(&other.x));
     }
+    ticks.sort_by(|one, other| one.0.total_cmp(&other.0));
+    ticks.dedup();
+    let panel = Panel {
+        title: title.into(),
+        kind: Kind::Growth,
+        x: x.into(),
+        y: "ms".into(),
+        series,
+    };
+    (panel, ticks)
 }

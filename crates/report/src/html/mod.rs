@@ -66,7 +66,7 @@ fn page_within(sources: &[Source], reports: &[Report], limit: usize) -> Page {
         .replace("/*SCRIPT*/", &SCRIPTS.concat())
         // Names are escaped: none looks like a comment.
         .replace("<!--FRONTS-->", &charts::fronts(&tables))
-        .replace("<!--LEGEND-->", &charts::legend(&tables))
+        .replace("<!--LEGEND-->", &charts::legends(&tables))
         .replace("<!--TABLES-->", &rows::tables(&tables))
         .replace("<!--STEPS-->", &steps::bars(&tables))
         .replace("<!--GROWTHS-->", &charts::growths(&tables))

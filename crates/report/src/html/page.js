@@ -6,8 +6,8 @@ const data = JSON.parse(document.getElementById('data').textContent);
 const state = {
   /** Index of the table: a source and viewport. */
   table: 0,
-  /** 'frame' with every pass run, 'kept' with what is kept while only the camera moves. */
-  time: 'frame',
+  /** 'true' for times with what is kept while only the camera moves, 'false' with every pass run. */
+  kept: 'false',
   /** Names of methods that are not drawn. */
   hidden: new Set(),
   /** Label of the row that was clicked last. */

@@ -27,11 +27,11 @@ function headControls() {
       changed();
     }));
   }
-  if (all('[data-time="kept"]').length > 0) {
+  if (all('[data-kept="true"]').length > 0) {
     byId('front-controls').replaceChildren(toggle('time', [
-      ['frame', 'light or meshes move'], ['kept', 'only the camera moves'],
-    ], () => state.time, (value) => {
-      state.time = value;
+      ['false', 'light or meshes move'], ['true', 'only the camera moves'],
+    ], () => state.kept, (value) => {
+      state.kept = value;
       changed();
     }));
   }

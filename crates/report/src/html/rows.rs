@@ -1,4 +1,4 @@
-//! All rows: the tables of the terminal, and one of all sizes and sources.
+//! All rows: the tables of the terminal, joined.
 
 use crate::html::shown::{Shown, part};
 use crate::summary::Row;
@@ -7,25 +7,20 @@ use crate::table::html;
 use skiagraph_chart::xml;
 use skiagraph_compare::records::table::Table;
 
-/// Each table; and for those of hard and of graded answers one of all.
+/// A table of all rows of hard answers, and one of graded ones.
 pub fn tables(tables: &[Shown]) -> String {
-    let mut written = String::new();
-    let each: Vec<Table> = tables.iter().map(|of| of.summary.table(of.group)).collect();
-    for (index, (of, table)) in tables.iter().zip(&each).enumerate() {
-        let of = rows(of);
-        written += &part("one", &[index], None, &with_rows(table, &of));
-    }
-    // A single table would be repeated.
-    for is_hard in [true, false].into_iter().filter(|_| tables.len() > 1) {
+    let of_kind = |is_hard| {
         let alike = (0..tables.len()).filter(|index| tables[*index].group.is_hard == is_hard);
         let alike: Vec<usize> = alike.collect();
+        let table = |index: &usize| tables[*index].summary.table(tables[*index].group);
+        let each: Vec<Table> = alike.iter().map(table).collect();
         // Tables of paths have columns that others lack.
-        let longest = alike.iter().max_by_key(|index| each[**index].heads.len());
-        let Some(heads) = longest.map(|index| &each[*index].heads) else {
-            continue;
-        };
-        let cells = alike.iter().flat_map(|index| {
-            let table = &each[*index];
+        let mut heads = each
+            .iter()
+            .max_by_key(|table| table.heads.len())?
+            .heads
+            .clone();
+        let cells = alike.iter().zip(&each).flat_map(|(index, table)| {
             table.rows.iter().map(|cells| {
                 let cell = |head: &String| {
                     let column = table.heads.iter().position(|known| known == head);
@@ -36,40 +31,35 @@ pub fn tables(tables: &[Shown]) -> String {
                 row
             })
         });
-        let mut heads = heads.clone();
+        let cells: Vec<Vec<String>> = cells.collect();
         heads.insert(1, "of".into());
-        let table = Table::new(heads, 2, cells);
-        let of: Vec<String> = alike
+        let rows = alike
             .iter()
-            .flat_map(|index| rows(&tables[*index]))
-            .collect();
-        written += &part("all", &alike, None, &with_rows(&table, &of));
-    }
-    written
-}
-
-/// Attributes of each row.
-fn rows(table: &Shown) -> Vec<String> {
-    let best = table.group.verdict().fastest_exact;
-    let of_row = |(index, row): (usize, &Row)| {
-        let class = match table.error(row) {
-            _ if best == Some(index) => "exact best",
-            Some(0.0) => "exact",
-            _ => "",
-        };
-        format!("class=\"{class}\" data-label=\"{}\"", xml(&row.label))
-    };
-    table.group.rows.iter().enumerate().map(of_row).collect()
-}
-
-fn with_rows(table: &Table, rows: &[String]) -> String {
-    let class = |row: usize, column: usize| {
-        let text = table.rows[row][column].as_str();
-        match (table.heads[column].as_str(), text) {
+            .flat_map(|index| attributes(*index, &tables[*index]));
+        let rows: Vec<String> = rows.collect();
+        let class = |row: usize, column: usize| match (&*heads[column], &*cells[row][column]) {
             ("wrong outside band", "0") => "class=\"zero\"".into(),
             ("wrong outside band", text) if text != NOT_THERE => "class=\"wrong\"".into(),
             _ => String::new(),
-        }
+        };
+        let table = Table::new(heads.clone(), 2, cells.clone());
+        let table = html(&table, |row| rows[row].clone(), class);
+        Some(part("rows", &alike, None, &table))
     };
-    html(table, |row| rows[row].clone(), class)
+    [true, false].into_iter().filter_map(of_kind).collect()
+}
+
+/// Attributes of each row.
+fn attributes(index: usize, table: &Shown) -> Vec<String> {
+    let best = table.group.verdict().fastest_exact;
+    let of_row = |(place, row): (usize, &Row)| {
+        let class = match table.error(row) {
+            _ if best == Some(place) => "exact best",
+            Some(0.0) => "exact",
+            _ => "",
+        };
+        let label = xml(&row.label);
+        format!("class=\"{class}\" data-of=\"{index}\" data-label=\"{label}\"")
+    };
+    table.group.rows.iter().enumerate().map(of_row).collect()
 }

@@ -1,17 +1,17 @@
 // Charts and tables stand in the page; what is chosen of them is shown.
 
 const isChosen = ({ dataset: of }) => of.table.split(' ').includes(String(state.table))
-  && (of.time ?? state.time) === state.time;
+  && (of.kept ?? state.kept) === state.kept;
 const hide = (part, isHidden) => part.toggleAttribute('hidden', isHidden);
 
 function show() {
   for (const part of all('[data-table]')) hide(part, !isChosen(part));
-  for (const part of all('#table > div')) hide(part, !isChosen(part) || part.classList.contains('all') !== state.all);
   for (const part of all('[data-series]')) {
     hide(part, state.hidden.has(part.dataset.series));
     part.classList.toggle('chosen', part.dataset.name === state.row);
   }
   for (const button of all('#legend button')) button.ariaPressed = String(!state.hidden.has(button.dataset.method));
+  filterRows();
   hide(byId('hidden'), state.hidden.size === 0);
   for (const id of ['passes', 'growth']) hide(byId(`${id}-section`), !all(`#${id} > [data-table]`).some(isChosen));
 }

@@ -62,49 +62,36 @@ impl Shown<'_> {
             row.rmse()
         }
     }
-}
 
-/// Frames of which times are shown.
-#[derive(Clone, Copy, PartialEq)]
-pub enum Time {
-    /// Every pass runs.
-    Frame,
-    /// Only the camera has moved.
-    Kept,
-}
-
-impl Time {
-    /// Milliseconds of a row, if they can stand on an axis.
-    pub fn of(self, table: &Shown, row: &Row) -> Option<f64> {
-        let frame = row.frame_ms(table.by_wall);
-        let kept = row.kept_ms(table.by_wall).filter(|_| self == Self::Kept);
-        kept.or(frame).filter(|ms| ms.is_finite() && *ms > 0.0)
+    /// Milliseconds of a frame of a row that may stand on an axis; if `kept` of one in which only
+    /// the camera has moved.
+    pub fn ms(&self, row: &Row, kept: bool) -> Option<f64> {
+        let kept = row.kept_ms(self.by_wall).filter(|_| kept);
+        let ms = kept.or(row.frame_ms(self.by_wall));
+        ms.filter(|ms| ms.is_finite() && *ms > 0.0)
     }
 }
 
-/// Those in which the tables' rows differ.
-pub fn times(tables: &[Shown]) -> &'static [Time] {
+/// Which times the tables' rows have: true stands for those with what is kept.
+pub fn times(tables: &[Shown]) -> &'static [bool] {
     let keeps = |table: &Shown| {
         let mut rows = table.group.rows.iter();
         rows.any(|row| row.kept_ms(table.by_wall).is_some())
     };
     if tables.iter().any(keeps) {
-        &[Time::Frame, Time::Kept]
+        &[false, true]
     } else {
-        &[Time::Frame]
+        &[false]
     }
 }
 
-/// An element that the script shows while one of these tables is chosen, and that time.
-pub fn part(class: &str, tables: &[usize], time: Option<Time>, content: &str) -> String {
-    let time = match time {
-        Some(Time::Frame) => " data-time=\"frame\"",
-        Some(Time::Kept) => " data-time=\"kept\" hidden",
-        None => "",
-    };
+/// An element that the script shows while one of these tables is chosen, and that time, if any.
+pub fn part(class: &str, tables: &[usize], kept: Option<bool>, content: &str) -> String {
+    let time = kept.map_or(String::new(), |kept| format!(" data-kept=\"{kept}\""));
     let names: Vec<String> = tables.iter().map(ToString::to_string).collect();
     // The script begins with the first table.
-    let hidden = if tables.contains(&0) { "" } else { " hidden" };
+    let is_shown = tables.contains(&0) && kept != Some(true);
+    let hidden = if is_shown { "" } else { " hidden" };
     let names = names.join(" ");
     format!("<div class=\"{class}\" data-table=\"{names}\"{time}{hidden}>{content}</div>\n")
 }

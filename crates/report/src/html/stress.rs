@@ -1,6 +1,6 @@
 //! Matrices of hard cases, as the terminal has them.
 
-use crate::stress_matrix::{HEADS, cell_of, columns, failures, heading, matrix, remarks, rows};
+use crate::stress_matrix::{failures, heading, matrix, remarks};
 use crate::table::html;
 use skiagraph_chart::xml;
 use skiagraph_compare::records::stress::{Report, Verdict};
@@ -12,47 +12,34 @@ pub fn matrices(reports: &[Report]) -> String {
 }
 
 fn of_report(report: &Report) -> String {
-    let (rows, columns) = (rows(report), columns(report));
+    let (table, rows) = matrix(report);
     let why = |row: usize| format!("title=\"{}\"", xml(&rows[row].0.reason));
     let verdict = |row: usize, column: usize| {
-        let method = column.checked_sub(HEADS).map(|column| columns[column]);
-        let (verdict, told) = match method.map(|method| cell_of(rows[row], method)) {
-            Some(None) => return String::new(),
-            Some(Some(cell)) => {
-                let facing = rows[row].0.pixels.facing_light;
-                let counts = cell.counts.as_ref();
-                let uncertain =
-                    counts.map(|counts| format!("uncertain {}", percent(counts.uncertain, facing)));
-                (cell.verdict, uncertain.or(cell.failed.clone()))
-            }
-            None if column + 1 == HEADS && rows[row].1.is_none() => {
-                (rows[row].0.verdict, rows[row].0.failed.clone())
-            }
+        let (case, cells) = &rows[row];
+        let cell = column.checked_sub(3).and_then(|method| cells[method]);
+        let verdict = cell.map(|cell| cell.verdict);
+        let of_case = column == 2 && !table.rows[row][column].is_empty();
+        let class = match verdict.or(of_case.then_some(case.verdict)) {
+            Some(Verdict::Pass) => "pass",
+            Some(Verdict::Fail) => "fail",
+            Some(Verdict::Open) => "open",
+            Some(Verdict::Unjudged) => "unjudged",
             None => return String::new(),
         };
-        let class = match verdict {
-            Verdict::Pass => "pass",
-            Verdict::Fail => "fail",
-            Verdict::Open => "open",
-            Verdict::Unjudged => "unjudged",
-        };
-        let told = told.map_or(String::new(), |told| format!("; {told}"));
-        format!("class=\"{class}\" title=\"{class}{}\"", xml(&told))
+        let counts = cell.and_then(|cell| cell.counts);
+        let told = counts.map_or(String::new(), |counts| {
+            let share = percent(counts.uncertain, case.pixels.facing_light);
+            format!("; uncertain {share}")
+        });
+        format!("class=\"{class}\" title=\"{class}{told}\"")
     };
-    let line = |class: &str, text: &str| format!("<p class=\"{class}\">{}</p>\n", xml(text));
-    let heading: String = heading(report)
-        .lines()
-        .map(|text| line("quiet", text))
-        .collect();
-    let remarks: String = remarks(report)
-        .iter()
-        .map(|text| line("quiet", text))
-        .collect();
-    let failures = failures(report);
-    let failures = failures
-        .iter()
-        .map(|failure| line("warning", &failure.what));
-    let failures: String = failures.collect();
-    let table = html(&matrix(report), why, verdict);
-    format!("{heading}{failures}{table}{remarks}")
+    let lines = |class: &str, text: &str| -> String {
+        let lines = text.lines().filter(|line| !line.trim().is_empty());
+        let lines = lines.map(|line| format!("<p class=\"{class}\">{}</p>\n", xml(line)));
+        lines.collect()
+    };
+    lines("quiet", &heading(report))
+        + &lines("warning", &failures(report, &|_, _, _| String::new()))
+        + &html(&table, why, verdict)
+        + &lines("quiet", &remarks(report))
 }

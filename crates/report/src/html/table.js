@@ -24,10 +24,12 @@ function sort(name, isDown) {
 
 const filter = { words: '', exact: false };
 function filterRows() {
+  byId('table').classList.toggle('one', !state.all);
   const words = filter.words.toLowerCase().split(/\s+/);
   for (const row of all('#table tbody tr')) {
     const name = [...row.querySelectorAll('th')].map((head) => head.textContent).join(' ').toLowerCase();
-    hide(row, !words.every((word) => name.includes(word)) || (filter.exact && !row.classList.contains('exact')));
+    const isOf = state.all || row.dataset.of === String(state.table);
+    hide(row, !isOf || !words.every((word) => name.includes(word)) || (filter.exact && !row.classList.contains('exact')));
   }
 }
 
@@ -55,7 +57,7 @@ function tableControls() {
     }),
     data.tables.length > 1 ? check('all-tables', 'all sizes and sources', (isOn) => {
       state.all = isOn;
-      show();
+      filterRows();
     }) : null,
   ].filter(Boolean));
 }

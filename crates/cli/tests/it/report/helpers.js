@@ -15,7 +15,7 @@ async function until(holds) {
   return holds();
 }
 const rows = () => seen('#table tbody tr').map((row) => row.dataset.label);
-const cells = (index) => seen('#table tbody tr').map((row) => row.children[index]?.textContent);
+const cells = (name) => seen('#table tbody tr').map((row) => row.cells[head(name).cellIndex].textContent);
 const head = (text) => seen('#table thead th').find((cell) => cell.textContent === text);
 function set(selector, text) {
   const select = find(selector);

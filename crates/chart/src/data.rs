@@ -75,7 +75,7 @@ pub struct Series {
 }
 
 /// A measurement.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Mark {
     /// To the right: finite and above 0; in [`Kind::Bars`] the index of the group.
     pub x: f64,
@@ -88,6 +88,17 @@ pub struct Mark {
 }
 
 impl Mark {
+    /// A mark of the smallest size of which there is no more to tell.
+    pub fn new(x: f64, y: f64) -> Self {
+        let about = String::new();
+        Self {
+            x,
+            y,
+            size: 0,
+            about,
+        }
+    }
+
     /// Name: the first line of what there is to tell of it.
     pub(crate) fn name(&self) -> &str {
         self.about.lines().next().unwrap_or_default()

@@ -19,7 +19,7 @@
 //!
 //! let series = |name: &str, x, y| Series {
 //!     name: name.into(),
-//!     marks: vec![Mark { x, y, ..Mark::default() }],
+//!     marks: vec![Mark::new(x, y)],
 //! };
 //! let figure = Figure {
 //!     title: "Time against error".into(),

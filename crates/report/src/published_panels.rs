@@ -176,11 +176,7 @@ impl PanelRow<'_> {
                 push(
                     side,
                     &bar.series,
-                    Mark {
-                        x,
-                        y,
-                        ..Mark::default()
-                    },
+                    Mark::new(x, y),
                 );
             }
         }
@@ -206,11 +202,7 @@ impl PanelRow<'_> {
                     push(
                         side,
                         &bar.series,
-                        Mark {
-                            x,
-                            y,
-                            ..Mark::default()
-                        },
+                        Mark::new(x, y),
                     );
                 }
             }

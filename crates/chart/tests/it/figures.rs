@@ -6,10 +6,8 @@ use skiagraph_chart::{Error, Figure, Kind, Mark, Panel, Series};
 
 fn series(name: &str, marks: &[(f64, f64)]) -> Series {
     let mark = |(size, &(x, y))| Mark {
-        x,
-        y,
         size,
-        ..Mark::default()
+        ..Mark::new(x, y)
     };
     Series {
         name: name.into(),
@@ -66,11 +64,7 @@ fn time_against_error() -> Figure {
 
 fn growth() -> Figure {
     let line = |name: &str, base: f64, power: f64| {
-        let marks = [1e4, 1e5, 1e6, 1e7f64].map(|x| Mark {
-            x,
-            y: base * (x / 1e4).powf(power),
-            ..Mark::default()
-        });
+        let marks = [1e4, 1e5, 1e6, 1e7f64].map(|x| Mark::new(x, base * (x / 1e4).powf(power)));
         Series {
             name: name.into(),
             marks: marks.into(),
@@ -105,11 +99,7 @@ fn bars() -> Figure {
     let groups = ["512²", "1024²", "2048²", "4096²"].map(str::to_owned);
     let panel = |title: &str, scale: f64| {
         let bars = |name: &str, heights: &[f64]| {
-            let mark = |(group, &y): (usize, &f64)| Mark {
-                x: group as f64,
-                y: y * scale,
-                ..Mark::default()
-            };
+            let mark = |(group, &y): (usize, &f64)| Mark::new(group as f64, y * scale);
             Series {
                 name: name.into(),
                 marks: heights.iter().enumerate().map(mark).collect(),
@@ -459,11 +449,7 @@ fn what_is_no_bar_is_refused_by_name() {
         (1.0, f64::NAN),
     ] {
         let mut figure = bars();
-        figure.panels[1].series[2].marks.push(Mark {
-            x,
-            y,
-            ..Mark::default()
-        });
+        figure.panels[1].series[2].marks.push(Mark::new(x, y));
         let message = figure.to_svg().unwrap_err().to_string();
         let named = message.contains("\"ours: sponza, main\"") && message.contains("\"crsma\"");
         assert!(named && message.contains("4 groups"), "{message}");
@@ -494,10 +480,8 @@ fn what_has_no_place_is_refused_by_name() {
         figure.to_svg()
     };
     let mark = |x, y, size| Mark {
-        x,
-        y,
         size,
-        ..Mark::default()
+        ..Mark::new(x, y)
     };
     let told = |result: Result<String, Error>| result.unwrap_err().to_string();
     for (x, y) in [

@@ -27,24 +27,15 @@ pub(crate) const FRONT: RGBColor = RGBColor(70, 70, 70);
 /// The line of slope 1.
 pub(crate) const GUIDE: RGBColor = RGBColor(120, 120, 120);
 
+/// Names of these colours in the style of a page.
+const VARIABLES: &str = "s0 s1 s2 s3 s4 s5 s6 ink quiet quiet front line faint strip card";
+
 /// The same picture with variables of a page's style for colours.
 pub(crate) fn as_variables(svg: String) -> String {
-    let looks = LOOKS.into_iter().enumerate();
-    let looks = looks.map(|(index, colour)| (colour, format!("s{index}")));
-    let others = [
-        (INK, "ink"),
-        (AXIS, "quiet"),
-        (GUIDE, "quiet"),
-        (FRONT, "front"),
-        (GRID[0], "line"),
-        (GRID[1], "faint"),
-        (STRIP, "strip"),
-        (WHITE, "card"),
-    ];
-    let others = others.map(|(colour, name)| (colour, name.to_owned()));
+    let others = [INK, AXIS, GUIDE, FRONT, GRID[0], GRID[1], STRIP, WHITE];
+    let all = LOOKS.into_iter().chain(others).zip(VARIABLES.split(' '));
     // Words are escaped: a colour between quotes is one.
-    looks.chain(others).fold(svg, |svg, (colour, name)| {
-        let RGBColor(red, green, blue) = colour;
+    all.fold(svg, |svg, (RGBColor(red, green, blue), name)| {
         let known = format!("\"#{red:02X}{green:02X}{blue:02X}\"");
         svg.replace(&known, &format!("\"var(--{name})\""))
     })

@@ -79,8 +79,10 @@ fn front_panel(kept: &Kept, viewport: [u32; 2], maps: &[u32]) -> Result<Panel, C
         let map = run
             .map_size
             .and_then(|size| maps.iter().position(|map| *map == size));
-        let mark = Mark::new(ms / views, 100.0 * wrong as f64 / pixels as f64,
-            size: map.unwrap_or(0));
+        let mark = Mark {
+            size: map.unwrap_or(0),
+            ..Mark::new(ms / views, 100.0 * wrong as f64 / pixels as f64)
+        };
         push(&mut series, &run.preset, mark);
     }
     let views: BTreeSet<&str> = runs.iter().map(|(run, _)| run.view.as_str()).collect();
@@ -144,11 +146,7 @@ pub fn growth(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, Compa
         let heights = [time(kept, measured)?, bytes as f64 / 1e6];
         for (panel, y) in panels[index].iter_mut().zip(heights) {
             let x = scene.triangles as f64;
-            push(
-                &mut panel.series,
-                &name,
-                Mark::new(x, y),
-            );
+            push(&mut panel.series, &name, Mark::new(x, y));
         }
     }
     for series in panels

@@ -4,7 +4,7 @@ use crate::html::shown::{Shown, part, times};
 use crate::summary::Row;
 use skiagraph_chart::{Error, Figure, Kind, Mark, Panel, Series, xml};
 use skiagraph_compare::lists::unique;
-use skiagraph_compare::wording::{bytes, ms, percent, size, thousands};
+use skiagraph_compare::wording::{ms, size};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Widths of a chart for classes of windows, pixels.
@@ -45,19 +45,18 @@ pub fn fronts(tables: &[Shown]) -> String {
 
 /// Each row is a series, so that it has a lane of its own where it is exact.
 fn front(table: &Shown, kept: bool) -> Panel {
-    let row = |row: &Row| {
+    let row = |(index, row): (usize, &Row)| {
         let (x, y) = (table.ms(row, kept)?, table.error(row)?);
         y.is_finite().then(|| Series {
             name: row.method.clone(),
             marks: vec![Mark {
-                x,
-                y,
-                about: about(table, row),
-                ..Mark::default()
+                about: about(table, index),
+                ..Mark::new(x, y)
             }],
         })
     };
-    let mut series: Vec<Series> = table.group.rows.iter().filter_map(row).collect();
+    let rows = table.group.rows.iter().enumerate();
+    let mut series: Vec<Series> = rows.filter_map(row).collect();
     series.sort_by(|one, other| one.marks[0].x.total_cmp(&other.marks[0].x));
     let clock = if table.by_wall { "wall clock" } else { "GPU" };
     let frame = if kept {
@@ -79,28 +78,12 @@ fn front(table: &Shown, kept: bool) -> Panel {
     }
 }
 
-fn about(table: &Shown, row: &Row) -> String {
-    let wrong = row.wrong();
-    let error = match row.rmse() {
-        Some(rmse) if !table.group.is_hard => format!("RMSE {rmse:.5}"),
-        _ => format!(
-            "{} wrong outside the band ({})",
-            thousands(wrong.outside_band),
-            percent(wrong.outside_band, wrong.facing_light)
-        ),
-    };
-    let frame = row.frame_ms(table.by_wall);
-    let kept = row.kept_ms(table.by_wall);
-    let lines = [
-        Some(row.label.clone()),
-        Some(error),
-        frame.map(|time| format!("{} ms a frame", ms(time))),
-        kept.map(|time| format!("{} ms while only the camera moves", ms(time))),
-        row.rays()
-            .map(|rays| format!("{} rays", thousands(rays.round() as u64))),
-        Some(bytes(row.bytes())),
-    ];
-    lines.into_iter().flatten().collect::<Vec<_>>().join("\n")
+/// What the table says of a row.
+fn about(table: &Shown, index: usize) -> String {
+    let cells = table.table.heads.iter().zip(&table.table.rows[index]);
+    let told = cells.skip(1).filter(|(_, cell)| *cell != "–");
+    let told = told.map(|(head, cell)| format!("\n{head}: {cell}"));
+    table.group.rows[index].label.clone() + &told.collect::<String>()
 }
 
 /// Buttons for the methods of each table, which show a method or not.
@@ -190,10 +173,8 @@ fn growth<'a>(
             marks: Vec::new(),
         });
         line.marks.push(Mark {
-            x,
-            y,
             about: format!("{}\n{name}: {} ms", row.label, ms(y)),
-            ..Mark::default()
+            ..Mark::new(x, y)
         });
         ticks.push((x, name));
     }

@@ -12,22 +12,18 @@ pub fn tables(tables: &[Shown]) -> String {
     let of_kind = |is_hard| {
         let alike = (0..tables.len()).filter(|index| tables[*index].group.is_hard == is_hard);
         let alike: Vec<usize> = alike.collect();
-        let table = |index: &usize| tables[*index].summary.table(tables[*index].group);
-        let each: Vec<Table> = alike.iter().map(table).collect();
+        let each = alike.iter().map(|index| &tables[*index].table);
         // Tables of paths have columns that others lack.
-        let mut heads = each
-            .iter()
-            .max_by_key(|table| table.heads.len())?
-            .heads
-            .clone();
-        let cells = alike.iter().zip(&each).flat_map(|(index, table)| {
+        let mut heads = each.max_by_key(|table| table.heads.len())?.heads.clone();
+        let cells = alike.iter().map(|index| &tables[*index]).flat_map(|of| {
+            let table = &of.table;
             table.rows.iter().map(|cells| {
                 let cell = |head: &String| {
                     let column = table.heads.iter().position(|known| known == head);
                     column.map_or("–".into(), |column| cells[column].clone())
                 };
                 let mut row: Vec<String> = heads.iter().map(cell).collect();
-                row.insert(1, tables[*index].title.clone());
+                row.insert(1, of.title.clone());
                 row
             })
         });

@@ -4,6 +4,7 @@
 use crate::html::sources::Source;
 use crate::summary::{Row, by_wall};
 use crate::summary_table::{Group, Summary};
+use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::size;
 use std::collections::BTreeSet;
 
@@ -15,6 +16,8 @@ pub struct Shown<'a> {
     pub summary: &'a Summary<'a>,
     /// Its rows.
     pub group: &'a Group<'a>,
+    /// The same as the terminal shows them.
+    pub table: Table,
     /// True if times are the wall clock's.
     pub by_wall: bool,
     /// Source and viewport in words.
@@ -40,6 +43,7 @@ pub fn shown<'a>(sources: &[Source], all: &'a [(usize, Summary<'a>)]) -> Vec<Sho
             source,
             summary,
             group,
+            table: summary.table(group),
             by_wall: by_wall(&group.rows),
             title,
         }

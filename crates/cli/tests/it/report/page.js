@@ -37,7 +37,7 @@ try {
   check('alone', seen('#front svg').length === 1, seen('#front svg').length);
   find('#time [data-value="false"]').click();
   point(seen('#front .mark')[0], 'pointermove', 0.5, 0.5);
-  check('a mark tells its figures', !find('#tip').hidden && find('#tip').textContent.includes('ms a frame'), find('#tip').textContent);
+  check('a mark tells its figures', !find('#tip').hidden && find('#tip').textContent.includes('frame ms: '), find('#tip').textContent);
   check('in lines', find('#tip').textContent.split('\n').length >= 4, find('#tip').textContent);
   point(find('#front'), 'pointermove', 0.5, 0.5);
   check('and stops', find('#tip').hidden);

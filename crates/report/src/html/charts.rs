@@ -8,7 +8,7 @@ use skiagraph_compare::wording::{ms, size};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Widths of a chart for classes of windows, pixels.
-const WIDTHS: [(&str, u16); 2] = [("broad", 1100), ("narrow", 400)];
+const WIDTHS: [(&str, u16); 3] = [("broad", 1100), ("middle", 700), ("narrow", 400)];
 /// Width of a chart beside another one.
 const HALF: u16 = 520;
 

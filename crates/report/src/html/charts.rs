@@ -78,7 +78,7 @@ fn front(table: &Shown, kept: bool) -> Panel {
     }
 }
 
-/// What the table says of a row.
+/// The figures of a row, as the table has them.
 fn about(table: &Shown, index: usize) -> String {
     let cells = table.table.heads.iter().zip(&table.table.rows[index]);
     let told = cells.skip(1).filter(|(_, cell)| *cell != "–");

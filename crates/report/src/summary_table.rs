@@ -45,7 +45,7 @@ pub fn summaries(results: &Results) -> Vec<Summary<'_>> {
 const WARNING: &str = "warning: ";
 
 /// Cell of a row that could not run.
-const NOT_THERE: &str = "n/a";
+pub const NOT_THERE: &str = "n/a";
 
 impl<'a> Summary<'a> {
     fn new(results: &'a Results, viewport: [u32; 2]) -> Self {

@@ -103,7 +103,7 @@ fn the_reference_of_the_language_is_that_of_its_types() {
     );
     let output = skiagraph(Path::new("."), &["schema"]);
     let schema: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
-    assert_eq!(schema, skiagraph_passes::registry().schema());
+    assert_eq!(schema, skiagraph_graph::schema(&skiagraph_passes::registry()));
 }
 
 #[test]

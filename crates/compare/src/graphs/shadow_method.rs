@@ -263,11 +263,12 @@ fn certain(visibility: &[u32], truth: &GroundTruthPixels) -> Vec<u32> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use wgpu::TextureFormat as F;
 
-    fn truth() -> GroundTruthPixels {
+    /// A pixel of each class.
+    pub(crate) fn truth() -> GroundTruthPixels {
         GroundTruthPixels {
             viewport: [4, 1],
             classes: vec![

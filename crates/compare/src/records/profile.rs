@@ -278,7 +278,7 @@ impl From<MemoryEntry> for Material {
 pub(crate) mod tests {
     use super::*;
     use crate::files::json;
-    use crate::records::results::OpenParts;
+    use crate::records::results::tests::{adapter, scene};
     use crate::records::statistics::tests::series;
 
     /// A profile with every field in use: one pass with all times, one without a GPU time.
@@ -309,21 +309,10 @@ pub(crate) mod tests {
             build: "release".into(),
             date: "2026-11-21T04:30:12Z".into(),
             adapter: Adapter {
-                name: "Some GPU".into(),
-                backend: "vulkan".into(),
-                driver: "driver 1.2".into(),
                 device_type: "DiscreteGpu".into(),
-                gpu_unavailable: None,
+                ..adapter()
             },
-            scene: Scene {
-                name: "park".into(),
-                triangles: 55_000,
-                parts: OpenParts {
-                    all: 40,
-                    open: 12,
-                    open_triangles: 5_000,
-                },
-            },
+            scene: scene(),
             preset: "nsm".into(),
             view: "main".into(),
             viewport: [512, 256],

@@ -478,6 +478,30 @@ pub(crate) mod tests {
     use crate::files::json;
     use skiagraph_reference::ClassSplit;
 
+    /// An adapter that no machine has.
+    pub(crate) fn adapter() -> Adapter {
+        Adapter {
+            name: "Some GPU".into(),
+            backend: "vulkan".into(),
+            driver: "driver 1.2".into(),
+            device_type: "Cpu".into(),
+            gpu_unavailable: None,
+        }
+    }
+
+    /// A scene of open and closed parts.
+    pub(crate) fn scene() -> Scene {
+        Scene {
+            name: "park".into(),
+            triangles: 55_000,
+            parts: OpenParts {
+                all: 40,
+                open: 12,
+                open_triangles: 5_000,
+            },
+        }
+    }
+
     /// Results with every field in use: one full run, one without a map or GPU times, one
     /// unavailable.
     #[allow(clippy::too_many_lines, reason = "every field has a value")]
@@ -593,22 +617,8 @@ pub(crate) mod tests {
         Results {
             schema: 1,
             program: "skiagraph 0.1.0".into(),
-            adapter: Adapter {
-                name: "Some GPU".into(),
-                backend: "vulkan".into(),
-                driver: "driver 1.2".into(),
-                device_type: "Cpu".into(),
-                gpu_unavailable: None,
-            },
-            scene: Scene {
-                name: "park".into(),
-                triangles: 55_000,
-                parts: OpenParts {
-                    all: 40,
-                    open: 12,
-                    open_triangles: 5_000,
-                },
-            },
+            adapter: adapter(),
+            scene: scene(),
             oracle: "exact".into(),
             frames: 10,
             warmup: 2,

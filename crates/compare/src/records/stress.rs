@@ -290,6 +290,7 @@ impl Report {
 pub(crate) mod tests {
     use super::*;
     use crate::files::json;
+    use crate::records::results::tests::adapter;
 
     fn cell(preset: &str, verdict: Verdict, outside: [u64; 3]) -> Cell {
         let [lit, shadow, certain] = outside;
@@ -373,13 +374,7 @@ pub(crate) mod tests {
         Report {
             schema: 1,
             program: "skiagraph 0.1.0".into(),
-            adapter: Adapter {
-                name: "Some GPU".into(),
-                backend: "vulkan".into(),
-                driver: "driver 1.2".into(),
-                device_type: "Cpu".into(),
-                gpu_unavailable: None,
-            },
+            adapter: adapter(),
             viewport: [128, 96],
             methods: vec![
                 column("rt", exact),

@@ -16,3 +16,4 @@ mod remembering;
 mod resume;
 mod saves;
 mod schema;
+mod timeless;

@@ -1,6 +1,7 @@
 //! Results in a folder, and going on from those that are there.
 
 use crate::support::{LIT, NOWHERE, comparison, keep, park, park_comparison, sources, timed};
+use crate::timeless::timeless;
 use serde_json::Value;
 use skiagraph_compare::{
     comparison::Comparison, graphs::shadow_method::load_methods, measuring::resume::Kept,
@@ -8,26 +9,6 @@ use skiagraph_compare::{
 use skiagraph_graph::Sources;
 use skiagraph_passes::EmbeddedSources;
 use std::{fs, path::Path};
-
-/// Results without times, and without the commands that measured them.
-fn timeless(mut value: Value) -> Value {
-    fn clear(value: &mut Value) {
-        match value {
-            Value::Object(fields) if fields.contains_key("p95") => *value = Value::Null,
-            Value::Object(fields) => {
-                fields.remove("date");
-                fields.remove("commands");
-                // The reason has times in it.
-                fields.remove("gpu_unavailable");
-                fields.values_mut().for_each(clear);
-            }
-            Value::Array(items) => items.iter_mut().for_each(clear),
-            _ => {}
-        }
-    }
-    clear(&mut value);
-    value
-}
 
 /// Compares methods, those of a folder first, and keeps the results in a folder; returns what was
 /// heard, and the file.

@@ -125,7 +125,7 @@ impl<'t> Ron<'t> {
 }
 
 fn validator() -> Validator {
-    let schema = skiagraph_passes::registry().schema();
+    let schema = skiagraph_graph::schema(&skiagraph_passes::registry());
     jsonschema::meta::validate(&schema).unwrap();
     jsonschema::validator_for(&schema).unwrap()
 }

@@ -85,7 +85,11 @@ const LISTS: [&str; 3] = ["lights", "views", "paths"];
 
 /// Where a scene's triangles come from.
 #[derive(Clone, Debug, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "Mesh")
+)]
 #[serde(deny_unknown_fields)]
 pub enum MeshSource {
     /// A Wavefront OBJ file.
@@ -307,7 +311,11 @@ struct LightText {
 }
 
 #[derive(Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "NamedLight")
+)]
 #[serde(deny_unknown_fields, rename = "light")]
 pub(crate) enum NamedLightText {
     /// A light as far away as the sun.
@@ -440,7 +448,11 @@ pub(crate) struct PathText {
 }
 
 #[derive(Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "Motion")
+)]
 #[serde(deny_unknown_fields, rename = "moves")]
 enum MotionText {
     /// The part is turned about an axis, then shifted.

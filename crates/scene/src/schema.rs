@@ -1,4 +1,4 @@
-//! What scene files may be, as a JSON Schema (feature `schema`).
+//! The JSON Schema of scene files (feature `schema`).
 
 use crate::scene_file::{NamedLightText, PathText, SceneFile, SceneText, ViewText};
 use schemars::{JsonSchema, SchemaGenerator};

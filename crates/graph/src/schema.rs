@@ -23,6 +23,7 @@ use crate::{
 };
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::{Map, Value, json};
+use skiagraph_located_ron::schema::plain;
 use std::borrow::Cow;
 
 /// A word of the language, to which a text in quotes is no alternative.
@@ -150,37 +151,6 @@ pub fn schema(registry: &Registry) -> Value {
     });
     plain(&mut document);
     document
-}
-
-/// Simplifies a schema: optional fields need not be null, too; descriptions have no line breaks.
-fn plain(schema: &mut Value) {
-    match schema {
-        Value::Object(fields) => {
-            if let Some(Value::String(description)) = fields.get_mut("description") {
-                *description = description.replace('\n', " ");
-            }
-            if let Some(Value::Array(types)) = fields.get_mut("type") {
-                types.retain(|name| name != "null");
-                if let [one] = &types[..] {
-                    let one = one.clone();
-                    fields["type"] = one;
-                }
-            }
-            if let Some(Value::Array(several)) = fields.get_mut("anyOf") {
-                several.retain(|one| one["type"] != "null");
-                if let [Value::Object(one)] = &several[..] {
-                    let one = one.clone();
-                    fields.remove("anyOf");
-                    for (name, value) in one {
-                        fields.entry(name).or_insert(value);
-                    }
-                }
-            }
-            fields.values_mut().for_each(plain);
-        }
-        Value::Array(parts) => parts.iter_mut().for_each(plain),
-        _ => {}
-    }
 }
 
 fn reference(name: &str) -> Value {

@@ -22,4 +22,6 @@
 pub mod diagnostics;
 pub mod panics;
 pub mod reader;
+#[cfg(feature = "schema")]
+pub mod schema;
 pub mod span;

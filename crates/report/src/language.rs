@@ -37,6 +37,18 @@ pub fn markdown(schema: &Value) -> String {
     page.text
 }
 
+/// The fields of scene files that their schema describes.
+pub fn scenes(schema: &Value) -> String {
+    let mut page = Page {
+        text: "# Fields of scene files\n\nFields in **bold** must be given.\n".to_owned(),
+        defs: &schema["$defs"],
+        told: BTreeSet::new(),
+    };
+    page.table(schema, &BTreeSet::new());
+    page.values();
+    page.text
+}
+
 struct Page<'s> {
     text: String,
     defs: &'s Value,
@@ -148,9 +160,13 @@ impl<'s> Page<'s> {
             self.text += "\nOr with fields, `(name: …)`:\n";
             return self.table(one, &BTreeSet::new());
         }
-        let value = self.value(one);
         let what = one["description"].as_str();
         let what = what.map_or_else(String::new, |what| format!(": {what}"));
+        if let Some((tag, fields)) = variant(one).filter(|(_, of)| of["properties"].is_object()) {
+            self.prose(&format!("`{tag}`{what}"));
+            return self.table(fields, &BTreeSet::new());
+        }
+        let value = self.value(one);
         // A list begins after an empty line.
         let is_in_list = |last: &str| last.starts_with("- ") || last.starts_with("  ");
         let gap = if self.text.lines().last().is_some_and(is_in_list) {
@@ -189,6 +205,11 @@ impl<'s> Page<'s> {
             };
         }
         match of["type"].as_str() {
+            Some("array") if of["prefixItems"].is_array() => {
+                let parts = of["prefixItems"].as_array().into_iter().flatten();
+                let parts: Vec<String> = parts.map(|part| self.value(part)).collect();
+                format!("({})", parts.join(", "))
+            }
             Some("array") if of["items"]["properties"].is_object() => {
                 let tags = of["items"]["properties"].as_object().into_iter().flatten();
                 let tags: Vec<String> = tags.map(|(tag, _)| format!("`{tag}`")).collect();

@@ -46,6 +46,8 @@ pub mod report;
 mod scene;
 #[cfg(feature = "files")]
 pub mod scene_file;
+#[cfg(feature = "schema")]
+mod schema;
 pub mod texels;
 #[cfg(feature = "files")]
 mod text;

@@ -4,6 +4,7 @@ use serde::Deserialize;
 
 /// How much is taken of a mesh file's materials.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum MaterialUse {
     /// Nothing: files of materials and textures need not be there.
     Ignore,

@@ -5,6 +5,7 @@ use serde::Deserialize;
 
 /// Pattern of a made mask. It repeats without a seam.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Pattern {
     /// Leaves on twigs, half of it open.
     Leaves,

@@ -61,16 +61,22 @@ pub struct SceneFile {
 
 /// All of a scene file but its lists.
 #[derive(Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, rename = "scene")]
-struct SceneText {
+pub(crate) struct SceneText {
     /// Version of the format: 1.
     #[serde(rename = "format")]
     _format: u32,
+    /// Shown in tables and results.
     name: String,
+    /// One line for `skiagraph scenes`.
     #[serde(default)]
     description: String,
+    /// The triangles.
     mesh: MeshSource,
+    /// One sun, in the place of `lights`.
     #[serde(default, deserialize_with = "light")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<LightText>"))]
     light: Option<Light>,
 }
 
@@ -79,6 +85,11 @@ const LISTS: [&str; 3] = ["lights", "views", "paths"];
 
 /// Where a scene's triangles come from.
 #[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "Mesh")
+)]
 #[serde(deny_unknown_fields)]
 pub enum MeshSource {
     /// A Wavefront OBJ file.
@@ -115,7 +126,11 @@ pub enum MeshSource {
         source: Option<String>,
     },
     /// A mesh that this crate generates, by name: `"park"`, `"city:100000"`.
-    Generated(#[serde(deserialize_with = "generator")] Generator),
+    Generated(
+        #[serde(deserialize_with = "generator")]
+        #[cfg_attr(feature = "schema", schemars(with = "String"))]
+        Generator,
+    ),
 }
 
 impl SceneFile {
@@ -257,17 +272,26 @@ impl Item for CameraPath {
 }
 
 #[derive(Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, rename = "View")]
-struct ViewText {
+pub(crate) struct ViewText {
     name: String,
+    /// Place of the camera.
     eye: (f64, f64, f64),
+    /// Direction in which it looks, of any length above 0.
     direction: (f64, f64, f64),
+    /// Direction up in the picture, not parallel to `direction`.
     #[serde(default = "y_axis")]
     up: (f64, f64, f64),
+    /// Opening angle from bottom to top: more than 0, less than 180.
     fov_y_degrees: f64,
+    /// Distance of the near plane, more than 0.
     near: f64,
+    /// Distance of the far plane, more than `near`.
     far: f64,
+    /// One sun in the place of the scene's lights.
     #[serde(default, deserialize_with = "own_light")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<LightText>"))]
     light: Option<Light>,
 }
 
@@ -276,33 +300,50 @@ fn y_axis() -> (f64, f64, f64) {
 }
 
 #[derive(Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, rename = "Light")]
 struct LightText {
+    /// Direction in which the light travels.
     direction: (f64, f64, f64),
+    /// Diameter as seen from the scene: 0 to less than 180.
     #[serde(default)]
     angle_degrees: f64,
 }
 
 #[derive(Deserialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "NamedLight")
+)]
 #[serde(deny_unknown_fields, rename = "light")]
-enum NamedLightText {
+pub(crate) enum NamedLightText {
+    /// A light as far away as the sun.
     Directional {
         name: String,
+        /// Direction in which the light travels.
         direction: (f64, f64, f64),
+        /// Diameter as seen from the scene: 0 to less than 180.
         #[serde(default)]
         angle_degrees: f64,
     },
+    /// A lamp with a cone.
     Spot {
         name: String,
         position: (f64, f64, f64),
+        /// Direction of the cone's axis.
         direction: (f64, f64, f64),
+        /// The whole opening angle: more than 0, less than 180.
         cone_degrees: f64,
+        /// Radius of its disc, in the mesh's units.
         #[serde(default)]
         radius: f64,
     },
+    /// A lamp that shines everywhere.
     Point {
         name: String,
         position: (f64, f64, f64),
+        /// Radius of its ball, in the mesh's units.
         #[serde(default)]
         radius: f64,
     },
@@ -377,40 +418,62 @@ impl<'de> Deserialize<'de> for View {
 }
 
 #[derive(Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, rename = "Path")]
-struct PathText {
+pub(crate) struct PathText {
     name: String,
+    /// Direction up in the picture.
     #[serde(default = "y_axis")]
     up: (f64, f64, f64),
+    /// Opening angle from bottom to top: more than 0, less than 180.
     fov_y_degrees: f64,
+    /// Distance of the near plane, more than 0.
     near: f64,
+    /// Distance of the far plane, more than `near`.
     far: f64,
+    /// One sun in the place of the scene's lights.
     #[serde(default, deserialize_with = "own_light")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<LightText>"))]
     light: Option<Light>,
     #[serde(default = "thirty")]
     frames_per_second: f64,
+    /// The camera's way, a smooth curve through its keys.
     keys: Vec<KeyText>,
+    /// The light's way.
     #[serde(default)]
     light_keys: Vec<LightKeyText>,
+    /// Parts of the mesh that move.
     #[serde(default)]
     moves: Vec<MotionText>,
 }
 
 #[derive(Deserialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "Motion")
+)]
 #[serde(deny_unknown_fields, rename = "moves")]
 enum MotionText {
+    /// The part is turned about an axis, then shifted.
     Rigid {
+        /// Name of the part: a group or object of OBJ, a node of glTF.
         part: String,
+        /// Point on the axis.
         #[serde(default)]
         pivot: (f64, f64, f64),
         #[serde(default = "y_axis")]
         axis: (f64, f64, f64),
         keys: Vec<RigidKeyText>,
     },
+    /// The part bends along the axis as by wind; its foot stands.
     Sway {
+        /// Name of the part.
         part: String,
         axis: (f64, f64, f64),
+        /// Angle to which its top bends.
         degrees: f64,
+        /// Period.
         seconds: f64,
     },
 }
@@ -457,8 +520,10 @@ impl MotionText {
 }
 
 #[derive(Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, rename = "RigidKey")]
 struct RigidKeyText {
+    /// Time in seconds.
     at: f64,
     #[serde(default)]
     translation: (f64, f64, f64),
@@ -467,11 +532,15 @@ struct RigidKeyText {
 }
 
 #[derive(Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, rename = "LightKey")]
 struct LightKeyText {
+    /// Time in seconds.
     at: f64,
+    /// Direction in which the light travels.
     #[serde(default)]
     direction: Option<(f64, f64, f64)>,
+    /// Place of a lamp.
     #[serde(default)]
     position: Option<(f64, f64, f64)>,
 }
@@ -481,8 +550,10 @@ fn thirty() -> f64 {
 }
 
 #[derive(Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, rename = "Key")]
 struct KeyText {
+    /// Time in seconds.
     at: f64,
     eye: (f64, f64, f64),
     direction: (f64, f64, f64),

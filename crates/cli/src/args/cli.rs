@@ -135,11 +135,11 @@ pub enum Command {
         skiagraph show shared/light.wgsl\n  skiagraph show crsma_full --flat\n  \
         skiagraph show lamps")]
     Show(ShowArgs),
-    /// Print what documents may be: a JSON Schema for editors and programs that write documents, or
-    /// the reference of the language.
+    /// Print what documents or scene files may be: a JSON Schema for editors and programs that
+    /// write them, or the reference of the language.
     #[command(
         after_help = "Examples:\n  skiagraph schema > skiagraph.schema.json\n  \
-        skiagraph schema --format markdown\n\n\
+        skiagraph schema --format markdown\n  skiagraph schema scenes\n\n\
         In the schema `Kind(field: value)` is {\"Kind\": {\"field\": value}}, a bare word is a \
         text, a tuple is a list."
     )]

@@ -201,9 +201,21 @@ pub struct ShowArgs {
 /// `skiagraph schema`.
 #[derive(Args, Debug)]
 pub struct SchemaArgs {
+    /// Files that are described.
+    #[arg(value_enum, default_value_t = SchemaOf::Documents)]
+    pub of: SchemaOf,
     /// Format of the description.
     #[arg(long, value_enum, default_value_t = SchemaFormat::Json)]
     pub format: SchemaFormat,
+}
+
+/// Files that have a schema.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum SchemaOf {
+    /// Graphs, `(format: 3, passes: …)`.
+    Documents,
+    /// Scene files, `(format: 1, mesh: …)`.
+    Scenes,
 }
 
 /// How the language is described.

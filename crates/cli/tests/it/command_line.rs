@@ -103,7 +103,10 @@ fn the_reference_of_the_language_is_that_of_its_types() {
     );
     let output = skiagraph(Path::new("."), &["schema"]);
     let schema: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
-    assert_eq!(schema, skiagraph_graph::schema(&skiagraph_passes::registry()));
+    assert_eq!(
+        schema,
+        skiagraph_graph::schema(&skiagraph_passes::registry())
+    );
 }
 
 #[test]
@@ -578,4 +581,24 @@ fn a_document_is_planned_under_the_lights_that_it_takes() {
     let checked = skiagraph(folder, &["check", "mine.ron"]);
     assert_exit(&checked, 1);
     assert!(stderr(&checked).contains("it takes: sun"));
+}
+
+/// A scene file is told of as a document is, with the lines that are wrong.
+#[test]
+fn a_broken_scene_file_is_shown_in_its_lines() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = "(\n    format: 1,\n    name: \"a\",\n    mesh: Genrated(\"park\"),\n)";
+    fs::write(folder.path().join("a.ron"), scene).unwrap();
+    let output = skiagraph(folder.path(), &["compare", "nsm", "--scene", "a.ron"]);
+    assert_eq!(output.status.code(), Some(1));
+    let told = String::from_utf8_lossy(&output.stderr);
+    for part in [
+        "╭─[a.ron:4:11]",
+        "4 │     mesh: Genrated(\"park\"),",
+        "did you mean `Generated`?",
+        "a scene needs at least one view",
+        "cannot load the scene `a.ron`",
+    ] {
+        assert!(told.contains(part), "{told}");
+    }
 }

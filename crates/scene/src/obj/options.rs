@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 /// Which diagonal splits a quad, corners counted from the first; larger polygons are fanned from
 /// the same corner.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum QuadDiagonal {
     /// (0, 1, 2), (0, 2, 3): what most importers do.
     #[default]
@@ -27,6 +28,7 @@ impl QuadDiagonal {
 
 /// Treatment of a polygon that the fan from its corner does not fit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Concave {
     /// It is cut as its outline is, and refused where that crosses itself.
     #[default]
@@ -38,6 +40,7 @@ pub enum Concave {
 
 /// Parts of an OBJ file's materials that are read.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum ObjMaterials {
     /// Nothing: files of materials and textures need not be there.
     Ignore,

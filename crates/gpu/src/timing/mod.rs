@@ -18,10 +18,6 @@
 //! ```
 
 mod check;
-pub(crate) mod statistics;
-pub(crate) mod timer;
-pub(crate) mod times;
 
+pub use crate::frame::{FrameTiming, PassStatistics, PassTiming};
 pub use check::{Trust, check};
-pub use statistics::PassStatistics;
-pub use times::{FrameTiming, PassTiming};

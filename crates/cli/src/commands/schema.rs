@@ -4,7 +4,6 @@ use crate::args::commands::{SchemaArgs, SchemaFormat, SchemaOf};
 use crate::error::CliError;
 use crate::terminal::console::print;
 use skiagraph_report::language;
-use skiagraph_scene::SceneFile;
 
 /// Prints a JSON Schema, or the reference of the language.
 ///
@@ -13,7 +12,7 @@ use skiagraph_scene::SceneFile;
 pub fn schema(args: &SchemaArgs) -> Result<(), CliError> {
     let schema = match args.of {
         SchemaOf::Documents => skiagraph_graph::schema(&skiagraph_passes::registry()),
-        SchemaOf::Scenes => SceneFile::schema(),
+        SchemaOf::Scenes => skiagraph_scene::schema(),
     };
     print(&match (args.format, args.of) {
         (SchemaFormat::Json, _) => format!("{schema:#}\n"),

@@ -2,7 +2,6 @@
 
 use jsonschema::Validator;
 use serde_json::{Map, Value};
-use skiagraph_scene::SceneFile;
 use std::{collections::BTreeSet, fs, path::Path};
 
 /// RON as JSON: `Kind(field: value)` is `{"Kind": {"field": value}}`, a bare word a text, a tuple a
@@ -127,7 +126,7 @@ impl<'t> Ron<'t> {
 
 fn schema(of: &str) -> Value {
     let schema = match of {
-        "scenes" => SceneFile::schema(),
+        "scenes" => skiagraph_scene::schema(),
         _ => skiagraph_graph::schema(&skiagraph_passes::registry()),
     };
     jsonschema::meta::validate(&schema).unwrap();

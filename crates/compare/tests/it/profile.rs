@@ -44,7 +44,6 @@ fn a_baseline_stands_beside_and_other_conditions_are_called_out() {
     assert_eq!(beside.only_old, of_nsm);
     let of_rt = [
         "detect_facing",
-        "turn[0].fill_rays.clear",
         "turn[0].fill_rays.compact",
         "turn[0].fill_rays.dispatch_arguments",
         "turn[0].trace_rays",

@@ -295,7 +295,8 @@ impl<'a> Series<'a> {
     /// Writes what is done into the folder, with the pictures of the last run.
     ///
     /// # Errors
-    /// Those of [`ResultsFolder::save`].
+    /// An early end; a file that cannot be written, or that another process has written under other
+    /// conditions.
     pub fn save(&mut self, pictures: &[PictureFile]) -> Result<(), CompareError> {
         match &mut self.folder {
             Some(folder) => folder.save(&self.results, pictures, self.session.sink),

@@ -5,6 +5,7 @@ mod support;
 mod checking;
 mod dissertation;
 mod engine;
+mod foreign_files;
 mod frames;
 mod hard_cases;
 mod judging;

@@ -62,6 +62,11 @@ pub fn scene(argument: &str, obj: Option<ObjSetup>) -> Arc<Scene> {
 pub fn mesh(folder: &Path, text: &str, view: View, light: impl Into<Light>) -> Arc<Scene> {
     let file = folder.join("mesh.obj");
     fs::write(&file, text).unwrap();
+    mesh_file(&file, view, light)
+}
+
+/// The mesh of a file under a light and seen so.
+pub fn mesh_file(file: &Path, view: View, light: impl Into<Light>) -> Arc<Scene> {
     let setup = ObjSetup {
         view,
         light: light.into(),

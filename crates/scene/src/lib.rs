@@ -87,4 +87,6 @@ pub use report::ImportReport;
 pub use scene::Scene;
 #[cfg(feature = "files")]
 pub use scene_file::{MeshSource, SceneFile};
+#[cfg(feature = "schema")]
+pub use schema::scene_schema;
 pub use texture::{Texture, Wrap};

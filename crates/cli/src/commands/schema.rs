@@ -4,7 +4,7 @@ use crate::args::commands::{SchemaArgs, SchemaFormat, SchemaOf};
 use crate::error::CliError;
 use crate::terminal::console::print;
 use skiagraph_report::language;
-use skiagraph_scene::SceneFile;
+use skiagraph_scene::scene_schema;
 
 /// Prints a JSON Schema, or the reference of the language.
 ///
@@ -13,7 +13,7 @@ use skiagraph_scene::SceneFile;
 pub fn schema(args: &SchemaArgs) -> Result<(), CliError> {
     let schema = match args.of {
         SchemaOf::Documents => skiagraph_passes::registry().schema(),
-        SchemaOf::Scenes => SceneFile::schema(),
+        SchemaOf::Scenes => scene_schema(),
     };
     print(&match (args.format, args.of) {
         (SchemaFormat::Json, _) => format!("{schema:#}\n"),

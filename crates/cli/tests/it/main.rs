@@ -18,6 +18,7 @@ mod recording;
 mod remembering;
 mod report;
 mod saves;
+mod scene_files;
 mod schema;
 mod stress;
 mod surfaces;

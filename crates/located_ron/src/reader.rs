@@ -15,10 +15,11 @@ use serde::{
     Deserialize, Deserializer,
     de::{
         DeserializeOwned, DeserializeSeed, Error as _, IntoDeserializer, MapAccess, SeqAccess,
-        Visitor, value::MapAccessDeserializer,
+        Unexpected, Visitor, value::MapAccessDeserializer,
     },
 };
 use std::{
+    borrow::Cow,
     cell::{Cell, RefCell},
     collections::HashSet,
     fmt,
@@ -246,32 +247,9 @@ impl Node {
     /// # Errors
     /// If the piece is neither or is not well-formed.
     pub fn list(&self) -> Result<Vec<Node>, Diagnostic> {
-        struct Raw<'a>(Vec<&'a str>);
-        impl<'de> Deserialize<'de> for Raw<'de> {
-            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-                struct Entries;
-                impl<'de> Visitor<'de> for Entries {
-                    type Value = Raw<'de>;
-                    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                        f.write_str("a list `[a, b]`")
-                    }
-                    fn visit_seq<A: SeqAccess<'de>>(
-                        self,
-                        mut seq: A,
-                    ) -> Result<Raw<'de>, A::Error> {
-                        let mut entries = Vec::new();
-                        while let Some(entry) = seq.next_element::<&RawValue>()? {
-                            entries.push(bare(entry));
-                        }
-                        Ok(Raw(entries))
-                    }
-                }
-                deserializer.deserialize_any(Entries)
-            }
-        }
         // A tuple of one name looks like a struct to ron.
-        let raw: Raw<'_> = self.borrowed()?;
-        Ok(raw.0.into_iter().map(|part| self.sub(part)).collect())
+        let parts = self.parts(Shape::List)?.into_iter();
+        Ok(parts.map(|(_, part)| self.sub(part)).collect())
     }
 
     /// The entries of a map, `{"name": value}`, in order; duplicates are the caller's to find.
@@ -279,36 +257,12 @@ impl Node {
     /// # Errors
     /// If the piece is no map of names or is not well-formed.
     pub fn map(&self) -> Result<Vec<(Located<String>, Node)>, Diagnostic> {
-        struct Raw<'a>(Vec<(&'a str, &'a str)>);
-        impl<'de> Deserialize<'de> for Raw<'de> {
-            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-                struct Entries;
-                impl<'de> Visitor<'de> for Entries {
-                    type Value = Raw<'de>;
-                    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                        f.write_str("a map of names, `{\"a\": …}`")
-                    }
-                    fn visit_map<A: MapAccess<'de>>(
-                        self,
-                        mut map: A,
-                    ) -> Result<Raw<'de>, A::Error> {
-                        let mut entries = Vec::new();
-                        while let Some((key, value)) = map.next_entry::<&RawValue, &RawValue>()? {
-                            entries.push((bare(key), bare(value)));
-                        }
-                        Ok(Raw(entries))
-                    }
-                }
-                deserializer.deserialize_map(Entries)
-            }
-        }
-        let raw: Raw<'_> = self.borrowed()?;
-        let entry = |(key, value)| {
-            let key = self.sub(key);
+        let entry = |(key, value): (Cow<'_, str>, _)| {
+            let key = self.sub(&key);
             let name: String = key.parse()?;
             Ok((Located::new(name, key.span), self.sub(value)))
         };
-        raw.0.into_iter().map(entry).collect()
+        self.parts(Shape::Map)?.into_iter().map(entry).collect()
     }
 
     /// The fields of a struct, `(name: value, …)`, in order; duplicates are the caller's to find.
@@ -316,44 +270,22 @@ impl Node {
     /// # Errors
     /// If the piece is no struct with named fields or is not well-formed.
     pub fn fields(&self) -> Result<Vec<Field>, Diagnostic> {
-        struct Raw<'a>(Vec<(String, &'a str)>);
-        impl<'de> Deserialize<'de> for Raw<'de> {
-            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-                struct Fields;
-                impl<'de> Visitor<'de> for Fields {
-                    type Value = Raw<'de>;
-                    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                        f.write_str("a struct with named fields, `(name: value, …)`")
-                    }
-                    fn visit_unit<E: serde::de::Error>(self) -> Result<Raw<'de>, E> {
-                        Ok(Raw(Vec::new()))
-                    }
-                    fn visit_map<A: MapAccess<'de>>(
-                        self,
-                        mut map: A,
-                    ) -> Result<Raw<'de>, A::Error> {
-                        let mut fields = Vec::new();
-                        while let Some(Word(key)) = map.next_key()? {
-                            fields.push((key, bare(map.next_value::<&RawValue>()?)));
-                        }
-                        Ok(Raw(fields))
-                    }
-                }
-                deserializer.deserialize_any(Fields)
-            }
-        }
-        let raw: Raw<'_> = self.borrowed()?;
-        Ok(raw
-            .0
-            .into_iter()
-            .map(|(name, value)| {
-                let node = self.sub(value);
-                Field {
-                    name: Located::new(name.clone(), self.key_span(&name, &node)),
-                    node,
-                }
+        let field = |(name, value): (Cow<'_, str>, _)| {
+            let node = self.sub(value);
+            let span = self.key_span(&name, &node);
+            let name = Located::new(name.into_owned(), span);
+            Field { name, node }
+        };
+        let parts = self.parts(Shape::Fields)?.into_iter();
+        Ok(parts.map(field).collect())
+    }
+
+    fn parts(&self, shape: Shape) -> Result<Parts<'_>, Diagnostic> {
+        self.without_panic(caught(|| options().from_str_seed(self.text(), shape)))?
+            .map_err(|error| {
+                let range = place_of(self.text(), &error, self.span.range.start);
+                explain(&error.code, self.span.file.span(range))
             })
-            .collect())
     }
 
     /// The place of the field name that stands before `value`.
@@ -391,13 +323,64 @@ impl Node {
             },
         ))
     }
+}
 
-    fn borrowed<'a, T: Deserialize<'a>>(&'a self) -> Result<T, Diagnostic> {
-        self.without_panic(caught(|| options().from_str(self.text())))?
-            .map_err(|error| {
-                let range = place_of(self.text(), &error, self.span.range.start);
-                explain(&error.code, self.span.file.span(range))
-            })
+/// Raw texts of values, each with what stands before it: a name, the raw text of a key, nothing.
+type Parts<'de> = Vec<(Cow<'de, str>, &'de str)>;
+
+/// A value that is split into its parts.
+#[derive(Clone, Copy)]
+enum Shape {
+    List,
+    Map,
+    Fields,
+}
+
+impl<'de> DeserializeSeed<'de> for Shape {
+    type Value = Parts<'de>;
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Parts<'de>, D::Error> {
+        match self {
+            Self::Map => deserializer.deserialize_map(self),
+            Self::List | Self::Fields => deserializer.deserialize_any(self),
+        }
+    }
+}
+
+impl<'de> Visitor<'de> for Shape {
+    type Value = Parts<'de>;
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::List => "a list `[a, b]`",
+            Self::Map => "a map of names, `{\"a\": …}`",
+            Self::Fields => "a struct with named fields, `(name: value, …)`",
+        })
+    }
+    fn visit_unit<E: serde::de::Error>(self) -> Result<Parts<'de>, E> {
+        match self {
+            Self::Fields => Ok(Vec::new()),
+            _ => Err(E::invalid_type(Unexpected::Unit, &self)),
+        }
+    }
+    fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Parts<'de>, A::Error> {
+        let Self::List = self else {
+            return Err(A::Error::invalid_type(Unexpected::Seq, &self));
+        };
+        let mut parts = Vec::new();
+        while let Some(entry) = seq.next_element()? {
+            parts.push((Cow::Borrowed(""), bare(entry)));
+        }
+        Ok(parts)
+    }
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Parts<'de>, A::Error> {
+        let mut parts = Vec::new();
+        while let Some(key) = match self {
+            Self::Map => map.next_key()?.map(|key| Cow::Borrowed(bare(key))),
+            Self::Fields => map.next_key()?.map(|Word(name)| Cow::Owned(name)),
+            Self::List => return Err(A::Error::invalid_type(Unexpected::Map, &self)),
+        } {
+            parts.push((key, bare(map.next_value()?)));
+        }
+        Ok(parts)
     }
 }
 

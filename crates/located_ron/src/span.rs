@@ -13,7 +13,7 @@ pub struct SourceFile(Arc<SourceText>);
 /// Name and text of a [`SourceFile`].
 #[derive(Debug, PartialEq, Eq)]
 pub struct SourceText {
-    /// Path as given to [`Sources::read`](crate::Sources::read).
+    /// Path as the reader was given it.
     pub name: Arc<str>,
     /// Whole text.
     pub text: Arc<str>,

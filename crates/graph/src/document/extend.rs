@@ -5,7 +5,7 @@ use super::{
     typed::Narrow,
 };
 use crate::{diagnostics::reports::Reports, errors::edit::EditError, source::span::Located};
-use skiagraph_located_ron::reader::Field;
+use skiagraph_located_ron::reader::{Field, Node};
 use std::collections::HashMap;
 
 type Entries = Vec<Result<RawEntry, Invalid>>;
@@ -71,7 +71,7 @@ pub(crate) fn extend(base: RawDocument, own: RawDocument, reports: &mut Reports)
     document
 }
 
-fn default_field(name: &Located<String>, node: super::ron::Node) -> Field {
+fn default_field(name: &Located<String>, node: Node) -> Field {
     Field {
         name: Located::new("default".to_owned(), name.span.clone()),
         node,

@@ -12,7 +12,5 @@ pub(crate) mod typed;
 #[cfg(feature = "schema")]
 pub(crate) mod written;
 
-pub(crate) use skiagraph_located_ron::reader as ron;
-
 pub use fields::Chosen;
 pub use materials::{Address, Filter};

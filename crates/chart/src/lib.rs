@@ -11,7 +11,7 @@
 //! The same data always give the same bytes.
 //!
 //! ```
-//! use skiagraph_chart::{Figure, Kind, Mark, Panel, Series};
+//! use skiagraph_chart::{Figure, Kind, Mark, Panel, Series, to_svg};
 //!
 //! let series = |name: &str, x, y| Series {
 //!     name: name.into(),
@@ -28,7 +28,7 @@
 //!     }],
 //!     ..Figure::default()
 //! };
-//! assert!(figure.to_svg()?.starts_with("<svg"));
+//! assert!(to_svg(&figure)?.starts_with("<svg"));
 //! # Ok::<(), skiagraph_chart::Error>(())
 //! ```
 
@@ -46,4 +46,5 @@ mod text;
 
 pub use data::{Figure, Kind, Mark, Panel, Series};
 pub use error::Error;
+pub use figure::to_svg;
 pub use front::front;

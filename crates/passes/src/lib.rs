@@ -41,7 +41,6 @@ pub mod names;
 pub mod presets;
 pub mod provider;
 mod ray_query;
-mod setting;
 mod shape;
 pub mod trace;
 pub mod uniforms;

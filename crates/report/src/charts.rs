@@ -1,5 +1,6 @@
 //! Kept results as charts: what is drawn of which runs. How is `skiagraph-chart`'s affair.
 
+pub use skiagraph_chart::to_svg;
 use skiagraph_chart::{Figure, Kind, Mark, Panel, Series};
 use skiagraph_compare::error::CompareError;
 use skiagraph_compare::lists::unique;

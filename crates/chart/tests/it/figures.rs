@@ -2,7 +2,7 @@
 //! time.
 
 use roxmltree::{Document, Node};
-use skiagraph_chart::{Error, Figure, Kind, Mark, Panel, Series};
+use skiagraph_chart::{Error, Figure, Kind, Mark, Panel, Series, to_svg};
 
 fn series(name: &str, marks: &[(f64, f64)]) -> Series {
     let mark = |(size, &(x, y))| Mark { x, y, size };
@@ -173,7 +173,7 @@ fn texts<'a>(svg: &'a Document) -> Vec<(&'a str, [f64; 4])> {
 }
 
 fn svg(figure: &Figure) -> String {
-    figure.to_svg().unwrap()
+    to_svg(&figure).unwrap()
 }
 
 #[test]
@@ -392,7 +392,7 @@ fn what_is_no_bar_is_refused_by_name() {
         figure.panels[1].series[2]
             .marks
             .push(Mark { x, y, size: 0 });
-        let message = figure.to_svg().unwrap_err().to_string();
+        let message = to_svg(&figure).unwrap_err().to_string();
         let named = message.contains("\"ours: sponza, main\"") && message.contains("\"crsma\"");
         assert!(named && message.contains("4 groups"), "{message}");
     }
@@ -419,7 +419,7 @@ fn what_has_no_place_is_refused_by_name() {
         let mut figure = growth();
         figure.panels[0].kind = kind;
         figure.panels[0].series[1].marks = vec![mark];
-        figure.to_svg()
+        to_svg(&figure)
     };
     let mark = |x, y, size| Mark { x, y, size };
     let told = |result: Result<String, Error>| result.unwrap_err().to_string();
@@ -440,7 +440,7 @@ fn what_has_no_place_is_refused_by_name() {
     assert!(told(with(mark(1.0, 1.0, 1), Kind::Growth)).contains("size 1"));
     let mut empty = growth();
     empty.panels[2].series.clear();
-    assert!(told(empty.to_svg()).contains("\"forest\" has no marks"));
+    assert!(told(to_svg(&empty)).contains("\"forest\" has no marks"));
     // A single mark still has axes around it.
     assert!(with(mark(7.0, 7.0, 0), Kind::Front).is_ok());
 }

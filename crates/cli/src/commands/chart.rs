@@ -9,7 +9,7 @@ use skiagraph_compare::records::published_row::PublishedFile;
 use skiagraph_compare::records::read_back;
 use skiagraph_compare::size::Size;
 use skiagraph_compare::wording::plural;
-use skiagraph_report::charts::{self, Kept};
+use skiagraph_report::charts::{self, Kept, to_svg};
 use skiagraph_report::{published_charts, raster};
 use std::path::Path;
 
@@ -42,9 +42,7 @@ pub fn chart(args: &ChartArgs) -> Result<(), CliError> {
             "there is nothing to draw: no run{of} has measurements"
         )));
     }
-    let svg = figure
-        .to_svg()
-        .map_err(|error| CliError::Input(error.to_string()))?;
+    let svg = to_svg(&figure).map_err(|error| CliError::Input(error.to_string()))?;
     match &args.out {
         Some(file) if file.extension().is_some_and(|it| it == "png") => {
             Ok(write_whole(file, &raster::png(&svg)?)?)
@@ -86,9 +84,7 @@ fn beside(args: &ChartArgs, file: &PublishedFile, folder: &Path) -> Result<(), C
     }
     check_folder(folder)?;
     for (name, figure) in &drawn.charts {
-        let svg = figure
-            .to_svg()
-            .map_err(|error| CliError::Input(error.to_string()))?;
+        let svg = to_svg(figure).map_err(|error| CliError::Input(error.to_string()))?;
         write_whole(&folder.join(format!("{name}.svg")), svg.as_bytes())?;
     }
     let count = plural(drawn.charts.len(), "chart");

@@ -149,7 +149,7 @@ fn answer(oracle: &Oracle, question: &Question, tell: &impl Fn(Answer)) {
         };
         let how = (OracleMode::Exact, SAMPLES);
         let ground_truth =
-            ground_truth(&oracle, &camera, question.light, &primitives, how, progress);
+            ground_truth(oracle, &camera, question.light, &primitives, how, progress);
         if matches!(ground_truth, Err(Error::Interrupted)) {
             return ControlFlow::Break(());
         }

@@ -30,7 +30,7 @@ use skiagraph_compare::records::{published, results::Results};
 use skiagraph_compare::sink::Session;
 use skiagraph_compare::size::Size;
 use skiagraph_compare::wording::{command_line, size};
-use skiagraph_draw::{Drawing, from_plan, to_svg};
+use skiagraph_draw::{from_plan, to_svg};
 use skiagraph_passes::SceneProvider;
 use skiagraph_report::{
     markdown, page, results_table,

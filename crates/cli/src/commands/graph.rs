@@ -45,8 +45,8 @@ fn format(args: &GraphArgs) -> DrawingFormat {
 
 fn text(drawing: &Drawing, format: DrawingFormat) -> Result<String, CliError> {
     match format {
-        DrawingFormat::Svg => Ok(to_svg(&drawing)),
-        DrawingFormat::Dot => Ok(to_dot(&drawing)),
+        DrawingFormat::Svg => Ok(to_svg(drawing)),
+        DrawingFormat::Dot => Ok(to_dot(drawing)),
         DrawingFormat::Json => serde_json::to_string_pretty(drawing)
             .map(|json| json + "\n")
             .map_err(|error| {

@@ -12,7 +12,7 @@ use skiagraph_graph::{Graph, Plan, Sources};
 use skiagraph_passes::registry;
 use skiagraph_reference::{
     BlockerCounts, Error, GroundTruth, GroundTruthPixels, Oracle, OracleMode, Progress, Statistics,
-    blockers, ground_truth, shimmer::Seen, wrong_surfaces,
+    area, shimmer::Seen,
 };
 use skiagraph_scene::{Camera, LightKind};
 use std::rc::Rc;
@@ -186,7 +186,7 @@ impl<'a> GroundTruthView<'a> {
         let (camera, light, primitives) = (&self.camera, &self.light, &self.primitives);
         let blockers = pixels.and_then(|pixels| {
             let oracle = &self.oracle;
-            blockers(&oracle, camera, light, primitives, self.mode, &pixels)
+            skiagraph_reference::blockers(oracle, camera, light, primitives, self.mode, &pixels)
         });
         blockers.map_err(|error| CompareError::Input(format!("no blockers: {error}")))
     }
@@ -213,14 +213,8 @@ pub fn ground_truth(
     progress: Progress,
     what: &str,
 ) -> Result<GroundTruth, CompareError> {
-    let ground_truth = ground_truth(
-        &oracle,
-        camera,
-        light,
-        primitives,
-        (mode, samples),
-        progress,
-    );
+    let ground_truth =
+        area::ground_truth(oracle, camera, light, primitives, (mode, samples), progress);
     ground_truth.map_err(|error| named(error, what))
 }
 
@@ -235,7 +229,7 @@ pub fn wrong_surfaces(
     progress: Progress,
     what: &str,
 ) -> Result<u64, CompareError> {
-    let wrong = wrong_surfaces(&oracle, camera, primitives, progress);
+    let wrong = skiagraph_reference::wrong_surfaces(oracle, camera, primitives, progress);
     wrong.map_err(|error| named(error, what))
 }
 

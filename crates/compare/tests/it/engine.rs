@@ -9,7 +9,7 @@ use skiagraph_compare::{
     sink::{Session, Silent},
 };
 use skiagraph_passes::EmbeddedSources;
-use skiagraph_scene::{DirectionalLight, Indexed, Light, Mesh, Scene, View};
+use skiagraph_scene::{DirectionalLight, Indexed, Light, Scene, View};
 use std::{error::Error, sync::Arc};
 
 /// A roof above a floor, each of two triangles.

@@ -1,7 +1,7 @@
 //! Entries of the fuzz targets and of their stable twin (`tests/it/hostile.rs`): bytes in, an
 //! answer out, and no panic on the way.
 
-use skiagraph_draw::{Drawing, from_plan, to_svg};
+use skiagraph_draw::{from_plan, to_svg};
 use skiagraph_graph::{
     Code, Describe, Diagnostics, Graph, Plan, PlanRequest, Provided, ProvidedBinding, Registry,
     Sources,

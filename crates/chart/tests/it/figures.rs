@@ -173,7 +173,7 @@ fn texts<'a>(svg: &'a Document) -> Vec<(&'a str, [f64; 4])> {
 }
 
 fn svg(figure: &Figure) -> String {
-    to_svg(&figure).unwrap()
+    to_svg(figure).unwrap()
 }
 
 #[test]

@@ -106,7 +106,7 @@ fn drawing() -> Drawing {
 
 /// The hover titles of a chart.
 fn titles(drawing: &Drawing) -> BTreeSet<String> {
-    let svg = to_svg(&drawing);
+    let svg = to_svg(drawing);
     let document = roxmltree::Document::parse(&svg).unwrap_or_else(|error| panic!("{error}"));
     let titles = document
         .descendants()

@@ -1,7 +1,7 @@
 //! Entries of the fuzz targets and of their stable twin (`tests/it/hostile.rs`): bytes in, an
 //! answer out, and no panic on the way.
 
-use skiagraph_draw::Drawing;
+use skiagraph_draw::{from_plan, to_svg};
 use skiagraph_graph::{
     Code, Describe, Diagnostics, Graph, Plan, PlanRequest, Provided, ProvidedBinding, Registry,
     Sources,
@@ -115,7 +115,7 @@ fn said(errors: &Diagnostics) -> String {
 fn use_up(plan: &Plan) -> String {
     assert!(plan.memory_bytes() >= plan.saved_bytes());
     let _ = (plan.passes(), plan.culled(), plan.outputs(), plan.memory());
-    let _ = Drawing::from_plan(plan).to_svg();
+    let _ = to_svg(&from_plan(plan));
     String::new()
 }
 

@@ -4,7 +4,7 @@ use crate::support;
 use crate::support::graphs::{plan_files, provider, run, values};
 use glam::{DVec3, Vec3};
 use skiagraph_graph::PassSummary;
-use skiagraph_reference::{Class, Graded, GroundTruth, Oracle, OracleMode, Progress};
+use skiagraph_reference::{Class, Graded, GroundTruth, Oracle, OracleMode, Progress, area};
 use skiagraph_scene::{DirectionalLight, LightKind, PointLight, Scene, SpotLight, View};
 use std::sync::Arc;
 
@@ -74,7 +74,8 @@ fn ground_truth(scene: &Scene) -> GroundTruth {
     let (oracle, camera) = (Oracle::new(&scene.mesh), scene.views[0].camera(VIEWPORT));
     let primitives = oracle.primary(&camera, Progress::default()).unwrap();
     let (how, progress) = ((OracleMode::Exact, 2048), Progress::default());
-    let ground_truth = oracle.ground_truth(&camera, scene.light(), &primitives, how, progress);
+    let ground_truth =
+        area::ground_truth(&oracle, &camera, scene.light(), &primitives, how, progress);
     ground_truth.unwrap()
 }
 

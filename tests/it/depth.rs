@@ -3,7 +3,7 @@
 
 use crate::support::graphs::{open, plan, plan_files, provider, run_on, shares, values};
 use glam::DVec3;
-use skiagraph_reference::{BACKGROUND, Oracle, Progress};
+use skiagraph_reference::{BACKGROUND, Oracle, Progress, wrong_surfaces};
 use skiagraph_scene::{DirectionalLight, Indexed, Mesh, Scene, View};
 use std::sync::Arc;
 
@@ -14,12 +14,13 @@ fn plate_over_floor() -> Mesh {
     let square = |half: f32, y: f32| {
         [(-half, -half), (-half, half), (half, half), (half, -half)].map(|(x, z)| [x, y, z])
     };
-    Mesh::indexed(&Indexed {
+    Indexed {
         positions: &[square(4.0, 0.0), square(1.0, 1.0)].concat(),
         normals: &[],
         // The floor is drawn first: of equal depths the first one stays.
         indices: &[0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7],
-    })
+    }
+    .mesh()
     .unwrap()
 }
 
@@ -55,7 +56,8 @@ fn a_near_plane_however_near_hides_no_plate_behind_its_floor() {
             &run_on(&gpu, plan, &mut provider, &["primitive"]),
             "primitive",
         );
-        let wrong = Oracle::new(&scene.mesh).wrong_surfaces(
+        let wrong = wrong_surfaces(
+            &Oracle::new(&scene.mesh),
             &view.camera(VIEWPORT),
             &shown,
             Progress::default(),

@@ -7,7 +7,7 @@ use crate::support::{
 };
 use glam::{DVec3, Vec3};
 use skiagraph_graph::{Capture, ParamValue};
-use skiagraph_reference::{Class, Oracle, OracleMode, Progress};
+use skiagraph_reference::{Class, Oracle, OracleMode, Progress, shade_area};
 use skiagraph_scene::{DirectionalLight, LightKind, PointLight, Scene, SpotLight};
 use std::sync::Arc;
 
@@ -167,7 +167,7 @@ fn the_blur_of_pcf_knows_no_distance() {
     let (oracle, camera) = (Oracle::new(&scene.mesh), scene.views[0].camera(VIEWPORT));
     let primitives = oracle.primary(&camera, Progress::default()).unwrap();
     let (how, progress) = ((OracleMode::Exact, 64), Progress::default());
-    let area = oracle.shade_area(&camera, lamp, &primitives, how, progress);
+    let area = shade_area(&oracle, &camera, lamp, &primitives, how, progress);
     let shares = area.unwrap().1.shares;
     let seen = see(&scene, "pcf", &[map(512)]);
     let between = |right: bool| {

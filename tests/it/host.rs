@@ -45,7 +45,7 @@ fn unwelded(mesh: &Mesh) -> Mesh {
     };
     Mesh {
         surfaces: mesh.surfaces.clone(),
-        ..Mesh::indexed(&unwelded).unwrap()
+        ..unwelded.mesh().unwrap()
     }
 }
 

@@ -1,43 +1,5 @@
 //! Parts of a chart.
 
-/// A picture of panels under one title and one legend.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Figure {
-    /// First line.
-    pub title: String,
-    /// Lines below the title: under which conditions the figures hold. Long ones are wrapped.
-    pub notes: Vec<String>,
-    /// Meanings of the sizes of marks, smallest first; none if they are all alike.
-    pub sizes: Vec<String>,
-    /// Names of series that look the same in all figures with this list, whichever of them are
-    /// drawn.
-    pub looks: Vec<String>,
-    /// Values that have labels along logarithmic horizontal axes, with these; none: decades.
-    pub ticks: Vec<(f64, String)>,
-    /// Panels of the figure, row by row. Panels in which a series has the same name give it the
-    /// same colour and shape.
-    pub panels: Vec<Panel>,
-    /// Panels beside each other, at least 1.
-    pub columns: usize,
-    /// True if panels beside each other have the same axes, so that heights can be compared.
-    pub shared_axes: bool,
-}
-
-impl Default for Figure {
-    fn default() -> Self {
-        Self {
-            title: String::new(),
-            notes: Vec::new(),
-            sizes: Vec::new(),
-            looks: Vec::new(),
-            ticks: Vec::new(),
-            panels: Vec::new(),
-            columns: 1,
-            shared_axes: false,
-        }
-    }
-}
-
 /// One pair of axes: logarithmic, or those of [`Kind::Bars`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {

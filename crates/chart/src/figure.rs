@@ -3,7 +3,7 @@
 use crate::{
     bars,
     canvas::{Canvas, WIDTH, failed, words},
-    data::{Figure, Kind, Panel},
+    data::{Kind, Panel},
     error::Error,
     legend::{Entry, Legend, Sign},
     marker::Look,
@@ -16,6 +16,44 @@ use plotters::prelude::*;
 const LEFT: i32 = 12;
 /// Height of the title, of a line of the notes, and below the legend.
 const LINES: [i32; 3] = [34, 18, 8];
+
+/// A picture of panels under one title and one legend.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Figure {
+    /// First line.
+    pub title: String,
+    /// Lines below the title: under which conditions the figures hold. Long ones are wrapped.
+    pub notes: Vec<String>,
+    /// Meanings of the sizes of marks, smallest first; none if they are all alike.
+    pub sizes: Vec<String>,
+    /// Names of series that look the same in all figures with this list, whichever of them are
+    /// drawn.
+    pub looks: Vec<String>,
+    /// Values that have labels along logarithmic horizontal axes, with these; none: decades.
+    pub ticks: Vec<(f64, String)>,
+    /// Panels of the figure, row by row. Panels in which a series has the same name give it the
+    /// same colour and shape.
+    pub panels: Vec<Panel>,
+    /// Panels beside each other, at least 1.
+    pub columns: usize,
+    /// True if panels beside each other have the same axes, so that heights can be compared.
+    pub shared_axes: bool,
+}
+
+impl Default for Figure {
+    fn default() -> Self {
+        Self {
+            title: String::new(),
+            notes: Vec::new(),
+            sizes: Vec::new(),
+            looks: Vec::new(),
+            ticks: Vec::new(),
+            panels: Vec::new(),
+            columns: 1,
+            shared_axes: false,
+        }
+    }
+}
 
 impl Figure {
     /// The figure as SVG, 800 pixels wide.
@@ -75,7 +113,7 @@ impl Figure {
 
     fn check(&self) -> Result<(), Error> {
         let mut panels = self.panels.iter();
-        panels.try_for_each(|panel| panel.check(self.sizes.len()))
+        panels.try_for_each(|panel| check(panel, self.sizes.len()))
     }
 
     /// The panels' rows.
@@ -166,51 +204,48 @@ impl Figure {
     }
 }
 
-impl Panel {
-    fn check(&self, sizes: usize) -> Result<(), Error> {
-        let marks = self
-            .series
-            .iter()
-            .flat_map(|series| series.marks.iter().map(move |mark| (series, mark)));
-        for (series, mark) in marks.clone() {
-            if let Kind::Bars(groups) = &self.kind {
-                let is_group =
-                    mark.x.fract() == 0.0 && (0.0..groups.len() as f64).contains(&mark.x);
-                if !is_group || !mark.y.is_finite() || mark.y < 0.0 {
-                    return Err(Error::Bar {
-                        panel: self.title.clone(),
-                        series: series.name.clone(),
-                        x: mark.x,
-                        y: mark.y,
-                        groups: groups.len(),
-                    });
-                }
-            }
-            let zero = self.kind == Kind::Front && mark.y == 0.0;
-            let is_in = |value: f64| value.is_finite() && value > 0.0;
-            let is_bar = matches!(self.kind, Kind::Bars(_));
-            if !is_bar && (!is_in(mark.x) || !(zero || is_in(mark.y))) {
-                return Err(Error::Value {
-                    panel: self.title.clone(),
+fn check(panel: &Panel, sizes: usize) -> Result<(), Error> {
+    let marks = panel
+        .series
+        .iter()
+        .flat_map(|series| series.marks.iter().map(move |mark| (series, mark)));
+    for (series, mark) in marks.clone() {
+        if let Kind::Bars(groups) = &panel.kind {
+            let is_group = mark.x.fract() == 0.0 && (0.0..groups.len() as f64).contains(&mark.x);
+            if !is_group || !mark.y.is_finite() || mark.y < 0.0 {
+                return Err(Error::Bar {
+                    panel: panel.title.clone(),
                     series: series.name.clone(),
                     x: mark.x,
                     y: mark.y,
-                });
-            }
-            if mark.size >= sizes.max(1) {
-                return Err(Error::Size {
-                    panel: self.title.clone(),
-                    series: series.name.clone(),
-                    size: mark.size,
-                    sizes,
+                    groups: groups.len(),
                 });
             }
         }
-        if marks.count() == 0 {
-            return Err(Error::Empty {
-                panel: self.title.clone(),
+        let zero = panel.kind == Kind::Front && mark.y == 0.0;
+        let is_in = |value: f64| value.is_finite() && value > 0.0;
+        let is_bar = matches!(panel.kind, Kind::Bars(_));
+        if !is_bar && (!is_in(mark.x) || !(zero || is_in(mark.y))) {
+            return Err(Error::Value {
+                panel: panel.title.clone(),
+                series: series.name.clone(),
+                x: mark.x,
+                y: mark.y,
             });
         }
-        Ok(())
+        if mark.size >= sizes.max(1) {
+            return Err(Error::Size {
+                panel: panel.title.clone(),
+                series: series.name.clone(),
+                size: mark.size,
+                sizes,
+            });
+        }
     }
+    if marks.count() == 0 {
+        return Err(Error::Empty {
+            panel: panel.title.clone(),
+        });
+    }
+    Ok(())
 }

@@ -49,7 +49,8 @@ mod panel;
 mod scale;
 mod text;
 
-pub use data::{Figure, Kind, Mark, Panel, Series};
+pub use data::{Kind, Mark, Panel, Series};
 pub use error::Error;
+pub use figure::Figure;
 pub use front::front;
 pub use text::xml;

@@ -7,12 +7,10 @@ use crate::{
 use skiagraph_graph::Hazard;
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-impl Drawing {
-    /// Nodes and links for Graphviz: passes are boxes, materials ellipses, passes that do not run
-    /// dashed; what an include or group calls `eye.draw` stands in the cluster `eye`.
-    pub fn to_dot(&self) -> String {
-        render(self).join("\n") + "\n"
-    }
+/// Nodes and links for Graphviz: passes are boxes, materials ellipses, passes that do not run
+/// dashed; what an include or group calls `eye.draw` stands in the cluster `eye`.
+pub fn to_dot(drawing: &Drawing) -> String {
+    render(drawing).join("\n") + "\n"
 }
 
 fn render(drawing: &Drawing) -> Vec<String> {

@@ -12,23 +12,21 @@ use std::{
     ops::Range,
 };
 
-impl Drawing {
-    /// A plan as plain data, to be looked at: serialise it, or have it drawn.
-    pub fn from_plan(plan: &Plan) -> Self {
-        let mut positions = vec![None; plan.all_passes().len()];
-        for (position, pass) in plan.schedule().passes.iter().enumerate() {
-            positions[pass.index()] = Some(position);
-        }
-        let passes = plan.all_passes().iter();
-        Self {
-            title: String::new(),
-            passes: drawn_passes(plan, &positions),
-            materials: materials(plan),
-            accesses: passes.flat_map(|pass| accesses(pass, plan)).collect(),
-            edges: edges(plan, &positions),
-            memory_bytes: plan.memory_bytes(),
-            saved_bytes: plan.saved_bytes(),
-        }
+/// A plan as plain data, to be looked at: serialise it, or have it drawn.
+pub fn from_plan(plan: &Plan) -> Drawing {
+    let mut positions = vec![None; plan.all_passes().len()];
+    for (position, pass) in plan.schedule().passes.iter().enumerate() {
+        positions[pass.index()] = Some(position);
+    }
+    let passes = plan.all_passes().iter();
+    Drawing {
+        title: String::new(),
+        passes: drawn_passes(plan, &positions),
+        materials: materials(plan),
+        accesses: passes.flat_map(|pass| accesses(pass, plan)).collect(),
+        edges: edges(plan, &positions),
+        memory_bytes: plan.memory_bytes(),
+        saved_bytes: plan.saved_bytes(),
     }
 }
 

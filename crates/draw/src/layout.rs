@@ -4,6 +4,7 @@ use crate::{
     chart::{Arc, Area, BESIDE, COLUMN, Chart, Column, MARGIN, Row, SLANT, numbers},
     drawing::{Drawing, Edge, Material, Pass},
     legend,
+    marks::{group, mark, name_beginnings, reach},
     text::{self, SMALL},
     words::{self, Label, MOST},
 };
@@ -20,146 +21,140 @@ const NECK: f64 = 16.0;
 /// Top of the legend: heading and summary stand above.
 const LEGEND: f64 = 66.0;
 
-impl<'a> Chart<'a> {
-    pub fn new(drawing: &'a Drawing) -> Self {
-        let (rows, live) = rows(drawing);
-        let mut chart = Self {
-            title: &drawing.title,
-            summary: words::summary(drawing),
-            arcs: arcs(drawing, &rows[..live]),
-            rows,
-            live,
-            columns: columns(drawing),
-            ..Self::default()
-        };
-        chart.mark(&drawing.accesses);
-        chart.measure(drawing);
-        chart.place_rows();
-        chart.place_bars();
-        chart.reach();
-        chart.name_beginnings();
-        chart.group();
-        chart
-    }
+pub(crate) fn chart(drawing: &Drawing) -> Chart<'_> {
+    let (rows, live) = rows(drawing);
+    let mut chart = Chart {
+        title: &drawing.title,
+        summary: words::summary(drawing),
+        arcs: arcs(drawing, &rows[..live]),
+        rows,
+        live,
+        columns: columns(drawing),
+        ..Chart::default()
+    };
+    mark(&mut chart, &drawing.accesses);
+    measure(&mut chart, drawing);
+    place_rows(&mut chart);
+    place_bars(&mut chart);
+    reach(&mut chart);
+    name_beginnings(&mut chart);
+    group(&mut chart);
+    chart
+}
 
-    /// Where names, lanes and columns begin, and how high the heads are.
-    fn measure(&mut self, drawing: &Drawing) {
-        let rows = &self.rows;
-        let number = text::width(&self.live.to_string(), SMALL);
-        self.spine = MARGIN + 8.0 + text::widest(self.arcs.iter().map(|arc| arc.swing));
-        self.names = self.spine + 8.0 + number + 6.0;
-        self.abouts = self.names + text::widest(rows.iter().map(|row| row.name.width())) + 12.0;
-        let about = |row: &Row<'_>| text::width(&row.about, SMALL);
-        self.lanes = self.abouts + text::widest(rows.iter().map(about)) + 14.0;
-        let (rise, run) = SLANT.to_radians().sin_cos();
-        let (mut right, mut tallest) = (self.lanes + 40.0, 0.0f64);
-        let mut x = self.lanes + COLUMN / 2.0;
-        for column in &mut self.columns {
-            let detail = text::width(&column.detail, SMALL);
-            let head = column.name.width().max(detail);
-            column.x = x;
-            x += COLUMN.max(column.notes + 2.0 * BESIDE);
-            right = right.max(column.x + head * run + SMALL).max(x);
-            tallest = tallest.max(head * rise);
-        }
-        self.width = (right + MARGIN).max(720.0);
-        let (legend, height) = legend::place(drawing, [MARGIN, LEGEND], self.width - 2.0 * MARGIN);
-        self.legend = legend;
-        self.top = LEGEND + height + tallest + 18.0;
+/// Where names, lanes and columns begin, and how high the heads are.
+fn measure(chart: &mut Chart<'_>, drawing: &Drawing) {
+    let rows = &chart.rows;
+    let number = text::width(&chart.live.to_string(), SMALL);
+    chart.spine = MARGIN + 8.0 + text::widest(chart.arcs.iter().map(|arc| arc.swing));
+    chart.names = chart.spine + 8.0 + number + 6.0;
+    chart.abouts = chart.names + text::widest(rows.iter().map(|row| row.name.width())) + 12.0;
+    let about = |row: &Row<'_>| text::width(&row.about, SMALL);
+    chart.lanes = chart.abouts + text::widest(rows.iter().map(about)) + 14.0;
+    let (rise, run) = SLANT.to_radians().sin_cos();
+    let (mut right, mut tallest) = (chart.lanes + 40.0, 0.0f64);
+    let mut x = chart.lanes + COLUMN / 2.0;
+    for column in &mut chart.columns {
+        let detail = text::width(&column.detail, SMALL);
+        let head = column.name.width().max(detail);
+        column.x = x;
+        x += COLUMN.max(column.notes + 2.0 * BESIDE);
+        right = right.max(column.x + head * run + SMALL).max(x);
+        tallest = tallest.max(head * rise);
     }
+    chart.width = (right + MARGIN).max(720.0);
+    let (legend, height) = legend::place(drawing, [MARGIN, LEGEND], chart.width - 2.0 * MARGIN);
+    chart.legend = legend;
+    chart.top = LEGEND + height + tallest + 18.0;
+}
 
-    fn place_rows(&mut self) {
-        let mut y = self.top + NECK;
-        for index in 0..self.live {
-            y = self.place_row(index, y);
-        }
-        self.bottom = y;
-        let outputs = || self.columns.iter().map(|column| column.material);
-        if outputs().any(|material| !material.outputs.is_empty()) {
-            let names = outputs().map(|material| text::width(&words::renamed(material), SMALL));
-            self.outputs = Some(y + 16.0);
-            y += 34.0 + text::widest(names) * SLANT.to_radians().sin();
-        }
-        if self.live < self.rows.len() {
-            self.culled = Some(y + 8.0);
-            y += 36.0;
-        }
-        for index in self.live..self.rows.len() {
-            y = self.place_row(index, y);
-        }
-        self.height = y + MARGIN;
+fn place_rows(chart: &mut Chart<'_>) {
+    let mut y = chart.top + NECK;
+    for index in 0..chart.live {
+        y = place_row(chart, index, y);
     }
-
-    /// Places a row at `y`; returns its bottom.
-    fn place_row(&mut self, index: usize, y: f64) -> f64 {
-        let row = &mut self.rows[index];
-        if let Some(reason) = &row.pass.culled {
-            row.reason = text::wrap(reason, SMALL, self.width - MARGIN - self.names);
-        }
-        let height = ROW + LINE * row.reason.len() as f64;
-        row.band = Area {
-            x: MARGIN / 2.0,
-            y,
-            width: self.width - MARGIN,
-            height,
-        };
-        row.label = Area {
-            x: self.names,
-            y: y + 4.0,
-            width: self.lanes - self.names,
-            height: height - 8.0,
-        };
-        row.middle = y + ROW / 2.0;
-        y + height
+    chart.bottom = y;
+    let outputs = || chart.columns.iter().map(|column| column.material);
+    if outputs().any(|material| !material.outputs.is_empty()) {
+        let names = outputs().map(|material| text::width(&words::renamed(material), SMALL));
+        chart.outputs = Some(y + 16.0);
+        y += 34.0 + text::widest(names) * SLANT.to_radians().sin();
     }
+    if chart.live < chart.rows.len() {
+        chart.culled = Some(y + 8.0);
+        y += 36.0;
+    }
+    for index in chart.live..chart.rows.len() {
+        y = place_row(chart, index, y);
+    }
+    chart.height = y + MARGIN;
+}
 
-    fn place_bars(&mut self) {
-        let live = &self.rows[..self.live];
-        for column in &mut self.columns {
-            let material = column.material;
-            column.bar = material.lifetime.and_then(|[first, last]| {
-                let from = if material.origin.is_given() {
-                    self.top + 4.0
-                } else {
-                    live.get(first)?.middle
-                };
-                let to = match self.outputs {
-                    Some(outputs) if !material.outputs.is_empty() => outputs - 6.0,
-                    _ => live.get(last)?.middle,
-                };
-                Some([from, to])
-            });
-            column.end = column.bar.map_or(self.top, |[_, end]| end);
-        }
+/// Places a row at `y`; returns its bottom.
+fn place_row(chart: &mut Chart<'_>, index: usize, y: f64) -> f64 {
+    let row = &mut chart.rows[index];
+    if let Some(reason) = &row.pass.culled {
+        row.reason = text::wrap(reason, SMALL, chart.width - MARGIN - chart.names);
+    }
+    let height = ROW + LINE * row.reason.len() as f64;
+    row.band = Area {
+        x: MARGIN / 2.0,
+        y,
+        width: chart.width - MARGIN,
+        height,
+    };
+    row.label = Area {
+        x: chart.names,
+        y: y + 4.0,
+        width: chart.lanes - chart.names,
+        height: height - 8.0,
+    };
+    row.middle = y + ROW / 2.0;
+    y + height
+}
+
+fn place_bars(chart: &mut Chart<'_>) {
+    let live = &chart.rows[..chart.live];
+    for column in &mut chart.columns {
+        let material = column.material;
+        column.bar = material.lifetime.and_then(|[first, last]| {
+            let from = if material.origin.is_given() {
+                chart.top + 4.0
+            } else {
+                live.get(first)?.middle
+            };
+            let to = match chart.outputs {
+                Some(outputs) if !material.outputs.is_empty() => outputs - 6.0,
+                _ => live.get(last)?.middle,
+            };
+            Some([from, to])
+        });
+        column.end = column.bar.map_or(chart.top, |[_, end]| end);
     }
 }
 
-impl<'a> Row<'a> {
-    fn from_pass(pass: &'a Pass) -> Self {
-        Self {
-            pass,
-            name: Label::new(&pass.name),
-            about: words::about(pass),
-            reason: Vec::new(),
-            band: Area::default(),
-            label: Area::default(),
-            middle: 0.0,
-            reach: None,
-        }
+fn row(pass: &Pass) -> Row<'_> {
+    Row {
+        pass,
+        name: Label::new(&pass.name),
+        about: words::about(pass),
+        reason: Vec::new(),
+        band: Area::default(),
+        label: Area::default(),
+        middle: 0.0,
+        reach: None,
     }
 }
 
-impl<'a> Column<'a> {
-    fn new(material: &'a Material) -> Self {
-        Self {
-            material,
-            name: Label::new(&material.name),
-            detail: cut(&words::detail(material), 2 * MOST),
-            notes: 0.0,
-            x: 0.0,
-            bar: None,
-            end: 0.0,
-        }
+fn column(material: &Material) -> Column<'_> {
+    Column {
+        material,
+        name: Label::new(&material.name),
+        detail: cut(&words::detail(material), 2 * MOST),
+        notes: 0.0,
+        x: 0.0,
+        bar: None,
+        end: 0.0,
     }
 }
 
@@ -168,7 +163,7 @@ fn rows(drawing: &Drawing) -> (Vec<Row<'_>>, usize) {
     let mut passes: Vec<&Pass> = drawing.passes.iter().collect();
     passes.sort_by_key(|pass| pass.position.unwrap_or(usize::MAX));
     let live = passes.partition_point(|pass| pass.position.is_some());
-    (passes.into_iter().map(Row::from_pass).collect(), live)
+    (passes.into_iter().map(row).collect(), live)
 }
 
 /// The materials that any pass touches: what is there before the frame, then by first use, those of
@@ -196,7 +191,7 @@ fn columns(drawing: &Drawing) -> Vec<Column<'_>> {
             first(material),
         )
     });
-    materials.into_iter().map(Column::new).collect()
+    materials.into_iter().map(column).collect()
 }
 
 /// The edges between passes that run.

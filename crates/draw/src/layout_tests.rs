@@ -1,8 +1,9 @@
 //! Where things stand in charts of plans made by hand.
 
 use crate::{
-    chart::{Area, BESIDE, COLUMN, Chart},
+    chart::{Area, BESIDE, COLUMN},
     drawing::{Access, Aspect, Drawing, Edge, Kind, Material, Origin, Part, Pass, Reason},
+    layout::chart,
     legend::Item,
     text::{self, NOTE, SMALL},
     words::{Label, Unit},
@@ -73,7 +74,7 @@ fn overlap(a: &Area, b: &Area) -> bool {
 fn no_label_meets_another_and_all_stand_on_the_page() {
     for passes in [1, 5, 40, 200] {
         let drawing = chain(passes);
-        let chart = Chart::new(&drawing);
+        let chart = chart(&drawing);
         assert_eq!(chart.rows.len(), passes);
         for (index, row) in chart.rows.iter().enumerate() {
             for other in &chart.rows[..index] {
@@ -112,7 +113,7 @@ fn no_label_meets_another_and_all_stand_on_the_page() {
 #[test]
 fn what_shares_memory_stands_side_by_side_and_what_is_not_made_last() {
     let drawing = chain(12);
-    let chart = Chart::new(&drawing);
+    let chart = chart(&drawing);
     let names: Vec<&str> = chart
         .columns
         .iter()
@@ -136,7 +137,7 @@ fn a_name_that_nothing_declares_is_left_out() {
     let mut drawing = chain(4);
     drawing.materials.clear();
     drawing.passes.remove(1);
-    let chart = Chart::new(&drawing);
+    let chart = chart(&drawing);
     assert!(chart.columns.is_empty() && chart.marks.is_empty());
     // 0 → 1 has lost its end, 1 → 2 and 2 → 3 have an end that does not run.
     assert!(chart.arcs.is_empty());
@@ -160,7 +161,7 @@ fn a_mark_names_the_mips_it_reads_and_writes() {
         ..drawing.accesses[0].clone()
     };
     drawing.accesses.push(read);
-    let chart = Chart::new(&drawing);
+    let chart = chart(&drawing);
     let [mark] = &chart.marks[..] else {
         panic!("one mark per pass and material")
     };
@@ -207,7 +208,7 @@ fn notes_do_not_run_into_the_next_column() {
         });
     }
     drawing.accesses[2].reads = true;
-    let chart = Chart::new(&drawing);
+    let chart = chart(&drawing);
     let notes: Vec<&str> = chart.marks.iter().map(|mark| &*mark.note).collect();
     assert_eq!(notes, ["", "z0–1", "d,s", ""]);
     assert!(
@@ -267,7 +268,7 @@ fn beginnings_are_named_where_nothing_is_in_the_way() {
         .iter_mut()
         .for_each(|material| material.memory = None);
     let named = |drawing: &Drawing, name: &str| {
-        let chart = Chart::new(drawing);
+        let chart = chart(drawing);
         let of_name = chart
             .columns
             .iter()

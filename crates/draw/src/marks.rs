@@ -13,93 +13,91 @@ use std::collections::BTreeMap;
 /// too.
 const FAR: usize = 12;
 
-impl Chart<'_> {
-    /// Adds a mark for each pass and material with accesses, and the room that it takes.
-    pub fn mark(&mut self, accesses: &[Access]) {
-        let rows = numbers(self.rows.iter().map(|row| &*row.pass.name));
-        let columns = numbers(self.columns.iter().map(|column| &*column.material.name));
-        let mut uses: BTreeMap<(usize, usize), Vec<&Access>> = BTreeMap::new();
-        for access in accesses {
-            let row = rows.get(&*access.pass).copied();
-            if let Some(cell) = row.zip(columns.get(&*access.material).copied()) {
-                uses.entry(cell).or_default().push(access);
+/// Adds a mark for each pass and material with accesses, and the room that it takes.
+pub(crate) fn mark(chart: &mut Chart<'_>, accesses: &[Access]) {
+    let rows = numbers(chart.rows.iter().map(|row| &*row.pass.name));
+    let columns = numbers(chart.columns.iter().map(|column| &*column.material.name));
+    let mut uses: BTreeMap<(usize, usize), Vec<&Access>> = BTreeMap::new();
+    for access in accesses {
+        let row = rows.get(&*access.pass).copied();
+        if let Some(cell) = row.zip(columns.get(&*access.material).copied()) {
+            uses.entry(cell).or_default().push(access);
+        }
+    }
+    for ((row, column), accesses) in uses {
+        let (pass, material) = (chart.rows[row].pass, chart.columns[column].material);
+        let clause = |access: &&Access| match &access.part {
+            Some(part) => format!("{} ({})", words::verb(access), words::part(part, material)),
+            None => words::verb(access).to_owned(),
+        };
+        let clauses: Vec<String> = accesses.iter().map(clause).collect();
+        let note = words::note(&accesses, material);
+        let notes = &mut chart.columns[column].notes;
+        *notes = notes.max(text::width(&note, NOTE));
+        chart.marks.push(Mark {
+            row,
+            column,
+            reads: accesses.iter().any(|access| access.reads),
+            writes: accesses.iter().any(|access| access.writes),
+            runs: pass.position.is_some(),
+            note,
+            title: format!("{} {} {}", pass.name, clauses.join(", "), material.name),
+        });
+    }
+}
+
+/// How far the lines of rows and columns lead: to their last marks.
+pub(crate) fn reach(chart: &mut Chart<'_>) {
+    for mark in &chart.marks {
+        let (row, column) = (&mut chart.rows[mark.row], &mut chart.columns[mark.column]);
+        row.reach = Some(row.reach.unwrap_or(0.0).max(column.x));
+        column.end = column.end.max(row.middle);
+    }
+}
+
+/// Names what begins to live in a row behind its mark, where nothing is in the way and the page
+/// has room. Neighbours that begin together are named together.
+pub(crate) fn name_beginnings(chart: &mut Chart<'_>) {
+    if chart.live <= FAR {
+        return;
+    }
+    for (position, row) in chart.rows[..chart.live].iter().enumerate() {
+        let begins = |column: &Column<'_>| {
+            let first = column.material.lifetime.map(|[first, _]| first);
+            first == Some(position) && !column.material.origin.is_given()
+        };
+        for run in chart.columns.chunk_by(|a, b| begins(a) == begins(b)) {
+            let Some(last) = run.last().filter(|column| begins(column)) else {
+                continue;
+            };
+            let text = cut(&names(run.iter()), MOST);
+            let start = last.x + 12.0 + last.notes;
+            let end = start + text::width(&text, SMALL);
+            let crosses = |column: &Column<'_>| {
+                let lives = |[from, to]: [f64; 2]| from <= row.middle && row.middle <= to;
+                column.x > last.x && column.x - 8.0 < end && column.bar.is_some_and(lives)
+            };
+            if !chart.columns.iter().any(crosses) && end < chart.width {
+                chart.beginnings.push(([start, row.middle], text));
             }
         }
-        for ((row, column), accesses) in uses {
-            let (pass, material) = (self.rows[row].pass, self.columns[column].material);
-            let clause = |access: &&Access| match &access.part {
-                Some(part) => format!("{} ({})", words::verb(access), words::part(part, material)),
-                None => words::verb(access).to_owned(),
-            };
-            let clauses: Vec<String> = accesses.iter().map(clause).collect();
-            let note = words::note(&accesses, material);
-            let notes = &mut self.columns[column].notes;
-            *notes = notes.max(text::width(&note, NOTE));
-            self.marks.push(Mark {
-                row,
-                column,
-                reads: accesses.iter().any(|access| access.reads),
-                writes: accesses.iter().any(|access| access.writes),
-                runs: pass.position.is_some(),
-                note,
-                title: format!("{} {} {}", pass.name, clauses.join(", "), material.name),
+    }
+}
+
+/// Brackets over the columns that share memory; they stand side by side.
+pub(crate) fn group(chart: &mut Chart<'_>) {
+    for columns in chart
+        .columns
+        .chunk_by(|a, b| a.material.memory.is_some() && a.material.memory == b.material.memory)
+    {
+        if let [first, .., last] = columns {
+            let sizes = columns.iter().filter_map(|column| column.material.bytes);
+            let size = bytes(sizes.max().unwrap_or(0));
+            chart.groups.push(Group {
+                from: first.x,
+                to: last.x,
+                title: format!("{} share {size}", names(columns.iter())),
             });
-        }
-    }
-
-    /// How far the lines of rows and columns lead: to their last marks.
-    pub fn reach(&mut self) {
-        for mark in &self.marks {
-            let (row, column) = (&mut self.rows[mark.row], &mut self.columns[mark.column]);
-            row.reach = Some(row.reach.unwrap_or(0.0).max(column.x));
-            column.end = column.end.max(row.middle);
-        }
-    }
-
-    /// Names what begins to live in a row behind its mark, where nothing is in the way and the page
-    /// has room. Neighbours that begin together are named together.
-    pub fn name_beginnings(&mut self) {
-        if self.live <= FAR {
-            return;
-        }
-        for (position, row) in self.rows[..self.live].iter().enumerate() {
-            let begins = |column: &Column<'_>| {
-                let first = column.material.lifetime.map(|[first, _]| first);
-                first == Some(position) && !column.material.origin.is_given()
-            };
-            for run in self.columns.chunk_by(|a, b| begins(a) == begins(b)) {
-                let Some(last) = run.last().filter(|column| begins(column)) else {
-                    continue;
-                };
-                let text = cut(&names(run.iter()), MOST);
-                let start = last.x + 12.0 + last.notes;
-                let end = start + text::width(&text, SMALL);
-                let crosses = |column: &Column<'_>| {
-                    let lives = |[from, to]: [f64; 2]| from <= row.middle && row.middle <= to;
-                    column.x > last.x && column.x - 8.0 < end && column.bar.is_some_and(lives)
-                };
-                if !self.columns.iter().any(crosses) && end < self.width {
-                    self.beginnings.push(([start, row.middle], text));
-                }
-            }
-        }
-    }
-
-    /// Brackets over the columns that share memory; they stand side by side.
-    pub fn group(&mut self) {
-        for columns in self
-            .columns
-            .chunk_by(|a, b| a.material.memory.is_some() && a.material.memory == b.material.memory)
-        {
-            if let [first, .., last] = columns {
-                let sizes = columns.iter().filter_map(|column| column.material.bytes);
-                let size = bytes(sizes.max().unwrap_or(0));
-                self.groups.push(Group {
-                    from: first.x,
-                    to: last.x,
-                    title: format!("{} share {size}", names(columns.iter())),
-                });
-            }
         }
     }
 }

@@ -4,6 +4,7 @@ use crate::{
     canvas::Canvas,
     chart::{Arc, Area, BESIDE, COLUMN, Chart, Column, Group, MARGIN, Mark, Row, SLANT},
     drawing::Drawing,
+    layout::chart,
     legend::{Item, SIGN, Tint},
     text::{NAME, NOTE, SMALL, xml},
     words::{self, Label},
@@ -20,13 +21,11 @@ const RIM: &str = r##"stroke="#ffffff" stroke-width="2.5" paint-order="stroke""#
 /// Attributes of what shares memory.
 const SHARED: &str = r##"fill="#e69f00" fill-opacity="0.12" stroke="#e69f00""##;
 
-impl Drawing {
-    /// A chart of passes (rows, in the order in which they run) and materials (columns, with their
-    /// lifetimes), the derived edges on the left, what does not run and why below. One SVG file
-    /// that refers to nothing outside itself.
-    pub fn to_svg(&self) -> String {
-        render(&Chart::new(self))
-    }
+/// A chart of passes (rows, in the order in which they run) and materials (columns, with their
+/// lifetimes), the derived edges on the left, what does not run and why below. One SVG file
+/// that refers to nothing outside itself.
+pub fn to_svg(drawing: &Drawing) -> String {
+    render(&chart(drawing))
 }
 
 /// Colour and dashes of an edge: told apart without colour too.

@@ -1,29 +1,7 @@
 //! Inputs of a preset from a host program's own resources.
 
-use crate::provider::SceneProvider;
-use skiagraph_scene::{Indexed, IndexedError, Light, LightKind, Mesh, Movable, Scene};
-use std::sync::{Arc, mpsc};
-
-impl SceneProvider {
-    /// Provides a mesh under a light. Both can be changed, and a camera must be set.
-    pub fn of_mesh(mesh: Mesh, light: impl Into<LightKind>) -> Self {
-        Self::new(Arc::new(Scene {
-            name: String::new(),
-            mesh,
-            views: Vec::new(),
-            lights: vec![Light::only(light.into())],
-        }))
-    }
-
-    /// Provides a mesh of parts that [`set_transforms`](Self::set_transforms) moves, under a light.
-    /// Both can be changed, and a camera must be set. Parts that were [joined](Movable::joined)
-    /// have no places until they are given some, before or after executors are made.
-    pub fn of_parts(parts: impl Into<Arc<Movable>>, light: impl Into<LightKind>) -> Self {
-        let mut provider = Self::of_mesh(Mesh::default(), light);
-        provider.set_parts(parts);
-        provider
-    }
-}
+use skiagraph_scene::{Indexed, IndexedError, Mesh};
+use std::sync::mpsc;
 
 /// A mesh in vertex and index buffers of a host.
 ///
@@ -112,11 +90,12 @@ impl GpuMesh<'_> {
                 indices.into_iter().map(u32::from).collect()
             }
         };
-        Ok(Mesh::indexed(&Indexed {
+        Ok(Indexed {
             positions: &vectors(self.position),
             normals: &self.normal.map(vectors).unwrap_or_default(),
             indices: &indices,
-        })?)
+        }
+        .mesh()?)
     }
 }
 

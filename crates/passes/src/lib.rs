@@ -41,7 +41,6 @@ pub mod names;
 mod presets;
 mod provider;
 mod ray_query;
-mod setting;
 mod shape;
 mod trace;
 pub mod uniforms;

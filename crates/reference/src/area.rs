@@ -85,151 +85,149 @@ impl Emitter {
     }
 }
 
-impl<'a> Oracle<'a> {
-    /// The ground truth under this light: [`shade`](Self::shade) of one without extent,
-    /// [`shade_area`](Self::shade_area) of one that has an extent.
-    ///
-    /// # Errors
-    /// Those of [`shade`](Self::shade).
-    pub fn ground_truth(
-        &self,
-        camera: &Camera,
-        light: impl Into<LightKind>,
-        primitives: &[u32],
-        (mode, samples): (OracleMode, u32),
-        progress: Progress,
-    ) -> Result<GroundTruth, Error> {
-        let light = light.into();
-        if light.has_extent() {
-            let answer = self.shade_area(camera, light, primitives, (mode, samples), progress)?;
-            let (pixels, area) = (answer.0, Some(answer.1));
-            return Ok(GroundTruth { pixels, area });
-        }
-        let pixels = self.shade(camera, light, primitives, mode, progress)?;
-        let area = None;
-        Ok(GroundTruth { pixels, area })
+/// The ground truth under this light: [`Oracle::shade`] of one without extent,
+/// [`shade_area`] of one that has an extent.
+///
+/// # Errors
+/// Those of [`Oracle::shade`].
+pub fn ground_truth(
+    oracle: &Oracle<'_>,
+    camera: &Camera,
+    light: impl Into<LightKind>,
+    primitives: &[u32],
+    (mode, samples): (OracleMode, u32),
+    progress: Progress,
+) -> Result<GroundTruth, Error> {
+    let light = light.into();
+    if light.has_extent() {
+        let answer = shade_area(oracle, camera, light, primitives, (mode, samples), progress)?;
+        let (pixels, area) = (answer.0, Some(answer.1));
+        return Ok(GroundTruth { pixels, area });
     }
+    let pixels = oracle.shade(camera, light, primitives, mode, progress)?;
+    let area = None;
+    Ok(GroundTruth { pixels, area })
+}
 
-    /// As [`shade`](Self::shade), of a light that is an area: the share of it that each pixel sees,
-    /// of at least `samples` shadow rays (an even number; four at least). The rays of the exact
-    /// mode pass the pixel's own primitive, whichever way they go; those of the mode with an offset
-    /// begin at the receiver moved towards the light's centre.
-    ///
-    /// Which pixels face the light, the centre of the light decides: dot(n, l) ≤ 0 is facing away,
-    /// though a part of the light may be above the horizon. A pixel's class is *lit* where it sees
-    /// half of the light or more. Indeterminate are those whose answer to the light's centre is.
-    ///
-    /// # Errors
-    /// Those of [`shade`](Self::shade).
-    pub fn shade_area(
-        &self,
-        camera: &Camera,
-        light: impl Into<LightKind>,
-        primitives: &[u32],
-        (mode, samples): (OracleMode, u32),
-        progress: Progress,
-    ) -> Result<(GroundTruthPixels, AreaVisibility), Error> {
-        check_pixel_count("primitives", camera.viewport, primitives.len())?;
-        let light = light.into();
-        self.check(&light, mode)?;
-        let strata = Strata::new(samples.div_ceil(2).max(2));
-        let pixels = per_pixel(camera.viewport, progress, |x, y, stack| {
-            let receiver = Receiver::from_pixel(self.mesh, primitives, camera, [x, y], &light)?;
-            let Some(receiver) = receiver else {
-                return Ok((Answer::BACKGROUND, [0.0; 2]));
-            };
-            // Answer for the light's centre, for indeterminate pixels.
-            let mut answer = self.answer(&receiver, mode, stack);
-            if answer.class == Class::FacingAway {
-                return Ok((answer, [0.0; 2]));
-            }
-            let emitter = Emitter::seen_from(&light, &receiver);
-            let of = self.share(&emitter, &strata, &receiver, mode, [x, y], stack);
-            answer.class = if of[0] < 0.5 {
-                Class::Shadow
-            } else {
-                Class::Lit
-            };
-            Ok((answer, of))
-        })?;
-        let (answers, shares): (Vec<Answer>, Vec<[f64; 2]>) = pixels.into_iter().unzip();
-        let area = AreaVisibility {
-            samples: 2 * strata.count(),
-            shares: shares.iter().map(|[share, _]| *share as f32).collect(),
-            standard_errors: shares.iter().map(|[_, error]| *error as f32).collect(),
+/// As [`Oracle::shade`], of a light that is an area: the share of it that each pixel sees,
+/// of at least `samples` shadow rays (an even number; four at least). The rays of the exact
+/// mode pass the pixel's own primitive, whichever way they go; those of the mode with an offset
+/// begin at the receiver moved towards the light's centre.
+///
+/// Which pixels face the light, the centre of the light decides: dot(n, l) ≤ 0 is facing away,
+/// though a part of the light may be above the horizon. A pixel's class is *lit* where it sees
+/// half of the light or more. Indeterminate are those whose answer to the light's centre is.
+///
+/// # Errors
+/// Those of [`Oracle::shade`].
+pub fn shade_area(
+    oracle: &Oracle<'_>,
+    camera: &Camera,
+    light: impl Into<LightKind>,
+    primitives: &[u32],
+    (mode, samples): (OracleMode, u32),
+    progress: Progress,
+) -> Result<(GroundTruthPixels, AreaVisibility), Error> {
+    check_pixel_count("primitives", camera.viewport, primitives.len())?;
+    let light = light.into();
+    oracle.check(&light, mode)?;
+    let strata = Strata::new(samples.div_ceil(2).max(2));
+    let pixels = per_pixel(camera.viewport, progress, |x, y, stack| {
+        let receiver = Receiver::from_pixel(oracle.mesh, primitives, camera, [x, y], &light)?;
+        let Some(receiver) = receiver else {
+            return Ok((Answer::BACKGROUND, [0.0; 2]));
         };
-        Ok((
-            GroundTruthPixels::new(
-                camera.viewport,
-                &answers,
-                base_colors(self.mesh, camera, primitives),
-            ),
-            area,
-        ))
-    }
-
-    /// Those that could stand in the light's cone; `None` if they are many, or the receiver is
-    /// within the light's own ball.
-    fn casters(
-        &self,
-        origin: DVec3,
-        cone: &Cone,
-        excluded: u32,
-        stack: &mut Vec<u32>,
-    ) -> Option<Vec<Caster<'a>>> {
-        if cone.sin >= 1.0 {
-            return None;
+        // Answer for the light's centre, for indeterminate pixels.
+        let mut answer = oracle.answer(&receiver, mode, stack);
+        if answer.class == Class::FacingAway {
+            return Ok((answer, [0.0; 2]));
         }
-        let mut casters = Vec::new();
-        self.tree.within(origin, cone, stack, |caster| {
-            if caster.primitive != excluded {
-                casters.push(caster);
-            }
-            if casters.len() > MOST_CASTERS {
-                ControlFlow::Break(())
-            } else {
-                ControlFlow::Continue(())
-            }
-        });
-        (casters.len() <= MOST_CASTERS).then_some(casters)
-    }
-
-    /// The share that a receiver sees, and its standard error.
-    fn share(
-        &self,
-        emitter: &Emitter,
-        strata: &Strata,
-        receiver: &Receiver,
-        mode: OracleMode,
-        pixel: [u32; 2],
-        stack: &mut Vec<u32>,
-    ) -> [f64; 2] {
-        let (origin, _, excluded) = mode.ray(receiver);
-        let mut casters = self.casters(origin, &emitter.cone, excluded, stack);
-        if casters.as_ref().is_some_and(Vec::is_empty) {
-            return [1.0, 0.0];
-        }
-        let max_distance = self.tree.max_distance(origin);
-        let mut is_seen = |way: Towards| {
-            let Some(casters) = &mut casters else {
-                return !self.occluded(origin, way, excluded, stack);
-            };
-            let ray = Ray::new(origin, way.direction, max_distance, 0.0).ending(way.distance);
-            let blocks = |caster: &Caster| caster.hit(&ray).is_some_and(|hit| ray.reaches(hit.t));
-            let blocker = casters.iter().position(blocks);
-            // The blocker of one ray is likely to block the next.
-            if let Some(blocker) = blocker {
-                casters.swap(0, blocker);
-            }
-            blocker.is_none()
+        let emitter = Emitter::seen_from(&light, &receiver);
+        let of = share(oracle, &emitter, &strata, &receiver, mode, [x, y], stack);
+        answer.class = if of[0] < 0.5 {
+            Class::Shadow
+        } else {
+            Class::Lit
         };
-        let halves = [0, 1].map(|half| {
-            let points = strata.points([pixel[0], pixel[1], half]);
-            points
-                .filter(|&point| is_seen(emitter.towards(disk(point))))
-                .count()
-        });
-        let [one, other] = halves.map(|seen| seen as f64 / f64::from(strata.count()));
-        [(one + other) * 0.5, (one - other).abs() * 0.5]
+        Ok((answer, of))
+    })?;
+    let (answers, shares): (Vec<Answer>, Vec<[f64; 2]>) = pixels.into_iter().unzip();
+    let area = AreaVisibility {
+        samples: 2 * strata.count(),
+        shares: shares.iter().map(|[share, _]| *share as f32).collect(),
+        standard_errors: shares.iter().map(|[_, error]| *error as f32).collect(),
+    };
+    Ok((
+        GroundTruthPixels::new(
+            camera.viewport,
+            &answers,
+            base_colors(oracle.mesh, camera, primitives),
+        ),
+        area,
+    ))
+}
+
+/// Those that could stand in the light's cone; `None` if they are many, or the receiver is
+/// within the light's own ball.
+fn casters<'a>(
+    oracle: &Oracle<'a>,
+    origin: DVec3,
+    cone: &Cone,
+    excluded: u32,
+    stack: &mut Vec<u32>,
+) -> Option<Vec<Caster<'a>>> {
+    if cone.sin >= 1.0 {
+        return None;
     }
+    let mut casters = Vec::new();
+    oracle.tree.within(origin, cone, stack, |caster| {
+        if caster.primitive != excluded {
+            casters.push(caster);
+        }
+        if casters.len() > MOST_CASTERS {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    });
+    (casters.len() <= MOST_CASTERS).then_some(casters)
+}
+
+/// The share that a receiver sees, and its standard error.
+fn share(
+    oracle: &Oracle<'_>,
+    emitter: &Emitter,
+    strata: &Strata,
+    receiver: &Receiver,
+    mode: OracleMode,
+    pixel: [u32; 2],
+    stack: &mut Vec<u32>,
+) -> [f64; 2] {
+    let (origin, _, excluded) = mode.ray(receiver);
+    let mut casters = casters(oracle, origin, &emitter.cone, excluded, stack);
+    if casters.as_ref().is_some_and(Vec::is_empty) {
+        return [1.0, 0.0];
+    }
+    let max_distance = oracle.tree.max_distance(origin);
+    let mut is_seen = |way: Towards| {
+        let Some(casters) = &mut casters else {
+            return !oracle.occluded(origin, way, excluded, stack);
+        };
+        let ray = Ray::new(origin, way.direction, max_distance, 0.0).ending(way.distance);
+        let blocks = |caster: &Caster| caster.hit(&ray).is_some_and(|hit| ray.reaches(hit.t));
+        let blocker = casters.iter().position(blocks);
+        // The blocker of one ray is likely to block the next.
+        if let Some(blocker) = blocker {
+            casters.swap(0, blocker);
+        }
+        blocker.is_none()
+    };
+    let halves = [0, 1].map(|half| {
+        let points = strata.points([pixel[0], pixel[1], half]);
+        points
+            .filter(|&point| is_seen(emitter.towards(disk(point))))
+            .count()
+    });
+    let [one, other] = halves.map(|seen| seen as f64 / f64::from(strata.count()));
+    [(one + other) * 0.5, (one - other).abs() * 0.5]
 }

@@ -49,66 +49,64 @@ impl FromIterator<Blocker> for BlockerCounts {
     }
 }
 
-impl Oracle<'_> {
-    /// Finds the blockers of each of `pixels`, places in the buffer `primitives`; the other
-    /// arguments are those of [`shade`](Self::shade).
-    ///
-    /// # Errors
-    /// [`Error::UnknownPrimitive`].
-    ///
-    /// # Panics
-    /// If a place lies outside the viewport.
-    pub fn blockers(
-        &self,
-        camera: &Camera,
-        light: impl Into<LightKind>,
-        primitives: &[u32],
-        mode: OracleMode,
-        pixels: &[usize],
-    ) -> Result<BlockerCounts, Error> {
-        let parts = self.parts.get_or_init(|| Parts::new(self.mesh));
-        let light = light.into();
-        let width = camera.viewport[0] as usize;
-        let blockers = pixels.par_iter().map_init(Vec::new, |stack, &pixel| {
-            let pixel = [(pixel % width) as u32, (pixel / width) as u32];
-            let receiver = Receiver::from_pixel(self.mesh, primitives, camera, pixel, &light)?;
-            Ok(match receiver {
-                Some(receiver) if receiver.n_dot_l > 0.0 && !receiver.outside_cone => {
-                    let (origin, way, passed) = mode.ray(&receiver);
-                    self.blocker(origin, way, passed, parts, stack)
-                }
-                _ => Blocker::None,
-            })
-        });
-        Ok(blockers
-            .collect::<Result<Vec<_>, Error>>()?
-            .into_iter()
-            .collect())
-    }
+/// Finds the blockers of each of `pixels`, places in the buffer `primitives`; the other
+/// arguments are those of [`Oracle::shade`].
+///
+/// # Errors
+/// [`Error::UnknownPrimitive`].
+///
+/// # Panics
+/// If a place lies outside the viewport.
+pub fn blockers(
+    oracle: &Oracle<'_>,
+    camera: &Camera,
+    light: impl Into<LightKind>,
+    primitives: &[u32],
+    mode: OracleMode,
+    pixels: &[usize],
+) -> Result<BlockerCounts, Error> {
+    let parts = oracle.parts.get_or_init(|| Parts::new(oracle.mesh));
+    let light = light.into();
+    let width = camera.viewport[0] as usize;
+    let blockers = pixels.par_iter().map_init(Vec::new, |stack, &pixel| {
+        let pixel = [(pixel % width) as u32, (pixel / width) as u32];
+        let receiver = Receiver::from_pixel(oracle.mesh, primitives, camera, pixel, &light)?;
+        Ok(match receiver {
+            Some(receiver) if receiver.n_dot_l > 0.0 && !receiver.outside_cone => {
+                let (origin, way, passed) = mode.ray(&receiver);
+                blocker(oracle, origin, way, passed, parts, stack)
+            }
+            _ => Blocker::None,
+        })
+    });
+    Ok(blockers
+        .collect::<Result<Vec<_>, Error>>()?
+        .into_iter()
+        .collect())
+}
 
-    fn blocker(
-        &self,
-        origin: DVec3,
-        way: Towards,
-        passed: u32,
-        parts: &Parts,
-        stack: &mut Vec<u32>,
-    ) -> Blocker {
-        let max_distance = self.tree.max_distance(origin);
-        let ray = Ray::new(origin, way.direction, max_distance, 0.0).ending(way.distance);
-        let mut found = Blocker::None;
-        self.tree.walk(&ray, stack, |caster, _| {
-            let hit = caster.hit(&ray);
-            if caster.primitive == passed || !hit.is_some_and(|hit| ray.reaches(hit.t)) {
-                return ControlFlow::Continue(());
-            }
-            if parts.is_open(caster.primitive) {
-                found = Blocker::OpenPart;
-                return ControlFlow::Continue(());
-            }
-            found = Blocker::ClosedPart;
-            ControlFlow::Break(())
-        });
-        found
-    }
+fn blocker(
+    oracle: &Oracle<'_>,
+    origin: DVec3,
+    way: Towards,
+    passed: u32,
+    parts: &Parts,
+    stack: &mut Vec<u32>,
+) -> Blocker {
+    let max_distance = oracle.tree.max_distance(origin);
+    let ray = Ray::new(origin, way.direction, max_distance, 0.0).ending(way.distance);
+    let mut found = Blocker::None;
+    oracle.tree.walk(&ray, stack, |caster, _| {
+        let hit = caster.hit(&ray);
+        if caster.primitive == passed || !hit.is_some_and(|hit| ray.reaches(hit.t)) {
+            return ControlFlow::Continue(());
+        }
+        if parts.is_open(caster.primitive) {
+            found = Blocker::OpenPart;
+            return ControlFlow::Continue(());
+        }
+        found = Blocker::ClosedPart;
+        ControlFlow::Break(())
+    });
+    found
 }

@@ -1,6 +1,6 @@
 //! The ground truth of a view: the oracle's answer at each pixel.
 
-use crate::receiver::Receiver;
+use crate::{receiver::Receiver, status};
 use std::borrow::Cow;
 
 /// Oracle's answer for a pixel.
@@ -57,6 +57,28 @@ impl GroundTruthPixels {
     pub fn shares(&self) -> Vec<f32> {
         let share = |&class: &Class| f32::from(u8::from(class == Class::Lit));
         self.classes.iter().map(share).collect()
+    }
+
+    /// The reference's own visibility: 1 where lit, 0 elsewhere.
+    pub fn visibility(&self) -> Vec<u8> {
+        self.classes
+            .iter()
+            .map(|&class| u8::from(class == Class::Lit))
+            .collect()
+    }
+
+    /// The reference's own status: never uncertain.
+    pub fn status(&self) -> Vec<u8> {
+        let status = |class: &Class| match class {
+            Class::Background => status::BACKGROUND,
+            Class::FacingAway => status::FACING_AWAY,
+            Class::Lit => status::CERTAIN_LIGHT,
+            Class::Shadow => status::CERTAIN_SHADOW,
+        };
+        self.classes
+            .iter()
+            .map(|class| status(class) as u8)
+            .collect()
     }
 }
 

@@ -4,7 +4,8 @@ use crate::{
     error::Error,
     ground_truth::{Class, GroundTruthPixels},
     pixels::check_pixel_count,
-    statistics::{UNANSWERED, Verdict, for_each_verdict, status},
+    statistics::{UNANSWERED, Verdict, for_each_verdict},
+    status,
 };
 
 type Colour = [u8; 3];
@@ -290,30 +291,6 @@ impl Image {
             size: truth.viewport,
             rgb,
         })
-    }
-}
-
-impl GroundTruthPixels {
-    /// The reference's own visibility: 1 where lit, 0 elsewhere.
-    pub fn visibility(&self) -> Vec<u8> {
-        self.classes
-            .iter()
-            .map(|&class| u8::from(class == Class::Lit))
-            .collect()
-    }
-
-    /// The reference's own status: never uncertain.
-    pub fn status(&self) -> Vec<u8> {
-        let status = |class: &Class| match class {
-            Class::Background => status::BACKGROUND,
-            Class::FacingAway => status::FACING_AWAY,
-            Class::Lit => status::CERTAIN_LIGHT,
-            Class::Shadow => status::CERTAIN_SHADOW,
-        };
-        self.classes
-            .iter()
-            .map(|class| status(class) as u8)
-            .collect()
     }
 }
 

@@ -136,6 +136,26 @@ impl<'a> Oracle<'a> {
         })
     }
 
+    /// The nearest front face that a ray from the eye meets between the planes; of equally near
+    /// ones the lowest id, as a depth test keeps the first one drawn.
+    pub(crate) fn nearest(&self, camera: &Camera, ray: &Ray, stack: &mut Vec<u32>) -> u32 {
+        let mut nearest = (camera.far, BACKGROUND);
+        self.tree.walk(ray, stack, |caster, t_max| {
+            if let Some(hit) = caster.hit(ray)
+                && (hit.front || caster.double_sided)
+                && hit.t >= camera.near
+                && (hit.t, caster.primitive) < nearest
+            {
+                nearest = (hit.t, caster.primitive);
+                // Boxes err by rounding, and an equally near triangle of lower id still counts: a
+                // hair further.
+                *t_max = hit.t * (1.0 + 1e-12);
+            }
+            ControlFlow::Continue(())
+        });
+        nearest.1
+    }
+
     /// Classifies every pixel of a G-buffer. `primitives` holds the primitive id that each pixel
     /// shows, row by row from the top left, [`BACKGROUND`] for none. The receiver is where the ray
     /// through the pixel's centre meets that primitive: at a triangle's edge a rasteriser, which

@@ -24,93 +24,71 @@ const CORNER_ROUNDINGS: f64 = 8.0;
 /// depth that it has in the picture.
 const DEPTH_ROUNDINGS: f64 = 8.0;
 
-impl Oracle<'_> {
-    /// Number of pixels of a G-buffer that show a surface which is not seen there: another one
-    /// stands before it, or it is elsewhere, or there is a surface where it shows none.
-    /// `primitives` as for [`shade`](Self::shade).
-    ///
-    /// Allows for the rounding of a rasteriser: corners moved by a sixteenth of a
-    /// pixel, depths by a few ulps of the triangle's nearest one. So is a pixel that two surfaces
-    /// share.
-    ///
-    /// # Errors
-    /// [`Error::PixelCount`], [`Error::UnknownPrimitive`], [`Error::Interrupted`].
-    pub fn wrong_surfaces(
-        &self,
-        camera: &Camera,
-        primitives: &[u32],
-        progress: Progress,
-    ) -> Result<u64, Error> {
-        check_pixel_count("primitives", camera.viewport, primitives.len())?;
-        let count = self.mesh.triangles.len() as u64;
-        let max_distance = self.tree.max_distance(camera.eye);
-        let wrong = per_pixel(camera.viewport, progress, |x, y, stack| {
-            let shown = primitives[x as usize + y as usize * camera.viewport[0] as usize];
-            if shown != BACKGROUND && u64::from(shown) >= count {
-                return Err(Error::UnknownPrimitive {
-                    x,
-                    y,
-                    primitive: shown,
-                    count,
-                });
-            }
-            let direction = camera.pixel_direction(x, y);
-            let ray = Ray::new(camera.eye, direction, max_distance, 0.0);
-            if self.nearest(camera, &ray, stack) == shown {
-                return Ok(false);
-            }
-            let sample = Sample::new(camera, direction, max_distance);
-            Ok(self.is_wrong(&sample, shown, stack))
-        })?;
-        Ok(wrong.into_iter().filter(|&is_wrong| is_wrong).count() as u64)
-    }
+/// Number of pixels of a G-buffer that show a surface which is not seen there: another one
+/// stands before it, or it is elsewhere, or there is a surface where it shows none.
+/// `primitives` as for [`Oracle::shade`].
+///
+/// Allows for the rounding of a rasteriser: corners moved by a sixteenth of a
+/// pixel, depths by a few ulps of the triangle's nearest one. So is a pixel that two surfaces
+/// share.
+///
+/// # Errors
+/// [`Error::PixelCount`], [`Error::UnknownPrimitive`], [`Error::Interrupted`].
+pub fn wrong_surfaces(
+    oracle: &Oracle<'_>,
+    camera: &Camera,
+    primitives: &[u32],
+    progress: Progress,
+) -> Result<u64, Error> {
+    check_pixel_count("primitives", camera.viewport, primitives.len())?;
+    let count = oracle.mesh.triangles.len() as u64;
+    let max_distance = oracle.tree.max_distance(camera.eye);
+    let wrong = per_pixel(camera.viewport, progress, |x, y, stack| {
+        let shown = primitives[x as usize + y as usize * camera.viewport[0] as usize];
+        if shown != BACKGROUND && u64::from(shown) >= count {
+            return Err(Error::UnknownPrimitive {
+                x,
+                y,
+                primitive: shown,
+                count,
+            });
+        }
+        let direction = camera.pixel_direction(x, y);
+        let ray = Ray::new(camera.eye, direction, max_distance, 0.0);
+        if oracle.nearest(camera, &ray, stack) == shown {
+            return Ok(false);
+        }
+        let sample = Sample::new(camera, direction, max_distance);
+        Ok(is_wrong(oracle, &sample, shown, stack))
+    })?;
+    Ok(wrong.into_iter().filter(|&is_wrong| is_wrong).count() as u64)
+}
 
-    /// The nearest front face that a ray from the eye meets between the planes; of equally near
-    /// ones the lowest id, as a depth test keeps the first one drawn.
-    pub(crate) fn nearest(&self, camera: &Camera, ray: &Ray, stack: &mut Vec<u32>) -> u32 {
-        let mut nearest = (camera.far, BACKGROUND);
-        self.tree.walk(ray, stack, |caster, t_max| {
-            if let Some(hit) = caster.hit(ray)
-                && (hit.front || caster.double_sided)
-                && hit.t >= camera.near
-                && (hit.t, caster.primitive) < nearest
-            {
-                nearest = (hit.t, caster.primitive);
-                // Boxes err by rounding, and an equally near triangle of lower id still counts: a
-                // hair further.
-                *t_max = hit.t * (1.0 + 1e-12);
+/// Returns true if no rasteriser may show this primitive at the sample.
+fn is_wrong(oracle: &Oracle<'_>, sample: &Sample, shown: u32, stack: &mut Vec<u32>) -> bool {
+    let end = match shown {
+        BACKGROUND => sample.camera.far * (1.0 - 16.0 * F32_ROUNDING),
+        _ => {
+            let corners = oracle
+                .mesh
+                .corners(shown)
+                .map(|corner| corner.as_vec3().into());
+            if !sample.may_touch(&corners) {
+                return true;
             }
-            ControlFlow::Continue(())
-        });
-        nearest.1
-    }
-
-    /// Returns true if no rasteriser may show this primitive at the sample.
-    fn is_wrong(&self, sample: &Sample, shown: u32, stack: &mut Vec<u32>) -> bool {
-        let end = match shown {
-            BACKGROUND => sample.camera.far * (1.0 - 16.0 * F32_ROUNDING),
-            _ => {
-                let corners = self
-                    .mesh
-                    .corners(shown)
-                    .map(|corner| corner.as_vec3().into());
-                if !sample.may_touch(&corners) {
-                    return true;
-                }
-                sample.least_distance(&corners)
-            }
-        };
-        let mut is_hidden = false;
-        self.tree.walk(&sample.rays[0], stack, |caster, t_max| {
-            *t_max = t_max.min(end);
-            if caster.primitive != shown && sample.surely_shows(caster, end) {
-                is_hidden = true;
-                return ControlFlow::Break(());
-            }
-            ControlFlow::Continue(())
-        });
-        is_hidden
-    }
+            sample.least_distance(&corners)
+        }
+    };
+    let mut is_hidden = false;
+    oracle.tree.walk(&sample.rays[0], stack, |caster, t_max| {
+        *t_max = t_max.min(end);
+        if caster.primitive != shown && sample.surely_shows(caster, end) {
+            is_hidden = true;
+            return ControlFlow::Break(());
+        }
+        ControlFlow::Continue(())
+    });
+    is_hidden
 }
 
 /// A pixel's centre, and the corners of the square that its sample may be anywhere in.

@@ -57,22 +57,22 @@ pub enum IndexedError {
     },
 }
 
-impl Mesh {
-    /// Welds a mesh of a program. Triangles keep their order; those that have a corner twice are
+impl Indexed<'_> {
+    /// Welds the mesh. Triangles keep their order; those that have a corner twice are
     /// left out, and a normal without length is that of the triangle.
     ///
     /// # Errors
     /// Indices and coordinates that are none.
-    pub fn indexed(from: &Indexed) -> Result<Self, IndexedError> {
-        check(from)?;
+    pub fn mesh(&self) -> Result<Mesh, IndexedError> {
+        check(self)?;
         let (mut positions, mut normals) = (Welder::default(), Welder::default());
-        let at: Vec<u32> = from
+        let at: Vec<u32> = self
             .positions
             .iter()
             .map(|&p| positions.index(p.into()))
             .collect();
-        let mut mesh = Self::default();
-        for corners in from.indices.as_chunks::<3>().0 {
+        let mut mesh = Mesh::default();
+        for corners in self.indices.as_chunks::<3>().0 {
             let triangle = corners.map(|corner| at[corner as usize]);
             if triangle[0] == triangle[1]
                 || triangle[1] == triangle[2]
@@ -83,7 +83,7 @@ impl Mesh {
             let points = triangle.map(|index| positions.values[index as usize].as_dvec3());
             let flat = geometric_normal(points).unwrap_or(DVec3::Y);
             mesh.normal_indices.push(corners.map(|corner| {
-                let own = from.normals.get(corner as usize);
+                let own = self.normals.get(corner as usize);
                 let own = own.and_then(|&own| Vec3::from(own).as_dvec3().try_normalize());
                 normals.index(own.unwrap_or(flat).as_vec3())
             }));
@@ -135,11 +135,12 @@ mod tests {
     const CORNERS: [[f32; 3]; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-0.0; 3]];
 
     fn indexed(indices: &[u32]) -> Result<Mesh, IndexedError> {
-        Mesh::indexed(&Indexed {
+        Indexed {
             positions: &CORNERS,
             normals: &[],
             indices,
-        })
+        }
+        .mesh()
     }
 
     #[test]
@@ -153,11 +154,12 @@ mod tests {
 
     #[test]
     fn normals_are_made_unit_length_or_the_faces() {
-        let mesh = Mesh::indexed(&Indexed {
+        let mesh = Indexed {
             positions: &CORNERS,
             normals: &[[3.0, 0.0, 0.0], [0.0; 3], [0.0, 2.0, 0.0], [1.0; 3]],
             indices: &[0, 1, 2],
-        });
+        }
+        .mesh();
         let mesh = mesh.unwrap();
         assert_eq!(mesh.normals, [Vec3::X, Vec3::Z, Vec3::Y]);
     }
@@ -173,11 +175,14 @@ mod tests {
             (vec![[f32::NAN; 3]; 4], CORNERS, "normal 0 is not finite"),
             (vec![], [[f32::INFINITY; 3]; 4], "position 0 is not finite"),
         ] {
-            let said = said(Mesh::indexed(&Indexed {
-                positions: &positions,
-                normals: &normals,
-                indices: &[0, 1, 2],
-            }));
+            let said = said(
+                Indexed {
+                    positions: &positions,
+                    normals: &normals,
+                    indices: &[0, 1, 2],
+                }
+                .mesh(),
+            );
             assert!(said.contains(expected), "{said}");
         }
     }

@@ -3,7 +3,7 @@
 
 use crate::desired_state::FrameSnapshot;
 use glam::DVec2;
-use skiagraph_reference::{Error, GroundTruth, Oracle, OracleMode, Progress};
+use skiagraph_reference::{Error, GroundTruth, Oracle, OracleMode, Progress, ground_truth};
 use skiagraph_scene::{Camera, LightKind, Scene};
 use std::{
     ops::ControlFlow,
@@ -148,7 +148,8 @@ fn answer(oracle: &Oracle, question: &Question, tell: &impl Fn(Answer)) {
             interrupted: &question.outdated,
         };
         let how = (OracleMode::Exact, SAMPLES);
-        let ground_truth = oracle.ground_truth(&camera, question.light, &primitives, how, progress);
+        let ground_truth =
+            ground_truth(oracle, &camera, question.light, &primitives, how, progress);
         if matches!(ground_truth, Err(Error::Interrupted)) {
             return ControlFlow::Break(());
         }

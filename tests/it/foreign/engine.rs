@@ -9,7 +9,9 @@ use crate::support::{
 use skiagraph_gpu::{Executor, FrameReport};
 use skiagraph_graph::ParamValue;
 use skiagraph_passes::SceneProvider;
-use skiagraph_reference::{Graded, GroundTruth, Oracle, OracleMode, Progress, Statistics};
+use skiagraph_reference::{
+    Graded, GroundTruth, Oracle, OracleMode, Progress, Statistics, ground_truth,
+};
 use skiagraph_scene::{LightKind, Scene, View};
 use std::sync::Arc;
 
@@ -52,9 +54,15 @@ impl Bench {
         let primitives = values(&self.frames(gbuffer, &[], 1, &["primitive"]), "primitive");
         let camera = self.view.camera(VIEWPORT);
         let (how, progress) = ((OracleMode::Exact, 512), Progress::default());
-        Oracle::new(&self.scene.mesh)
-            .ground_truth(&camera, self.light, &primitives, how, progress)
-            .unwrap_or_else(|error| panic!("{error}"))
+        ground_truth(
+            &Oracle::new(&self.scene.mesh),
+            &camera,
+            self.light,
+            &primitives,
+            how,
+            progress,
+        )
+        .unwrap_or_else(|error| panic!("{error}"))
     }
 
     /// Returns the report of the last of some frames.

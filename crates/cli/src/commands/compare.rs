@@ -30,7 +30,7 @@ use skiagraph_compare::records::{published, results::Results};
 use skiagraph_compare::sink::Session;
 use skiagraph_compare::size::Size;
 use skiagraph_compare::wording::{command_line, size};
-use skiagraph_draw::Drawing;
+use skiagraph_draw::{from_plan, to_svg};
 use skiagraph_passes::SceneProvider;
 use skiagraph_report::{
     markdown, page, results_table,
@@ -127,7 +127,7 @@ fn graphs(comparison: &Comparison, session: Session) -> Vec<(String, String)> {
         let capabilities = Capabilities::new(session.gpu);
         let plan = method.at(viewport).plan(viewport, capabilities, &provider);
         let title = format!("{}, viewport {}", method.name, size(viewport));
-        let svg = Drawing::from_plan(&plan.ok()?).titled(title).to_svg();
+        let svg = to_svg(&from_plan(&plan.ok()?).titled(title));
         Some((graph_name(&method.name), svg))
     };
     comparison.methods.iter().filter_map(chart).collect()

@@ -6,7 +6,7 @@ use crate::terminal::{Terminal, console::print};
 use skiagraph_compare::files::write::write_whole;
 use skiagraph_compare::graphs::planning::{Capabilities, placeholder};
 use skiagraph_compare::graphs::preset;
-use skiagraph_draw::Drawing;
+use skiagraph_draw::{Drawing, from_plan, to_dot, to_svg};
 use std::{ffi::OsStr, path::Path};
 
 /// Plans the graph for the most able adapters and draws the plan.
@@ -22,7 +22,7 @@ pub fn graph(args: &GraphArgs) -> Result<(), CliError> {
     request.outputs = (!args.outputs.is_empty()).then(|| args.outputs.clone());
     let plan = preset.plan(&request, &Terminal)?;
     let title = format!("{}, viewport {}", preset.name, args.method.size);
-    let text = text(&Drawing::from_plan(&plan).titled(title), format(args))?;
+    let text = text(&from_plan(&plan).titled(title), format(args))?;
     match &args.out {
         Some(file) => Ok(write_whole(file, text.as_bytes())?),
         None => print(&text),
@@ -45,8 +45,8 @@ fn format(args: &GraphArgs) -> DrawingFormat {
 
 fn text(drawing: &Drawing, format: DrawingFormat) -> Result<String, CliError> {
     match format {
-        DrawingFormat::Svg => Ok(drawing.to_svg()),
-        DrawingFormat::Dot => Ok(drawing.to_dot()),
+        DrawingFormat::Svg => Ok(to_svg(drawing)),
+        DrawingFormat::Dot => Ok(to_dot(drawing)),
         DrawingFormat::Json => serde_json::to_string_pretty(drawing)
             .map(|json| json + "\n")
             .map_err(|error| {

@@ -31,7 +31,7 @@ use skiagraph_graph::{Graph, Plan, Sources};
 use skiagraph_passes::registry;
 use skiagraph_reference::{
     BlockerCounts, Error, GroundTruth, GroundTruthPixels, Oracle, OracleMode, Progress, Statistics,
-    shimmer::Seen,
+    area, shimmer::Seen,
 };
 use skiagraph_scene::{Camera, LightKind};
 use std::rc::Rc;
@@ -205,7 +205,7 @@ impl<'a> GroundTruthView<'a> {
         let (camera, light, primitives) = (&self.camera, &self.light, &self.primitives);
         let blockers = pixels.and_then(|pixels| {
             let oracle = &self.oracle;
-            oracle.blockers(camera, light, primitives, self.mode, &pixels)
+            skiagraph_reference::blockers(oracle, camera, light, primitives, self.mode, &pixels)
         });
         blockers.map_err(|error| CompareError::Input(format!("no blockers: {error}")))
     }
@@ -232,7 +232,8 @@ pub fn ground_truth(
     progress: Progress,
     what: &str,
 ) -> Result<GroundTruth, CompareError> {
-    let ground_truth = oracle.ground_truth(camera, light, primitives, (mode, samples), progress);
+    let ground_truth =
+        area::ground_truth(oracle, camera, light, primitives, (mode, samples), progress);
     ground_truth.map_err(|error| named(error, what))
 }
 
@@ -247,7 +248,7 @@ pub fn wrong_surfaces(
     progress: Progress,
     what: &str,
 ) -> Result<u64, CompareError> {
-    let wrong = oracle.wrong_surfaces(camera, primitives, progress);
+    let wrong = skiagraph_reference::wrong_surfaces(oracle, camera, primitives, progress);
     wrong.map_err(|error| named(error, what))
 }
 

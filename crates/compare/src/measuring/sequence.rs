@@ -172,249 +172,263 @@ struct Account {
     worst: Option<(usize, Outputs, Judgement)>,
 }
 
-impl MeasureContext<'_> {
-    /// Runs a method over a path, with what it keeps from frame to frame.
-    ///
-    /// # Errors
-    /// A method that the device refuses, Ctrl-C, a lost device, outputs that are not a shadow
-    /// method's, a picture that cannot be written.
-    pub fn follow(
-        &self,
-        method: &Method,
-        plan: Plan,
-        path: &Path,
-        provider: &mut SceneProvider,
-        step: &Step,
-    ) -> Result<Measured, Stop> {
-        let Begun {
-            mut executor,
-            memory,
-            scene_bytes,
-            steady,
-        } = self.begin(plan, path, provider)?;
-        let mut account = Account::default();
-        let names = method.preset.judged();
-        for index in 0..path.poses.len() {
-            let done = self.frame(&mut executor, path, index, (&names, false), provider)?;
-            self.account(method, path, index, done, &mut account)?;
-            step.set_done(u64::from(self.warmup) + index as u64 + 1);
-        }
-        let every_pass = self.every_pass(&mut executor, path, &names, provider, &mut account)?;
-        let times = Times::new(account.timed);
-        let mut times = times.ok_or_else(CompareError::interrupted)?;
-        if !self.timestamps {
-            times.frame.gpu_ms = None;
-            times.passes.iter_mut().for_each(|pass| pass.gpu_ms = None);
-        }
-        let images = match &account.worst {
-            Some((index, outputs, judgement)) => {
-                let ground_truth = &path.truth_views[*index].ground_truth;
-                self.draw(method, Some(*index), ground_truth, (outputs, judgement))?
-            }
-            None => None,
-        };
-        let mut all = Shimmer::default();
-        for frame in &account.frames {
-            all += frame.shimmer.unwrap_or_default();
-        }
-        let counts = account.counts;
-        Ok(Measured {
-            certain: counts.certain,
-            uncertain: counts.uncertain,
-            split: counts.split,
-            rays: account.rays,
-            wrong: counts.wrong,
-            certain_wrong_blockers: account.blockers,
-            facing_mismatch: counts.facing_mismatch,
-            answer: if account.shares {
-                Answer::Graded
-            } else {
-                Answer::Hard
-            },
-            graded: (!account.graded.is_empty()).then(|| Graded::together(account.graded)),
-            passes: times.passes,
-            frame: times.frame,
-            cached: None,
-            memory_bytes: memory.0,
-            saved_bytes: memory.1,
-            scene_bytes,
-            images,
-            steady,
-            sequence: Some(Sequence {
-                frames: account.frames,
-                shimmer: all,
-                every_pass,
-            }),
-        })
+/// Runs a method over a path, with what it keeps from frame to frame.
+///
+/// # Errors
+/// A method that the device refuses, Ctrl-C, a lost device, outputs that are not a shadow
+/// method's, a picture that cannot be written.
+pub fn follow(
+    context: &MeasureContext<'_>,
+    method: &Method,
+    plan: Plan,
+    path: &Path,
+    provider: &mut SceneProvider,
+    step: &Step,
+) -> Result<Measured, Stop> {
+    let Begun {
+        mut executor,
+        memory,
+        scene_bytes,
+        steady,
+    } = begin(context, plan, path, provider)?;
+    let mut account = Account::default();
+    let names = method.preset.judged();
+    for index in 0..path.poses.len() {
+        let done = run_frame(
+            context,
+            &mut executor,
+            path,
+            index,
+            (&names, false),
+            provider,
+        )?;
+        add(context, method, path, index, done, &mut account)?;
+        step.set_done(u64::from(context.warmup) + index as u64 + 1);
     }
-
-    /// An executor that stands still at the path's begin until it is warm, or, of a method that
-    /// remembers, until it is in its steady state: so all flags give the same pictures.
-    fn begin(&self, plan: Plan, path: &Path, provider: &mut SceneProvider) -> Result<Begun, Stop> {
-        path.show(0, self.truth_view.ground_truth.pixels.viewport, provider)?;
-        let mut executor = frame::executor(self.session, plan, provider)?;
-        frame::grow(self.session, &mut executor, provider)?;
-        let steady = if executor.plan().remembers() {
-            Some(steady::settle(self.session, &mut executor)?)
+    let every_pass = every_pass(context, &mut executor, path, &names, provider, &mut account)?;
+    let times = Times::new(account.timed);
+    let mut times = times.ok_or_else(CompareError::interrupted)?;
+    if !context.timestamps {
+        times.frame.gpu_ms = None;
+        times.passes.iter_mut().for_each(|pass| pass.gpu_ms = None);
+    }
+    let images = match &account.worst {
+        Some((index, outputs, judgement)) => {
+            let ground_truth = &path.truth_views[*index].ground_truth;
+            context.draw(method, Some(*index), ground_truth, (outputs, judgement))?
+        }
+        None => None,
+    };
+    let mut all = Shimmer::default();
+    for frame in &account.frames {
+        all += frame.shimmer.unwrap_or_default();
+    }
+    let counts = account.counts;
+    Ok(Measured {
+        certain: counts.certain,
+        uncertain: counts.uncertain,
+        split: counts.split,
+        rays: account.rays,
+        wrong: counts.wrong,
+        certain_wrong_blockers: account.blockers,
+        facing_mismatch: counts.facing_mismatch,
+        answer: if account.shares {
+            Answer::Graded
         } else {
-            self.stand(&mut executor, self.warmup)?;
-            None
-        };
-        let plan = executor.plan();
-        Ok(Begun {
-            memory: (plan.memory_bytes(), plan.saved_bytes()),
-            scene_bytes: self.scene_bytes(plan, provider)?,
-            executor,
-            steady,
-        })
-    }
+            Answer::Hard
+        },
+        graded: (!account.graded.is_empty()).then(|| Graded::together(account.graded)),
+        passes: times.passes,
+        frame: times.frame,
+        cached: None,
+        memory_bytes: memory.0,
+        saved_bytes: memory.1,
+        scene_bytes,
+        images,
+        steady,
+        sequence: Some(Sequence {
+            frames: account.frames,
+            shimmer: all,
+            every_pass,
+        }),
+    })
+}
 
-    /// Runs frames whose outputs are not read.
-    fn stand(&self, executor: &mut Executor, frames: u32) -> Result<(), ExecuteError> {
-        (0..frames).try_for_each(|_| {
-            frame::run(self.session, executor, &Frame::default())?;
-            Ok(())
-        })
-    }
+/// An executor that stands still at the path's begin until it is warm, or, of a method that
+/// remembers, until it is in its steady state: so all flags give the same pictures.
+fn begin(
+    context: &MeasureContext<'_>,
+    plan: Plan,
+    path: &Path,
+    provider: &mut SceneProvider,
+) -> Result<Begun, Stop> {
+    path.show(0, context.truth_view.ground_truth.pixels.viewport, provider)?;
+    let mut executor = frame::executor(context.session, plan, provider)?;
+    frame::grow(context.session, &mut executor, provider)?;
+    let steady = if executor.plan().remembers() {
+        Some(steady::settle(context.session, &mut executor)?)
+    } else {
+        stand(context, &mut executor, context.warmup)?;
+        None
+    };
+    let plan = executor.plan();
+    Ok(Begun {
+        memory: (plan.memory_bytes(), plan.saved_bytes()),
+        scene_bytes: context.scene_bytes(plan, provider)?,
+        executor,
+        steady,
+    })
+}
 
-    /// The path once more with every pass run in every frame, where some were skipped: its pictures
-    /// have been judged by then, and what it keeps may change.
-    fn every_pass(
-        &self,
-        executor: &mut Executor,
-        path: &Path,
-        names: &[&str],
-        provider: &mut SceneProvider,
-        account: &mut Account,
-    ) -> Result<Option<FrameTimes>, Stop> {
-        let skips = account.frames.iter().any(|frame| !frame.skipped.is_empty());
-        if !skips || self.cached_frames == 0 {
-            return Ok(None);
-        }
-        let mut timed = Vec::new();
-        // The first one brings the camera back, and is no frame of the path.
-        for index in std::iter::once(0).chain(0..path.poses.len()) {
-            let done = self.frame(executor, path, index, (names, true), provider)?;
-            timed.push(timed_frame(done.report, done.wall)?);
-        }
-        let timed = timed.split_off(1);
-        for (frame, timed) in account.frames.iter_mut().zip(&timed) {
-            frame.every_pass = Some(FrameCost {
-                gpu_ms: self.gpu_ms(timed),
-                wall_ms: ms(timed.wall),
-            });
-        }
-        let times = Times::new(timed).ok_or_else(CompareError::interrupted)?;
-        Ok(Some(FrameTimes {
-            gpu_ms: times.frame.gpu_ms.filter(|_| self.timestamps),
-            ..times.frame
-        }))
-    }
-
-    /// The GPU's time of a frame, if it can be trusted.
-    fn gpu_ms(&self, frame: &TimedFrame) -> Option<f64> {
-        frame.timing.gpu().filter(|_| self.timestamps).map(ms)
-    }
-
-    fn frame(
-        &self,
-        executor: &mut Executor,
-        path: &Path,
-        index: usize,
-        (read, all): (&[&str], bool),
-        provider: &mut SceneProvider,
-    ) -> Result<Done, Stop> {
-        if self.session.is_stopped() {
-            return Err(CompareError::interrupted().into());
-        }
-        let viewport = self.truth_view.ground_truth.pixels.viewport;
-        path.show(index, viewport, provider)?;
-        let before = provider.built().to_vec();
-        executor.refresh(provider)?;
-        let remade = remade(&before, provider.built());
-        let request = Frame {
-            timing: true,
-            statistics: false,
-            all,
-            read,
-            seconds: path.seconds(index),
-        };
-        let (report, wall) = frame::run(self.session, executor, &request)?;
-        // As a host does it: between frames, by what has arrived.
-        executor.grow(provider)?;
-        Ok(Done {
-            report,
-            wall,
-            remade,
-        })
-    }
-
-    fn account(
-        &self,
-        method: &Method,
-        path: &Path,
-        index: usize,
-        done: Done,
-        account: &mut Account,
-    ) -> Result<(), Stop> {
-        let Done {
-            mut report,
-            wall,
-            remade,
-        } = done;
-        let truth_view = &path.truth_views[index];
-        let contents = frame::contents(std::mem::take(&mut report.readbacks));
-        let timed = timed_frame(report, wall)?;
-        let outputs = self.decode(contents, truth_view);
-        let (outputs, judgement) = judged(&method.preset, outputs, &truth_view.ground_truth)?;
-        let counts = judgement.counts;
-        if counts.wrong.certain > 0 && judgement.graded.is_none() {
-            *account.blockers.get_or_insert_default() += truth_view.blockers(&outputs)?;
-        }
-        let shown = outputs.shown().into_owned();
-        let changed = match &account.before {
-            None => None,
-            Some(before) => {
-                let ground_truth = [
-                    &path.truth_views[index - 1].ground_truth,
-                    &truth_view.ground_truth,
-                ];
-                let counts = shimmer(&path.same[index - 1], [before, &shown], ground_truth);
-                Some(counts.map_err(|error| CompareError::Input(format!("no shimmer: {error}")))?)
-            }
-        };
-        account.frames.push(SequenceFrame {
-            facing_light: counts.pixels.facing_light,
-            wrong: counts.wrong.total,
-            wrong_outside_band: counts.wrong.total - counts.wrong.in_band,
-            graded: judgement.graded,
-            rays: outputs.rays,
-            gpu_ms: self.gpu_ms(&timed),
-            wall_ms: ms(wall),
-            shimmer: changed,
-            skipped: timed.skipped.clone(),
-            remade,
-            every_pass: None,
-        });
-        account.timed.push(timed);
-        account.counts += counts;
-        if let Some(rays) = outputs.rays {
-            account.rays = Some(account.rays.unwrap_or(0) + rays);
-        }
-        account.before = Some(shown);
-        account.shares |= outputs.shares.is_some();
-        let pixels = JudgedPixels {
-            facing_light: counts.pixels.facing_light,
-            in_band: counts.band,
-        };
-        let graded = judgement.graded.map(|graded| (graded, pixels));
-        account.graded.extend(graded);
-        // Only a frame that is worse than all before it: of equal ones the first counts.
-        let error = account.frames[index].error();
-        let worst = account.worst.as_ref();
-        if worst.is_none_or(|(worst, ..)| error > account.frames[*worst].error()) {
-            account.worst = Some((index, outputs, judgement));
-        }
+/// Runs frames whose outputs are not read.
+fn stand(
+    context: &MeasureContext<'_>,
+    executor: &mut Executor,
+    frames: u32,
+) -> Result<(), ExecuteError> {
+    (0..frames).try_for_each(|_| {
+        frame::run(context.session, executor, &Frame::default())?;
         Ok(())
+    })
+}
+
+/// The path once more with every pass run in every frame, where some were skipped: its pictures
+/// have been judged by then, and what it keeps may change.
+fn every_pass(
+    context: &MeasureContext<'_>,
+    executor: &mut Executor,
+    path: &Path,
+    names: &[&str],
+    provider: &mut SceneProvider,
+    account: &mut Account,
+) -> Result<Option<FrameTimes>, Stop> {
+    let skips = account.frames.iter().any(|frame| !frame.skipped.is_empty());
+    if !skips || context.cached_frames == 0 {
+        return Ok(None);
     }
+    let mut timed = Vec::new();
+    // The first one brings the camera back, and is no frame of the path.
+    for index in std::iter::once(0).chain(0..path.poses.len()) {
+        let done = run_frame(context, executor, path, index, (names, true), provider)?;
+        timed.push(timed_frame(done.report, done.wall)?);
+    }
+    let timed = timed.split_off(1);
+    for (frame, timed) in account.frames.iter_mut().zip(&timed) {
+        frame.every_pass = Some(FrameCost {
+            gpu_ms: gpu_ms(context, timed),
+            wall_ms: ms(timed.wall),
+        });
+    }
+    let times = Times::new(timed).ok_or_else(CompareError::interrupted)?;
+    Ok(Some(FrameTimes {
+        gpu_ms: times.frame.gpu_ms.filter(|_| context.timestamps),
+        ..times.frame
+    }))
+}
+
+/// The GPU's time of a frame, if it can be trusted.
+fn gpu_ms(context: &MeasureContext<'_>, frame: &TimedFrame) -> Option<f64> {
+    frame.timing.gpu().filter(|_| context.timestamps).map(ms)
+}
+
+fn run_frame(
+    context: &MeasureContext<'_>,
+    executor: &mut Executor,
+    path: &Path,
+    index: usize,
+    (read, all): (&[&str], bool),
+    provider: &mut SceneProvider,
+) -> Result<Done, Stop> {
+    if context.session.is_stopped() {
+        return Err(CompareError::interrupted().into());
+    }
+    let viewport = context.truth_view.ground_truth.pixels.viewport;
+    path.show(index, viewport, provider)?;
+    let before = provider.built().to_vec();
+    executor.refresh(provider)?;
+    let remade = remade(&before, provider.built());
+    let request = Frame {
+        timing: true,
+        statistics: false,
+        all,
+        read,
+        seconds: path.seconds(index),
+    };
+    let (report, wall) = frame::run(context.session, executor, &request)?;
+    // As a host does it: between frames, by what has arrived.
+    executor.grow(provider)?;
+    Ok(Done {
+        report,
+        wall,
+        remade,
+    })
+}
+
+fn add(
+    context: &MeasureContext<'_>,
+    method: &Method,
+    path: &Path,
+    index: usize,
+    done: Done,
+    account: &mut Account,
+) -> Result<(), Stop> {
+    let Done {
+        mut report,
+        wall,
+        remade,
+    } = done;
+    let truth_view = &path.truth_views[index];
+    let contents = frame::contents(std::mem::take(&mut report.readbacks));
+    let timed = timed_frame(report, wall)?;
+    let outputs = context.decode(contents, truth_view);
+    let (outputs, judgement) = judged(&method.preset, outputs, &truth_view.ground_truth)?;
+    let counts = judgement.counts;
+    if counts.wrong.certain > 0 && judgement.graded.is_none() {
+        *account.blockers.get_or_insert_default() += truth_view.blockers(&outputs)?;
+    }
+    let shown = outputs.shown().into_owned();
+    let changed = match &account.before {
+        None => None,
+        Some(before) => {
+            let ground_truth = [
+                &path.truth_views[index - 1].ground_truth,
+                &truth_view.ground_truth,
+            ];
+            let counts = shimmer(&path.same[index - 1], [before, &shown], ground_truth);
+            Some(counts.map_err(|error| CompareError::Input(format!("no shimmer: {error}")))?)
+        }
+    };
+    account.frames.push(SequenceFrame {
+        facing_light: counts.pixels.facing_light,
+        wrong: counts.wrong.total,
+        wrong_outside_band: counts.wrong.total - counts.wrong.in_band,
+        graded: judgement.graded,
+        rays: outputs.rays,
+        gpu_ms: gpu_ms(context, &timed),
+        wall_ms: ms(wall),
+        shimmer: changed,
+        skipped: timed.skipped.clone(),
+        remade,
+        every_pass: None,
+    });
+    account.timed.push(timed);
+    account.counts += counts;
+    if let Some(rays) = outputs.rays {
+        account.rays = Some(account.rays.unwrap_or(0) + rays);
+    }
+    account.before = Some(shown);
+    account.shares |= outputs.shares.is_some();
+    let pixels = JudgedPixels {
+        facing_light: counts.pixels.facing_light,
+        in_band: counts.band,
+    };
+    let graded = judgement.graded.map(|graded| (graded, pixels));
+    account.graded.extend(graded);
+    // Only a frame that is worse than all before it: of equal ones the first counts.
+    let error = account.frames[index].error();
+    let worst = account.worst.as_ref();
+    if worst.is_none_or(|(worst, ..)| error > account.frames[*worst].error()) {
+        account.worst = Some((index, outputs, judgement));
+    }
+    Ok(())
 }

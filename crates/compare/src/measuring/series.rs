@@ -482,7 +482,7 @@ fn measured(
             })
         }
         ViewOrPath::Path(_) => context.measure(method, provider, |method, plan, provider, step| {
-            context.follow(method, plan, frames, provider, step)
+            sequence::follow(context, method, plan, frames, provider, step)
         }),
     }
 }

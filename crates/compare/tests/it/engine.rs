@@ -9,7 +9,7 @@ use skiagraph_compare::{
     sink::{Session, Silent},
 };
 use skiagraph_passes::EmbeddedSources;
-use skiagraph_scene::{DirectionalLight, Indexed, Light, Mesh, Scene, View};
+use skiagraph_scene::{DirectionalLight, Indexed, Light, Scene, View};
 use std::{error::Error, sync::Arc};
 
 /// A roof above a floor, each of two triangles.
@@ -17,11 +17,12 @@ fn engine_scene() -> Result<Scene, Box<dyn Error>> {
     let square = |half: f32, y: f32| {
         [[-1.0, -1.0], [-1.0, 1.0], [1.0, 1.0], [1.0, -1.0]].map(|[x, z]| [x * half, y, z * half])
     };
-    let mesh = Mesh::indexed(&Indexed {
+    let mesh = Indexed {
         positions: &[square(4.0, 0.0), square(1.0, 1.5)].concat(),
         normals: &[],
         indices: &[0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7],
-    })?;
+    }
+    .mesh()?;
     let view = View {
         name: "above".into(),
         eye: DVec3::new(0.0, 6.0, 7.0),

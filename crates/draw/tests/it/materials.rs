@@ -1,7 +1,7 @@
 //! Words of charts and graphs about every kind of material, and parts of them.
 
 use crate::support::{Files, Triangle, load, right};
-use skiagraph_draw::{Drawing, Origin};
+use skiagraph_draw::{Drawing, Origin, from_plan, to_dot, to_svg};
 use skiagraph_graph::{Capture, Import, PlanRequest};
 use std::collections::BTreeSet;
 
@@ -101,12 +101,12 @@ fn drawing() -> Drawing {
         material: "fog.mip[1]".to_owned(),
         after: Some("sample[1].fill".to_owned()),
     }];
-    Drawing::from_plan(&right(right(load(&files)).plan(&request)))
+    from_plan(&right(right(load(&files)).plan(&request)))
 }
 
 /// The hover titles of a chart.
 fn titles(drawing: &Drawing) -> BTreeSet<String> {
-    let svg = drawing.to_svg();
+    let svg = to_svg(drawing);
     let document = roxmltree::Document::parse(&svg).unwrap_or_else(|error| panic!("{error}"));
     let titles = document
         .descendants()
@@ -173,7 +173,7 @@ fn what_is_there_before_the_frame_is_so_from_its_beginning() {
     assert_eq!(origins(|origin| origin == Origin::Frame), ["frame"].into());
     let previous = origins(|origin| origin == Origin::Previous);
     assert_eq!(previous, ["camera.previous", "image.previous"].into());
-    let svg = drawing.to_svg();
+    let svg = to_svg(&drawing);
     let document = roxmltree::Document::parse(&svg).unwrap_or_else(|error| panic!("{error}"));
     let grey = document
         .descendants()
@@ -204,7 +204,7 @@ fn the_bytes_of_all_materials_are_those_of_the_plan() {
 /// has one.
 #[test]
 fn a_name_is_told_from_what_stands_before_it() {
-    let svg = drawing().to_svg();
+    let svg = to_svg(&drawing());
     let document = roxmltree::Document::parse(&svg).unwrap_or_else(|error| panic!("{error}"));
     let grey = document
         .descendants()
@@ -242,8 +242,8 @@ fn clusters_follow_groups_and_includes() {
         material: "sample[1].eye.image".to_owned(),
         after: Some("sample[1].eye.draw".to_owned()),
     }];
-    let drawing = Drawing::from_plan(&right(right(load(&files)).plan(&request)));
-    let dot = drawing.to_dot();
+    let drawing = from_plan(&right(right(load(&files)).plan(&request)));
+    let dot = to_dot(&drawing);
     let mut clusters: Vec<&str> = Vec::new();
     let mut nodes = BTreeSet::new();
     for line in dot.lines().skip(1).map(str::trim) {

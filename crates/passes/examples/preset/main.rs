@@ -45,7 +45,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// A square in the plane y = 0, of two triangles.
 fn quad(half: f32) -> Result<Mesh, Box<dyn Error>> {
     let corner = |x: f32, z: f32| [x * half, 0.0, z * half];
-    Ok(Mesh::indexed(&Indexed {
+    Ok(Indexed {
         positions: &[
             corner(-1.0, -1.0),
             corner(-1.0, 1.0),
@@ -54,7 +54,8 @@ fn quad(half: f32) -> Result<Mesh, Box<dyn Error>> {
         ],
         normals: &[],
         indices: &[0, 1, 2, 0, 2, 3],
-    })?)
+    }
+    .mesh()?)
 }
 
 /// Prints a picture of zeros and ones.

@@ -3,7 +3,9 @@
 use crate::common;
 use crate::common::scenes::{add_rectangle, floor, from_above};
 use glam::DVec3;
-use skiagraph_reference::{AreaVisibility, Class, GroundTruthPixels, Oracle, OracleMode, Progress};
+use skiagraph_reference::{
+    AreaVisibility, Class, GroundTruthPixels, Oracle, OracleMode, Progress, shade_area,
+};
 use skiagraph_scene::{DirectionalLight, Mesh};
 
 const FROM_ABOVE: DVec3 = DVec3::NEG_Y;
@@ -22,7 +24,14 @@ fn area(
     let oracle = Oracle::new(mesh);
     let primitives = oracle.primary(&camera, Progress::default()).unwrap();
     let progress = Progress::default();
-    let answer = oracle.shade_area(&camera, light, &primitives, (mode, samples), progress);
+    let answer = shade_area(
+        &oracle,
+        &camera,
+        light,
+        &primitives,
+        (mode, samples),
+        progress,
+    );
     answer.unwrap()
 }
 
@@ -142,7 +151,14 @@ fn a_receiver_within_the_lights_ball_asks_the_hierarchy() {
     let primitives = oracle.primary(&camera, Progress::default()).unwrap();
     let how = (OracleMode::Exact, 64);
     let light = skiagraph_scene::LightKind::Point(bulb);
-    let answer = oracle.shade_area(&camera, light, &primitives, how, Progress::default());
+    let answer = shade_area(
+        &oracle,
+        &camera,
+        light,
+        &primitives,
+        how,
+        Progress::default(),
+    );
     let (truth, area) = answer.unwrap();
     // From (-0.7, 0) the disk across (0.7, 2) is hidden from a fifth of its radius on.
     let near = 20 * 40 + 16;

@@ -3,7 +3,8 @@
 use crate::common::scenes::{add, add_rectangle, floor, from_above, light};
 use glam::Vec3;
 use skiagraph_reference::{
-    BlockerCounts, GroundTruthPixels, Oracle, OracleMode, Progress, Statistics, statistics::status,
+    BlockerCounts, GroundTruthPixels, Oracle, OracleMode, Progress, Statistics, blockers,
+    statistics::status,
 };
 use skiagraph_scene::{Camera, DirectionalLight, Mesh};
 
@@ -53,9 +54,7 @@ fn judged(mesh: &Mesh, light: &DirectionalLight, mode: OracleMode, visibility: u
     let counts = Statistics::judged(&visibility, &says, &truth).unwrap();
     let pixels = Statistics::certain_wrong_pixels(&visibility, &says, &truth).unwrap();
     assert_eq!(pixels.len() as u64, counts.wrong.certain);
-    let blockers = oracle
-        .blockers(&camera, light, &primitives, mode, &pixels)
-        .unwrap();
+    let blockers = blockers(&oracle, &camera, light, &primitives, mode, &pixels).unwrap();
     Judged { counts, blockers }
 }
 

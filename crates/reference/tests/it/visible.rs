@@ -1,7 +1,7 @@
 //! Pixels of a G-buffer that show a surface which is not seen there are counted, and no others.
 
 use glam::DVec3;
-use skiagraph_reference::{BACKGROUND, Oracle, OracleMode, Progress};
+use skiagraph_reference::{BACKGROUND, Oracle, OracleMode, Progress, wrong_surfaces};
 use skiagraph_scene::{Camera, Indexed, Mesh, Scene, SceneLibrary, SceneRequest, View};
 
 const VIEWPORT: [u32; 2] = [64, 64];
@@ -11,11 +11,12 @@ fn plate_over_floor(gap: f32) -> Mesh {
     let square = |half: f32, y: f32| {
         [(-half, -half), (-half, half), (half, half), (half, -half)].map(|(x, z)| [x, y, z])
     };
-    Mesh::indexed(&Indexed {
+    Indexed {
         positions: &[square(50.0, 0.0), square(10.0, gap)].concat(),
         normals: &[],
         indices: &[0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7],
-    })
+    }
+    .mesh()
     .unwrap()
 }
 
@@ -35,9 +36,7 @@ fn far_above(near: f64) -> Camera {
 }
 
 fn wrong(mesh: &Mesh, camera: &Camera, shown: &[u32]) -> u64 {
-    Oracle::new(mesh)
-        .wrong_surfaces(camera, shown, Progress::default())
-        .unwrap()
+    wrong_surfaces(&Oracle::new(mesh), camera, shown, Progress::default()).unwrap()
 }
 
 fn seen(mesh: &Mesh, camera: &Camera) -> Vec<u32> {
@@ -134,9 +133,7 @@ fn a_rasterisers_grid_is_allowed_for() {
         let counted = |by| {
             let shown = oracle.primary(&snapped(&camera, by), Progress::default());
             let progress = Progress::default();
-            oracle
-                .wrong_surfaces(&camera, &shown.unwrap(), progress)
-                .unwrap()
+            wrong_surfaces(&oracle, &camera, &shown.unwrap(), progress).unwrap()
         };
         assert_eq!(counted(1.0 / 32.0), 0, "{}", view.name);
         assert_eq!(counted(1.0 / 512.0), 0, "{}", view.name);

@@ -1,11 +1,7 @@
 //! Building by obvhs: PLOC (Meister and Bittner 2018) with parallel reinsertion (Meister and
 //! Bittner 2018).
 
-use super::{
-    median,
-    tree::{Bvh, BvhNode, MAX_DEPTH, MAX_LEAF},
-};
-use crate::mesh::Mesh;
+use super::node::MAX_LEAF;
 use glam::Vec3;
 use obvhs::{
     BvhBuildParams,
@@ -13,43 +9,6 @@ use obvhs::{
     ploc::PlocBuilder,
     triangle::Triangle,
 };
-
-impl Bvh {
-    /// Builds the hierarchy with all cores; the same mesh always gives the same tree. Boxes contain
-    /// their triangles exactly (f32 min and max of f32 corners).
-    pub fn build(mesh: &Mesh) -> Self {
-        let triangles: Vec<Triangle> = mesh
-            .triangles
-            .iter()
-            .map(|indices| {
-                let [v0, v1, v2] = indices.map(|index| mesh.positions[index as usize].into());
-                Triangle { v0, v1, v2 }
-            })
-            .collect();
-        if triangles.is_empty() {
-            return Self::default();
-        }
-        let ploc = measurable(mesh.bounds()).then(|| Self::from_obvhs(ploc(&triangles)));
-        match ploc {
-            Some(bvh) if bvh.depth <= MAX_DEPTH => bvh,
-            _ => median::build(&triangles),
-        }
-    }
-
-    pub(super) fn from_obvhs(tree: Bvh2) -> Self {
-        let nodes: Vec<BvhNode> = tree
-            .nodes
-            .iter()
-            .map(|node| BvhNode {
-                min: node.aabb.min.into(),
-                first: node.first_index,
-                max: node.aabb.max.into(),
-                count: node.prim_count,
-            })
-            .collect();
-        Self::new(nodes, tree.primitive_indices)
-    }
-}
 
 /// Where half the surface of the scene's box overflows, the surface area heuristic has nothing to
 /// compare; nor has it of no box.
@@ -88,25 +47,4 @@ pub(super) fn ploc(triangles: &[Triangle]) -> Bvh2 {
         params.reinsertion_batch_ratio * params.post_collapse_reinsertion_batch_ratio_multiplier;
     optimizer.run(&mut tree, again, None);
     tree
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn some_meshes_do_need_the_tree_of_last_resort() {
-        // Each triangle 1.5 times as large as the one before, from one corner: PLOC joins the two
-        // smallest, then the next …
-        let triangles: Vec<Triangle> = (0..200)
-            .map(|i| 1.5f32.powi(i - 120))
-            .map(|size| Triangle {
-                v0: Vec3::ZERO.into(),
-                v1: Vec3::new(size, size, 0.0).into(),
-                v2: Vec3::new(0.0, size, size).into(),
-            })
-            .collect();
-        assert!(Bvh::from_obvhs(ploc(&triangles)).depth > MAX_DEPTH);
-        assert!(median::build(&triangles).depth < 8);
-    }
 }

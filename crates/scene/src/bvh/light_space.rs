@@ -5,7 +5,8 @@
 
 use super::{
     build::{measurable, ploc},
-    tree::{Bvh, BvhNode, MAX_DEPTH},
+    node::BvhNode,
+    tree::{Bvh, MAX_DEPTH},
 };
 use crate::mesh::Mesh;
 use glam::{DVec2, DVec3, Vec3};

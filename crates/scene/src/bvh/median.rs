@@ -2,12 +2,12 @@
 //! depth is the logarithm of the number of triangles. Meshes need it whose triangles grow
 //! geometrically (PLOC chains them) or span the range of f32.
 
-use super::tree::{Bvh, BvhNode, MAX_LEAF};
+use super::node::{BvhNode, MAX_LEAF};
 use glam::{DVec3, Vec3};
 use obvhs::triangle::Triangle;
 
-/// Builds a tree of at least one triangle.
-pub(super) fn build(triangles: &[Triangle]) -> Bvh {
+/// Builds a tree of at least one triangle: nodes, and primitives in order.
+pub(super) fn build(triangles: &[Triangle]) -> (Vec<BvhNode>, Vec<u32>) {
     let corners = |id: u32| {
         let triangle = &triangles[id as usize];
         [triangle.v0, triangle.v1, triangle.v2].map(Vec3::from)
@@ -57,5 +57,5 @@ pub(super) fn build(triangles: &[Triangle]) -> Bvh {
         }
         nodes[slot] = node;
     }
-    Bvh::new(nodes, primitives)
+    (nodes, primitives)
 }

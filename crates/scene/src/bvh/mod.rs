@@ -3,9 +3,9 @@
 mod build;
 mod light_space;
 mod median;
-mod merge;
-mod refit;
+mod node;
 mod tree;
 
 pub use light_space::{LightSpace, LightSpaceNode};
-pub use tree::{Bvh, BvhNode, MAX_DEPTH};
+pub use node::BvhNode;
+pub use tree::{Bvh, MAX_DEPTH};

@@ -73,8 +73,11 @@ pub(super) fn build(triangles: u32) -> Mesh {
     let details = triangles.saturating_sub(builder.triangles()) / DETAIL;
     let cell = cell(&houses, details);
     builder.group("details");
-    let on_walls = [builder.stamp(balcony), builder.stamp(bay)];
-    let on_roofs = builder.stamp(tank);
+    let on_walls = [
+        Stamp::new(&mut builder, balcony),
+        Stamp::new(&mut builder, bay),
+    ];
+    let on_roofs = Stamp::new(&mut builder, tank);
     for house in &houses {
         furnish(&mut builder, house, cell, &on_walls, &on_roofs, &mut random);
     }
@@ -141,11 +144,8 @@ fn furnish(
                 away,
             );
             let kind = usize::from(random.range(0.0, 1.0) < 0.4);
-            builder.place(
-                &on_walls[kind],
-                quarters,
-                house.foot + turned(place, quarters),
-            );
+            let place = house.foot + turned(place, quarters);
+            on_walls[kind].place(quarters, place, builder);
         }
     }
     let [columns, rows] = cells[2];
@@ -155,7 +155,7 @@ fn furnish(
             GAP + house.height,
             part(2.0 * z, row, rows),
         );
-        builder.place(on_roofs, 0, house.foot + place);
+        on_roofs.place(0, house.foot + place, builder);
     }
 }
 

@@ -6,6 +6,7 @@
 use super::{
     numbers::Random,
     solid::{Builder, GAP},
+    stamp::Stamp,
     tree::Tree,
 };
 use crate::mesh::Mesh;
@@ -56,14 +57,14 @@ pub(super) fn build(triangles: u32) -> Mesh {
                 leaf: (0.8 * leaf, 1.2 * leaf),
                 seed: 40 + seed,
             };
-            builder.stamp(|part| tree.grow(part))
+            Stamp::new(&mut builder, |part| tree.grow(part))
         })
         .collect();
     let mut random = Random::new(1975);
     let feet = feet(beside, ACROSS + 1.2 * leaf + GAP, &mut random);
     for (index, foot) in feet.into_iter().enumerate() {
         let quarters = (random.range(0.0, 4.0)) as usize;
-        builder.place(&kinds[index % kinds.len()], quarters, foot);
+        kinds[index % kinds.len()].place(quarters, foot, &mut builder);
     }
     builder.finish()
 }

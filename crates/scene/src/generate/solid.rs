@@ -255,4 +255,9 @@ impl Builder {
             group.triangles.end = self.mesh.triangles.len() as u32;
         }
     }
+
+    /// Triangles so far.
+    pub fn triangles(&self) -> u32 {
+        self.mesh.triangles.len() as u32
+    }
 }

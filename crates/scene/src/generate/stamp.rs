@@ -22,16 +22,16 @@ pub(super) fn turned(v: DVec3, quarters: usize) -> DVec3 {
     }
 }
 
-impl Builder {
-    /// Returns the geometry that `draw` builds around the origin, to be copied into this mesh.
-    pub fn stamp(&mut self, draw: impl FnOnce(&mut Self)) -> Stamp {
-        let mut part = Self::default();
+impl Stamp {
+    /// The geometry that `draw` builds around the origin, to be copied into a mesh.
+    pub fn new(mesh: &mut Builder, draw: impl FnOnce(&mut Builder)) -> Self {
+        let mut part = Builder::default();
         draw(&mut part);
         let part: Mesh = part.finish();
         let normal_indices = std::array::from_fn(|quarters| {
             let mut place = |normal: Vec3| {
                 let normal = turned(normal.as_dvec3(), quarters).as_vec3();
-                self.normals.index(normal)
+                mesh.normals.index(normal)
             };
             let places: Vec<u32> = part.normals.iter().map(|&normal| place(normal)).collect();
             let indices = part.normal_indices.iter();
@@ -39,32 +39,27 @@ impl Builder {
                 .map(|corners| corners.map(|index| places[index as usize]))
                 .collect()
         });
-        Stamp {
+        Self {
             positions: part.positions.iter().map(|p| p.as_dvec3()).collect(),
             triangles: part.triangles,
             normal_indices,
         }
     }
 
-    /// Copies a part, turned by quarters about the y axis, to `origin`.
-    pub fn place(&mut self, stamp: &Stamp, quarters: usize, origin: DVec3) {
-        let mesh = &mut self.mesh;
+    /// Copies the part, turned by quarters about the y axis, to `origin`.
+    pub fn place(&self, quarters: usize, origin: DVec3, builder: &mut Builder) {
+        let mesh = &mut builder.mesh;
         let base = mesh.positions.len() as u32;
-        let positions = stamp.positions.iter();
+        let positions = self.positions.iter();
         mesh.positions
             .extend(positions.map(|&p| (origin + turned(p, quarters)).as_vec3()));
-        let triangles = stamp.triangles.iter();
+        let triangles = self.triangles.iter();
         mesh.triangles
             .extend(triangles.map(|corners| corners.map(|corner| base + corner)));
         mesh.normal_indices
-            .extend(&stamp.normal_indices[quarters % 4]);
+            .extend(&self.normal_indices[quarters % 4]);
         if let Some(group) = mesh.groups.last_mut() {
             group.triangles.end = mesh.triangles.len() as u32;
         }
-    }
-
-    /// Triangles so far.
-    pub fn triangles(&self) -> u32 {
-        self.mesh.triangles.len() as u32
     }
 }

@@ -16,7 +16,7 @@ pub fn document(bytes: &[u8]) -> String {
         path: "graph.ron",
         bytes,
     };
-    let flat = Graph::flat("graph.ron", &files);
+    let flat = Graph::flat("graph.ron", &Registry::standard(), &files);
     let request = PlanRequest::new([33, 17], &SmallScene);
     match Graph::check("graph.ron", &Registry::standard(), &files, &request) {
         Err(errors) => said(&errors),

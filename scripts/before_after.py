@@ -140,8 +140,14 @@ def read(file, is_measured, renames):
         return re.sub(rb"//[^\n]*", b"", data) if file.suffix == ".ron" else data
     text = data.decode()
     if file.suffix == ".html":
-        # Its scripts and styles are the program's own.
-        text = "" if is_measured else re.search(r'id="data">(.*?)</script>', text, re.DOTALL).group(1)
+        # Its scripts and styles are the program's own, its charts and tables are those of the terminal.
+        text = "{}" if is_measured else re.search(r'id="data">(.*?)</script>', text, re.DOTALL).group(1)
+        of_page = json.loads(text)
+        of_page.pop("stress", None)
+        for table in of_page.get("tables", []):
+            for key in ("rows", "wall", "what", "of"):
+                table.pop(key, None)
+        text = json.dumps(of_page)
         # Its pictures are files beside it.
         text = re.sub(r'"[\w+/=]{200,}"', "PICTURE", text).replace(",", ",\n")
     elif file.suffix == ".json":

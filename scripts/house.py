@@ -2,7 +2,8 @@
 """Checks what clippy does not: no import circle between the files of a crate, no line of Rust, of
 a preset's WGSL or of the docs over 100 columns, and plain words: no comment begins with "What",
 "Of", "Whether" or "Who", none speaks of nobody, somebody, whoever or anybody, no message says
-"is no …" or "nothing is called so".
+"is no …" or "nothing is called so". Every public module of the crates for hosts shows an example
+that doc tests compile; the page of the crate begins with it.
 
 An import is a path in a `use` or in code that begins with `crate`, `super`, `self` or a child
 module. It counts as one of the file of the deepest module that it names; tests are left out.
@@ -17,6 +18,7 @@ import sys
 from pathlib import Path
 
 WIDTH = 100
+FOR_HOSTS = ("graph", "gpu", "passes", "compare")
 WRITTEN_BY_TESTS = {"diagnostics.md", "reference.md"}
 ROOT = Path(__file__).resolve().parent.parent
 TOKENS = re.compile(
@@ -162,6 +164,25 @@ def circles(edges):
     return found
 
 
+def without_example(folder):
+    """The files of a crate's public modules that show no example of Rust, with the reason."""
+    known, left = modules(folder), [()]
+    for module in left:
+        lines = known[module].read_text().splitlines()
+        fences = [at for at, line in enumerate(lines) if line.startswith("//! ```")]
+        words = {at: set(re.split(r"[`,]+", lines[at][4:])) for at in fences[::2]}
+        shown = [at for at in words if words[at] <= {"", "rust", "no_run", "should_panic"}]
+        if not shown:
+            yield known[module], "the module shows no example that is compiled"
+        elif not module and shown[0] > 7:
+            yield known[module], "the crate's page does not begin with an example"
+        text = code("\n".join(lines))
+        uses = [use for tree in re.findall(r"^pub use ([^;]+);", text, re.M) for use in expand(tree)]
+        names = uses + re.findall(r"^pub mod (\w+);", text, re.M)
+        inner = (module + tuple(name.split("::")) for name in names)
+        left += [path for path in inner if path in known and path not in left]
+
+
 def main():
     sys.setrecursionlimit(10_000)
     failed = 0
@@ -207,7 +228,12 @@ def main():
             if len(line) > WIDTH and not is_quoted and not line.startswith(("|", "    ", "![")):
                 failed += 1
                 print(f"{file.relative_to(ROOT)}:{number}: {len(line)} columns")
-    print(f"house: {failed} faults" if failed else "house: no import circle, no long line, plain words")
+    for crate in FOR_HOSTS:
+        for file, why in without_example(ROOT / "crates" / crate / "src"):
+            failed += 1
+            print(f"{file.relative_to(ROOT)}: {why}")
+    fine = "house: no import circle, no long line, plain words, an example in every public module"
+    print(f"house: {failed} faults" if failed else fine)
     return 1 if failed else 0
 
 

@@ -19,7 +19,7 @@ fn fragment(@builtin(position) centre: vec4<f32>) -> @location(0) vec4<f32> {
     var mean = no_texel();
     for (var step = -radius; step <= radius; step++) {
         let at = clamp(vec2<i32>(centre.xy) + step * params.direction, vec2(0), last);
-        mean = with_texel(mean, textureLoad(source, at, 0).xy, 1.0, params.exponent);
+        mean = with_texel(mean, textureLoad(source, at, 0), 1.0, params.exponent);
     }
-    return vec4(mean_texel(mean, params.exponent), 0.0, 1.0);
+    return mean_texel(mean, params.exponent);
 }

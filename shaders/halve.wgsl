@@ -23,10 +23,10 @@ fn fragment(@builtin(position) centre: vec4<f32>) -> @location(0) vec4<f32> {
             let begin = vec2<f32>(at);
             let covered = min(begin + 1.0, low + scale) - max(begin, low);
             if all(covered > vec2(0.0)) && all(at < vec2(edge)) {
-                let texel = textureLoad(source, at, 0).xy;
+                let texel = textureLoad(source, at, 0);
                 mean = with_texel(mean, texel, covered.x * covered.y, params.exponent);
             }
         }
     }
-    return vec4(mean_texel(mean, params.exponent), 0.0, 1.0);
+    return mean_texel(mean, params.exponent);
 }

@@ -4,16 +4,16 @@
 // Shadows with Exponential Shadow Maps", ShaderX6, 2008.
 
 struct Mean {
-    sum: vec2<f32>,
+    sum: vec4<f32>,
     weight: f32,
     greatest: f32,
 }
 
 fn no_texel() -> Mean {
-    return Mean(vec2(0.0), 0.0, -1e30);
+    return Mean(vec4(0.0), 0.0, -1e30);
 }
 
-fn with_texel(mean: Mean, texel: vec2<f32>, weight: f32, exponent: f32) -> Mean {
+fn with_texel(mean: Mean, texel: vec4<f32>, weight: f32, exponent: f32) -> Mean {
     let summed = mean.weight + weight;
     if exponent == 0.0 {
         return Mean(mean.sum + weight * texel, summed, 0.0);
@@ -23,7 +23,7 @@ fn with_texel(mean: Mean, texel: vec2<f32>, weight: f32, exponent: f32) -> Mean 
     return Mean(kept + weight * exp(exponent * (texel.x - greatest)), summed, greatest);
 }
 
-fn mean_texel(mean: Mean, exponent: f32) -> vec2<f32> {
+fn mean_texel(mean: Mean, exponent: f32) -> vec4<f32> {
     if exponent == 0.0 {
         return mean.sum / mean.weight;
     }

@@ -107,7 +107,6 @@ fn the_steps_of_a_frame_are_passes() {
         "gbuffer.primitive",
         "gbuffer.surface",
         "detect_facing",
-        "turn[0].fill_rays.clear",
         "turn[0].fill_rays.compact",
         "turn[0].fill_rays.dispatch_arguments",
         "turn[0].trace_rays",
@@ -131,11 +130,9 @@ fn the_steps_of_a_frame_are_passes() {
         "gbuffer.surface",
         "fit_map.over_scene",
         "create_shadow_map.layer[0].outer",
-        "create_shadow_map.layer[0].turn[0].reset",
         "create_shadow_map.layer[0].turn[0].select",
         "create_shadow_map.layer[0].turn[0].inner",
         "detect_uncertain",
-        "turn[0].fill_rays.clear",
         "turn[0].fill_rays.compact",
         "turn[0].fill_rays.dispatch_arguments",
         "turn[0].trace_rays",
@@ -199,7 +196,6 @@ fn what_no_output_needs_is_culled() {
             "gbuffer.primitive",
             "gbuffer.surface",
             "detect_facing",
-            "turn[0].fill_rays.clear",
             "turn[0].fill_rays.compact"
         ]
     );

@@ -9,7 +9,7 @@ use crate::support::{
 use glam::{DVec3, Vec3};
 use skiagraph_gpu::{Executor, device::partial};
 use skiagraph_graph::{Code, Graph, ParamValue, PassSummary, PlanRequest};
-use skiagraph_passes::presets;
+use skiagraph_passes::{EmbeddedSources, presets, registry};
 use skiagraph_scene::{DirectionalLight, Mesh, Scene, View};
 use std::sync::Arc;
 
@@ -366,7 +366,7 @@ fn a_param_that_only_uniforms_hold_needs_no_other_plan() {
     let scene = scene();
     let provider = provider(&scene, &scene.views[0], VIEWPORT);
     let mut written = Vec::new();
-    for preset in presets::presets() {
+    for preset in presets() {
         let path = format!("pipelines/{}.ron", preset.name);
         let mut plan = plan(&path, &provider, VIEWPORT, |request| {
             request.any_adapter = true
@@ -404,12 +404,8 @@ fn on_gl_only_what_is_proven_there_is_planned() {
     request.partial_backend = partial(wgpu::Backend::Gl);
     assert!(partial(wgpu::Backend::Vulkan).is_none());
     let mut proven = Vec::new();
-    for preset in presets::presets() {
-        let graph = Graph::load(
-            &preset.path,
-            &presets::registry(),
-            &presets::EmbeddedSources,
-        );
+    for preset in presets() {
+        let graph = Graph::load(&preset.path, &registry(), &EmbeddedSources);
         let graph = graph.unwrap_or_else(|error| panic!("{error}"));
         match graph.plan(&request) {
             Ok(_) => proven.push(preset.name),

@@ -129,7 +129,7 @@ const DOCUMENTS: [(&str, usize); 13] = [
     ("kept.ron", 1),
     ("settled.ron", 1),
     ("filtered.ron", 5),
-    ("every_light.ron", 8),
+    ("every_light.ron", 7),
     ("claims.ron", 5),
 ];
 

@@ -2,10 +2,11 @@
 
 use crate::{
     canvas::{Root, failed, style, words},
+    colours::{AXIS, GRID},
     data::{Panel, Series},
     error::Error,
     marker::Look,
-    panel::{ABOVE, BESIDE, GRID, LABELS, RIGHT},
+    panel::{ABOVE, BESIDE, LABELS, RIGHT},
     text::{BODY, HEAD, clean, width},
 };
 use plotters::prelude::*;
@@ -54,7 +55,7 @@ pub(crate) fn draw(
         .y_label_formatter(&tick)
         .bold_line_style(GRID[0])
         .light_line_style(GRID[1])
-        .axis_style(RGBColor(90, 90, 90))
+        .axis_style(AXIS)
         .label_style(style(BODY))
         .axis_desc_style(style(HEAD))
         .x_desc(clean(&panel.x))

@@ -1,6 +1,7 @@
 //! Drawing area, colours and text of all figures.
 
 use crate::{
+    colours::{INK, as_variables},
     error::Error,
     text::{HEAD, clean},
 };
@@ -14,14 +15,75 @@ use std::fmt;
 /// Drawing area, in pixels.
 pub(crate) type Root<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// Width of every figure, pixels.
+/// Width of a figure that is a file, pixels.
 pub(crate) const WIDTH: i32 = 800;
-/// The Pareto front's line.
-pub(crate) const FRONT: RGBColor = RGBColor(70, 70, 70);
-/// The line of slope 1.
-pub(crate) const GUIDE: RGBColor = RGBColor(120, 120, 120);
 /// plotters writes text of this share of the size that it is told.
 const TOLD: f64 = 1.24;
+
+/// A picture in the making: groups of elements, one behind the other.
+pub(crate) struct Canvas {
+    size: (i32, i32),
+    /// True if a page holds it, whose script and style get to know its parts.
+    pub is_embedded: bool,
+    elements: String,
+}
+
+impl Canvas {
+    pub fn new(size: (i32, i32), is_embedded: bool) -> Self {
+        let elements = String::new();
+        Self {
+            size,
+            is_embedded,
+            elements,
+        }
+    }
+
+    /// Adds what `draw` draws.
+    pub fn draw<T>(&mut self, draw: impl FnOnce(&Root) -> Result<T, Error>) -> Result<T, Error> {
+        let mut svg = String::new();
+        let root = SVGBackend::with_string(&mut svg, (self.size.0 as u32, self.size.1 as u32));
+        let root = root.into_drawing_area();
+        let drawn = draw(&root)?;
+        root.present().map_err(failed)?;
+        drop(root);
+        // The library writes a picture of its own around it.
+        let lines = svg.split_once('\n').map_or("", |(_, lines)| lines);
+        self.elements += lines.strip_suffix("</svg>\n").unwrap_or(lines);
+        Ok(drawn)
+    }
+
+    /// The same as a group with these attributes, where a page holds the picture. `words` stand in
+    /// the group, too.
+    pub fn group(
+        &mut self,
+        attributes: &str,
+        words: &str,
+        draw: impl FnOnce(&Root) -> Result<(), Error>,
+    ) -> Result<(), Error> {
+        if !self.is_embedded {
+            return self.draw(draw);
+        }
+        self.elements += &format!("<g {attributes}>\n");
+        self.draw(draw)?;
+        self.elements += &format!("{words}</g>\n");
+        Ok(())
+    }
+
+    /// The picture. That of a page has the colours of the page's style.
+    pub fn svg(self) -> String {
+        let (width, height) = self.size;
+        let svg = format!(
+            "<svg width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
+             xmlns=\"http://www.w3.org/2000/svg\">\n{}</svg>\n",
+            self.elements
+        );
+        if self.is_embedded {
+            as_variables(svg)
+        } else {
+            svg
+        }
+    }
+}
 
 /// Turns an error of the drawing library into ours.
 pub(crate) fn failed(error: impl fmt::Display) -> Error {
@@ -45,5 +107,5 @@ pub(crate) fn style(size: f64) -> TextStyle<'static> {
     } else {
         font
     };
-    font.color(&RGBColor(30, 30, 30))
+    font.color(&INK)
 }

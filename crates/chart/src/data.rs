@@ -12,6 +12,8 @@ pub struct Figure {
     /// Names of series that look the same in all figures with this list, whichever of them are
     /// drawn.
     pub looks: Vec<String>,
+    /// Values that have labels along logarithmic horizontal axes, with these; none: decades.
+    pub ticks: Vec<(f64, String)>,
     /// Panels of the figure, row by row. Panels in which a series has the same name give it the
     /// same colour and shape.
     pub panels: Vec<Panel>,
@@ -28,6 +30,7 @@ impl Default for Figure {
             notes: Vec::new(),
             sizes: Vec::new(),
             looks: Vec::new(),
+            ticks: Vec::new(),
             panels: Vec::new(),
             columns: 1,
             shared_axes: false,
@@ -72,7 +75,7 @@ pub struct Series {
 }
 
 /// A measurement.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Mark {
     /// To the right: finite and above 0; in [`Kind::Bars`] the index of the group.
     pub x: f64,
@@ -80,4 +83,24 @@ pub struct Mark {
     pub y: f64,
     /// Index into [`Figure::sizes`]; 0 where these are empty.
     pub size: usize,
+    /// Lines that a page tells of it, the first one its name.
+    pub about: String,
+}
+
+impl Mark {
+    /// A mark of the smallest size of which there is no more to tell.
+    pub fn new(x: f64, y: f64) -> Self {
+        let about = String::new();
+        Self {
+            x,
+            y,
+            size: 0,
+            about,
+        }
+    }
+
+    /// Name: the first line of what there is to tell of it.
+    pub(crate) fn name(&self) -> &str {
+        self.about.lines().next().unwrap_or_default()
+    }
 }

@@ -2,7 +2,7 @@
 
 use crate::{
     bars,
-    canvas::{WIDTH, failed, words},
+    canvas::{Canvas, WIDTH, failed, words},
     data::{Figure, Kind, Panel},
     error::Error,
     legend::{Entry, Legend, Sign},
@@ -23,59 +23,92 @@ impl Figure {
     /// # Errors
     /// A panel without marks, values that have no place on its axes, sizes that there are not.
     pub fn to_svg(&self) -> Result<String, Error> {
-        for panel in &self.panels {
-            panel.check(self.sizes.len())?;
-        }
+        self.check()?;
         let names = self.names();
-        let look = |name: &str| self.look(&names, name);
         let notes: Vec<String> = self
             .notes
             .iter()
             .flat_map(|note| wrap(note, BODY, WIDTH - 2 * LEFT))
             .collect();
         let legend = Legend::new(self.entries(&names), LEFT);
-        let columns = self.columns.max(1);
         let head = LINES[0] + LINES[1] * notes.len() as i32 + legend.height + LINES[2];
-        let rows: Vec<i32> = self
-            .panels
-            .chunks(columns)
-            .map(|row| {
-                let heights = (0..row.len()).map(|column| panel::height(self.fitted(row, column)));
-                heights.max().unwrap_or(0)
-            })
-            .collect();
-        let height = head + rows.iter().sum::<i32>();
-        let mut svg = String::new();
-        {
-            let size = (WIDTH as u32, height as u32);
-            let root = SVGBackend::with_string(&mut svg, size).into_drawing_area();
+        let mut canvas = Canvas::new((WIDTH, head + self.height()), false);
+        canvas.draw(|root| {
             root.fill(&WHITE).map_err(failed)?;
-            words(&root, (LEFT, LINES[0] / 2 + 2), TITLE, &self.title)?;
+            words(root, (LEFT, LINES[0] / 2 + 2), TITLE, &self.title)?;
             let mut top = LINES[0];
             for note in &notes {
-                words(&root, (LEFT, top + LINES[1] / 2), BODY, note)?;
+                words(root, (LEFT, top + LINES[1] / 2), BODY, note)?;
                 top += LINES[1];
             }
-            legend.draw(&root, top)?;
-            top = head;
-            let wide = WIDTH / columns as i32;
-            for (row, tall) in self.panels.chunks(columns).zip(&rows) {
-                for (column, panel) in row.iter().enumerate() {
-                    let corner = (column as i32 * wide, top);
-                    let fitted = self.fitted(row, column);
-                    let place = (corner, (wide, *tall));
-                    match &panel.kind {
-                        Kind::Bars(groups) => {
-                            bars::draw(panel, groups, fitted, &root, place, look)?;
-                        }
-                        _ => panel::draw(panel, fitted, &root, place, look)?,
+            legend.draw(root, top)
+        })?;
+        self.draw_panels(&mut canvas, head, WIDTH)?;
+        Ok(canvas.svg())
+    }
+
+    /// The panels alone as SVG of that width, for a page. Colours are the variables `--s0` to
+    /// `--s6`, `--ink`, `--quiet`, `--front`, `--line`, `--faint`, `--strip` and `--card` of its
+    /// style. Elements with `data-series` are of that series; a mark is a `g` of class `mark`, its
+    /// name in `data-name` and what there is to tell of it in `aria-label`.
+    ///
+    /// # Errors
+    /// Those of [`Figure::to_svg`].
+    pub fn to_page_svg(&self, width: u16) -> Result<String, Error> {
+        self.check()?;
+        let width = i32::from(width);
+        let mut canvas = Canvas::new((width, self.height()), true);
+        self.draw_panels(&mut canvas, 0, width)?;
+        Ok(canvas.svg())
+    }
+
+    /// The sign of a series in the legend of a page, as SVG of 18 pixels in a square.
+    ///
+    /// # Errors
+    /// The library that draws gave up.
+    pub fn sign(&self, series: &str) -> Result<String, Error> {
+        let mut canvas = Canvas::new((18, 18), true);
+        let look = self.look(&self.names(), series);
+        canvas.draw(|root| look.draw(root, (9, 9), 1, true))?;
+        Ok(canvas.svg())
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        let mut panels = self.panels.iter();
+        panels.try_for_each(|panel| panel.check(self.sizes.len()))
+    }
+
+    /// The panels' rows.
+    fn rows(&self) -> impl Iterator<Item = (&[Panel], i32)> {
+        self.panels.chunks(self.columns.max(1)).map(|row| {
+            let heights = (0..row.len()).map(|column| panel::height(self.fitted(row, column)));
+            (row, heights.max().unwrap_or(0))
+        })
+    }
+
+    /// Height of all rows.
+    fn height(&self) -> i32 {
+        self.rows().map(|(_, tall)| tall).sum()
+    }
+
+    fn draw_panels(&self, canvas: &mut Canvas, mut top: i32, width: i32) -> Result<(), Error> {
+        let names = self.names();
+        let look = |name: &str| self.look(&names, name);
+        let wide = width / self.columns.max(1) as i32;
+        for (row, tall) in self.rows() {
+            for (column, panel) in row.iter().enumerate() {
+                let fitted = self.fitted(row, column);
+                let place = ((column as i32 * wide, top), (wide, tall));
+                match &panel.kind {
+                    Kind::Bars(groups) => {
+                        canvas.draw(|root| bars::draw(panel, groups, fitted, root, place, look))?;
                     }
+                    _ => panel::draw(panel, fitted, &self.ticks, canvas, place, look)?,
                 }
-                top += tall;
             }
-            root.present().map_err(failed)?;
+            top += tall;
         }
-        Ok(svg)
+        Ok(())
     }
 
     /// Returns the look of a series: by its place in the list of looks, the others' behind these.

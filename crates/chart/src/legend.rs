@@ -1,7 +1,8 @@
 //! The legend: rows of entries above the panels, where they cover nothing.
 
 use crate::{
-    canvas::{FRONT, GUIDE, Root, WIDTH, failed, words},
+    canvas::{Root, WIDTH, failed, words},
+    colours::{FRONT, GUIDE},
     error::Error,
     marker::Look,
     text::{BODY, width},

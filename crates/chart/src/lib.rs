@@ -7,6 +7,10 @@
 //! [`Kind::Growth`] joins the marks of a series and draws what linear growth would be.
 //! [`Kind::Bars`] stand in groups on a linear axis.
 //!
+//! [`Figure::to_svg`] is for files. [`Figure::to_page_svg`] is for a page that has title and legend
+//! of its own: its colours are variables of the page's style, its series and marks are groups that
+//! a script finds, each mark with its name beside it where there is room.
+//!
 //! Series differ by colour (Okabe and Ito's palette for colour-blind readers, 2008) *and* shape.
 //! The same data always give the same bytes.
 //!
@@ -15,7 +19,7 @@
 //!
 //! let series = |name: &str, x, y| Series {
 //!     name: name.into(),
-//!     marks: vec![Mark { x, y, size: 0 }],
+//!     marks: vec![Mark::new(x, y)],
 //! };
 //! let figure = Figure {
 //!     title: "Time against error".into(),
@@ -34,6 +38,7 @@
 
 mod bars;
 mod canvas;
+mod colours;
 mod data;
 mod error;
 mod figure;
@@ -47,3 +52,4 @@ mod text;
 pub use data::{Figure, Kind, Mark, Panel, Series};
 pub use error::Error;
 pub use front::front;
+pub use text::xml;

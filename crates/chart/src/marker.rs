@@ -2,21 +2,10 @@
 
 use crate::{
     canvas::{Root, failed},
+    colours::{AXIS, LOOKS},
     error::Error,
 };
 use plotters::prelude::*;
-
-/// Okabe and Ito, "Color Universal Design" (2008), without its black and with a darker yellow:
-/// theirs is hard to see on white.
-const COLOURS: [RGBColor; 7] = [
-    RGBColor(0, 114, 178),
-    RGBColor(213, 94, 0),
-    RGBColor(0, 158, 115),
-    RGBColor(204, 121, 167),
-    RGBColor(230, 159, 0),
-    RGBColor(86, 180, 233),
-    RGBColor(148, 130, 0),
-];
 
 /// Corners in tenths of the radius; none for a circle.
 const SHAPES: [&[(i32, i32)]; 6] = [
@@ -55,7 +44,7 @@ impl Look {
     /// Creates the look of the series that stands at `index` in the legend.
     pub fn new(index: usize) -> Self {
         Self {
-            colour: COLOURS[index % COLOURS.len()],
+            colour: LOOKS[index % LOOKS.len()],
             shape: index % SHAPES.len(),
         }
     }
@@ -63,7 +52,7 @@ impl Look {
     /// Creates the look that belongs to no series.
     pub fn neutral() -> Self {
         Self {
-            colour: RGBColor(90, 90, 90),
+            colour: AXIS,
             shape: 0,
         }
     }

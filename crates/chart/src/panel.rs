@@ -1,19 +1,17 @@
 //! One panel: axes, strip for zero, lines, front, marks.
 
 use crate::{
-    canvas::{FRONT, GUIDE, Root, failed, style, words},
+    canvas::{Canvas, Root, failed, style, words},
+    colours::{AXIS, FRONT, GRID, GUIDE, STRIP},
     data::{Kind, Mark, Panel, Series},
     error::Error,
     front::front,
     marker::Look,
     scale::Scale,
-    text::{BODY, HEAD, clean},
+    text::{BODY, HEAD, clean, width, xml},
 };
 use plotters::{coord::cartesian::Cartesian2d, element::DashedPathElement, prelude::*};
-use std::cmp::Reverse;
-
-const STRIP: RGBColor = RGBColor(238, 238, 238);
-pub(crate) const GRID: [RGBColor; 2] = [RGBColor(205, 205, 205), RGBColor(234, 234, 234)];
+use std::{cmp::Reverse, ops::Range};
 
 /// Height of the axes without strip, and of those of bars, pixels.
 const AXES: i32 = 300;
@@ -56,30 +54,37 @@ pub(crate) fn height(fitted: &[Panel]) -> i32 {
 
 type Axes<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<Scale, Scale>>;
 
-/// Draws a panel, its axes fitted to several, into a rectangle of `root`: corner and size.
+/// Draws a panel, its axes fitted to several, into a rectangle of the canvas: corner and size.
 pub(crate) fn draw(
     panel: &Panel,
     fitted: &[Panel],
-    root: &Root,
+    ticks: &[(f64, String)],
+    canvas: &mut Canvas,
     (corner, size): ((i32, i32), (i32, i32)),
     look: impl Fn(&str) -> Look,
 ) -> Result<(), Error> {
-    let (x, y) = scales(fitted);
-    let axes = axes(panel, root, &root.clone().shrink(corner, size), (&x, &y))?;
-    let (across, down) = axes.plotting_area().get_pixel_range();
-    let title = (across.start, corner.1 + ABOVE / 2);
-    words(root, title, HEAD, &panel.title)?;
-    if panel.kind == Kind::Growth {
-        let ends = guide(&x, &y).map(|end| axes.backend_coord(&end));
-        root.draw(&DashedPathElement::new(ends, 4, 4, GUIDE))
-            .map_err(failed)?;
-    }
-    let places = places(panel, &axes);
+    let (mut x, y) = scales(fitted);
+    x.named = ticks.to_vec();
+    let (places, frame) = canvas.draw(|root| {
+        let axes = axes(panel, root, &root.clone().shrink(corner, size), (&x, &y))?;
+        let (across, down) = axes.plotting_area().get_pixel_range();
+        let title = (across.start, corner.1 + ABOVE / 2);
+        words(root, title, HEAD, &panel.title)?;
+        if panel.kind == Kind::Growth {
+            let ends = guide(&x, &y).map(|end| axes.backend_coord(&end));
+            root.draw(&DashedPathElement::new(ends, 4, 4, GUIDE))
+                .map_err(failed)?;
+        }
+        Ok((places(panel, &axes), (across, down)))
+    })?;
     for (series, places) in panel.series.iter().zip(&places) {
         let opacity = if panel.kind == Kind::Growth { 1.0 } else { 0.4 };
         let line = look(&series.name).colour.mix(opacity).stroke_width(2);
-        root.draw(&PathElement::new(places.clone(), line))
-            .map_err(failed)?;
+        let of = format!("data-series=\"{}\"", xml(&series.name));
+        canvas.group(&of, "", |root| {
+            root.draw(&PathElement::new(places.clone(), line))
+                .map_err(failed)
+        })?;
     }
     let marks: Vec<(&Series, &Mark)> = panel
         .series
@@ -92,19 +97,80 @@ pub(crate) fn draw(
         let points: Vec<(f64, f64)> = marks.iter().map(|(_, mark)| (mark.x, mark.y)).collect();
         best = front(&points);
         let steps: Vec<(i32, i32)> = best.iter().map(|&index| places[index]).collect();
-        let way = staircase(&steps, across.end, down.start);
-        root.draw(&PathElement::new(way, FRONT.stroke_width(2)))
-            .map_err(failed)?;
+        let way = staircase(&steps, frame.0.end, frame.1.start);
+        canvas.draw(|root| {
+            root.draw(&PathElement::new(way, FRONT.stroke_width(2)))
+                .map_err(failed)
+        })?;
     }
     let is_full = |index: &usize| panel.kind == Kind::Growth || best.contains(index);
+    let names = match panel.kind {
+        Kind::Front if canvas.is_embedded => names(&marks, &places, &best, frame),
+        _ => vec![String::new(); marks.len()],
+    };
+    // A finger must hit it.
+    let larger = if canvas.is_embedded { 1 } else { 0 };
     // So that no mark hides another: small ones lie on large ones.
     let mut order: Vec<usize> = (0..marks.len()).collect();
     order.sort_by_key(|index| (Reverse(marks[*index].1.size), is_full(index)));
     for index in order {
         let (series, mark) = marks[index];
-        look(&series.name).draw(root, places[index], mark.size, is_full(&index))?;
+        let of = format!(
+            "class=\"mark\" data-series=\"{}\" data-name=\"{}\" aria-label=\"{}\"",
+            xml(&series.name),
+            xml(mark.name()),
+            xml(&mark.about)
+        );
+        canvas.group(&of, &names[index], |root| {
+            look(&series.name).draw(root, places[index], mark.size + larger, is_full(&index))
+        })?;
     }
     Ok(())
+}
+
+/// The name of each mark beside it, as an element; empty where there is no room. Those of the front
+/// come first.
+fn names(
+    marks: &[(&Series, &Mark)],
+    places: &[(i32, i32)],
+    best: &[usize],
+    (across, down): (Range<i32>, Range<i32>),
+) -> Vec<String> {
+    let around = |&(x, y): &(i32, i32)| [x - 8, y - 8, x + 8, y + 8];
+    let mut taken: Vec<[i32; 4]> = places.iter().map(around).collect();
+    let mut names = vec![String::new(); marks.len()];
+    let others = (0..marks.len()).filter(|index| !best.contains(index));
+    for index in best.iter().copied().chain(others) {
+        let (x, y) = places[index];
+        let name = marks[index].1.name();
+        let wide = width(name, BODY);
+        // The front's line comes to a mark from above and leaves it to the right.
+        let off_the_line = [(x + 7, y - 13), (x - 7 - wide, y + 13)];
+        let off_the_line = off_the_line.into_iter().filter(|_| best.contains(&index));
+        let beside = [(x + 11, y), (x - 11 - wide, y)];
+        let around_it = [(x - wide / 2, y - 17), (x - wide / 2, y + 17)];
+        let boxes = off_the_line.chain(beside).chain(around_it);
+        let mut boxes = boxes.map(|(left, middle)| [left, middle - 7, left + wide, middle + 7]);
+        let is_free = |place: &[i32; 4]| {
+            let [left, top, right, bottom] = *place;
+            let own = around(&(x, y));
+            let hides = |&[l, t, r, b]: &[i32; 4]| left < r && right > l && top < b && bottom > t;
+            let is_in = left > across.start && right < across.end;
+            let is_in = is_in && top > down.start && bottom < down.end;
+            is_in && !taken.iter().any(|other| *other != own && hides(other))
+        };
+        let Some(place) = boxes.find(is_free) else {
+            continue;
+        };
+        names[index] = format!(
+            "<text class=\"name\" x=\"{}\" y=\"{}\" font-size=\"{BODY}\">{}</text>\n",
+            place[0],
+            place[3] - 3,
+            xml(name)
+        );
+        taken.push(place);
+    }
+    names
 }
 
 /// The strip for zero, the grid and what stands beside it.
@@ -134,7 +200,7 @@ fn axes<'a>(
         .y_labels(12)
         .bold_line_style(GRID[0])
         .light_line_style(GRID[1])
-        .axis_style(RGBColor(90, 90, 90))
+        .axis_style(AXIS)
         .label_style(style(BODY))
         .axis_desc_style(style(HEAD))
         .x_desc(clean(&panel.x))

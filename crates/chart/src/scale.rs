@@ -1,6 +1,6 @@
 //! A logarithmic axis, with or without a strip for zero.
 
-use crate::text::number;
+use crate::text::{clean, number};
 use plotters::coord::ranged1d::{
     KeyPointHint, NoDefaultFormatting, Ranged, ReversibleRanged, ValueFormatter,
 };
@@ -23,6 +23,8 @@ pub(crate) struct Scale {
     low: f64,
     high: f64,
     lanes: usize,
+    /// Values that have labels, with these; none: those of decades.
+    pub named: Vec<(f64, String)>,
 }
 
 impl Scale {
@@ -45,6 +47,7 @@ impl Scale {
             low: low - room - more,
             high: high + room + more,
             lanes,
+            named: Vec::new(),
         }
     }
 
@@ -112,6 +115,9 @@ impl Ranged for Scale {
     }
 
     fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
+        if !self.named.is_empty() {
+            return self.named.iter().map(|(value, _)| *value).collect();
+        }
         if hint.weight().allow_light_points() && self.high - self.low < 6.0 {
             self.ticks(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0])
         } else {
@@ -138,7 +144,11 @@ impl ReversibleRanged for Scale {
 
 impl ValueFormatter<f64> for Scale {
     fn format_ext(&self, value: &f64) -> String {
-        number(*value)
+        let mut named = self.named.iter();
+        match named.find(|(known, _)| known == value) {
+            Some((_, name)) => clean(name),
+            None => number(*value),
+        }
     }
 }
 

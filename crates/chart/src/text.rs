@@ -36,6 +36,15 @@ pub(crate) fn clean(text: &str) -> String {
         .collect()
 }
 
+/// Text for XML and HTML, attributes included; line breaks stay.
+pub fn xml(text: &str) -> String {
+    let lines = text.lines().map(|line| {
+        let line = clean(line).replace('&', "&amp;").replace('<', "&lt;");
+        line.replace('>', "&gt;").replace('"', "&quot;")
+    });
+    lines.collect::<Vec<_>>().join("&#10;")
+}
+
 /// A tick's number: `0.05`, `200`, `10⁵`, `2·10⁵`.
 pub(crate) fn number(value: f64) -> String {
     if value == 0.0 {

@@ -1,4 +1,21 @@
 //! The input of a comparison: methods, a scene, places to see it from, and the protocol.
+//!
+//! ```
+//! use skiagraph_compare::{comparison::Comparison, graphs::shadow_method::load_methods};
+//! use skiagraph_passes::EmbeddedSources;
+//! use skiagraph_scene::{SceneLibrary, SceneRequest};
+//! use std::sync::Arc;
+//!
+//! let request = SceneRequest { argument: "park".into(), obj: None };
+//! let (scene, _) = SceneLibrary::default().load(&request)?;
+//! let methods = load_methods(&["rt", "nsm@bias=0"], &[], &[512, 1024], &EmbeddedSources)?;
+//! let mut comparison = Comparison::new(Arc::new(scene), methods)?;
+//! comparison.viewports = vec![[640, 360], [1280, 720]];
+//! comparison.views.truncate(1);
+//! comparison.protocol.frames = 100;
+//! assert_eq!(comparison.methods.len(), 3); // `rt` has no map
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::error::CompareError;
 use crate::files::fingerprint::Fingerprint;
@@ -51,32 +68,6 @@ impl Default for Protocol {
 }
 
 /// Methods, the scene that they run on, the places that it is seen from, and the protocol.
-///
-/// ```no_run
-/// use skiagraph_compare::{
-///     comparison::Comparison,
-///     graphs::shadow_method,
-///     measuring::{device::{self, GpuRequest}, series::run},
-///     sink::{Session, Silent},
-/// };
-/// use skiagraph_passes::EmbeddedSources;
-/// use skiagraph_scene::{SceneLibrary, SceneRequest};
-/// use std::sync::Arc;
-///
-/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// let request = SceneRequest { argument: "park".into(), obj: None };
-/// let (scene, _) = SceneLibrary::from_environment().load(&request)?;
-/// let methods = shadow_method::load_methods(
-///     &["light_buffer", "nsm@slope_bias=2"], &[], &[1024], &EmbeddedSources)?;
-/// let gpu = device::open(&GpuRequest::default(), methods.iter().map(|it| &it.preset.graph))?;
-/// let comparison = Comparison::new(Arc::new(scene), methods)?;
-/// for run in run(&comparison, Session::new(&gpu, &Silent))?.runs {
-///     let measured = run.measured.ok_or("cannot run here")?;
-///     println!("{}: {} wrong of {}", run.preset, measured.wrong.total, run.pixels.facing_light);
-/// }
-/// # Ok(())
-/// # }
-/// ```
 pub struct Comparison {
     /// The scene.
     pub scene: Arc<Scene>,

@@ -1,4 +1,13 @@
 //! Everything that can end a comparison early, with the way out.
+//!
+//! ```
+//! use skiagraph_compare::{error::explain, graphs::preset};
+//! use skiagraph_passes::EmbeddedSources;
+//!
+//! let error = preset::locate("light_bufer", &EmbeddedSources).unwrap_err();
+//! let text = explain(&error);
+//! assert!(text.contains("light_buffer"), "{text}");
+//! ```
 
 use skiagraph_gpu::ExecuteError;
 use skiagraph_graph::{Diagnostic, diagnostics};

@@ -1,4 +1,10 @@
 //! Lists without repeats.
+//!
+//! ```
+//! use skiagraph_compare::lists::unique;
+//!
+//! assert_eq!(unique(&["rt", "nsm", "rt"]), ["rt", "nsm"]);
+//! ```
 
 /// A list without repeats, in its own order.
 pub fn unique<T: Clone + PartialEq>(list: &[T]) -> Vec<T> {

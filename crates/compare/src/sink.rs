@@ -1,4 +1,26 @@
 //! Hearing of work under way, and ending it early.
+//!
+//! ```
+//! use skiagraph_compare::sink::{Silent, Sink, Step};
+//!
+//! /// Prints remarks, and the steps of the work.
+//! struct Lines;
+//!
+//! impl Sink for Lines {
+//!     fn note(&self, text: &str) {
+//!         println!("{text}");
+//!     }
+//!     fn begin_step(&self, name: &str, total: u64, unit: &'static str) {
+//!         println!("{name}: {total} {unit}");
+//!     }
+//! }
+//!
+//! for sink in [&Lines as &dyn Sink, &Silent] {
+//!     let step = Step::begin(sink, "nsm", 32, "frames");
+//!     step.set_done(32);
+//!     step.end();
+//! }
+//! ```
 
 use skiagraph_gpu::device::Gpu;
 use skiagraph_graph::{Diagnostic, diagnostics};

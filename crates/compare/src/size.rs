@@ -1,4 +1,14 @@
 //! Sizes of viewports as they are written.
+//!
+//! ```
+//! use skiagraph_compare::size::Size;
+//!
+//! let size: Size = "1920x1080".parse()?;
+//! assert_eq!(size.0, [1920, 1080]);
+//! assert_eq!(size.to_string(), "1920x1080");
+//! assert!("1920".parse::<Size>().is_err());
+//! # Ok::<(), String>(())
+//! ```
 
 use std::{fmt, str::FromStr};
 

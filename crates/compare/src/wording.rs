@@ -1,6 +1,16 @@
 //! Numbers, suggestions and command lines in words.
+//!
+//! ```
+//! use skiagraph_compare::wording::{did_you_mean, ms, percent, thousands};
+//!
+//! assert_eq!(ms(12.3456), "12.3");
+//! assert_eq!(percent(1, 1_000_000), "<0.001 %");
+//! assert_eq!(thousands(207_377), "207,377");
+//! assert_eq!(did_you_mean("nsn", ["nsm", "rt"].into_iter()), "; did you mean `nsm`?");
+//! ```
 
 use skiagraph_graph::diagnostics::closest;
+pub use skiagraph_graph::text::bytes;
 use std::ffi::OsString;
 
 /// Three significant digits or milliseconds to the microsecond, whichever is shorter.
@@ -47,16 +57,6 @@ pub fn thousands(number: u64) -> String {
         text.push(digit);
     }
     text
-}
-
-/// A number of bytes with a binary prefix.
-pub fn bytes(bytes: u64) -> String {
-    match bytes {
-        0..1024 => format!("{bytes} bytes"),
-        1024..1_048_576 => format!("{:.1} KiB", bytes as f64 / 1024.0),
-        1_048_576..1_073_741_824 => format!("{:.1} MiB", bytes as f64 / 1_048_576.0),
-        _ => format!("{:.2} GiB", bytes as f64 / 1_073_741_824.0),
-    }
 }
 
 /// So many things: `1 frame`, `2 frames`.
@@ -112,7 +112,7 @@ mod tests {
         );
         assert_eq!(
             [512, 1536, 3 << 20].map(bytes),
-            ["512 bytes", "1.5 KiB", "3.0 MiB"]
+            ["512 B", "1.5 KiB", "3.0 MiB"]
         );
         assert_eq!(
             [(0, 9), (1, 1_000_000), (1, 3), (0, 0)].map(|(n, d)| percent(n, d)),

@@ -1,5 +1,17 @@
 //! Opening an adapter and a device as the command line and the tests do. A host program brings its
 //! own.
+//!
+//! ```no_run
+//! use skiagraph_gpu::device::{self, Wanted};
+//!
+//! for adapter in device::adapters() {
+//!     println!("{} on {}", adapter.name, adapter.backend);
+//! }
+//! let wanted = Wanted { adapter: Some("llvmpipe"), ..Wanted::default() };
+//! let gpu = device::open_with(&wanted)?;
+//! println!("opened {}", gpu.adapter.get_info().name);
+//! # Ok::<(), device::GpuError>(())
+//! ```
 
 use crate::experimental;
 use skiagraph_graph::PartialBackend;

@@ -1,5 +1,22 @@
 //! Descriptions of what a host hands over, for
 //! [`PlanRequest::imports`](skiagraph_graph::PlanRequest::imports).
+//!
+//! ```no_run
+//! use skiagraph_gpu::{Executor, device::Gpu, import};
+//! use skiagraph_graph::{Graph, NoProvider, PlanRequest};
+//!
+//! # type Done = Result<(), Box<dyn std::error::Error>>;
+//! # fn executor(graph: &Graph, gpu: &Gpu, depth: wgpu::Texture) -> Done {
+//! // `graph` has `inputs: [Texture(name: "depth")]`.
+//! let mut request = PlanRequest::new([1024, 768], &NoProvider);
+//! request.limits = gpu.device.limits();
+//! request.imports.insert("depth".into(), import::texture(&depth));
+//! let plan = graph.plan(&request)?;
+//! let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, &mut NoProvider)?;
+//! executor.import_texture("depth", &depth)?;
+//! # Ok(())
+//! # }
+//! ```
 
 use skiagraph_graph::Import;
 

@@ -1,31 +1,34 @@
 //! [`Graph`]: a document with its shaders, ready to be planned.
 
 use crate::{
-    compose::reader::{IncludeSite, Reader, label},
+    compose::{
+        reader::{IncludeSite, Reader, label},
+        used::{Used, drop_unused},
+    },
     diagnostics::{
         diagnostic::{Diagnostic, Severity},
         list::Diagnostics,
         reports::{ErrorGuaranteed, Reports},
-        suggest::suggestion,
     },
     document::{
-        flat::flat,
+        flat::{flat, keep},
         materials::{Material, TextureEntry},
-        params::{Param, ParamFault, ParamValue},
         typed::{Document, What, each_entry},
     },
     errors::{compose::ComposeError, resource::SizeError, shader::ShaderError},
+    instantiate::params::{Claim, Surroundings, checked, claims},
     kinds::registry::Registry,
     language::{name::Name, syntax::Leaf},
+    param::{Param, ParamError, ParamValue, find},
+    picture::Picture,
     shader::{
         expand::ShaderFiles,
-        reflect::Shader,
         store::{self, Shaders},
         unused,
     },
     source::{
         paths::{escapes, include_candidates},
-        sources::{Picture, Sources},
+        sources::Sources,
         span::{Located, Span},
     },
 };
@@ -65,45 +68,6 @@ impl Pictures {
     }
 }
 
-/// Why a param cannot be set.
-#[derive(Clone, Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum ParamError {
-    /// The graph has no such param.
-    #[error("`{graph}` has no param `{name}`{hint}")]
-    Unknown {
-        /// The graph's path.
-        graph: String,
-        /// The name.
-        name: String,
-        /// A suggestion, or the list of params.
-        hint: String,
-    },
-    /// The value has the wrong type or is out of range.
-    #[error("param `{name}` of `{graph}`: {why}")]
-    Value {
-        /// The graph's path.
-        graph: String,
-        /// The name.
-        name: String,
-        /// The expected type or range.
-        why: ParamFault,
-    },
-}
-
-/// Promise of a method about itself. The graph knows no meaning of it: its caller judges it.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Claim {
-    /// The promise, a word that the judge knows.
-    pub name: String,
-    /// The condition as the document writes it; empty without one.
-    pub condition: String,
-    /// Why it holds, as the document says.
-    pub because: String,
-    /// True if the condition holds for these values of params.
-    pub holds: bool,
-}
-
 impl Graph {
     /// Reads the document at `path` and every shader it names, from `sources`. Parses and validates
     /// all WGSL.
@@ -139,19 +103,29 @@ impl Graph {
     }
 
     /// The text of the document at `path` with all that it extends written out, each line with its
-    /// origin. It reads as the document does.
+    /// origin. It reads as the document does; one with mistakes keeps what nothing uses.
     ///
     /// # Errors
-    /// Mistakes in one of the documents, or in an edit.
-    pub fn flat(path: &str, sources: &dyn Sources) -> Result<String, Diagnostics> {
+    /// Mistakes in one of the documents as a file, or in an edit.
+    pub fn flat(
+        path: &str,
+        registry: &Registry,
+        sources: &dyn Sources,
+    ) -> Result<String, Diagnostics> {
         let mut reports = Reports::default();
-        let registry = Registry::default();
         let chosen = BTreeMap::new();
-        let mut reader = Reader::new(&registry, sources, &chosen, &mut reports);
+        let mut reader = Reader::new(registry, sources, &chosen, &mut reports);
         let document = reader.flat(path);
         let asked = std::mem::take(&mut reader.include_sites);
         match document {
-            Ok(document) if reports.errors() == 0 => Ok(flat(&document)),
+            Ok(mut document) if reports.errors() == 0 => {
+                if let Ok((graph, errors)) = Self::read(path, registry, sources, &chosen)
+                    && errors.is_empty()
+                {
+                    keep(&mut document, &graph.document);
+                }
+                Ok(flat(&document))
+            }
             _ => {
                 let mut list = reports.into_list();
                 label(&mut list, path, &asked);
@@ -179,7 +153,7 @@ impl Graph {
         let root = reader.root(path);
         let included: Vec<Arc<Document>> = reader.documents().cloned().collect();
         let asked = std::mem::take(&mut reader.include_sites);
-        let Ok(root) = root else {
+        let Ok(mut root) = root else {
             let mut list = reports.into_list();
             label(&mut list, path, &asked);
             return Err(Diagnostics::new(list));
@@ -189,24 +163,28 @@ impl Graph {
             let place = root.file.span(end.saturating_sub(1)..end);
             reports.report(ComposeError::NoOutputs(place));
         }
-        let root = Arc::new(root);
-        let documents: Vec<&Document> = [&*root]
+        let documents: Vec<&Document> = [&root]
             .into_iter()
             .chain(included.iter().map(|d| &**d))
             .collect();
         let shaders = store::load(&root, ShaderFiles::new(sources), &mut reports);
         let pictures = load_pictures(&documents, sources, &mut reports);
+        let (required, asked_for) = (required(&documents), asked_for(&documents));
+        // The uses of a missing shader are not known.
+        let is_known = reports.errors() == 0;
+        if is_known {
+            drop_unused(&mut root, &shaders, &mut HashMap::new(), &mut reports);
+        }
         let mut graph = Self {
-            required: required(&documents),
-            asked_for: asked_for(&documents),
-            document: root,
+            required,
+            asked_for,
+            document: Arc::new(root),
             shaders: Arc::new(shaders),
             pictures: Arc::new(pictures),
             include_sites: Arc::new(asked),
             warnings: Vec::new(),
         };
-        // The uses of a missing shader are not known.
-        if reports.errors() == 0 {
+        if is_known {
             graph.unused(&mut reports);
         }
         let is_error = |diagnostic: &Diagnostic| diagnostic.severity == Severity::Error;
@@ -286,27 +264,60 @@ impl Graph {
     }
 
     pub(crate) fn param(&self, name: &str) -> Result<&Param, ParamError> {
-        let params = self.params();
-        let known = params.iter().find(|param| param.name.value == name);
-        known.ok_or_else(|| {
-            let hint = suggestion(name, params.iter().map(|param| param.name.as_str()));
-            ParamError::Unknown {
-                graph: self.path().to_owned(),
-                name: name.to_owned(),
-                hint: hint.map_or(", it has none".to_owned(), |hint| format!(": {hint}")),
-            }
-        })
+        find(self.params(), name, self.path())
+    }
+
+    /// The value of every param: that which is asked for, else the default for this viewport on a
+    /// device with these features.
+    ///
+    /// # Errors
+    /// If there is no such param, or a value does not fit.
+    pub fn values(
+        &self,
+        asked: &BTreeMap<String, ParamValue>,
+        viewport: [u32; 2],
+        features: wgt::Features,
+    ) -> Result<BTreeMap<String, ParamValue>, Diagnostics> {
+        let mut reports = Reports::default();
+        let context = Surroundings { viewport, features };
+        match checked(&self.document, asked, context, &mut reports) {
+            Ok(params) => Ok(params
+                .list
+                .into_iter()
+                .filter_map(|bound| Some((bound.param.name.value, bound.value.ok()?)))
+                .collect()),
+            Err(_) => Err(self.diagnostics(reports.into_list())),
+        }
+    }
+
+    /// Returns the promises of the document about itself for these values of params and this
+    /// viewport, on a device with these features.
+    ///
+    /// # Errors
+    /// If a value does not fit, or a condition has no value.
+    pub fn claims(
+        &self,
+        asked: &BTreeMap<String, ParamValue>,
+        viewport: [u32; 2],
+        features: wgt::Features,
+    ) -> Result<Vec<Claim>, Diagnostics> {
+        let mut reports = Reports::default();
+        let context = Surroundings { viewport, features };
+        let claims = claims(&self.document, asked, context, &mut reports);
+        match reports.errors() {
+            0 => Ok(claims),
+            _ => Err(self.diagnostics(reports.into_list())),
+        }
     }
 
     /// Warns of materials and params of the document that nothing names; those of documents that it
     /// includes or extends need not all be of use.
     fn unused(&self, reports: &mut Reports) {
         let document = &self.document;
-        let is_own = |span: &Span| span.file.name == document.file.name;
         let used = Used::new(document, &self.shaders);
         for material in &document.materials {
             let name = material.name();
-            if is_own(&name.span) && !used.materials.contains(name.as_str()) {
+            if document.is_own(&name.span) && !used.materials.contains(name.as_str()) {
                 let name = Located::new(name.value.to_string(), name.span.clone());
                 reports.warn(ComposeError::UnusedMaterial(name));
             }
@@ -314,20 +325,22 @@ impl Graph {
         for (name, _) in &document.values {
             let is_used =
                 used.params.contains(name.as_str()) || used.materials.contains(name.as_str());
-            if is_own(&name.span) && !is_used {
+            if document.is_own(&name.span) && !is_used {
                 let name = Located::new(name.value.to_string(), name.span.clone());
                 reports.warn(ComposeError::UnusedValue(name));
             }
         }
         for param in &document.params[..document.declared] {
-            if is_own(&param.name.span) && !used.params.contains(&param.name.value) {
+            if document.is_own(&param.name.span) && !used.params.contains(&param.name.value) {
                 reports.warn(ComposeError::UnusedParam(param.name.clone()));
             }
         }
         let imported = self.shaders.imported();
         for entry in &document.imports {
             let path = self.shaders.module(&entry.of);
-            if is_own(&entry.of.span) && path.is_some_and(|path| !imported.contains(&**path)) {
+            if document.is_own(&entry.of.span)
+                && path.is_some_and(|path| !imported.contains(&**path))
+            {
                 reports.warn(ComposeError::UnusedImport(entry.of.clone()));
             }
         }
@@ -375,59 +388,6 @@ impl Graph {
     /// The place of the document itself, for mistakes of a request.
     pub(crate) fn place(&self) -> Span {
         self.document.file.span(0..0)
-    }
-}
-
-/// Names that a document uses.
-#[derive(Default)]
-struct Used {
-    materials: BTreeSet<String>,
-    params: BTreeSet<String>,
-}
-
-impl Used {
-    fn new(document: &Document, shaders: &Shaders) -> Self {
-        let mut used = Self::default();
-        document.visit(&mut |leaf| match leaf {
-            Leaf::Param(name) => drop(used.params.insert(name.to_owned())),
-            Leaf::Word(name) => drop(used.params.insert(name.to_string())),
-            Leaf::Material(of) => drop(used.materials.insert(of.segments[0].name.to_string())),
-            Leaf::Constant(_) | Leaf::Has(_) => {}
-        });
-        each_entry(&document.entries, &mut |entry| match &entry.what {
-            What::Pass(pass) => {
-                let variants = pass.shaders.iter();
-                for shader in variants.flat_map(|shader| shaders.variants(document, shader)) {
-                    used.params.extend(shader.params().map(str::to_owned));
-                    used.materials
-                        .extend(shader.global_names().map(str::to_owned));
-                    used.choices(document, shader);
-                }
-            }
-            What::Include(include) => {
-                let Some(inner) = include.document() else {
-                    return;
-                };
-                let inputs = inner.inputs.iter().map(|input| input.name.to_string());
-                used.materials.extend(inputs);
-                let asked = inner.params.iter().filter(|param| param.default.is_none());
-                used.params
-                    .extend(asked.map(|param| param.name.value.clone()));
-            }
-            What::Group(_) => {}
-        });
-        used
-    }
-
-    /// Params of whose words the shader has constants.
-    fn choices(&mut self, document: &Document, shader: &Shader) {
-        let constants: BTreeSet<&str> = shader.constants().collect();
-        for param in &document.params {
-            let prefix = format!("{}_", param.name.value.replace('.', "_").to_uppercase());
-            if constants.iter().any(|name| name.starts_with(&prefix)) {
-                self.params.insert(param.name.value.clone());
-            }
-        }
     }
 }
 

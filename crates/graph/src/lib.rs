@@ -1,5 +1,39 @@
 //! A render graph for wgpu, written in RON and WGSL: from documents to a plan, without a GPU.
 //!
+//! ```
+//! use skiagraph_graph::{Graph, NoProvider, PlanRequest, Registry, Sources};
+//! use std::sync::Arc;
+//!
+//! /// A document and its shader; `FolderSources` reads those of a folder.
+//! struct Ramp;
+//!
+//! impl Sources for Ramp {
+//!     fn read(&self, path: &str) -> Result<Option<Arc<str>>, String> {
+//!         Ok(match path {
+//!             "ramp.ron" => Some(
+//!                 r#"(format: 3, materials: [Texture(name: "image", format: R32Float)],
+//!                     passes: [Fullscreen(name: "ramp", color: ["image"])], outputs: ["image"])"#,
+//!             ),
+//!             "shaders/ramp.wgsl" => Some(
+//!                 "@fragment fn fragment(@builtin(position) at: vec4<f32>) -> @location(0) f32 {
+//!                     return at.x / 64.0; }",
+//!             ),
+//!             _ => None,
+//!         }
+//!         .map(Arc::from))
+//!     }
+//!     fn list(&self, _folder: &str) -> Vec<String> {
+//!         vec![]
+//!     }
+//! }
+//!
+//! let graph = Graph::load("ramp.ron", &Registry::standard(), &Ramp)?;
+//! let plan = graph.plan(&PlanRequest::new([64, 32], &NoProvider))?;
+//! assert_eq!(plan.passes()[0].name, "ramp");
+//! assert_eq!(plan.outputs()[0].size, [64, 32]);
+//! # Ok::<(), skiagraph_graph::Diagnostics>(())
+//! ```
+//!
 //! A document names *materials* (textures, buffers, samplers) and *passes*; bindings and access
 //! come from the shaders by reflection, order from what passes read and write. The phases are a
 //! folder each, in this order: `document` (with `compose`, which reads what it extends and
@@ -13,36 +47,41 @@ mod compose;
 pub mod diagnostics;
 mod document;
 mod errors;
+mod expressions;
 mod flow;
 mod graph;
 mod instantiate;
 mod kinds;
 mod language;
 mod link;
+mod param;
 mod picture;
 mod plan;
 mod provided_kind;
 mod provider;
 mod request;
 mod resource;
+mod scalar_class;
 #[cfg(feature = "schema")]
 mod schema;
 mod shader;
 mod source;
 
 pub use diagnostics::{Code, Diagnostic, Diagnostics, Label, Severity};
-pub use document::{Address, Chosen, Filter, Param, ParamFault, ParamType, ParamValue};
+pub use document::{Address, Chosen, Filter};
 pub use flow::{
     Aliases, Allocation, Conditions, Dependences, Hazard, Lifetime, Lifetimes, Schedule, When,
 };
-pub use graph::{Claim, Graph, ParamError};
-pub use instantiate::Run;
+pub use graph::Graph;
+pub use instantiate::{Claim, Run};
 pub use kinds::{Lowering, PassKind, Registry, step};
 pub use language::{Expr, Name, Reference, Scalar, Value, Word, wgsl_identifier};
 pub use link::{
     Access, Attachment, BindTarget, Block, CAPTURE, Ids, LinkedBinding, LinkedPass, LinkedProgram,
     PassId, Usage,
 };
+pub use param::{Param, ParamError, ParamFault, ParamType, ParamValue};
+pub use picture::Picture;
 pub use plan::{CulledPass, MemoryEntry, OutputSummary, PartSummary, PassSummary, Plan, text};
 pub use provided_kind::ProvidedKind;
 pub use provider::{Describe, Import, NoProvider, Provided, ProvidedBinding};
@@ -51,8 +90,8 @@ pub use resource::{
     Buffer, FRAME_BYTES, Growth, Origin, Resource, ResourceId, ResourceKind, Sampler,
     SubresourceRange, Target, Texture,
 };
+#[cfg(feature = "schema")]
+pub use schema::schema;
 pub use shader::{Field, Item, ItemScalar, Shader};
 pub use skiagraph_located_ron::panics::{Panicked, caught};
-pub use source::{
-    FolderSources, LayeredSources, Located, Picture, SourceFile, SourceText, Sources, Span,
-};
+pub use source::{FolderSources, LayeredSources, Located, SourceFile, SourceText, Sources, Span};

@@ -1,7 +1,22 @@
 //! Pictures as the content of textures.
 
-use crate::source::sources::Picture;
+use std::sync::Arc;
 use wgt::TextureFormat as F;
+
+/// A decoded picture.
+#[derive(Clone, PartialEq, Eq)]
+pub struct Picture {
+    /// Width and height in texels.
+    pub size: [u32; 2],
+    /// Red, green, blue and alpha of each texel, rows from the top; 65,535 is one.
+    pub texels: Arc<[[u16; 4]]>,
+}
+
+impl std::fmt::Debug for Picture {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Picture({}×{})", self.size[0], self.size[1])
+    }
+}
 
 /// Type of a channel of a texel.
 enum Channel {

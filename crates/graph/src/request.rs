@@ -1,8 +1,8 @@
 //! Requests for plans.
 
 use crate::{
-    document::params::ParamValue,
     instantiate::params::Surroundings,
+    param::ParamValue,
     provider::{Describe, Described, Import},
 };
 use std::collections::BTreeMap;

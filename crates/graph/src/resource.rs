@@ -2,8 +2,9 @@
 
 use crate::{
     document::materials::{Address, Filter},
+    picture::Picture,
     provider::Provided,
-    source::{sources::Picture, span::Span},
+    source::span::Span,
 };
 use std::{ops::Range, sync::Arc};
 

@@ -119,18 +119,12 @@ written!(ClaimEntry, "Claim", generator => {
     json_schema!({ "anyOf": [condition, long] })
 });
 
-impl Registry {
-    /// Returns the JSON Schema (draft 2020-12) of documents of these kinds. RON has no schemas of
-    /// its own; for it `Kind(field: value)` is `{"Kind": {"field": value}}`, a bare word is a text,
-    /// a tuple is a list. The schema knows neither names nor values of expressions:
-    /// `skiagraph check` does.
-    pub fn schema(&self) -> Value {
-        document(self.all())
-    }
-}
-
-/// Returns the schema of documents of these kinds.
-fn document(kinds: &[Kind]) -> Value {
+/// Returns the JSON Schema (draft 2020-12) of documents of a registry's kinds. RON has no schemas
+/// of its own; for it `Kind(field: value)` is `{"Kind": {"field": value}}`, a bare word is a text,
+/// a tuple is a list. The schema knows neither names nor values of expressions:
+/// `skiagraph check` does.
+pub fn schema(registry: &Registry) -> Value {
+    let kinds = registry.all();
     let mut generator = SchemaGenerator::default();
     let mut sections = Map::new();
     let mut kinds = Kinds {
@@ -177,18 +171,6 @@ fn tagged(tags: impl IntoIterator<Item = (String, Value)>) -> Value {
     })
 }
 
-/// `Remove(name: …)` of a section.
-fn removed() -> (String, Value) {
-    let removed = json!({
-        "description": "Leaves out the item of this name of the extended document.",
-        "type": "object",
-        "properties": { "name": { "description": "Its name.", "type": "string" } },
-        "required": ["name"],
-        "additionalProperties": false,
-    });
-    ("Remove".to_owned(), removed)
-}
-
 struct Kinds<'k> {
     kinds: &'k [Kind],
     generator: &'k mut SchemaGenerator,
@@ -216,7 +198,7 @@ impl Kinds<'_> {
             "params" => {
                 let fields = self.schema::<ParamFields>();
                 let params = PARAM_TYPES.map(|tag| (tag.to_owned(), fields.clone()));
-                tagged(params.into_iter().chain([removed()]))
+                tagged(params)
             }
             "set" | "values" => self.map::<Expr>(),
             "narrow" => self.map::<Narrow>(),
@@ -225,13 +207,11 @@ impl Kinds<'_> {
                 ("Texture".to_owned(), self.schema::<TextureInput>()),
                 ("Buffer".to_owned(), self.schema::<BufferInput>()),
                 ("Sampler".to_owned(), self.schema::<SamplerInput>()),
-                removed(),
             ]),
             "materials" => tagged([
                 ("Texture".to_owned(), self.schema::<TextureEntry>()),
                 ("Buffer".to_owned(), self.schema::<BufferEntry>()),
                 ("Sampler".to_owned(), self.schema::<SamplerEntry>()),
-                removed(),
             ]),
             "passes" => self.passes(),
             "outputs" => self.list::<Output>(),

@@ -1,11 +1,5 @@
 //! Scene resources for Skiagraph's graphs, the tracer, and the shadow presets.
 //!
-//! - [`SceneProvider`] uploads a [`skiagraph_scene::Scene`] piece by piece, as live passes ask for
-//!   it.
-//! - [`registry`] knows the standard pass kinds and [`Trace`]: rays in, hits out, on compute
-//!   shaders.
-//! - [`EmbeddedSources`] holds the presets and their shaders, [`presets()`] lists them.
-//!
 //! ```no_run
 //! use skiagraph_gpu::{Executor, Frame, device};
 //! use skiagraph_graph::{Graph, PlanRequest};
@@ -28,28 +22,35 @@
 //! # Ok(())
 //! # }
 //! ```
+//!
+//! - [`SceneProvider`] uploads a [`skiagraph_scene::Scene`] piece by piece, as live passes ask for
+//!   it.
+//! - [`registry`] knows the standard pass kinds and [`Trace`]: rays in, hits out, on compute
+//!   shaders.
+//! - [`EmbeddedSources`] holds the presets and their shaders, [`presets()`] lists them.
 
-pub mod atlas;
+mod atlas;
 mod buffers;
-pub mod built;
-pub mod error;
-pub mod eye;
+mod built;
+mod error;
+mod eye;
 mod hierarchies;
-pub mod host;
+mod host;
 mod lights;
 pub mod names;
-pub mod presets;
-pub mod provider;
+mod presets;
+mod provider;
 mod ray_query;
 mod setting;
 mod shape;
-pub mod trace;
+mod trace;
 pub mod uniforms;
 
+pub use atlas::MaterialRecord;
 pub use built::{Built, How};
 pub use error::Error;
 pub use eye::{Depth, Eye, EyeError};
 pub use host::{GpuMesh, GpuMeshError};
 pub use presets::{EmbeddedSources, Preset, presets, registry};
 pub use provider::SceneProvider;
-pub use trace::{Direction, Engine, Trace};
+pub use trace::{Direction, Engine, Mode, Trace};

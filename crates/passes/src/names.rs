@@ -1,4 +1,22 @@
 //! The names of what a scene gives, and what each depends on.
+//!
+//! A plan says which of them it asks for:
+//!
+//! ```
+//! use skiagraph_graph::{Graph, PlanRequest};
+//! use skiagraph_passes::{EmbeddedSources, SceneProvider, names::LIGHT, registry};
+//! # use skiagraph_scene::{DirectionalLight, Indexed, Mesh};
+//! # let positions = &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]];
+//! # let indices = &[0, 1, 2];
+//! # let mesh = Mesh::indexed(&Indexed { positions, normals: &[], indices })?;
+//! # let sun = DirectionalLight::new(glam::DVec3::NEG_Y);
+//!
+//! let provider = SceneProvider::of_mesh(mesh, sun);
+//! let graph = Graph::load("pipelines/nsm.ron", &registry(), &EmbeddedSources)?;
+//! let plan = graph.plan(&PlanRequest::new([64, 64], &provider))?;
+//! assert!(plan.provided().contains(&LIGHT));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::eye::Eye;
 use skiagraph_scene::LightKind;

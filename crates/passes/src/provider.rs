@@ -37,7 +37,7 @@ use std::{collections::BTreeMap, sync::Arc, time::Instant};
 /// | `scene.masks` | `array<u32>`: [`mask_words`], what `shared/masks.wgsl` reads |
 /// | `scene.uvs` | `array<vec2<f32>>`, v down |
 /// | `scene.uv_indices` | `array<u32>`, three per primitive |
-/// | `scene.materials` | 32-byte [`MaterialRecord`](crate::atlas::MaterialRecord)s |
+/// | `scene.materials` | 32-byte [`MaterialRecord`](crate::MaterialRecord)s |
 /// | `scene.material_indices` | `array<u32>`, one per primitive |
 /// | `scene.texels` | `array<u32>`, the base colours' textures, sRGB and alpha, red lowest |
 /// | `camera` | [`CameraUniform`] |

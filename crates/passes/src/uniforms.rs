@@ -1,5 +1,22 @@
 //! Uniforms of the camera and the light. The structs of `shaders/shared/camera.wgsl` and
 //! `light.wgsl` are laid out alike; a test compares both with what naga makes of them.
+//!
+//! ```
+//! use glam::DVec3;
+//! use skiagraph_passes::uniforms::LightUniform;
+//! use skiagraph_scene::{DirectionalLight, Indexed, Mesh};
+//!
+//! let square = [[0.0; 3], [0.0, 0.0, 8.0], [8.0, 0.0, 8.0], [8.0, 0.0, 0.0]];
+//! let mesh = Mesh::indexed(&Indexed {
+//!     positions: &square,
+//!     normals: &[],
+//!     indices: &[0, 1, 2, 0, 2, 3],
+//! })?;
+//! let light = LightUniform::new(DirectionalLight::new(DVec3::NEG_Y), &mesh);
+//! assert_eq!(light.to_light, glam::Vec3::Y);
+//! assert_eq!(bytemuck::bytes_of(&light).len(), 144);
+//! # Ok::<(), skiagraph_scene::IndexedError>(())
+//! ```
 
 use glam::{DMat4, DVec3, Mat3, Mat4, Vec2, Vec3};
 use skiagraph_scene::{Camera, DirectionalLight, LightKind, Mesh, SpotLight};

@@ -80,9 +80,8 @@ fn front_panel(kept: &Kept, viewport: [u32; 2], maps: &[u32]) -> Result<Panel, C
             .map_size
             .and_then(|size| maps.iter().position(|map| *map == size));
         let mark = Mark {
-            x: ms / views,
-            y: 100.0 * wrong as f64 / pixels as f64,
             size: map.unwrap_or(0),
+            ..Mark::new(ms / views, 100.0 * wrong as f64 / pixels as f64)
         };
         push(&mut series, &run.preset, mark);
     }
@@ -147,7 +146,7 @@ pub fn growth(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, Compa
         let heights = [time(kept, measured)?, bytes as f64 / 1e6];
         for (panel, y) in panels[index].iter_mut().zip(heights) {
             let x = scene.triangles as f64;
-            push(&mut panel.series, &name, Mark { x, y, size: 0 });
+            push(&mut panel.series, &name, Mark::new(x, y));
         }
     }
     for series in panels
@@ -264,11 +263,7 @@ mod tests {
         };
         // 1.5 ms a frame, 0.375 ms of it the G-buffer; 503 wrong, 6 of them in the band, and none.
         let share = 100.0 * 497.0 / (2.0 * 512.0 * 256.0);
-        let mark = Mark {
-            x: 1.125,
-            y: share,
-            size: 0,
-        };
+        let mark = Mark::new(1.125, share);
         assert_eq!((nsm.name.as_str(), &nsm.marks[..]), ("nsm", &[mark][..]));
         assert_eq!(figure.sizes, ["map 1024²"]);
     }

@@ -173,7 +173,7 @@ impl PanelRow<'_> {
             let place = known.iter().position(|known| known == group);
             for (side, y) in sides.iter_mut().zip([bar.theirs, bar.ours]) {
                 let x = place.unwrap_or(0) as f64;
-                push(side, &bar.series, Mark { x, y, size: 0 });
+                push(side, &bar.series, Mark::new(x, y));
             }
         }
         self.pair(label, sides, |title, series| Panel {
@@ -195,7 +195,7 @@ impl PanelRow<'_> {
                 let times = [bar.theirs / first.theirs, bar.ours / first.ours];
                 for (side, y) in sides.iter_mut().zip(times) {
                     let x = pixels(group) as f64;
-                    push(side, &bar.series, Mark { x, y, size: 0 });
+                    push(side, &bar.series, Mark::new(x, y));
                 }
             }
         }

@@ -13,14 +13,30 @@ pub type CommandFor<'a> = &'a dyn Fn(&Column, &str, Option<&str>) -> String;
 
 /// A heading, the matrix, and what there is to say of it.
 pub fn render(report: &Report, command_for: CommandFor) -> String {
-    let mut text = format!(
+    let table = terminal(&matrix(report).0);
+    let (heading, remarks) = (heading(report), remarks(report));
+    let mut text = format!("{heading}\n{table}\n{remarks}\n");
+    let failures = failures(report, command_for);
+    if !failures.is_empty() {
+        text += &format!("\nFailed\n{failures}");
+    }
+    text
+}
+
+/// Adapter and viewport, a line each, and the meaning of the cells.
+pub fn heading(report: &Report) -> String {
+    format!(
         "{}\n{}{} · pixels outside the band: wrongly lit + wrongly in shadow · ✗ \
-         fails · * all left to rays · PFL: pixels that face the light\n{}\n",
+         fails · * all left to rays · PFL: pixels that face the light",
         report.adapter,
         size(report.viewport),
         one_map(report).map_or(String::new(), |size| format!(", maps of {size}x{size}")),
-        matrix(report),
-    );
+    )
+}
+
+/// Methods that could not run, warnings, and the outcome of all cells, a line each.
+pub fn remarks(report: &Report) -> String {
+    let mut text = String::new();
     for column in &report.methods {
         if let Some(reason) = &column.unavailable {
             text += &format!("{} is unavailable: {reason}\n", named(report, column));
@@ -36,12 +52,7 @@ pub fn render(report: &Report, command_for: CommandFor) -> String {
             )
         );
     }
-    text += &format!("{}\n", summary(report));
-    let failures = failures(report, command_for);
-    if !failures.is_empty() {
-        text += &format!("\nFailed\n{failures}");
-    }
-    text
+    text + &summary(report)
 }
 
 /// The size of all maps, if they have the same.
@@ -59,7 +70,11 @@ fn named(report: &Report, column: &Column) -> String {
     }
 }
 
-fn matrix(report: &Report) -> String {
+/// A case with the cells of a row, one per method that ran.
+pub type MatrixRow<'a> = (&'a Case, Vec<Option<&'a Cell>>);
+
+/// The matrix, and what its rows are of: three columns of the case, then one of each method.
+pub fn matrix(report: &Report) -> (Table, Vec<MatrixRow<'_>>) {
     let can_run = report.methods.iter();
     let columns: Vec<&Column> = can_run
         .filter(|column| column.unavailable.is_none())
@@ -68,19 +83,24 @@ fn matrix(report: &Report) -> String {
         let guarantee = column.guarantee.map_or("", Guarantee::word);
         format!("{}\n{guarantee}", named(report, column))
     };
-    let methods: Vec<String> = columns.iter().map(head).collect();
-    let row = |case, set| {
-        let cells = columns.iter().map(|column| cell(case, column, set));
-        heads(case, set).into_iter().chain(cells).collect()
-    };
-    let rows = report.cases.iter().flat_map(|case| {
-        let sets = sets(case).into_iter();
-        sets.map(move |set| (case, set))
-    });
-    let heads = ["case", "PFL", "band"].into_iter();
-    let heads = heads.chain(methods.iter().map(String::as_str));
-    let rows = rows.map(|(case, set)| row(case, set));
-    terminal(&Table::new(heads, 1, rows))
+    let heads = ["case", "PFL", "band"].map(str::to_owned).into_iter();
+    let mut table = Table::new(heads.chain(columns.iter().map(head)), 1, []);
+    let mut rows = Vec::new();
+    for case in &report.cases {
+        for set in sets(case) {
+            let found = |column: &&Column| {
+                let mut cells = case.cells.iter();
+                cells.find(|cell| cell.is_of(column) && cell.set.as_deref() == set)
+            };
+            let found: Vec<Option<&Cell>> = columns.iter().map(found).collect();
+            let cells = found.iter().map(|of| cell(case, *of, set));
+            table
+                .rows
+                .push(heads_of(case, set).into_iter().chain(cells).collect());
+            rows.push((case, found));
+        }
+    }
+    (table, rows)
 }
 
 /// The rows of a case: as the methods are, then with what is set besides.
@@ -94,7 +114,7 @@ fn sets(case: &Case) -> Vec<Option<&str>> {
     sets
 }
 
-fn heads(case: &Case, set: Option<&str>) -> [String; 3] {
+fn heads_of(case: &Case, set: Option<&str>) -> [String; 3] {
     if let Some(set) = set {
         return [format!("  {set}"), String::new(), String::new()];
     }
@@ -117,9 +137,8 @@ fn heads(case: &Case, set: Option<&str>) -> [String; 3] {
     ]
 }
 
-fn cell(case: &Case, column: &Column, set: Option<&str>) -> String {
-    let is_own = |cell: &&Cell| cell.is_of(column) && cell.set.as_deref() == set;
-    let Some(cell) = case.cells.iter().find(is_own) else {
+fn cell(case: &Case, cell: Option<&Cell>, set: Option<&str>) -> String {
+    let Some(cell) = cell else {
         return set.map_or("–".into(), |_| String::new());
     };
     let Some(counts) = &cell.counts else {
@@ -166,7 +185,8 @@ fn summary(report: &Report) -> String {
     text
 }
 
-fn failures(report: &Report, command_for: CommandFor) -> String {
+/// All that failed, case by case, with the commands that show it.
+pub fn failures(report: &Report, command_for: CommandFor) -> String {
     let mut text = String::new();
     for case in &report.cases {
         if let Some(reason) = &case.failed {

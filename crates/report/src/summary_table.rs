@@ -45,7 +45,7 @@ pub fn summaries(results: &Results) -> Vec<Summary<'_>> {
 const WARNING: &str = "warning: ";
 
 /// Cell of a row that could not run.
-const NOT_THERE: &str = "n/a";
+pub const NOT_THERE: &str = "n/a";
 
 impl<'a> Summary<'a> {
     fn new(results: &'a Results, viewport: [u32; 2]) -> Self {
@@ -425,6 +425,7 @@ fn matrix(method: &str, runs: &[&Run]) -> String {
 mod tests {
     use super::*;
     use crate::samples::results as sample;
+    use skiagraph_compare::records::steady::{Cycle, Steady};
 
     /// `sample()` with a second view, and with a promise that ends at open parts.
     fn two_views() -> Results {
@@ -447,6 +448,24 @@ mod tests {
     #[test]
     fn a_row_per_method_over_all_views() {
         insta::assert_snapshot!(summaries(&two_views())[0].text());
+    }
+
+    #[test]
+    fn surfaces_that_are_hidden_and_methods_that_remember_are_named_below() {
+        let mut results = sample();
+        results.runs[0].wrong_surface = 1_234;
+        results.runs[0].measured.as_mut().unwrap().steady = Some(Steady {
+            frames: 36,
+            period: Some(3),
+            judged: Some(Cycle::default()),
+        });
+        let text = summaries(&results)[0].text();
+        for part in [
+            "warning: 1,234 of 131,072 pixels show a surface that another one hides",
+            "nsm 1024 remembers: its picture repeats every 3 frames",
+        ] {
+            assert!(text.contains(part), "no {part:?} in\n{text}");
+        }
     }
 
     #[test]

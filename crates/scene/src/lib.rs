@@ -88,5 +88,5 @@ pub use scene::Scene;
 #[cfg(feature = "files")]
 pub use scene_file::{MeshSource, SceneFile};
 #[cfg(feature = "schema")]
-pub use schema::scene_schema;
+pub use schema::schema;
 pub use texture::{Texture, Wrap};

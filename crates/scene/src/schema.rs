@@ -7,18 +7,25 @@ use skiagraph_located_ron::schema::plain;
 
 /// Returns the JSON Schema (draft 2020-12) of scene files. RON has no schemas of its own; for it
 /// `Kind(field: value)` is `{"Kind": {"field": value}}`, a bare word is a text, a tuple is a list.
-pub fn scene_schema() -> Value {
+pub fn schema() -> Value {
     let mut generator = SchemaGenerator::default();
     let head = SceneText::json_schema(&mut generator).to_value();
     let lights = generator.subschema_for::<Vec<NamedLightText>>().to_value();
     let views = generator.subschema_for::<Vec<ViewText>>().to_value();
     let paths = generator.subschema_for::<Vec<PathText>>().to_value();
     let mut properties = head["properties"].clone();
-    let of_all = "Lights of all views that have none of their own.";
     for (name, mut list, description) in [
-        ("lights", lights, of_all),
-        ("views", views, "At least one, no two of one name."),
-        ("paths", paths, "Ways of a camera, no two of one name."),
+        (
+            "lights",
+            lights,
+            "Lights of all views that have none of their own.",
+        ),
+        ("views", views, "One at least, no two of one name."),
+        (
+            "paths",
+            paths,
+            "Ways that a camera takes, no two of one name.",
+        ),
     ] {
         list["description"] = description.into();
         properties[name] = list;

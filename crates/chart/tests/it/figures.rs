@@ -5,7 +5,10 @@ use roxmltree::{Document, Node};
 use skiagraph_chart::{Error, Figure, Kind, Mark, Panel, Series};
 
 fn series(name: &str, marks: &[(f64, f64)]) -> Series {
-    let mark = |(size, &(x, y))| Mark { x, y, size };
+    let mark = |(size, &(x, y))| Mark {
+        size,
+        ..Mark::new(x, y)
+    };
     Series {
         name: name.into(),
         marks: marks.iter().enumerate().map(mark).collect(),
@@ -61,11 +64,7 @@ fn time_against_error() -> Figure {
 
 fn growth() -> Figure {
     let line = |name: &str, base: f64, power: f64| {
-        let marks = [1e4, 1e5, 1e6, 1e7f64].map(|x| Mark {
-            x,
-            y: base * (x / 1e4).powf(power),
-            size: 0,
-        });
+        let marks = [1e4, 1e5, 1e6, 1e7f64].map(|x| Mark::new(x, base * (x / 1e4).powf(power)));
         Series {
             name: name.into(),
             marks: marks.into(),
@@ -100,11 +99,7 @@ fn bars() -> Figure {
     let groups = ["512²", "1024²", "2048²", "4096²"].map(str::to_owned);
     let panel = |title: &str, scale: f64| {
         let bars = |name: &str, heights: &[f64]| {
-            let mark = |(group, &y): (usize, &f64)| Mark {
-                x: group as f64,
-                y: y * scale,
-                size: 0,
-            };
+            let mark = |(group, &y): (usize, &f64)| Mark::new(group as f64, y * scale);
             Series {
                 name: name.into(),
                 marks: heights.iter().enumerate().map(mark).collect(),
@@ -199,6 +194,71 @@ fn no_text_covers_another_and_none_leaves_the_picture() {
             }
         }
     }
+}
+
+/// `time_against_error()` with marks that a page tells of, one named with what XML escapes.
+fn of_a_page() -> Figure {
+    let mut figure = time_against_error();
+    figure.panels.truncate(1);
+    figure.columns = 1;
+    for series in &mut figure.panels[0].series {
+        for mark in &mut series.marks {
+            mark.about = format!("{} {}\n{} <ms> & \"more\"", series.name, mark.size, mark.x);
+        }
+    }
+    figure
+}
+
+#[test]
+fn a_page_finds_marks_their_names_and_what_they_tell() {
+    for width in [1100, 400] {
+        let svg = of_a_page().to_page_svg(width).unwrap();
+        assert!(!svg.contains("\"#"), "colours are the page's: {svg}");
+        let svg = Document::parse(&svg).unwrap();
+        let marks = svg
+            .descendants()
+            .filter(|node| node.attribute("class") == Some("mark"));
+        let marks: Vec<Node> = marks.collect();
+        assert_eq!(marks.len(), 17);
+        let rt = marks
+            .iter()
+            .find(|mark| mark.attribute("data-series") == Some("rt"))
+            .unwrap();
+        assert_eq!(rt.attribute("data-name"), Some("rt 0"));
+        let told = rt.attribute("aria-label").unwrap();
+        assert_eq!(told, "rt 0\n1205 <ms> & \"more\"");
+        // Names stand in their marks' groups, cover nothing and leave the picture nowhere.
+        let is_name = |node: &Node| node.attribute("class") == Some("name");
+        let names: Vec<Node> = svg.descendants().filter(is_name).collect();
+        assert!(names.len() > 6, "{}", names.len());
+        for (index, name) in names.iter().enumerate() {
+            let of = name.parent().and_then(|mark| mark.attribute("data-name"));
+            assert_eq!(name.text(), of);
+            let [left, top, right, bottom] = text_box(*name);
+            assert!(left >= 0.0 && right <= f64::from(width) && top >= 0.0);
+            for other in &names[..index] {
+                let [l, t, r, b] = text_box(*other);
+                assert!(right <= l || r <= left || bottom <= t || b <= top);
+            }
+        }
+        let lines = svg
+            .descendants()
+            .filter(|node| node.has_tag_name("polyline"));
+        let front = lines.filter(|node| node.attribute("stroke") == Some("var(--front)"));
+        assert_eq!(front.count(), 1);
+    }
+}
+
+#[test]
+fn ticks_may_have_names() {
+    let mut figure = growth();
+    figure.ticks = vec![(1e4, "small".into()), (1e6, "<large>".into())];
+    let svg = svg(&figure);
+    let svg = Document::parse(&svg).unwrap();
+    let of = |name: &str| texts(&svg).iter().filter(|(text, _)| *text == name).count();
+    assert_eq!((of("small"), of("<large>"), of("10⁷")), (3, 3, 0));
+    let sign = figure.sign("nsm").unwrap();
+    assert!(sign.contains("\"var(--s1)\"") && Document::parse(&sign).is_ok());
 }
 
 #[test]
@@ -389,9 +449,7 @@ fn what_is_no_bar_is_refused_by_name() {
         (1.0, f64::NAN),
     ] {
         let mut figure = bars();
-        figure.panels[1].series[2]
-            .marks
-            .push(Mark { x, y, size: 0 });
+        figure.panels[1].series[2].marks.push(Mark::new(x, y));
         let message = figure.to_svg().unwrap_err().to_string();
         let named = message.contains("\"ours: sponza, main\"") && message.contains("\"crsma\"");
         assert!(named && message.contains("4 groups"), "{message}");
@@ -421,7 +479,10 @@ fn what_has_no_place_is_refused_by_name() {
         figure.panels[0].series[1].marks = vec![mark];
         figure.to_svg()
     };
-    let mark = |x, y, size| Mark { x, y, size };
+    let mark = |x, y, size| Mark {
+        size,
+        ..Mark::new(x, y)
+    };
     let told = |result: Result<String, Error>| result.unwrap_err().to_string();
     for (x, y) in [
         (0.0, 1.0),

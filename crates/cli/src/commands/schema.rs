@@ -4,7 +4,6 @@ use crate::args::commands::{SchemaArgs, SchemaFormat, SchemaOf};
 use crate::error::CliError;
 use crate::terminal::console::print;
 use skiagraph_report::language;
-use skiagraph_scene::scene_schema;
 
 /// Prints a JSON Schema, or the reference of the language.
 ///
@@ -12,8 +11,8 @@ use skiagraph_scene::scene_schema;
 /// Standard output.
 pub fn schema(args: &SchemaArgs) -> Result<(), CliError> {
     let schema = match args.of {
-        SchemaOf::Documents => skiagraph_passes::registry().schema(),
-        SchemaOf::Scenes => scene_schema(),
+        SchemaOf::Documents => skiagraph_graph::schema(&skiagraph_passes::registry()),
+        SchemaOf::Scenes => skiagraph_scene::schema(),
     };
     print(&match (args.format, args.of) {
         (SchemaFormat::Json, _) => format!("{schema:#}\n"),

@@ -45,7 +45,7 @@ pub fn show(args: &ShowArgs) -> Result<(), CliError> {
     if !args.flat {
         return print(&format!("{text}{passes}"));
     }
-    match Graph::flat(&path, &sources) {
+    match Graph::flat(&path, &registry(), &sources) {
         Ok(text) => print(&format!("{text}{passes}")),
         Err(faults) => Err(GraphFaults::one(&args.file, &faults).into()),
     }

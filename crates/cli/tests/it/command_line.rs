@@ -84,60 +84,29 @@ fn check_needs_no_gpu_and_shows_the_faults_of_all_files() {
     ] {
         assert!(faults.contains(part), "no {part:?} in\n{faults}");
     }
+    let line = ["check", "field.ron", "good.ron", "nms", "--format", "json"];
+    let output = skiagraph(folder.path(), &line);
+    assert_exit(&output, 1);
+    let report: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+    let names = [0, 1, 2].map(|index| &report["files"][index]["file"]);
+    assert_eq!(names, ["field.ron", "good.ron", "nms"]);
 }
 
 #[test]
-fn check_tells_which_params_a_kind_of_light_has_no_use_for() {
-    let folder = tempfile::tempdir().unwrap();
-    let output = skiagraph(folder.path(), &["check", "nsm", "crsm", "rt"]);
-    assert_exit(&output, 0);
-    let text = stdout(&output);
-    let line = |name: &str| text.lines().find(|line| line.starts_with(name)).unwrap();
-    let told = "; under a spot light fit has no effect; under a point light fit has no effect";
-    assert!(line("nsm:").ends_with(told), "{text}");
-    assert!(!line("rt:").contains("no effect"), "{text}");
-}
-
-#[test]
-fn check_tells_programs_what_it_tells_people() {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("good.ron"), CLEARED).unwrap();
-    let misspelt = CLEARED.replace("target: \"status\"", "target: \"satus\"");
-    fs::write(folder.path().join("bad.ron"), &misspelt).unwrap();
-    let check = |arguments: &[&str], code| {
-        let output = skiagraph(folder.path(), arguments);
-        assert_exit(&output, code);
-        let report: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
-        assert_eq!(report["schema"], 1);
-        report["files"].clone()
-    };
-    let fine = check(&["check", "--format", "json", "good.ron"], 0);
-    let expected = serde_json::json!([{ "file": "good.ron", "passes": 2, "diagnostics": [] }]);
-    assert_eq!(fine, expected);
-
-    let files = check(
-        &["check", "bad.ron", "good.ron", "nms", "--format", "json"],
-        1,
+fn the_reference_of_the_language_is_that_of_its_types() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/reference.md");
+    let output = skiagraph(Path::new("."), &["schema", "--format", "markdown"]);
+    let same = fs::read(page).unwrap() == output.stdout;
+    assert!(
+        same,
+        "skiagraph schema --format markdown > docs/reference.md"
     );
-    let names: Vec<_> = (0..3).map(|index| &files[index]["file"]).collect();
-    assert_eq!(names, ["bad.ron", "good.ron", "nms"]);
-    let bad = &files[0]["diagnostics"][0];
+    let output = skiagraph(Path::new("."), &["schema"]);
+    let schema: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
     assert_eq!(
-        (&bad["code"], &bad["severity"], &files[0]["passes"]),
-        (&"unknown-resource".into(), &"error".into(), &().into())
+        schema,
+        skiagraph_graph::schema(&skiagraph_passes::registry())
     );
-    let label = &bad["labels"][0];
-    let (line, text) = misspelt
-        .lines()
-        .enumerate()
-        .find(|(_, text)| text.contains("satus"))
-        .unwrap();
-    assert_eq!(label["file"], "bad.ron");
-    assert_eq!(label["line"], line + 1);
-    let columns = [&label["column"], &label["end_column"]].map(|c| c.as_u64().unwrap() as usize);
-    let word = &text[columns[0] - 1..columns[1] - 1];
-    assert_eq!(word.trim_matches('"'), "satus");
-    assert_eq!(files[2]["diagnostics"][0]["code"], "missing-file");
 }
 
 #[test]
@@ -209,18 +178,6 @@ fn graph_names_what_is_wrong() {
 }
 
 #[test]
-fn check_takes_presets_and_all_of_ours_are_fine() {
-    let folder = tempfile::tempdir().unwrap();
-    let output = skiagraph(
-        folder.path(),
-        &["check", "rt", "nsm", "pipelines/shared/gbuffer.ron"],
-    );
-    assert_exit(&output, 0);
-    assert_eq!(stdout(&output).lines().count(), 3);
-    assert_eq!(stderr(&output), "", "not even a warning");
-}
-
-#[test]
 fn show_writes_out_what_a_document_extends_with_its_origins() {
     let folder = tempfile::tempdir().unwrap();
     let show = |arguments: &[&str], code| {
@@ -270,18 +227,6 @@ fn show_writes_out_what_a_document_extends_with_its_origins() {
     assert!(show(&["show", "park"], 0).contains("name: \"park\""));
     assert!(show(&["show", "avenu"], 1).contains("did you mean `avenue`"));
     assert!(show(&["show", "park", "--flat"], 2).contains("is a scene file"));
-}
-
-#[test]
-fn check_names_missing_files_and_misspelt_presets() {
-    let folder = tempfile::tempdir().unwrap();
-    let output = skiagraph(folder.path(), &["check", "nowhere.ron", "nms"]);
-    assert_exit(&output, 1);
-    let text = stderr(&output);
-    assert!(
-        text.contains("no file `nowhere.ron`") && text.contains("did you mean `nsm`?"),
-        "{text}"
-    );
 }
 
 #[test]
@@ -368,20 +313,6 @@ fn files_that_would_overwrite_each_other_are_refused() {
 }
 
 #[test]
-fn check_tells_folders_and_other_files_from_presets() {
-    let folder = tempfile::tempdir().unwrap();
-    fs::create_dir(folder.path().join("graphs")).unwrap();
-    fs::write(folder.path().join("facing.wgsl"), "").unwrap();
-    let output = skiagraph(folder.path(), &["check", "graphs", "facing.wgsl"]);
-    assert_exit(&output, 1);
-    let text = stderr(&output);
-    assert!(
-        text.contains("`graphs` is a folder") && text.contains("`facing.wgsl` is not a .ron file"),
-        "{text}"
-    );
-}
-
-#[test]
 fn lists_are_printed_and_a_closed_pipe_is_no_failure() {
     let folder = tempfile::tempdir().unwrap();
     let presets = skiagraph(folder.path(), &["presets"]);
@@ -423,6 +354,25 @@ fn a_scene_or_view_that_is_not_there_is_named() {
     let own = skiagraph(folder.path(), &["run", "rt", "--look", "0,1,0"]);
     assert_exit(&own, 2);
     assert!(stderr(&own).contains("parallel"), "{}", stderr(&own));
+}
+
+/// A scene file is told of as a document is, with the lines that are wrong.
+#[test]
+fn a_broken_scene_file_is_shown_in_its_lines() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = "(\n    format: 1,\n    name: \"a\",\n    mesh: Genrated(\"park\"),\n)";
+    fs::write(folder.path().join("a.ron"), scene).unwrap();
+    let output = skiagraph(folder.path(), &["run", "rt", "--scene", "a.ron"]);
+    assert_exit(&output, 1);
+    for part in [
+        "╭─[a.ron:4:11]",
+        "4 │     mesh: Genrated(\"park\"),",
+        "did you mean `Generated`?",
+        "a scene needs at least one view",
+        "cannot load the scene `a.ron`",
+    ] {
+        assert!(stderr(&output).contains(part), "{}", stderr(&output));
+    }
 }
 
 /// The results that a unit test pins, as `compare` would have kept them.
@@ -650,4 +600,24 @@ fn a_document_is_planned_under_the_lights_that_it_takes() {
     let checked = skiagraph(folder, &["check", "mine.ron"]);
     assert_exit(&checked, 1);
     assert!(stderr(&checked).contains("it takes: sun"));
+}
+
+/// A scene file is told of as a document is, with the lines that are wrong.
+#[test]
+fn a_broken_scene_file_is_shown_in_its_lines() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = "(\n    format: 1,\n    name: \"a\",\n    mesh: Genrated(\"park\"),\n)";
+    fs::write(folder.path().join("a.ron"), scene).unwrap();
+    let output = skiagraph(folder.path(), &["compare", "nsm", "--scene", "a.ron"]);
+    assert_eq!(output.status.code(), Some(1));
+    let told = String::from_utf8_lossy(&output.stderr);
+    for part in [
+        "╭─[a.ron:4:11]",
+        "4 │     mesh: Genrated(\"park\"),",
+        "did you mean `Generated`?",
+        "a scene needs at least one view",
+        "cannot load the scene `a.ron`",
+    ] {
+        assert!(told.contains(part), "{told}");
+    }
 }

@@ -165,35 +165,6 @@ fn a_feature_that_the_adapter_lacks_is_one_diagnostic_before_anything_runs() {
     }
 }
 
-#[test]
-fn a_graph_that_does_not_fit_is_refused_with_a_memory_table() {
-    let folder = tempfile::tempdir().unwrap();
-    let entries = |entry: &dyn Fn(usize) -> String| (0..40).map(entry).collect::<String>();
-    let textures = entries(&|n| {
-        format!("Texture(name: \"image_{n}\", format: Rgba32Float, size: 4096, layers: 4),\n")
-    });
-    let passes = entries(&|n| format!("Clear(name: \"clear_{n}\", target: \"image_{n}\"),"));
-    let outputs = entries(&|n| format!("\"image_{n}\","));
-    let graph =
-        format!("(format: 3, materials: [{textures}], passes: [{passes}], outputs: [{outputs}])");
-    fs::write(folder.path().join("huge.ron"), graph).unwrap();
-    for verb in ["run", "profile"] {
-        let line = format!("{verb} huge.ron --size 16x16 --memory-limit 8GiB");
-        let (code, stdout, stderr) = run(folder.path(), &line);
-        assert_eq!((code, &*stdout), (1, ""), "{verb}: {stderr}");
-        let words = stderr.split_whitespace().collect::<Vec<_>>().join(" ");
-        for part in [
-            "the materials of `huge.ron` take 40.00 GiB, but there are only 8.00 GiB of memory \
-             for them",
-            "image_11 4096×4096, 4 layers Rgba32Float 1.00 GiB",
-            "28 more 28.00 GiB",
-            "all together 40.00 GiB",
-        ] {
-            assert!(words.contains(part), "{verb}: no `{part}` in {stderr}");
-        }
-    }
-}
-
 /// The limit is lifted above what the driver has: its own refusal tells as much as the planner's.
 #[test]
 fn a_driver_without_memory_names_the_material_with_the_table() {
@@ -213,20 +184,6 @@ fn a_driver_without_memory_names_the_material_with_the_table() {
     ] {
         assert!(words.contains(part), "no `{part}` in {stderr}");
     }
-}
-
-#[test]
-fn compare_measures_what_fits_and_says_why_the_rest_does_not() {
-    let folder = folder();
-    let line = "compare light.ron nsm --size 16x16 --frames 1 --memory-limit 1MiB --images none";
-    let (code, stdout, stderr) = run(folder.path(), line);
-    assert_eq!(code, 0, "{stderr}");
-    let why = "nsm 1024 is unavailable: the materials of `pipelines/nsm.ron` take 4.0 MiB, but \
-        there are only 1.0 MiB";
-    assert!(stdout.contains(why), "{stdout}");
-    let (code, stdout, stderr) = run(folder.path(), &line.replace("light.ron ", ""));
-    assert_eq!((code, &*stdout), (1, ""), "nothing is left to measure");
-    assert!(stderr.contains("shadow_map"), "{stderr}");
 }
 
 #[test]

@@ -1,7 +1,6 @@
-//! Files of other programs, from the command line: pictures as their controls', and options that
-//! load at once what was refused.
+//! Files of other programs, from the command line: options that load at once what was refused.
 
-use crate::support::{results, skiagraph};
+use crate::support::skiagraph;
 use std::{fs, path::Path};
 use tempfile::TempDir;
 
@@ -23,29 +22,6 @@ fn folder(of: &str) -> TempDir {
 }
 
 const COMPARE: &str = "compare rt --size 128x128 --frames 1 --warmup 0 --images none --scene";
-
-/// Pixels that `rt` has in shadow, and those that it has wrong.
-#[track_caller]
-fn shadow(folder: &TempDir, scene: &str) -> (u64, u64) {
-    let line = format!("{COMPARE} {scene} --out out");
-    let (runs, _) = results(folder.path(), &line);
-    let run = &runs[0];
-    let count = |of: &str| run.pointer(of).and_then(serde_json::Value::as_u64).unwrap();
-    (count("/pixels/shadow"), count("/wrong/certain"))
-}
-
-#[test]
-fn foreign_files_have_the_pictures_of_their_controls() {
-    let control = shadow(&folder("quantized-positions"), "control.gltf");
-    assert_eq!(control, (108, 0));
-    for (of, scene, pixels) in [
-        ("mtl-one-number", "plate.obj", 108),
-        ("skin-pose", "centimetres.gltf", 108),
-        ("mask-vertex-alpha", "g2_mask_vertex_alpha.gltf", 0),
-    ] {
-        assert_eq!(shadow(&folder(of), scene), (pixels, 0), "{scene}");
-    }
-}
 
 #[test]
 fn a_bare_mesh_that_is_refused_has_an_option_that_loads_it() {

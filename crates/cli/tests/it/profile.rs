@@ -122,6 +122,12 @@ fn a_profile_says_under_what_it_was_measured_and_writes_all_its_files() {
         "header, passes, frame:\n{csv}"
     );
     check_trace(&json(&folder.path().join("p.trace.json")), is_trusted);
+
+    let report = text(&skiagraph(folder.path(), &format!("{NSM} --baseline p.json"), 0).stdout);
+    assert!(
+        report.contains("Against p.json") && !report.contains("WARNING"),
+        "{report}"
+    );
 }
 
 /// Checks the needs of a viewer beside the schema: slices of one track do not overlap, every track
@@ -163,48 +169,6 @@ fn check_trace(trace: &Value, is_trusted: bool) {
     assert_eq!(count("frame"), 6);
     assert_eq!(count("cpu"), 6 * PASSES.len());
     assert_eq!(count("gpu"), if is_trusted { 6 * PASSES.len() } else { 0 });
-}
-
-#[test]
-fn a_baseline_stands_beside_and_other_conditions_are_called_out() {
-    let folder = tempfile::tempdir().unwrap();
-    skiagraph(folder.path(), &format!("{NSM} --json old.json"), 0);
-    let same = text(&skiagraph(folder.path(), &format!("{NSM} --baseline old.json"), 0).stdout);
-    assert!(
-        same.contains("Against old.json") && !same.contains("WARNING"),
-        "{same}"
-    );
-
-    let line = "profile rt --size 16x16 --frames 6 --warmup 0 --baseline old.json --json new.json";
-    let other = text(&skiagraph(folder.path(), line, 0).stdout);
-    for part in [
-        "WARNING: measured under other conditions",
-        "viewport: then 32x24, now 16x16",
-        "method: then nsm, now rt",
-        "Only then: create_shadow_map.fit_map.over_scene, create_shadow_map.draw[0], shadow_lookup",
-        "Only now: detect_facing, turn[0].fill_rays.clear, turn[0].fill_rays.compact, \
-         turn[0].fill_rays.dispatch_arguments, turn[0].trace_rays, turn[0].fix_pixels",
-    ] {
-        assert!(other.contains(part), "no {part:?} in\n{other}");
-    }
-    let baseline = &json(&folder.path().join("new.json"))["baseline"];
-    let passes = baseline["passes"].as_array().unwrap();
-    let names: Vec<_> = passes
-        .iter()
-        .map(|pass| pass["name"].as_str().unwrap())
-        .collect();
-    assert_eq!(names, ["gbuffer.primitive", "gbuffer.surface"]);
-    for pass in passes {
-        let [old, new, ratio] =
-            ["old_ms", "new_ms", "ratio"].map(|key| pass["cpu"][key].as_f64().unwrap());
-        assert!((ratio - new / old).abs() < 1e-9, "{pass}");
-    }
-    // A file that --json wrote with a comparison in it is a baseline itself.
-    skiagraph(
-        folder.path(),
-        "profile rt --size 16x16 --frames 1 --warmup 0 --baseline new.json",
-        0,
-    );
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! `run --frames`: a numbered sequence of pictures. Needs an adapter.
 
-use crate::support::{skiagraph, temporal};
+use crate::support::skiagraph;
 use std::{fs, path::Path};
 
 fn run(folder: &Path, line: &str) -> String {
@@ -30,25 +30,6 @@ fn a_path_is_saved_frame_by_frame() {
     let names = pictures.map(|entry| entry.unwrap().file_name().into_string().unwrap());
     assert_eq!(names.filter(|name| name.ends_with(".png")).count(), 17);
     assert!(file("v.0016.png").starts_with(b"\x89PNG"));
-}
-
-#[test]
-fn a_still_view_is_saved_as_its_memory_fills() {
-    let folder = tempfile::tempdir().unwrap();
-    temporal(folder.path());
-    let of = |line: &str| {
-        run(
-            folder.path(),
-            &format!("run {line} --size 48x48 --frames 5"),
-        )
-    };
-    of("temporal.ron --save visibility=t.bin");
-    of("rt --save visibility=r.bin");
-    let file = |name: &str| fs::read(folder.path().join(name)).unwrap();
-    let right = file("r.0000.bin");
-    assert!(file("t.0000.bin") != right);
-    assert_eq!(file("t.0004.bin"), right);
-    assert_eq!(file("r.0004.bin"), right);
 }
 
 #[test]
@@ -179,75 +160,4 @@ fn shaders_know_number_time_jitter_and_the_frame_before() {
     }
     let still = told("--frames 5");
     assert_eq!([still[1][7], still[1][11]], [0.0; 2]);
-}
-
-/// Ten items are wanted and four have room at first; how many frames there were is remembered.
-const GROWS: &str = r#"(
-    format: 3,
-    materials: [
-        Buffer(name: "needed"),
-        Buffer(name: "items", count: 4, grow: (counter: "needed", max: 64)),
-        Buffer(name: "turns"),
-    ],
-    passes: [
-        Clear(name: "reset", target: "needed"),
-        Compute(name: "fill", dispatch: Groups(1, 1, 1)),
-        Compute(name: "turn", dispatch: Groups(1, 1, 1)),
-    ],
-    outputs: ["items", "turns"],
-)"#;
-
-const FILL: &str = "
-    var<storage, read_write> needed: atomic<u32>;
-    var<storage, read_write> items: array<u32>;
-    @compute @workgroup_size(16) fn main(@builtin(local_invocation_index) id: u32) {
-        if id >= 10u { return; }
-        let item = atomicAdd(&needed, 1u);
-        if item < arrayLength(&items) { items[item] = 100u + id; }
-    }";
-
-const TURN: &str = "
-    var<storage, read> turns_previous: u32;
-    var<storage, read_write> turns: u32;
-    @compute @workgroup_size(1) fn main() { turns = turns_previous + 1u; }";
-
-#[test]
-fn buffers_that_grow_have_room_in_the_first_frame_whose_memory_is_empty() {
-    let folder = tempfile::tempdir().unwrap();
-    let folder = folder.path();
-    for (name, text) in [
-        ("grows.ron", GROWS),
-        ("fill.wgsl", FILL),
-        ("turn.wgsl", TURN),
-    ] {
-        fs::write(folder.join(name), text).unwrap();
-    }
-    let line = "run grows.ron --size 4x4 --save items=i.csv --save turns=t.csv";
-    let told = run(folder, line);
-    let warmed = "warmed up: 2 frames before this one, until items had room";
-    assert!(told.contains(warmed), "{told}");
-    let read = |name: &str| fs::read_to_string(folder.join(name)).unwrap();
-    let is_there = |id: u32| read("i.csv").contains(&format!(",{}\n", 100 + id));
-    assert!((0..10).all(is_there), "{}", read("i.csv"));
-    assert_eq!(read("t.csv"), "item,value\n0,1\n");
-    let told = run(folder, &format!("{line} --frames 2"));
-    assert!(told.contains(warmed), "{told}");
-    assert_eq!(read("t.0000.csv"), "item,value\n0,1\n");
-    assert_eq!(read("t.0001.csv"), "item,value\n0,2\n");
-}
-
-#[test]
-fn what_a_first_frame_leaves_uncertain_is_the_same_in_every_run() {
-    let folder = tempfile::tempdir().unwrap();
-    let line = "run light_buffer --scene park --size 128x128 --save status=s.png \
-                --save status=s.bin";
-    let frame = || {
-        let told = run(folder.path(), line);
-        assert!(told.contains("warmed up: "), "{told}");
-        assert!(told.contains("purple uncertain (0)"), "{told}");
-        fs::read(folder.path().join("s.bin")).unwrap()
-    };
-    assert_eq!(frame(), frame());
-    let told = run(folder.path(), "run nsm --size 16x16 --map-size 16");
-    assert!(!told.contains("warmed up"), "nothing of it grows: {told}");
 }

@@ -123,7 +123,13 @@ fn the_page_works_in_a_browser() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     pages(folder);
-    for (width, is_dark) in [(1280, false), (1280, true), (390, false), (390, true)] {
+    for (width, is_dark) in [
+        (1280, false),
+        (1280, true),
+        (700, false),
+        (390, false),
+        (390, true),
+    ] {
         let script = include_str!("report/page.js");
         let outcome = browsed(folder, "out/report.html", width, is_dark, script);
         assert_eq!(outcome["faults"], Value::Array(Vec::new()), "{width}");

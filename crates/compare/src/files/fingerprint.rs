@@ -1,5 +1,20 @@
 //! A hash of everything that a run depends on: `compare --resume` keeps a run only if nothing of it
 //! has changed.
+//!
+//! ```
+//! use skiagraph_compare::files::fingerprint::{Fingerprint, RecordedSources};
+//! use skiagraph_graph::Graph;
+//! use skiagraph_passes::{EmbeddedSources, registry};
+//!
+//! let sources = RecordedSources::new(&EmbeddedSources);
+//! let nothing = sources.fingerprint();
+//! Graph::load("pipelines/nsm.ron", &registry(), &sources)?;
+//! assert_ne!(sources.fingerprint().to_string(), nothing.to_string());
+//!
+//! let run = Fingerprint::EMPTY.with_all(sources.fingerprint()).with_text("view main");
+//! println!("{run}");
+//! # Ok::<(), skiagraph_graph::Diagnostics>(())
+//! ```
 
 use skiagraph_graph::{Picture, Sources};
 use skiagraph_scene::{Light, Mesh, View, packed_masks::mask_words};

@@ -1,4 +1,18 @@
 //! JSON files of ours: writing them, and the place of a mistake in one that is read back.
+//!
+//! ```
+//! use skiagraph_compare::files::json::{Mistake, to_text};
+//! use skiagraph_graph::SourceFile;
+//!
+//! assert_eq!(to_text(&[1, 2]), "[\n  1,\n  2\n]\n");
+//!
+//! let text = "{\"schema\": 1,}";
+//! let error = serde_json::from_str::<serde_json::Value>(text).unwrap_err();
+//! let file = SourceFile::new("out/results.json", text);
+//! let (what, help) = ("results.json", "compare anew");
+//! let shown = Mistake::from_serde(text, &error).in_file(&file, what, help, "nothing to resume");
+//! assert!(shown.to_string().contains("out/results.json:1:14"), "{shown}");
+//! ```
 
 use crate::error::CompareError;
 use serde::Serialize;

@@ -1,4 +1,15 @@
 //! One process at a time where several may write the same files of a folder.
+//!
+//! ```
+//! use skiagraph_compare::{files::lock::{Shared, claim, wait_for}, sink::Silent};
+//!
+//! let folder = tempfile::tempdir()?;
+//! let locked = wait_for(folder.path(), Shared::Results, &Silent)?;
+//! assert!(claim(folder.path(), Shared::Results, &Silent)?.is_none(), "it is taken");
+//! drop(locked);
+//! assert!(claim(folder.path(), Shared::Results, &Silent)?.is_some());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::error::CompareError;
 use crate::sink::Sink;

@@ -1,4 +1,14 @@
 //! Hears of changed documents, shaders and pictures.
+//!
+//! ```no_run
+//! use skiagraph_compare::files::watch::{Watch, folders};
+//!
+//! let _watch = Watch::start(&folders(["my/method.ron"].into_iter()), || {
+//!     println!("a document or a shader has changed");
+//! })?;
+//! std::thread::park();
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use notify::{EventKind, RecursiveMode, Watcher};
 use std::{

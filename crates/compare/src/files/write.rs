@@ -1,4 +1,16 @@
 //! Files that are there whole or not at all.
+//!
+//! ```
+//! use skiagraph_compare::files::write::{check_writable, write_new, write_whole};
+//!
+//! let folder = tempfile::tempdir()?;
+//! let csv = folder.path().join("results.csv");
+//! check_writable(&[("--csv".into(), &csv)])?;
+//! write_whole(&csv, b"preset,wrong\n")?;
+//! assert!(!write_new(&csv, b"")?, "it is there");
+//! assert!(check_writable(&[("--csv".into(), &csv), ("--json".into(), &csv)]).is_err());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::error::CompareError;
 use std::{

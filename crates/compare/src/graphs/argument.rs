@@ -1,4 +1,13 @@
 //! A method as the command line names it.
+//!
+//! ```
+//! use skiagraph_compare::graphs::argument::{Assignment, MethodArgument};
+//!
+//! let method = MethodArgument::new("crsm@n=1,depth=plane");
+//! assert_eq!(method.preset, "crsm");
+//! assert_eq!(method.own[1], "depth=plane".parse::<Assignment>()?);
+//! # Ok::<(), String>(())
+//! ```
 
 use std::{path::Path, str::FromStr};
 

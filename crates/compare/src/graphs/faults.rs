@@ -1,4 +1,19 @@
 //! Mistakes of graphs, as they are shown.
+//!
+//! ```
+//! use skiagraph_compare::graphs::faults::GraphFaults;
+//! use skiagraph_graph::Graph;
+//! use skiagraph_passes::{EmbeddedSources, registry};
+//!
+//! let mut faults = GraphFaults::default();
+//! for path in ["pipelines/rt.ron", "pipelines/none.ron"] {
+//!     if let Err(wrong) = Graph::load(path, &registry(), &EmbeddedSources) {
+//!         faults.add(path, &wrong);
+//!     }
+//! }
+//! let error = faults.none_or_error().unwrap_err();
+//! println!("{error}");
+//! ```
 
 use crate::error::CompareError;
 use crate::sink::Sink;

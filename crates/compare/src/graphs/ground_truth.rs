@@ -1,4 +1,21 @@
 //! How a frame of a shadow method compares with the ground truth.
+//!
+//! ```no_run
+//! use skiagraph_compare::graphs::{ground_truth::Judgement, shadow_method::Outputs};
+//! use skiagraph_reference::{Error, GroundTruth};
+//!
+//! # fn best(truth: &GroundTruth, frames: &[Outputs]) -> Result<(), Error> {
+//! let mut best: Option<Judgement> = None;
+//! for outputs in frames {
+//!     let judged = Judgement::new(outputs, truth)?;
+//!     println!("{} pixels wrong", judged.counts.wrong.total);
+//!     if best.as_ref().is_none_or(|best| best.is_worse_than(&judged)) {
+//!         best = Some(judged);
+//!     }
+//! }
+//! # Ok(())
+//! # }
+//! ```
 
 use crate::error::CompareError;
 use crate::graphs::preset::Preset;
@@ -67,24 +84,14 @@ pub fn judged(
 mod tests {
     use super::*;
     use crate::graphs::preset;
-    use skiagraph_reference::{AreaVisibility, Class, GroundTruthPixels};
+    use crate::graphs::shadow_method::tests::truth;
+    use skiagraph_reference::AreaVisibility;
 
     #[test]
     fn a_graded_answer_or_light_is_judged_as_graded() {
         let presets = preset::load_all(&["nsm".into()], &skiagraph_passes::EmbeddedSources);
         let presets = presets.unwrap();
-        let pixels = GroundTruthPixels {
-            viewport: [4, 1],
-            classes: vec![
-                Class::Shadow,
-                Class::Lit,
-                Class::FacingAway,
-                Class::Background,
-            ],
-            indeterminate: vec![false; 4],
-            n_dot_l: vec![0.5; 4],
-            base_colors: Vec::new(),
-        };
+        let pixels = truth();
         let error = |shares: Option<Vec<f32>>, area: Option<AreaVisibility>| {
             let outputs = Outputs {
                 visibility: vec![0, 1, 0, 0],

@@ -1,4 +1,14 @@
 //! Params that are set and change nothing, most of all under a light that has no use for them.
+//!
+//! ```
+//! use skiagraph_compare::graphs::{idle_params::under_other_lights, preset};
+//! use skiagraph_passes::EmbeddedSources;
+//!
+//! let (graph, _) = preset::load("light_buffer", &EmbeddedSources)?;
+//! let idle = under_other_lights(&graph?);
+//! assert!(idle.contains("fit"), "{idle}");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::graphs::method::Method;
 use crate::graphs::planning::{Capabilities, placeholder, stand_ins};

@@ -1,4 +1,15 @@
 //! Which kinds of light a method takes.
+//!
+//! ```
+//! use skiagraph_compare::graphs::{light_kinds, preset};
+//! use skiagraph_passes::EmbeddedSources;
+//!
+//! let graph = preset::load("rt", &EmbeddedSources)?.0?;
+//! assert!(light_kinds::takes(&graph, "point"));
+//! let [taken, refused] = light_kinds::split(&graph);
+//! assert_eq!((taken.len(), refused.len()), (3, 0));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::error::CompareError;
 use crate::wording::did_you_mean;

@@ -1,4 +1,15 @@
 //! A preset with the params that it runs with.
+//!
+//! ```
+//! use skiagraph_compare::graphs::method::{Method, load_one};
+//! use skiagraph_passes::EmbeddedSources;
+//!
+//! let (preset, params) = load_one("nsm@cull=front", &[], Some(512), &EmbeddedSources)?;
+//! let method = Method::new(preset, params).at([640, 360]);
+//! assert_eq!(method.map_size, Some(512));
+//! assert_eq!(method.all_params()["cull"], "front");
+//! # Ok::<(), skiagraph_compare::error::CompareError>(())
+//! ```
 
 use crate::error::CompareError;
 use crate::files::fingerprint::Fingerprint;

@@ -1,5 +1,19 @@
 //! From an argument to a graph that can run: presets and params, planning, what a shadow method
 //! must hand out. Nothing here runs on a GPU.
+//!
+//! ```
+//! use skiagraph_compare::graphs::{planning::{Capabilities, placeholder}, shadow_method};
+//! use skiagraph_passes::EmbeddedSources;
+//!
+//! let words = ["nsm", "crsm@n=1"];
+//! for method in shadow_method::load_methods(&words, &[], &[1024], &EmbeddedSources)? {
+//!     let scene = placeholder([64, 64], &method.preset.graph);
+//!     let plan = method.plan([64, 64], Capabilities::greatest(), &scene)?;
+//!     println!("{}: {} passes", method.name, plan.passes().len());
+//!     assert_eq!(plan.outputs()[0].name, "visibility");
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod argument;
 pub mod faults;

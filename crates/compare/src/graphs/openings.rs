@@ -1,5 +1,23 @@
 //! Open includes: with another document in one a graph is a method of its own,
 //! `contact.ron@over=msm`.
+//!
+//! ```
+//! use skiagraph_compare::graphs::openings::arguments;
+//! use skiagraph_graph::{FolderSources, LayeredSources};
+//! use skiagraph_passes::EmbeddedSources;
+//!
+//! # let root = tempfile::tempdir()?;
+//! let step = r#"(format: 3, outputs: ["visibility"], passes: [
+//!     Include(graph: "nsm.ron", open: "over", expose: All)])"#;
+//! std::fs::create_dir(root.path().join("pipelines"))?;
+//! std::fs::write(root.path().join("pipelines/step.ron"), step)?;
+//! let folder = FolderSources { root: root.path().into() };
+//! let sources = LayeredSources(vec![Box::new(folder), Box::new(EmbeddedSources)]);
+//! let (methods, _) = arguments(["step"], &["over=pcf,nsm".parse()?], &sources)?;
+//! let names: Vec<&str> = methods.iter().map(|it| it.preset.as_str()).collect();
+//! assert_eq!(names, ["step@over=pcf", "step@over=nsm"]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::error::CompareError;
 use crate::graphs::argument::Assignment;

@@ -1,4 +1,14 @@
 //! Planning a graph: for which adapter, and with what scene.
+//!
+//! ```
+//! use skiagraph_compare::graphs::planning;
+//! use skiagraph_passes::{EmbeddedSources, registry};
+//!
+//! let (graph, plan) = planning::check("pipelines/nsm.ron", &registry(), &EmbeddedSources, None)?;
+//! println!("{}: {} passes", graph.path(), plan.passes().len());
+//! assert!(planning::check("pipelines/none.ron", &registry(), &EmbeddedSources, None).is_err());
+//! # Ok::<(), skiagraph_graph::Diagnostics>(())
+//! ```
 
 use crate::graphs::light_kinds;
 use glam::{DVec3, Vec3};

@@ -1,4 +1,15 @@
 //! From the arguments `nsm` or `my/method.ron` to loaded graphs.
+//!
+//! ```
+//! use skiagraph_compare::graphs::preset;
+//! use skiagraph_passes::EmbeddedSources;
+//!
+//! assert!(preset::names(&EmbeddedSources).contains(&"light_buffer".to_owned()));
+//! let presets = preset::load_all(&["nsm".into(), "rt".into()], &EmbeddedSources)?;
+//! assert!(presets[0].param("map_size").is_some());
+//! assert_eq!(presets[1].judged(), [preset::VISIBILITY, preset::STATUS, preset::RAY_COUNT]);
+//! # Ok::<(), skiagraph_compare::error::CompareError>(())
+//! ```
 
 use crate::error::CompareError;
 use crate::files::fingerprint::{Fingerprint, RecordedSources};

@@ -1,4 +1,15 @@
 //! The outputs that a graph must have to stand in `compare`, and how they are read.
+//!
+//! ```
+//! use skiagraph_compare::graphs::shadow_method::{load_all, load_methods};
+//! use skiagraph_passes::EmbeddedSources;
+//!
+//! let methods = load_methods(&["nsm"], &["bias=0,0.01".parse()?], &[256, 512], &EmbeddedSources)?;
+//! assert_eq!(methods.len(), 4);
+//! // A graph without visibility is no shadow method.
+//! assert!(load_all(&["pipelines/shared/gbuffer.ron".into()], &EmbeddedSources).is_err());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::error::CompareError;
 use crate::graphs::argument::Assignment;
@@ -252,11 +263,12 @@ fn certain(visibility: &[u32], truth: &GroundTruthPixels) -> Vec<u32> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use wgpu::TextureFormat as F;
 
-    fn truth() -> GroundTruthPixels {
+    /// A pixel of each class.
+    pub(crate) fn truth() -> GroundTruthPixels {
         GroundTruthPixels {
             viewport: [4, 1],
             classes: vec![

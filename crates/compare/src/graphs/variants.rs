@@ -1,5 +1,17 @@
 //! One method in several settings: `crsm@n=1,depth=plane` beside `crsm`, `--set radius=1,2,4`,
 //! `--set bias=0..0.01/5`.
+//!
+//! ```
+//! use skiagraph_compare::graphs::{argument::MethodArgument, preset, variants::settings};
+//! use skiagraph_passes::EmbeddedSources;
+//!
+//! let presets = preset::load_all(&["nsm".into()], &EmbeddedSources)?;
+//! let nsm = MethodArgument::new("nsm@cull=none,front");
+//! let settings = settings(&presets[0], &nsm, &["bias=0..0.01/3".parse()?])?;
+//! assert_eq!(settings.len(), 6);
+//! assert_eq!(settings[0].set[0], ("cull".into(), "none".into()));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::error::CompareError;
 use crate::graphs::argument::Assignment;

@@ -1,4 +1,18 @@
 //! From where a frame is seen.
+//!
+//! ```
+//! use skiagraph_compare::measuring::camera_pose::CameraPose;
+//! use skiagraph_scene::{SceneLibrary, SceneRequest};
+//!
+//! let request = SceneRequest { argument: "park".into(), obj: None };
+//! let (scene, _) = SceneLibrary::default().load(&request)?;
+//! // Four frames of one view, each with a place of its own within the pixel.
+//! let poses = CameraPose::numbered(vec![scene.views[0].clone(); 4], Some(4));
+//! let jitters = poses.iter().map(|pose| pose.camera([64, 64]).jitter);
+//! let jitters: Vec<_> = jitters.collect();
+//! assert_ne!(jitters[0], jitters[1]);
+//! # Ok::<(), skiagraph_scene::SceneError>(())
+//! ```
 
 use skiagraph_passes::SceneProvider;
 use skiagraph_scene::{Camera, View};

@@ -1,4 +1,11 @@
 //! The date of a measurement (UTC).
+//!
+//! ```
+//! use skiagraph_compare::measuring::date;
+//!
+//! let (now, today) = (date::now(), date::today());
+//! assert_eq!((now.len(), today.len()), ("2026-11-21T04:30:12Z".len(), "2026-11-21".len()));
+//! ```
 
 use jiff::Timestamp;
 

@@ -1,4 +1,23 @@
 //! Opening a GPU, and what is to be known of it before anything is measured.
+//!
+//! ```no_run
+//! use skiagraph_compare::{
+//!     graphs::preset,
+//!     measuring::device::{self, GpuRequest},
+//! };
+//! use skiagraph_passes::EmbeddedSources;
+//! use std::time::Duration;
+//!
+//! let presets = preset::load_all(&["crsm".into()], &EmbeddedSources)?;
+//! let request = GpuRequest {
+//!     adapter: Some("llvmpipe".into()),
+//!     timeout: Some(Duration::from_secs(60)),
+//!     ..GpuRequest::default()
+//! };
+//! let gpu = device::open(&request, preset::graphs(&presets))?;
+//! println!("{}", device::describe(&gpu, device::timestamp_trust(&gpu)));
+//! # Ok::<(), skiagraph_compare::error::CompareError>(())
+//! ```
 
 use crate::error::{CompareError, with_causes};
 use crate::records::results::Adapter;

@@ -1,4 +1,21 @@
 //! One frame of a graph on a GPU.
+//!
+//! ```no_run
+//! use skiagraph_compare::{measuring::frame, sink::Session};
+//! use skiagraph_gpu::{ExecuteError, Frame};
+//! use skiagraph_graph::Plan;
+//! use skiagraph_passes::SceneProvider;
+//!
+//! # fn time(session: Session, plan: Plan, scene: &mut SceneProvider) -> Result<(), ExecuteError> {
+//! let (mut executor, growth) = frame::settled(session, plan, scene)?;
+//! print!("{}", growth.text());
+//! for _ in 0..10 {
+//!     let (report, wall) = frame::run(session, &mut executor, &Frame::default())?;
+//!     println!("{wall:?}, without {}", report.skipped.join(", "));
+//! }
+//! # Ok(())
+//! # }
+//! ```
 
 use crate::error::CompareError;
 use crate::sink::Session;

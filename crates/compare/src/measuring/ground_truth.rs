@@ -1,4 +1,23 @@
 //! The ground truth of one view and viewport: the GPU's primitive ids, judged by the oracle.
+//!
+//! ```
+//! use skiagraph_compare::{
+//!     measuring::ground_truth::{Tracing, ground_truth, heard},
+//!     sink::Silent,
+//! };
+//! use skiagraph_reference::{Oracle, OracleMode};
+//!
+//! let scene = skiagraph_cases::case("box_on_floor").ok_or("it is in the catalogue")?.scene();
+//! let (view, light) = (&scene.views[0], scene.light_of(&scene.views[0]));
+//! // Every pixel shows the first triangle: a GPU says which ones they show.
+//! let ids = vec![0; 8 * 8];
+//! let oracle = Oracle::new(&scene.mesh);
+//! let tracing = Tracing { mode: OracleMode::Exact, samples: 1 };
+//! let (camera, progress) = (view.camera([8, 8]), heard(&Silent, &|_rows| {}));
+//! let truth = ground_truth(&oracle, &camera, &light, &ids, tracing, progress, "main")?;
+//! assert_eq!(truth.pixels.classes.len(), 64);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::error::CompareError;
 use crate::files::fingerprint::{Fingerprint, RecordedSources};

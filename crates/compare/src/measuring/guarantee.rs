@@ -1,4 +1,20 @@
 //! Guarantees of methods, and the casters on which they hold.
+//!
+//! ```
+//! use skiagraph_compare::{
+//!     graphs::shadow_method::load_methods,
+//!     measuring::guarantee::{find, without_culling},
+//!     records::stress::Guarantee,
+//! };
+//! use skiagraph_passes::EmbeddedSources;
+//!
+//! let methods = load_methods(&["light_buffer", "nsm"], &[], &[], &EmbeddedSources)?;
+//! let (guarantee, because) = find(&methods[0], &[])?.ok_or("the document claims it")?;
+//! println!("{because}");
+//! assert_eq!(guarantee, Guarantee::Exact);
+//! assert!(find(&methods[1], &[])?.is_none());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::error::CompareError;
 use crate::graphs::faults::reasons;

@@ -1,4 +1,31 @@
 //! One case with every method.
+//!
+//! ```no_run
+//! use skiagraph_compare::{
+//!     graphs::shadow_method::load_methods,
+//!     measuring::{ground_truth::PrimaryVisibility, hard_case::{HardCaseContext, MethodRun}},
+//!     sink::Session,
+//! };
+//! use skiagraph_passes::EmbeddedSources;
+//!
+//! # fn judge(session: Session) -> Result<(), Box<dyn std::error::Error>> {
+//! let method = load_methods(&["light_buffer"], &[], &[], &EmbeddedSources)?.remove(0);
+//! let method = method.at([128, 128]).settled(session.gpu.device.features());
+//! let context = HardCaseContext {
+//!     session,
+//!     primary: &PrimaryVisibility::load(&EmbeddedSources)?,
+//!     methods: &[MethodRun::new(method, &[])?],
+//!     viewport: [128, 128],
+//!     pictures: None,
+//! };
+//! for hard in skiagraph_cases::cases() {
+//!     for cell in context.run(&hard)?.cells {
+//!         println!("{}: {:?}", hard.name, cell.verdict);
+//!     }
+//! }
+//! # Ok(())
+//! # }
+//! ```
 
 use crate::error::{CompareError, is_fatal, with_causes};
 use crate::graphs::faults::reasons;

@@ -1,4 +1,20 @@
 //! The mesh in each frame of a path on which parts of it move.
+//!
+//! ```
+//! use skiagraph_compare::measuring::mesh_frames::MeshFrames;
+//! use skiagraph_scene::{SceneLibrary, SceneRequest};
+//!
+//! let library = SceneLibrary::default();
+//! let request = SceneRequest { argument: "park".into(), obj: None };
+//! let (scene, _) = library.load(&request)?;
+//! for path in library.paths("park")? {
+//!     match MeshFrames::new(&path, &scene.mesh, 2)? {
+//!         Some(frames) => assert_ne!(frames.mesh(0).positions, frames.mesh(1).positions),
+//!         None => println!("nothing moves along {}", path.view.name),
+//!     }
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::error::CompareError;
 use skiagraph_passes::SceneProvider;

@@ -1,8 +1,27 @@
 //! Runs graphs on a GPU, times them, and judges them against the reference. What comes out is
 //! plain data, in `records`.
+//!
+//! ```no_run
+//! use skiagraph_compare::{
+//!     graphs::{method::{Method, load_one}, planning::Capabilities},
+//!     measuring::{device::{self, GpuRequest}, frame},
+//!     sink::{Session, Silent},
+//! };
+//! use skiagraph_passes::{EmbeddedSources, SceneProvider};
+//!
+//! # fn wrong(mut provider: SceneProvider) -> Result<(), Box<dyn std::error::Error>> {
+//! let (preset, params) = load_one("nsm", &[], Some(1024), &EmbeddedSources)?;
+//! let gpu = device::open(&GpuRequest::default(), [&preset.graph])?;
+//! let method = Method::new(preset, params).settled(gpu.device.features());
+//! let plan = method.plan([512, 512], Capabilities::new(&gpu), &provider)?;
+//! let session = Session::new(&gpu, &Silent);
+//! let (contents, _) = frame::render(session, "nsm", plan, &mut provider, &["visibility"])?;
+//! println!("{:?}", contents["visibility"].size());
+//! # Ok(())
+//! # }
+//! ```
 
 pub mod camera_pose;
-
 pub mod date;
 pub mod device;
 pub mod frame;
@@ -12,13 +31,12 @@ pub mod hard_case;
 pub mod mesh_frames;
 pub mod poison;
 pub mod profiling;
-pub mod results_folder;
+mod results_folder;
 pub mod resume;
-pub mod run;
-
-pub mod sequence;
+mod run;
+mod sequence;
 pub mod series;
-pub mod steady;
-pub mod stop;
-pub mod timing;
+mod steady;
+mod stop;
+mod timing;
 pub mod view_or_path;

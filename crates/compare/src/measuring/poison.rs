@@ -1,4 +1,24 @@
 //! `run --poison`: whether a graph reads memory that no pass has written.
+//!
+//! ```no_run
+//! use skiagraph_compare::{
+//!     graphs::{method::load_one, planning::Capabilities},
+//!     measuring::poison,
+//!     sink::Session,
+//! };
+//! use skiagraph_passes::SceneProvider;
+//! # use skiagraph_passes::EmbeddedSources;
+//!
+//! # type Done = Result<(), Box<dyn std::error::Error>>;
+//! # fn check(session: Session, mut scene: SceneProvider) -> Done {
+//! let (preset, params) = load_one("my/method.ron", &[], None, &EmbeddedSources)?;
+//! let mut request = Capabilities::new(session.gpu).request([256, 256], &scene);
+//! request.params = params;
+//! let plan = preset.plan(&request, session.sink)?;
+//! println!("{}", poison::check(session, &plan, &mut scene, &preset)?);
+//! # Ok(())
+//! # }
+//! ```
 
 use crate::error::CompareError;
 use crate::graphs::faults::GraphFaults;

@@ -1,4 +1,19 @@
 //! One method on one view, over many frames.
+//!
+//! ```no_run
+//! use skiagraph_compare::{graphs::method::Method, measuring::profiling::profile, sink::Session};
+//! use skiagraph_scene::Scene;
+//! use std::sync::Arc;
+//!
+//! # type Done = Result<(), Box<dyn std::error::Error>>;
+//! # fn time(session: Session, method: &Method, scene: Arc<Scene>) -> Done {
+//! let (profile, _) = profile(session, [5, 100], method, &scene, &scene.views[0])?;
+//! for pass in &profile.passes {
+//!     println!("{}: {:.3} ms on the CPU", pass.name, pass.cpu_ms.median);
+//! }
+//! # Ok(())
+//! # }
+//! ```
 
 use crate::error::CompareError;
 use crate::graphs::method::Method;

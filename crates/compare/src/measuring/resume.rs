@@ -1,5 +1,22 @@
 //! The parts of an earlier comparison that stay: the runs of others, and with `--resume` those that
 //! need not be measured again.
+//!
+//! ```no_run
+//! use skiagraph_compare::{
+//!     comparison::Comparison,
+//!     measuring::{resume::Kept, series::Series},
+//!     sink::Session,
+//! };
+//! use std::path::Path;
+//!
+//! # type Done = Result<(), Box<dyn std::error::Error>>;
+//! # fn go_on(comparison: &Comparison, session: Session) -> Done {
+//! // Runs in `out` of which nothing has changed are not measured again.
+//! let series = Series::new(comparison, session, Some((Path::new("out"), Kept::All)))?;
+//! println!("{} of {} are there", series.results.runs.len(), series.planned());
+//! # Ok(())
+//! # }
+//! ```
 
 use crate::error::CompareError;
 use crate::records::read_back::{self, WITHOUT_RESULTS};

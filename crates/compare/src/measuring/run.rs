@@ -9,7 +9,7 @@ use crate::graphs::planning::Capabilities;
 use crate::graphs::shadow_method::Outputs;
 use crate::measuring::ground_truth::GroundTruthView;
 use crate::measuring::steady;
-use crate::measuring::stop::{Attempt, Stop, attempt};
+use crate::measuring::stop::{Stop, attempt};
 use crate::measuring::timing::{self, FrameMode, Times};
 use crate::measuring::{
     date,
@@ -77,7 +77,7 @@ impl MeasureContext<'_> {
         &self,
         method: &Method,
         provider: &mut SceneProvider,
-        run: impl FnOnce(&Method, Plan, &mut SceneProvider, &Step) -> Attempt,
+        run: impl FnOnce(&Method, Plan, &mut SceneProvider, &Step) -> Result<Measured, Stop>,
     ) -> Result<Run, CompareError> {
         let viewport = self.truth_view.ground_truth.pixels.viewport;
         let plan = match method.plan(viewport, Capabilities::new(self.session.gpu), provider) {
@@ -95,7 +95,8 @@ impl MeasureContext<'_> {
             u64::from(self.warmup) + self.frames,
             "frames",
         );
-        let run = match run(method, plan, provider, &step)? {
+        let came = run(method, plan, provider, &step);
+        let run = match attempt(self.session, method, came)? {
             Ok(measured) => Run {
                 measured: Some(measured),
                 ..self.empty(method)
@@ -109,17 +110,16 @@ impl MeasureContext<'_> {
     /// Runs, times and judges a method on one view.
     ///
     /// # Errors
-    /// Those of [`measure`](Self::measure).
+    /// A method that the device refuses, and those of [`measure`](Self::measure).
     pub fn still(
         &self,
         method: &Method,
         plan: Plan,
         provider: &mut dyn Provider,
         step: &Step,
-    ) -> Attempt {
-        let executed = self.execute(method, plan, provider, step);
-        let measured = executed.and_then(|executed| Ok(self.judge(method, executed)?));
-        attempt(self.session, method, measured)
+    ) -> Result<Measured, Stop> {
+        let executed = self.execute(method, plan, provider, step)?;
+        Ok(self.judge(method, executed)?)
     }
 
     /// A run that says why there are no measurements.

@@ -10,7 +10,7 @@ use crate::measuring::ground_truth::{GroundTruthView, heard, own_counts};
 use crate::measuring::mesh_frames::MeshFrames;
 use crate::measuring::run::MeasureContext;
 use crate::measuring::steady;
-use crate::measuring::stop::{Attempt, Stop, attempt};
+use crate::measuring::stop::Stop;
 use crate::measuring::timing::Times;
 use crate::records::results::{Answer, Measured};
 use crate::records::samples::TimedFrame;
@@ -176,24 +176,9 @@ impl MeasureContext<'_> {
     /// Runs a method over a path, with what it keeps from frame to frame.
     ///
     /// # Errors
-    /// Ctrl-C, a lost device, outputs that are not a shadow method's, a picture that cannot be
-    /// written.
+    /// A method that the device refuses, Ctrl-C, a lost device, outputs that are not a shadow
+    /// method's, a picture that cannot be written.
     pub fn follow(
-        &self,
-        method: &Method,
-        plan: Plan,
-        path: &Path,
-        provider: &mut SceneProvider,
-        step: &Step,
-    ) -> Attempt {
-        attempt(
-            self.session,
-            method,
-            self.followed(method, plan, path, provider, step),
-        )
-    }
-
-    fn followed(
         &self,
         method: &Method,
         plan: Plan,

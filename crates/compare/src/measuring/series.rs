@@ -1,4 +1,28 @@
 //! The runs of a comparison, one after the other; whatever is measured is on disk at once.
+//!
+//! ```no_run
+//! use skiagraph_compare::{
+//!     comparison::Comparison,
+//!     measuring::{resume::Kept, series::Series},
+//!     sink::Session,
+//! };
+//! use std::path::Path;
+//!
+//! # type Done = Result<(), Box<dyn std::error::Error>>;
+//! # fn measure(comparison: &Comparison, session: Session) -> Done {
+//! comparison.check(session)?;
+//! let mut series = Series::new(comparison, session, Some((Path::new("out"), Kept::Others)))?;
+//! for view in 0..comparison.views.len() {
+//!     for viewport in 0..comparison.viewports.len() {
+//!         series.measure(view, viewport)?; // and writes `out/results.json`
+//!         for run in series.runs(view, viewport) {
+//!             println!("{}", run.label());
+//!         }
+//!     }
+//! }
+//! # Ok(())
+//! # }
+//! ```
 
 use crate::comparison::Comparison;
 use crate::error::CompareError;
@@ -271,7 +295,8 @@ impl<'a> Series<'a> {
     /// Writes what is done into the folder, with the pictures of the last run.
     ///
     /// # Errors
-    /// Those of [`ResultsFolder::save`].
+    /// An early end; a file that cannot be written, or that another process has written under other
+    /// conditions.
     pub fn save(&mut self, pictures: &[PictureFile]) -> Result<(), CompareError> {
         match &mut self.folder {
             Some(folder) => folder.save(&self.results, pictures, self.session.sink),

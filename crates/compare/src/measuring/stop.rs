@@ -37,14 +37,15 @@ impl From<CompareError> for Stop {
     }
 }
 
-/// Outcome of running a method: measurements, or why the device refuses.
-pub type Attempt = Result<Result<Measured, String>, CompareError>;
-
-/// Tells a method that the device refuses from a device that is of no more use.
+/// Tells a method that the device refuses, with its reason, from a device that is of no more use.
 ///
 /// # Errors
 /// Ctrl-C, a lost device, and what else ends more than this method.
-pub fn attempt(session: Session, method: &Method, came: Result<Measured, Stop>) -> Attempt {
+pub fn attempt(
+    session: Session,
+    method: &Method,
+    came: Result<Measured, Stop>,
+) -> Result<Result<Measured, String>, CompareError> {
     match came {
         Ok(measured) => Ok(Ok(measured)),
         // The box is an error, too, but not the one that is asked for.

@@ -1,4 +1,21 @@
 //! The camera's view: a still one, or every frame of a camera path.
+//!
+//! ```
+//! use skiagraph_compare::measuring::view_or_path::{ViewOrPath, under_lights};
+//! use skiagraph_scene::{SceneLibrary, SceneRequest};
+//!
+//! let library = SceneLibrary::default();
+//! let request = SceneRequest { argument: "park".into(), obj: None };
+//! let (scene, _) = library.load(&request)?;
+//! let mut places = ViewOrPath::paths(&scene, library.paths("park")?, "all", None)?;
+//! let views = under_lights(&scene, scene.views.clone(), None)?;
+//! places.extend(views.into_iter().map(ViewOrPath::Still));
+//! for place in &places {
+//!     println!("{}: {} frames", place.name(), place.poses(None).len());
+//! }
+//! assert!(places.len() > scene.views.len());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::error::CompareError;
 use crate::files::fingerprint::Fingerprint;

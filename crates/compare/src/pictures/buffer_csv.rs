@@ -1,4 +1,14 @@
 //! A buffer as a table: a line per item, a column per scalar.
+//!
+//! ```
+//! use skiagraph_compare::pictures::buffer_csv::to_csv;
+//!
+//! let bytes = [7_u32, 1.5_f32.to_bits()].map(u32::to_le_bytes).concat();
+//! let lines = to_csv(&bytes, None, 0)?;
+//! assert_eq!(lines.lines().next(), Some("item,u32,i32,f32"));
+//! assert_eq!(lines.lines().nth(2), Some("1,1069547520,1069547520,1.5"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::files::csv;
 use skiagraph_graph::{Field, Item, ItemScalar};

@@ -1,4 +1,14 @@
 //! From values to colours, each with a legend that says which is which.
+//!
+//! ```
+//! use skiagraph_compare::pictures::colours::{STATUS, floats, integers};
+//!
+//! let (rgb, legend) = integers("status", &[2, 3]);
+//! assert_eq!(rgb, [STATUS[2].0, STATUS[3].0].concat());
+//! println!("{legend}");
+//! let (grey, _) = floats(&[0.0, 0.5, 1.0], 1);
+//! assert_eq!((grey[0], grey[6]), (0, 255));
+//! ```
 
 use crate::wording::thousands;
 use skiagraph_reference::BACKGROUND;

@@ -1,4 +1,19 @@
 //! Pictures of any material of a graph.
+//!
+//! ```
+//! use skiagraph_compare::pictures::material::Picture;
+//! use skiagraph_gpu::Content;
+//!
+//! let content = Content::Texture {
+//!     format: wgpu::TextureFormat::R8Unorm,
+//!     parts: vec![[2, 1]],
+//!     bytes: vec![0, 255],
+//! };
+//! let picture = Picture::new("visibility", &content, None)?;
+//! assert_eq!(picture.image.size, [2, 1]);
+//! println!("{}", picture.legend);
+//! # Ok::<(), String>(())
+//! ```
 
 use crate::pictures::colours::{ClipPlanes, EMPTY, depths, floats, fractions, integers};
 use skiagraph_gpu::Content;

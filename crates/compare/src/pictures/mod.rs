@@ -1,8 +1,18 @@
 //! Texels and items as files: the pictures of a run, and what `run --save` writes of any material.
+//!
+//! ```
+//! use skiagraph_compare::pictures::save::{Encoding, Save};
+//!
+//! let save: Save = "position@gbuffer.surface=position.png".parse()?;
+//! assert_eq!(save.material, "position");
+//! assert_eq!(save.after.as_deref(), Some("gbuffer.surface"));
+//! assert!(matches!(save.encoding, Encoding::Png));
+//! # Ok::<(), String>(())
+//! ```
 
 pub mod buffer_csv;
 pub mod colours;
 pub mod material;
-pub mod png;
+mod png;
 pub mod run_pictures;
 pub mod save;

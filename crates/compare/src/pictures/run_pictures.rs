@@ -1,4 +1,12 @@
 //! The pictures of a run and of the reference, and their file names.
+//!
+//! ```
+//! use skiagraph_compare::pictures::run_pictures::{graph_name, numbered, reference_name};
+//! use std::path::Path;
+//!
+//! assert_eq!(numbered(Path::new("out/lit.png"), 7), Path::new("out/lit.0007.png"));
+//! println!("{}, {}", reference_name("main", [64, 48]), graph_name("my/method.ron"));
+//! ```
 
 use crate::error::CompareError;
 use crate::files::write::write_whole;

@@ -1,4 +1,19 @@
 //! `run --save`: what of a graph is read back, and how it is written.
+//!
+//! ```no_run
+//! use skiagraph_compare::pictures::{colours::ClipPlanes, save::{Decoding, Save, capture, write}};
+//! use skiagraph_gpu::Content;
+//! use skiagraph_graph::Plan;
+//! use skiagraph_scene::View;
+//!
+//! # type Done = Result<(), Box<dyn std::error::Error>>;
+//! # fn save(plan: &Plan, view: &View, content: &Content) -> Done {
+//! let save: Save = "depth=out/depth.png".parse()?;
+//! let decoding = Decoding::new(plan, &capture(&save).name(), ClipPlanes::new(view));
+//! println!("{}", write(&save, content, &decoding)?);
+//! # Ok(())
+//! # }
+//! ```
 
 use crate::error::CompareError;
 use crate::files::write::write_whole;

@@ -3,6 +3,17 @@
 //! A ratio is new median by old median. Its spread goes from Q1(new) / Q3(old) to Q3(new) /
 //! Q1(old), Q1 and Q3 being the quartiles of the samples: 1 lies outside it exactly if the middle
 //! halves of both samples do not overlap. Only then is something called faster or slower.
+//!
+//! ```
+//! use skiagraph_compare::records::{baseline::{Ratio, Verdict}, statistics::Series};
+//!
+//! let series = |samples: &[f64]| Series::new(samples.to_vec());
+//! let old = series(&[2.0, 2.1, 2.2, 2.3, 2.4]).ok_or("no samples")?;
+//! let new = series(&[1.0, 1.1, 1.1, 1.2, 1.9]).ok_or("no samples")?;
+//! let ratio = Ratio::new(&old, &new);
+//! assert_eq!((ratio.ratio, ratio.verdict), (0.5, Verdict::Faster));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::records::statistics::Series;
 use serde::Serialize;

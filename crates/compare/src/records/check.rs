@@ -1,5 +1,19 @@
 //! The schema of `check --format json`, version 1. Editors and scripts rely on it: extend it,
 //! rename nothing.
+//!
+//! ```
+//! use skiagraph_compare::records::check::{CheckReport, FileReport};
+//! use skiagraph_compare::{files::json, graphs::planning};
+//! use skiagraph_passes::{EmbeddedSources, registry};
+//!
+//! let path = "pipelines/none.ron";
+//! let file = match planning::check(path, &registry(), &EmbeddedSources, None) {
+//!     Ok((graph, plan)) => FileReport::new(path, Some(plan.passes().len()), graph.warnings()),
+//!     Err(wrong) => FileReport::new(path, None, wrong.iter()),
+//! };
+//! let text = json::to_text(&CheckReport::new(vec![file]));
+//! assert!(text.contains("missing-file"), "{text}");
+//! ```
 
 use serde::Serialize;
 use skiagraph_graph::{Code, Diagnostic, Label, Severity};

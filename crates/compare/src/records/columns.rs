@@ -1,5 +1,21 @@
 //! The columns of a comparison: for the terminal, for documents and for results.csv. Each figure
 //! is defined once; a table says in which order it shows which figures, and under which heads.
+//!
+//! ```
+//! use skiagraph_compare::{records::{columns, read_back}, wording};
+//!
+//! # let out = tempfile::tempdir()?;
+//! # let name = "skiagraph_compare__records__results__tests__the_schema_is_pinned_and_reads_back";
+//! # let pinned = std::fs::read_to_string(format!("src/records/snapshots/{name}.snap"))?;
+//! # std::fs::write(out.path().join("results.json"), &pinned[pinned.find('{').unwrap_or(0)..])?;
+//! let results = read_back::kept(out.path())?;
+//! let runs: Vec<_> = results.runs.iter().collect();
+//! for column in columns::terminal(true, &runs) {
+//!     println!("{}: {}", column.head, column.cell(&results, runs[0], wording::percent));
+//! }
+//! assert_eq!(columns::figure("wrong_percent", &results, runs[0]), Some(0.503));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::records::results::{AreaReference, GBUFFER, Measured, Part, Results, Run};
 use crate::records::sequence::Sequence;

@@ -1,4 +1,19 @@
 //! The schema of `profile --json`, version 1. `--baseline` reads it: extend it, rename nothing.
+//!
+//! ```
+//! use skiagraph_compare::records::read_back;
+//!
+//! # let out = tempfile::tempdir()?;
+//! # let name = "skiagraph_compare__records__profile__tests__the_schema_is_pinned_and_reads_back";
+//! # let pinned = std::fs::read_to_string(format!("src/records/snapshots/{name}.snap"))?;
+//! # std::fs::write(out.path().join("nsm.json"), &pinned[pinned.find('{').unwrap_or(0)..])?;
+//! let (old, new) = (out.path().join("nsm.json"), out.path().join("nsm.json"));
+//! let profile = read_back::profile(&new)?;
+//! println!("{} on {}", profile.conditions.preset, profile.conditions.adapter);
+//! let beside = profile.against(&old, &read_back::profile(&old)?);
+//! assert_eq!(beside.frame.wall.ratio, 1.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::records::baseline::{Comparison, Difference, FrameRatio, PassRatio, Ratio};
 use crate::records::results::{Adapter, Scene};
@@ -263,7 +278,7 @@ impl From<MemoryEntry> for Material {
 pub(crate) mod tests {
     use super::*;
     use crate::files::json;
-    use crate::records::results::OpenParts;
+    use crate::records::results::tests::{adapter, scene};
     use crate::records::statistics::tests::series;
 
     /// A profile with every field in use: one pass with all times, one without a GPU time.
@@ -294,21 +309,10 @@ pub(crate) mod tests {
             build: "release".into(),
             date: "2026-11-21T04:30:12Z".into(),
             adapter: Adapter {
-                name: "Some GPU".into(),
-                backend: "vulkan".into(),
-                driver: "driver 1.2".into(),
                 device_type: "DiscreteGpu".into(),
-                gpu_unavailable: None,
+                ..adapter()
             },
-            scene: Scene {
-                name: "park".into(),
-                triangles: 55_000,
-                parts: OpenParts {
-                    all: 40,
-                    open: 12,
-                    open_triangles: 5_000,
-                },
-            },
+            scene: scene(),
             preset: "nsm".into(),
             view: "main".into(),
             viewport: [512, 256],

@@ -1,4 +1,21 @@
 //! Published figures, to stand beside ours.
+//!
+//! ```
+//! use skiagraph_compare::records::{published, published_row::PublishedFile, read_back};
+//!
+//! # let out = tempfile::tempdir()?;
+//! # let name = "skiagraph_compare__records__results__tests__the_schema_is_pinned_and_reads_back";
+//! # let pinned = std::fs::read_to_string(format!("src/records/snapshots/{name}.snap"))?;
+//! # std::fs::write(out.path().join("results.json"), &pinned[pinned.find('{').unwrap_or(0)..])?;
+//! let file = out.path().join("printed.csv");
+//! std::fs::write(&file, "scene,view,viewport,map_size,preset,quantity,value,source,note\n\
+//!     park,main,512x256,1024,nsm,wrong_percent,0.48,table 12,\n")?;
+//! let rows = published::read(&[PublishedFile { label: "D".into(), file }])?;
+//! let mut results = read_back::kept(out.path())?;
+//! published::attach_all(&rows, &mut results);
+//! assert_eq!(results.runs[0].published[0].value, 0.48);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::error::CompareError;
 use crate::records::published_row::{Columns, HEADER, Line, PublishedFile, Row};

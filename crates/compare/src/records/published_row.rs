@@ -1,4 +1,15 @@
 //! One line of a file of published figures: its fields, and what is wrong with them.
+//!
+//! ```
+//! use skiagraph_compare::records::published_row::{HEADER, PublishedFile};
+//!
+//! let named: PublishedFile = "D:docs/dissertation.csv".parse()?;
+//! assert_eq!(named.label, "D");
+//! let file = "docs/dissertation.csv".parse::<PublishedFile>()?;
+//! assert_eq!(file.label, "dissertation");
+//! println!("its first line: {}", HEADER.join(","));
+//! # Ok::<(), String>(())
+//! ```
 
 use crate::records::columns::{quantities, steps_of};
 use crate::records::results::{Published, Run};

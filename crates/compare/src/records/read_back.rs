@@ -1,10 +1,25 @@
 //! Decoding back what `compare` and `profile --json` wrote.
+//!
+//! ```
+//! use skiagraph_compare::records::read_back;
+//!
+//! # let out = tempfile::tempdir()?;
+//! # let name = "skiagraph_compare__records__results__tests__the_schema_is_pinned_and_reads_back";
+//! # let pinned = std::fs::read_to_string(format!("src/records/snapshots/{name}.snap"))?;
+//! # std::fs::write(out.path().join("results.json"), &pinned[pinned.find('{').unwrap_or(0)..])?;
+//! let results = read_back::results(&out.path().join("results.json"))?.ok_or("there are some")?;
+//! assert_eq!(results.scene.name, "park");
+//! assert!(read_back::kept("no/such/folder".as_ref()).is_err());
+//! assert!(read_back::stress(out.path())?.is_none(), "there is no stress.json");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::error::CompareError;
 use crate::files::json::{Mistake, check_schema};
 use crate::records::profile::{KIND, Profile};
 use crate::records::results::{Results, Run};
 use crate::records::statistics::Series;
+use crate::records::stress::Report;
 use serde::{Deserialize, de::DeserializeOwned};
 use serde_json::Value;
 use skiagraph_graph::SourceFile;
@@ -106,7 +121,7 @@ pub fn kept(folder: &Path) -> Result<Results, CompareError> {
 ///
 /// # Errors
 /// A file that cannot be read or is not a stress.json; with the place.
-pub fn stress(folder: &Path) -> Result<Option<Value>, CompareError> {
+pub fn stress(folder: &Path) -> Result<Option<Report>, CompareError> {
     let path = folder.join("stress.json");
     let name = path.display().to_string();
     let text = match KEPT.read_text(&path) {
@@ -121,16 +136,14 @@ pub fn stress(folder: &Path) -> Result<Option<Value>, CompareError> {
     })
 }
 
-fn parse_stress(text: &str) -> Result<Value, Mistake> {
-    let value: Value = parse(text)?;
-    check_schema(text, value.get("schema").cloned())?;
-    let has = |name: &str| value.get(name).is_some_and(Value::is_array);
-    if has("methods") && has("cases") {
-        Ok(value)
-    } else {
+fn parse_stress(text: &str) -> Result<Report, Mistake> {
+    let head: Head = parse(text)?;
+    check_schema(text, head.schema)?;
+    if head.methods.is_none() || head.cases.is_none() {
         let what = "\"methods\" or \"cases\" is missing".into();
-        Err(Mistake::at_field(text, "{", what))
+        return Err(Mistake::at_field(text, "{", what));
     }
+    parse(text)
 }
 
 fn profile_of(file: &SourceFile) -> Result<Profile, CompareError> {
@@ -160,6 +173,8 @@ struct Head {
     kind: Option<Value>,
     oracle: Option<Value>,
     runs: Option<Value>,
+    methods: Option<Value>,
+    cases: Option<Value>,
 }
 
 fn parse<T: DeserializeOwned>(text: &str) -> Result<T, Mistake> {
@@ -234,14 +249,21 @@ mod tests {
     use crate::files::json::to_text;
     use crate::records::{profile, results};
 
+    /// What is said of each of these texts, each of which differs from a good one.
     fn refused<T>(
         read: fn(&SourceFile) -> Result<T, CompareError>,
         name: &str,
-        text: String,
+        good: &str,
+        texts: &[String],
     ) -> String {
-        let error = read(&SourceFile::new(name, text)).err().expect("refused");
-        assert!(matches!(error, CompareError::Diagnostics { .. }), "{error}");
-        error.to_string()
+        let said = texts.iter().map(|text| {
+            assert_ne!(text, good);
+            let error = read(&SourceFile::new(name, text.clone()));
+            let error = error.err().expect("refused");
+            assert!(matches!(error, CompareError::Diagnostics { .. }), "{error}");
+            error.to_string()
+        });
+        said.collect::<Vec<_>>().join("\n")
     }
 
     #[test]
@@ -263,12 +285,7 @@ mod tests {
             good.replacen("        4.0,\n        5.0,\n        4.5\n", "", 1),
             good.replacen("        2.0,", "        -2.0,", 1),
         ];
-        assert!(texts.iter().all(|text| *text != good));
-        insta::assert_snapshot!(
-            texts
-                .map(|text| refused(profile_of, "old.json", text))
-                .join("\n")
-        );
+        insta::assert_snapshot!(refused(profile_of, "old.json", &good, &texts));
     }
 
     #[test]
@@ -282,11 +299,6 @@ mod tests {
             "{\"schema\": 1, \"kind\": \"profile\"}\n".to_owned(),
             String::new(),
         ];
-        assert!(texts.iter().all(|text| *text != good));
-        insta::assert_snapshot!(
-            texts
-                .map(|text| refused(results_of, "results.json", text))
-                .join("\n")
-        );
+        insta::assert_snapshot!(refused(results_of, "results.json", &good, &texts));
     }
 }

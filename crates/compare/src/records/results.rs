@@ -1,5 +1,22 @@
 //! The schema of `results.json` and `results.csv`, version 1. Scripts rely on it: extend it, rename
 //! nothing.
+//!
+//! ```
+//! use skiagraph_compare::records::{read_back, results::step};
+//!
+//! # let out = tempfile::tempdir()?;
+//! # let name = "skiagraph_compare__records__results__tests__the_schema_is_pinned_and_reads_back";
+//! # let pinned = std::fs::read_to_string(format!("src/records/snapshots/{name}.snap"))?;
+//! # std::fs::write(out.path().join("results.json"), &pinned[pinned.find('{').unwrap_or(0)..])?;
+//! let results = read_back::kept(out.path())?;
+//! let measured = results.runs[0].measured.as_ref().ok_or("it ran")?;
+//! assert_eq!(measured.wrong_outside_band(), 497);
+//! for pass in &measured.passes {
+//!     println!("{}, of the step {}", pass.name, step(&pass.name));
+//! }
+//! assert_eq!(measured.step_ms("gbuffer+create_shadow_map"), Some(0.75));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::records::sequence::Sequence;
 use crate::records::statistics::{FrameTimes, Spread};
@@ -461,6 +478,30 @@ pub(crate) mod tests {
     use crate::files::json;
     use skiagraph_reference::ClassSplit;
 
+    /// An adapter that no machine has.
+    pub(crate) fn adapter() -> Adapter {
+        Adapter {
+            name: "Some GPU".into(),
+            backend: "vulkan".into(),
+            driver: "driver 1.2".into(),
+            device_type: "Cpu".into(),
+            gpu_unavailable: None,
+        }
+    }
+
+    /// A scene of open and closed parts.
+    pub(crate) fn scene() -> Scene {
+        Scene {
+            name: "park".into(),
+            triangles: 55_000,
+            parts: OpenParts {
+                all: 40,
+                open: 12,
+                open_triangles: 5_000,
+            },
+        }
+    }
+
     /// Results with every field in use: one full run, one without a map or GPU times, one
     /// unavailable.
     #[allow(clippy::too_many_lines, reason = "every field has a value")]
@@ -576,22 +617,8 @@ pub(crate) mod tests {
         Results {
             schema: 1,
             program: "skiagraph 0.1.0".into(),
-            adapter: Adapter {
-                name: "Some GPU".into(),
-                backend: "vulkan".into(),
-                driver: "driver 1.2".into(),
-                device_type: "Cpu".into(),
-                gpu_unavailable: None,
-            },
-            scene: Scene {
-                name: "park".into(),
-                triangles: 55_000,
-                parts: OpenParts {
-                    all: 40,
-                    open: 12,
-                    open_triangles: 5_000,
-                },
-            },
+            adapter: adapter(),
+            scene: scene(),
             oracle: "exact".into(),
             frames: 10,
             warmup: 2,

@@ -1,4 +1,19 @@
 //! Times of frames as they were sampled, one by one.
+//!
+//! ```
+//! use skiagraph_compare::records::samples::{Samples, TimedFrame};
+//! use skiagraph_gpu::FrameTiming;
+//! use std::time::Duration;
+//!
+//! let frame = |index: u64| TimedFrame {
+//!     began: Duration::from_millis(20 * index),
+//!     timing: FrameTiming { passes: Vec::new() },
+//!     wall: Duration::from_millis(16),
+//!     skipped: Vec::new(),
+//! };
+//! let samples = Samples::new(&[frame(0), frame(1)]);
+//! assert_eq!(samples.wall, [Duration::from_millis(16); 2]);
+//! ```
 
 use skiagraph_gpu::FrameTiming;
 use std::time::Duration;

@@ -1,4 +1,21 @@
 //! The frames of a camera path, in `results.json`.
+//!
+//! ```
+//! use skiagraph_compare::records::sequence::Sequence;
+//!
+//! // As it stands under `sequence` of a run.
+//! let path: Sequence = serde_json::from_str(
+//!     r#"{"shimmer": {"compared": 900, "changed": 3}, "frames": [
+//!         {"facing_light": 900, "wrong": 2, "wrong_outside_band": 0, "rays": null,
+//!             "gpu_ms": null, "wall_ms": 3.5},
+//!         {"facing_light": 900, "wrong": 7, "wrong_outside_band": 1, "rays": null,
+//!             "gpu_ms": null, "wall_ms": 3.0}]}"#,
+//! )?;
+//! let (worst, _) = path.worst().ok_or("a path has frames")?;
+//! let (slowest, cost) = path.slowest().ok_or("a path has frames")?;
+//! assert_eq!((worst, slowest, cost.ms()), (1, 0, 3.5));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::records::statistics::FrameTimes;
 use serde::{Deserialize, Serialize};

@@ -1,4 +1,15 @@
 //! Order statistics of times.
+//!
+//! ```
+//! use skiagraph_compare::records::statistics::{Series, Spread};
+//! use std::time::Duration;
+//!
+//! let times = [7, 5, 6, 20].map(Duration::from_millis);
+//! let spread = Spread::new(&times).ok_or("no samples")?;
+//! assert_eq!((spread.min, spread.median, spread.p95), (5.0, 6.5, 20.0));
+//! assert_eq!(Series::from_times(&times).ok_or("no samples")?.max, 20.0);
+//! # Ok::<(), &str>(())
+//! ```
 
 use serde::{Deserialize, Serialize};
 use std::time::Duration;

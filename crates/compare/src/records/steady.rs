@@ -1,4 +1,17 @@
 //! The steady state of a method that remembers, in `results.json`.
+//!
+//! ```
+//! use skiagraph_compare::records::steady::Steady;
+//!
+//! // As it stands under `steady` of a run.
+//! let steady: Steady = serde_json::from_str(r#"{"frames": 36, "period": 4}"#)?;
+//! match steady.period {
+//!     Some(period) => println!("repeats every {period} frames after {}", steady.frames),
+//!     None => println!("did not repeat within {} frames", steady.frames),
+//! }
+//! assert_eq!(steady.period, Some(4));
+//! # Ok::<(), serde_json::Error>(())
+//! ```
 
 use serde::{Deserialize, Serialize};
 

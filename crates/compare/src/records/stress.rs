@@ -1,5 +1,22 @@
 //! The schema of `stress.json`, version 1, and what is judged of it. Scripts rely on it: extend it,
 //! rename nothing.
+//!
+//! ```
+//! use skiagraph_compare::records::{read_back, stress::{Report, Verdict}};
+//!
+//! # let out = tempfile::tempdir()?;
+//! # let pinned = "skiagraph_compare__records__stress__tests__the_schema_is_pinned";
+//! # let pinned = std::fs::read_to_string(format!("src/records/snapshots/{pinned}.snap"))?;
+//! # std::fs::write(out.path().join("stress.json"), &pinned[pinned.find('{').unwrap_or(0)..])?;
+//! let matrix = read_back::stress(out.path())?.ok_or("there is no stress.json")?;
+//! let report: Report = serde_json::from_value(matrix)?;
+//! for case in &report.cases {
+//!     let failed = case.cells.iter().filter(|cell| cell.verdict == Verdict::Fail);
+//!     println!("{}: {} failed", case.name, failed.count());
+//! }
+//! assert_eq!(report.count(Verdict::Fail), 2);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::records::results::{Adapter, Images};
 use serde::{Deserialize, Serialize};
@@ -273,6 +290,7 @@ impl Report {
 pub(crate) mod tests {
     use super::*;
     use crate::files::json;
+    use crate::records::results::tests::adapter;
 
     fn cell(preset: &str, verdict: Verdict, outside: [u64; 3]) -> Cell {
         let [lit, shadow, certain] = outside;
@@ -356,13 +374,7 @@ pub(crate) mod tests {
         Report {
             schema: 1,
             program: "skiagraph 0.1.0".into(),
-            adapter: Adapter {
-                name: "Some GPU".into(),
-                backend: "vulkan".into(),
-                driver: "driver 1.2".into(),
-                device_type: "Cpu".into(),
-                gpu_unavailable: None,
-            },
+            adapter: adapter(),
             viewport: [128, 96],
             methods: vec![
                 column("rt", exact),

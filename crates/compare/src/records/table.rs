@@ -1,4 +1,14 @@
 //! A table as plain data, and as text where that needs no more than text.
+//!
+//! ```
+//! use skiagraph_compare::records::table::Table;
+//!
+//! let rows = [["nsm", "503"], ["light_buffer", "0"]];
+//! let table = Table::new(["method", "wrong"], 1, rows.map(|row| row.map(str::to_owned).to_vec()));
+//! assert!(table.markdown().starts_with("| method | wrong |\n|---|---:|\n"));
+//! assert_eq!(table.csv()?, "method,wrong\nnsm,503\nlight_buffer,0\n");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::files::csv;
 use serde::Serialize;

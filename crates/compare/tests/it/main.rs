@@ -2,8 +2,19 @@
 
 mod support;
 
+mod checking;
+mod dissertation;
 mod engine;
+mod foreign_files;
+mod frames;
 mod hard_cases;
+mod judging;
+mod lights;
 mod paths;
+mod poison;
+mod profile;
 mod remembering;
 mod resume;
+mod saves;
+mod schema;
+mod timeless;

@@ -1,16 +1,9 @@
 //! Every frame of a camera path, judged.
 
-use crate::support::{along, park_comparison, runs, timed};
-use serde_json::Value;
-
-/// A folder without documents: methods are built in.
-const NOWHERE: &str = "no folder of documents";
-
-fn count(value: &Value) -> u64 {
-    value
-        .as_u64()
-        .unwrap_or_else(|| panic!("{value} is not a count"))
-}
+use crate::support::{NOWHERE, along, count, keep, park, park_comparison, runs, scene, timed};
+use skiagraph_compare::measuring::{resume::Kept, view_or_path::ViewOrPath};
+use skiagraph_scene::SceneLibrary;
+use std::fs;
 
 #[test]
 #[ignore = "a suite: `./test.sh --all` runs it"]
@@ -102,4 +95,109 @@ fn moving_parts_are_followed_by_what_is_kept_and_by_the_reference() {
             }
         }
     }
+}
+
+#[test]
+fn every_frame_is_judged_and_exact_methods_do_not_shimmer() {
+    let out = tempfile::tempdir().unwrap();
+    let comparison = park_comparison(&["rt", "nsm", "light_buffer"], NOWHERE.as_ref(), 64);
+    let comparison = timed(along(comparison, "walk"), [1, 10, 10]);
+    let (_, results) = keep(&comparison, out.path(), Kept::Others).unwrap();
+    let runs = results["runs"].as_array().unwrap();
+    assert_eq!(runs.len(), 3);
+    for run in runs {
+        let sequence = &run["sequence"];
+        let frames = sequence["frames"].as_array().unwrap();
+        assert_eq!(frames.len(), 25);
+        let sum = |name: &str| -> u64 { frames.iter().map(|frame| count(&frame[name])).sum() };
+        assert_eq!(sum("facing_light"), count(&run["pixels"]["facing_light"]));
+        assert_eq!(sum("wrong"), count(&run["wrong"]["total"]));
+        assert!(frames[0]["shimmer"].is_null());
+        let changed = frames[1..]
+            .iter()
+            .map(|frame| count(&frame["shimmer"]["changed"]));
+        let changed: u64 = changed.sum();
+        let shimmer = &sequence["shimmer"];
+        assert_eq!(changed, count(&shimmer["changed"]));
+        let seen_twice = count(&shimmer["compared"]) as f64 / sum("facing_light") as f64;
+        assert!((0.4..0.96).contains(&seen_twice), "{shimmer}");
+        let outside = sum("wrong_outside_band");
+        if run["preset"] != "nsm" {
+            assert_eq!((changed, outside), (0, 0), "{}", run["preset"]);
+            continue;
+        }
+        assert!(changed > 200 && outside > 2_000, "{shimmer}");
+        let skipped = frames[5]["skipped"].to_string();
+        assert!(skipped.contains("create_shadow_map.draw[0]"), "{skipped}");
+        for frame in frames {
+            let wall = frame["every_pass"]["wall_ms"].as_f64();
+            assert!(wall.is_some_and(|ms| ms > 0.0), "{frame}");
+        }
+        assert!(sequence["every_pass"]["wall_ms"]["median"].is_f64());
+    }
+    let csv = fs::read_to_string(out.path().join("results.csv")).unwrap();
+    let head = csv.lines().next().unwrap();
+    for columns in [
+        ",worst_frame,worst_frame_wrong,",
+        ",slowest_frame,slowest_frame_ms,every_pass_gpu_ms,",
+    ] {
+        assert!(head.contains(columns), "{head}");
+    }
+    let (heard, _) = keep(&comparison, out.path(), Kept::All).unwrap();
+    let told = heard.notes();
+    assert!(told.contains("3 of 3 runs are kept"), "{told}");
+}
+
+#[test]
+fn a_part_that_is_not_there_is_refused_with_those_that_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = r#"(
+        format: 1, name: "own", mesh: Generated("park"), light: (direction: (0.7, -0.4, 0.5)),
+        views: [(
+            name: "v", eye: (-10, 60, 60), direction: (0.5, -0.7, -0.6), fov_y_degrees: 60,
+            near: 1, far: 400,
+        )],
+        paths: [(
+            name: "p", fov_y_degrees: 60, near: 1, far: 400,
+            keys: [
+                (at: 0, eye: (-10, 60, 60), direction: (0.5, -0.7, -0.6)),
+                (at: 0.1, eye: (-10, 60, 60), direction: (0.5, -0.7, -0.6)),
+            ],
+            moves: [Sway(part: "tree 9", axis: (1, 0, 0), degrees: 5, seconds: 2)],
+        )],
+    )"#;
+    let file = folder.path().join("own.ron");
+    fs::write(&file, text).unwrap();
+    let file = file.to_str().unwrap();
+    let (scene, paths) = (
+        scene(file, None),
+        SceneLibrary::default().paths(file).unwrap(),
+    );
+    let paths = ViewOrPath::paths(&scene, paths, "p", None).unwrap();
+    let told = paths[0].mesh_frames(&scene, 2).err().unwrap().to_string();
+    assert!(
+        told.contains("path \"p\": moves: no part of the mesh is called \"tree 9\"; known here:")
+            && told.contains("tree 1"),
+        "{told}"
+    );
+}
+
+#[test]
+fn a_path_that_is_not_there_is_refused_with_those_that_are() {
+    let paths = SceneLibrary::default().paths("park").unwrap();
+    let refused = |paths, name| {
+        let refused = ViewOrPath::paths(&park(), paths, name, None);
+        refused.err().unwrap().to_string()
+    };
+    let unknown = refused(paths, "wlak");
+    assert!(
+        unknown.contains("`park` has no path `wlak`; did you mean `walk`?")
+            && unknown.contains("paths: walk, sunrise, lamp, wind, or all of them: all"),
+        "{unknown}"
+    );
+    let none = refused(Vec::new(), "walk");
+    assert!(
+        none.contains("`park` has no camera paths") && none.contains("keys:"),
+        "{none}"
+    );
 }

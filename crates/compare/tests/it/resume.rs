@@ -1,52 +1,14 @@
 //! Results in a folder, and going on from those that are there.
 
-use crate::support::{park, sources};
+use crate::support::{LIT, NOWHERE, comparison, keep, park, park_comparison, sources, timed};
+use crate::timeless::timeless;
 use serde_json::Value;
 use skiagraph_compare::{
-    comparison::Comparison,
-    graphs::shadow_method::load_methods,
-    measuring::{resume::Kept, series::Series},
-    sink::{Session, Sink},
+    comparison::Comparison, graphs::shadow_method::load_methods, measuring::resume::Kept,
 };
 use skiagraph_graph::Sources;
-use std::{fs, path::Path, sync::Mutex};
-
-/// Keeps notes, and the names of steps that begin.
-#[derive(Default)]
-struct Heard {
-    notes: Mutex<String>,
-    steps: Mutex<Vec<String>>,
-}
-
-impl Sink for Heard {
-    fn note(&self, text: &str) {
-        *self.notes.lock().unwrap() += text;
-    }
-
-    fn begin_step(&self, name: &str, _total: u64, _unit: &'static str) {
-        self.steps.lock().unwrap().push(name.to_owned());
-    }
-}
-
-/// Results without times, and without the commands that measured them.
-fn timeless(mut value: Value) -> Value {
-    fn clear(value: &mut Value) {
-        match value {
-            Value::Object(fields) if fields.contains_key("p95") => *value = Value::Null,
-            Value::Object(fields) => {
-                fields.remove("date");
-                fields.remove("commands");
-                // The reason has times in it.
-                fields.remove("gpu_unavailable");
-                fields.values_mut().for_each(clear);
-            }
-            Value::Array(items) => items.iter_mut().for_each(clear),
-            _ => {}
-        }
-    }
-    clear(&mut value);
-    value
-}
+use skiagraph_passes::EmbeddedSources;
+use std::{fs, path::Path};
 
 /// Compares methods, those of a folder first, and keeps the results in a folder; returns what was
 /// heard, and the file.
@@ -57,29 +19,12 @@ fn compare(
     out: &Path,
     kept: Kept,
 ) -> (String, Vec<String>, Value) {
-    let methods = load_methods(methods, &[], map_sizes, &sources(own)).unwrap();
-    let mut comparison = Comparison::new(park(), methods).unwrap();
-    comparison.views.truncate(1);
+    let mut comparison = comparison(park(), methods, own, map_sizes);
     comparison.viewports = vec![[24, 16], [16, 16]];
-    (comparison.protocol.frames, comparison.protocol.warmup) = (1, 0);
-    (
-        comparison.protocol.cached_frames,
-        comparison.protocol.pictures,
-    ) = (1, true);
-    let heard = Heard::default();
-    let session = Session::new(crate::support::gpu(), &heard);
-    comparison.check(session).unwrap();
-    fs::create_dir_all(out).unwrap();
-    let mut series = Series::new(&comparison, session, Some((out, kept))).unwrap();
-    for viewport in 0..comparison.viewports.len() {
-        series.measure(0, viewport).unwrap();
-    }
-    series.save(&[]).unwrap();
-    drop(series);
-    let text = fs::read_to_string(out.join("results.json")).unwrap();
-    let notes = heard.notes.into_inner().unwrap();
-    let steps = heard.steps.into_inner().unwrap();
-    (notes, steps, serde_json::from_str(&text).unwrap())
+    comparison.protocol.cached_frames = 1;
+    comparison.protocol.pictures = true;
+    let (heard, results) = keep(&comparison, out, kept).unwrap();
+    (heard.notes(), heard.steps(), results)
 }
 
 #[test]
@@ -113,4 +58,88 @@ fn a_resumed_comparison_is_the_one_in_one_go() {
         text.contains("2 of 6 runs are kept") && text.contains("4 of the 6"),
         "{text}"
     );
+}
+
+#[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
+fn settings_stand_beside_each_other_and_runs_that_are_there_stay() {
+    let out = tempfile::tempdir().unwrap();
+    let keep = |words: &[&str], params: &[&str], kept| {
+        let params: Vec<_> = params.iter().map(|set| set.parse().unwrap()).collect();
+        let methods = load_methods(words, &params, &[8], &EmbeddedSources).unwrap();
+        let mut comparison = Comparison::new(park(), methods).unwrap();
+        comparison.views.truncate(1);
+        comparison.viewports = vec![[16, 16]];
+        comparison.protocol.pictures = true;
+        let (heard, results) = keep(&timed(comparison, [0, 1, 1]), out.path(), kept).unwrap();
+        let runs = results["runs"].as_array().unwrap().iter();
+        let names = runs.map(|run| run["preset"].as_str().unwrap().to_owned());
+        (heard.notes(), names.collect::<Vec<String>>())
+    };
+    keep(&["rt"], &[], Kept::Others);
+    let words = ["crsm@n=1,depth=plane", "crsm"];
+    let (text, names) = keep(&words, &["cull=front,none"], Kept::Others);
+    assert!(
+        text.contains("1 other run that") && text.contains("results.json holds already stays"),
+        "{text}"
+    );
+    let own = ["n=1,depth=plane,cull=front", "n=1,depth=plane,cull=none"];
+    let all = own.into_iter().chain(["cull=front", "cull=none"]);
+    let expected: Vec<String> = all.map(|set| format!("crsm@{set}")).collect();
+    assert_eq!(names, [&expected[..], &["rt".into()]].concat());
+    let picture = "crsm-n-1-depth-plane-cull-none-bench_side-16x16-map8-error.png";
+    assert!(out.path().join(picture).is_file());
+    let (_, names) = keep(&["nsm"], &[], Kept::Nothing);
+    assert_eq!(names, ["nsm"]);
+}
+
+#[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
+fn results_of_other_conditions_are_not_resumed() {
+    let out = tempfile::tempdir().unwrap();
+    let keep = |frames, kept| {
+        let comparison = park_comparison(&["nsm"], NOWHERE.as_ref(), 8);
+        keep(&timed(comparison, [0, frames, 0]), out.path(), kept)
+    };
+    let (heard, before) = keep(1, Kept::All).unwrap();
+    let text = heard.notes();
+    assert!(text.contains("results.json is not there yet"), "{text}");
+    for kept in [Kept::All, Kept::Others] {
+        let Err(error) = keep(2, kept) else {
+            panic!("results of other conditions stay");
+        };
+        let text = error.to_string();
+        assert!(text.contains("frames: there 1, here 2"), "{text}");
+        let now = fs::read_to_string(out.path().join("results.json")).unwrap();
+        assert_eq!(serde_json::from_str::<Value>(&now).unwrap(), before);
+    }
+    let (_, replaced) = keep(2, Kept::Nothing).unwrap();
+    assert_eq!(replaced["frames"], 2);
+}
+
+#[test]
+fn what_could_not_run_is_tried_again() {
+    let folder = tempfile::tempdir().unwrap();
+    // One is for Windows, one for Android: no adapter has both.
+    let nowhere = LIT.replace(
+        "format: 3,",
+        r#"format: 3, requires: [
+            "VULKAN_EXTERNAL_MEMORY_WIN32",
+            "VULKAN_GOOGLE_DISPLAY_TIMING",
+        ],"#,
+    );
+    fs::write(folder.path().join("nowhere.ron"), nowhere).unwrap();
+    let keep = || {
+        let comparison = park_comparison(&["nsm", "nowhere.ron"], folder.path(), 8);
+        keep(&comparison, folder.path(), Kept::All).unwrap()
+    };
+    let (_, before) = keep();
+    let run = &before["runs"][1];
+    assert!(run["unavailable"].is_string(), "{run}");
+    let (heard, again) = keep();
+    let text = heard.notes();
+    assert!(text.contains("1 of 2 runs are kept"), "{text}");
+    assert_eq!(heard.steps(), [""; 0], "nothing is drawn");
+    assert_eq!(again["runs"], before["runs"]);
+    assert_eq!(timeless(again), timeless(before));
 }

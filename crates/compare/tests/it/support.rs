@@ -3,22 +3,33 @@
 use serde_json::Value;
 use skiagraph_compare::{
     comparison::{Comparison, Protocol},
+    error::CompareError,
     graphs::shadow_method::load_methods,
     measuring::{
         device::{self, GpuRequest},
-        series,
+        resume::Kept,
+        series::{self, Series},
         view_or_path::ViewOrPath,
     },
-    sink::{Session, Silent},
+    sink::{Session, Silent, Sink},
 };
 use skiagraph_gpu::device::Gpu;
 use skiagraph_graph::{FolderSources, LayeredSources};
 use skiagraph_passes::EmbeddedSources;
-use skiagraph_scene::{Scene, SceneLibrary, SceneRequest};
-use std::{
-    path::Path,
-    sync::{Arc, LazyLock},
+use skiagraph_scene::{
+    Concave, Light, MaterialUse, ObjSetup, QuadDiagonal, Scene, SceneLibrary, SceneRequest, View,
 };
+use std::{
+    fs,
+    path::Path,
+    sync::{Arc, LazyLock, Mutex},
+};
+
+/// A graph that lights everything and is sure of it.
+pub const LIT: &str = include_str!("../../../cli/tests/it/support/lit.ron");
+
+/// A folder without documents: methods are built in.
+pub const NOWHERE: &str = "no folder of documents";
 
 /// The folder of `temporal.ron`, a method that remembers.
 pub const TEMPORAL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/foreign/temporal");
@@ -36,15 +47,34 @@ pub fn gpu() -> &'static Gpu {
 
 /// The scene `park`.
 pub fn park() -> Arc<Scene> {
-    static PARK: LazyLock<Arc<Scene>> = LazyLock::new(|| {
-        let argument = "park".to_owned();
-        let request = SceneRequest {
-            argument,
-            obj: None,
-        };
-        Arc::new(SceneLibrary::default().load(&request).unwrap().0)
-    });
+    static PARK: LazyLock<Arc<Scene>> = LazyLock::new(|| scene("park", None));
     PARK.clone()
+}
+
+/// The scene of a name or of a file, with what a mesh file lacks.
+pub fn scene(argument: &str, obj: Option<ObjSetup>) -> Arc<Scene> {
+    let argument = argument.to_owned();
+    let loaded = SceneLibrary::default().load(&SceneRequest { argument, obj });
+    Arc::new(loaded.unwrap_or_else(|error| panic!("{error}")).0)
+}
+
+/// Writes the text of a mesh file into a folder, and loads it under a light and seen so.
+pub fn mesh(folder: &Path, text: &str, view: View, light: impl Into<Light>) -> Arc<Scene> {
+    let file = folder.join("mesh.obj");
+    fs::write(&file, text).unwrap();
+    mesh_file(&file, view, light)
+}
+
+/// The mesh of a file under a light and seen so.
+pub fn mesh_file(file: &Path, view: View, light: impl Into<Light>) -> Arc<Scene> {
+    let setup = ObjSetup {
+        view,
+        light: light.into(),
+        quads: QuadDiagonal::default(),
+        concave: Concave::default(),
+        materials: MaterialUse::default(),
+    };
+    scene(file.to_str().unwrap(), Some(setup))
 }
 
 /// Documents of a folder, and those that are built in.
@@ -55,13 +85,25 @@ pub fn sources(folder: &Path) -> LayeredSources {
     LayeredSources(vec![Box::new(own), Box::new(EmbeddedSources)])
 }
 
-/// Compares methods of a folder, or built in, on the first view of `park`, with maps of 128².
-pub fn park_comparison(methods: &[&str], folder: &Path, side: u32) -> Comparison {
-    let methods = load_methods(methods, &[], &[128], &sources(folder))
+/// Compares methods of a folder, or built in, on the first view of a scene, with maps of these
+/// sides; a frame of each.
+pub fn comparison(
+    scene: Arc<Scene>,
+    methods: &[&str],
+    folder: &Path,
+    map_sizes: &[u32],
+) -> Comparison {
+    let methods = load_methods(methods, &[], map_sizes, &sources(folder))
         .unwrap_or_else(|error| panic!("{error}"));
-    let mut comparison = Comparison::new(park(), methods).unwrap();
-    comparison.viewports = vec![[side; 2]];
+    let mut comparison = Comparison::new(scene, methods).unwrap();
     comparison.views.truncate(1);
+    timed(comparison, [0, 1, 0])
+}
+
+/// The same on `park`, with maps of 128².
+pub fn park_comparison(methods: &[&str], folder: &Path, side: u32) -> Comparison {
+    let mut comparison = comparison(park(), methods, folder, &[128]);
+    comparison.viewports = vec![[side; 2]];
     comparison
 }
 
@@ -89,4 +131,62 @@ pub fn runs(comparison: &Comparison) -> Vec<Value> {
     let results = results.unwrap_or_else(|error| panic!("{error}"));
     let runs = results.runs.iter();
     runs.map(|run| serde_json::to_value(run).unwrap()).collect()
+}
+
+/// Keeps notes, and the names of steps that begin.
+#[derive(Default)]
+pub struct Heard {
+    notes: Mutex<String>,
+    steps: Mutex<Vec<String>>,
+}
+
+impl Heard {
+    /// The notes so far.
+    pub fn notes(&self) -> String {
+        self.notes.lock().unwrap().clone()
+    }
+
+    /// The names of the steps that began so far.
+    pub fn steps(&self) -> Vec<String> {
+        self.steps.lock().unwrap().clone()
+    }
+}
+
+impl Sink for Heard {
+    fn note(&self, text: &str) {
+        *self.notes.lock().unwrap() += text;
+    }
+
+    fn begin_step(&self, name: &str, _total: u64, _unit: &'static str) {
+        self.steps.lock().unwrap().push(name.to_owned());
+    }
+}
+
+/// Measures a comparison and keeps the results in a folder; returns what was heard, and the file.
+pub fn keep(
+    comparison: &Comparison,
+    out: &Path,
+    kept: Kept,
+) -> Result<(Heard, Value), CompareError> {
+    let heard = Heard::default();
+    let session = Session::new(gpu(), &heard);
+    comparison.check(session)?;
+    fs::create_dir_all(out).unwrap();
+    let mut series = Series::new(comparison, session, Some((out, kept)))?;
+    for view in 0..comparison.views.len() {
+        for viewport in 0..comparison.viewports.len() {
+            series.measure(view, viewport)?;
+        }
+    }
+    series.save(&[])?;
+    drop(series);
+    let text = fs::read_to_string(out.join("results.json")).unwrap();
+    Ok((heard, serde_json::from_str(&text).unwrap()))
+}
+
+/// A number of pixels or frames.
+pub fn count(value: &Value) -> u64 {
+    value
+        .as_u64()
+        .unwrap_or_else(|| panic!("{value} is not a count"))
 }

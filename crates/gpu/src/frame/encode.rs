@@ -1,9 +1,7 @@
 //! Steps become commands.
 
-use crate::{
-    pipelines::handles::{GpuAttachment, GpuOperand, GpuProgram, Handles, PipelineKind},
-    timing::{statistics::Counters, timer::Timer},
-};
+use super::{statistics::Counters, timer::Timer};
+use crate::pipelines::handles::{GpuAttachment, GpuOperand, GpuProgram, Handles, PipelineKind};
 use skiagraph_graph::step::{Dispatch, Draw, DrawCall, Groups, Step};
 use smallvec::SmallVec;
 

@@ -4,17 +4,15 @@
 use super::{
     fetch::{Fetch, StagingPool},
     report::FrameReport,
+    statistics::Counters,
+    timer::{Timer, times},
+    times::FrameTiming,
     uniform::FrameUniform,
 };
 use crate::{
     error::{ExecuteError, poll},
     presence::Presence,
     signal::{Progress, Signal},
-    timing::{
-        statistics::Counters,
-        timer::{Timer, times},
-        times::FrameTiming,
-    },
 };
 use std::{collections::VecDeque, sync::Arc, time::Duration};
 

@@ -62,9 +62,8 @@ impl GpuPass {
                 serves.then_some(made)
             });
             // Frames that are not submitted yet read those of before.
-            let same = old.is_some_and(|(linked, _)| {
-                linked.steps.get(index).and_then(Step::params) == step.params()
-            });
+            let same = old
+                .is_some_and(|(linked, _)| linked.params().nth(index) == pass.params().nth(index));
             let uniform = before.filter(|_| same);
             let uniform = uniform.and_then(|made| made.params[index].clone());
             let made_step = || match before {

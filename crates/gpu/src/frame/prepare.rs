@@ -1,29 +1,27 @@
 //! The next graph, made ready on another thread: its shader modules and pipelines, which take most
 //! of the time. Parts that depend on existing memory are made when it is put in.
 
-use super::{executor::Executor, replan::ReplanReport};
 use crate::{
     error::{ExecuteError, named, scoped},
     pipelines::pipelines::{Pipelines, same_pipeline},
     presence::Presence,
-    provider::Provider,
 };
 use skiagraph_graph::{Ids, Plan, step::Step};
 use std::collections::HashMap;
 
-/// Parts of an executor that its next graph can use: from [`Executor::preparer`], for another
-/// thread.
+/// Parts of an executor that its next graph can use: from
+/// [`Executor::preparer`](super::Executor::preparer), for another thread.
 pub struct Preparer {
-    device: wgpu::Device,
-    pipelines: Pipelines,
+    pub(super) device: wgpu::Device,
+    pub(super) pipelines: Pipelines,
     /// The steps of the passes that there are, which have pipelines.
-    known: HashMap<String, Vec<Step<Ids>>>,
+    pub(super) known: HashMap<String, Vec<Step<Ids>>>,
 }
 
-/// A plan with its pipelines, for [`Executor::replace`].
+/// A plan with its pipelines, for [`Executor::replace`](super::Executor::replace).
 pub struct Prepared {
-    plan: Plan,
-    pipelines: Pipelines,
+    pub(super) plan: Plan,
+    pub(super) pipelines: Pipelines,
 }
 
 impl Preparer {
@@ -52,37 +50,6 @@ impl Preparer {
             .map_err(|error| named(error, &pass.name, &pass.name.span.to_string()))?;
         }
         Ok(Prepared { plan, pipelines })
-    }
-}
-
-impl Executor {
-    /// Returns the [`Preparer`] with which another thread [`prepare`s](Preparer::prepare) the next
-    /// graph while this one is drawn.
-    pub fn preparer(&self) -> Preparer {
-        let steps =
-            |pass: &skiagraph_graph::LinkedPass| (pass.name.value.clone(), pass.steps.clone());
-        Preparer {
-            device: self.device.clone(),
-            pipelines: self.pipelines.clone(),
-            known: self.plan().live().map(steps).collect(),
-        }
-    }
-
-    /// [`replace_graph`](Self::replace_graph) with a plan whose pipelines are there. Parts that the
-    /// plan has changed since the [`preparer`](Self::preparer) was taken are made now.
-    ///
-    /// # Errors
-    /// Those of [`replace_graph`](Self::replace_graph). The executor is as it was then.
-    pub fn replace(
-        &mut self,
-        prepared: Prepared,
-        provider: &mut dyn Provider,
-    ) -> Result<ReplanReport, ExecuteError> {
-        let Prepared { plan, pipelines } = prepared;
-        self.pipelines = pipelines;
-        let report = self.replace_graph(plan, provider);
-        self.pipelines.forget_prepared();
-        report
     }
 }
 

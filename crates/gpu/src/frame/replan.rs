@@ -10,20 +10,15 @@
 
 use super::{
     contents::Contents,
-    executor::{Executor, check_backend},
-    fetch::Readable,
-    growth_readback::GrowthReadback,
     pass::{GpuPass, InputVersions},
-    poison::Poison,
-    state::{State, frame_uniform},
+    state::State,
 };
 use crate::{
-    error::{ExecuteError, with_table},
-    memory::memory::{Memory, ResourceFactory},
+    error::ExecuteError,
+    memory::memory::Memory,
     pipelines::pipelines::{Pipelines, same_pipeline},
-    provider::Provider,
 };
-use skiagraph_graph::{Ids, LinkedPass, ParamValue, Plan, ResourceId, ResourceKind, step::Step};
+use skiagraph_graph::{Ids, LinkedPass, Plan, ResourceId, ResourceKind, step::Step};
 use std::collections::{BTreeMap, HashMap};
 
 /// Result of a change of an executor's plan.
@@ -38,182 +33,6 @@ pub struct ReplanReport {
     pub resources: Vec<String>,
 }
 
-impl Executor {
-    /// Another viewport. Textures that follow it are made anew: last frame's versions are zero
-    /// again, and passes that keep their outputs run once more.
-    ///
-    /// # Errors
-    /// If the graph cannot be planned for this viewport or the device refuses something. The
-    /// executor is as it was then.
-    pub fn resize(
-        &mut self,
-        viewport: [u32; 2],
-        provider: &mut dyn Provider,
-    ) -> Result<ReplanReport, ExecuteError> {
-        let plan = self.plan().with_viewport(viewport)?;
-        self.replace_graph(plan, provider)
-    }
-
-    /// Another value of a param. One that only `var<uniform> params` reads costs an upload. For all
-    /// others the graph is planned anew; from what comes out otherwise than before follows what it
-    /// costs:
-    ///
-    /// - one that is an `override` constant, a culling mode, a depth bias or the like: new
-    ///   pipelines of these passes;
-    /// - one that sizes, counts or `repeat`s something, or that an `if` reads: new resources and
-    ///   passes, and whatever follows from them;
-    /// - one of `run: When(…)`: nothing.
-    ///
-    /// # Errors
-    /// If there is no such param, its value is out of range, or the graph cannot be planned with
-    /// it; if what the provider has changed cannot be had. The executor is as it was then.
-    pub fn set_param(
-        &mut self,
-        name: &str,
-        value: ParamValue,
-        provider: &mut dyn Provider,
-    ) -> Result<ReplanReport, ExecuteError> {
-        if !self.plan().is_in_uniforms(name, &value) {
-            let plan = self.plan().with_param(name, value)?;
-            return self.replace_graph(plan, provider);
-        }
-        self.presence.check()?;
-        self.refresh(provider)?;
-        let state = &mut self.state;
-        let before = state.plan.param(name).cloned();
-        let changed = state.plan.set_in_uniforms(name, value);
-        let params = changed.iter().map(|&at| {
-            let pass = state.plan.pass(state.plan.schedule().passes[at]);
-            GpuPass::params_of(pass, &self.device)
-        });
-        let params = match params.collect::<Result<Vec<_>, _>>() {
-            Ok(params) => params,
-            Err(error) => {
-                if let Some(before) = before {
-                    state.plan.set_in_uniforms(name, before);
-                }
-                return Err(with_table(error, &state.plan));
-            }
-        };
-        let mut report = ReplanReport::default();
-        for (at, params) in changed.into_iter().zip(params) {
-            let pass = &mut state.passes[at];
-            pass.set_params(params);
-            report.uploads.push(pass.name.to_string());
-        }
-        Ok(report)
-    }
-
-    /// Another plan: of the same graph, of one that was loaded again, or of any other. Pipelines,
-    /// textures and buffers that are the same in both are kept, those of the provider and the
-    /// imports included.
-    ///
-    /// # Errors
-    /// If the device refuses something. The executor is as it was then.
-    pub fn replace_graph(
-        &mut self,
-        plan: Plan,
-        provider: &mut dyn Provider,
-    ) -> Result<ReplanReport, ExecuteError> {
-        let report = self.put_in(plan, provider)?;
-        self.note_changes(provider);
-        Ok(report)
-    }
-
-    /// [`replace_graph`](Self::replace_graph), but for the flags of the uniform `frame`.
-    pub(super) fn put_in(
-        &mut self,
-        plan: Plan,
-        provider: &mut dyn Provider,
-    ) -> Result<ReplanReport, ExecuteError> {
-        self.presence.check()?;
-        check_backend(&self.device, &plan)?;
-        let mut factory = ResourceFactory {
-            device: &self.device,
-            queue: &self.queue,
-            provider,
-        };
-        let memory = Memory::new(
-            &plan,
-            Some((&self.state.plan, &self.state.memory)),
-            &mut factory,
-        );
-        let mut memory = memory.map_err(|error| with_table(error, &plan))?;
-        let reused = Reused::new(&self.state, &plan, &memory);
-        let made = reused.passes(&mut self.pipelines, &self.device);
-        let passes = made.map_err(|error| with_table(error, &plan))?;
-        let mut report = ReplanReport {
-            pipelines: reused.made_pipelines(),
-            resources: reused.made_resources(),
-            ..ReplanReport::default()
-        };
-        let contents = reused.contents();
-        let has_new_memory = reused.has_new_memory();
-        let bound: Vec<Option<usize>> = (0..passes.len()).map(|at| reused.bound(at)).collect();
-        let positions = reused.positions;
-        let poison = Poison::new(&plan, &memory, &self.device);
-        let growth_readbacks = GrowthReadback::all(&plan, &self.device);
-        let mut state = State {
-            growth_readbacks: growth_readbacks.map_err(|error| with_table(error, &plan))?,
-            poison: poison.map_err(|error| with_table(error, &plan))?,
-            readables: Readable::all(&plan),
-            uniform: frame_uniform(&plan),
-            grown: memory.take_grown(),
-            plan,
-            memory,
-            passes,
-            contents,
-        };
-        // A pass whose resources are all the same is bound already.
-        let rebind = |from: &mut State, to: &mut State, back: bool| {
-            for (new, old) in bound.iter().enumerate() {
-                match old {
-                    Some(old) if back => to.passes[*old].rebind_as(&mut from.passes[new]),
-                    Some(old) => to.passes[new].rebind_as(&mut from.passes[*old]),
-                    None => {}
-                }
-            }
-        };
-        rebind(&mut self.state, &mut state, false);
-        if let Err(error) = state.bind_what_can_be(&self.device) {
-            rebind(&mut state, &mut self.state, true);
-            return Err(error);
-        }
-        let mut before = std::mem::replace(&mut self.state, state);
-        GrowthReadback::take_over(
-            &mut self.state.growth_readbacks,
-            std::mem::take(&mut before.growth_readbacks),
-        );
-        // Content due for a buffer that has grown again is copied on from there.
-        self.state.grown.splice(..0, before.grown);
-        if has_new_memory {
-            self.host_changes.note_new_memory();
-        }
-        self.ping_pong = self.state.ping_pong(false);
-        self.frames_in_flight.staging.clear();
-        report.uploads = self.note_params(&before.plan, &positions);
-        Ok(report)
-    }
-
-    /// The passes that were made with other params than those of before; such a pass counts as
-    /// changed.
-    fn note_params(&mut self, before: &Plan, positions: &[Option<usize>]) -> Vec<String> {
-        let mut uploads = Vec::new();
-        let schedule = self.state.plan.live().zip(positions);
-        for ((pass, position), made) in schedule.zip(&mut self.state.passes) {
-            let Some(position) = *position else {
-                continue;
-            };
-            let old = before.pass(before.schedule().passes[position]);
-            if !has_same_params(old, pass) {
-                made.input_versions.stale = true;
-                uploads.push(pass.name.value.clone());
-            }
-        }
-        uploads
-    }
-}
-
 /// Returns true if all steps of a pass have the pipelines that they had.
 fn has_same_pipelines(old: &LinkedPass, new: &LinkedPass) -> bool {
     let is_same = |(old, new): (&Step<Ids>, &Step<Ids>)| {
@@ -223,25 +42,24 @@ fn has_same_pipelines(old: &LinkedPass, new: &LinkedPass) -> bool {
 }
 
 /// Returns true if all steps of a pass have the bytes of params that they had.
-fn has_same_params(old: &LinkedPass, new: &LinkedPass) -> bool {
-    let old = old.steps.iter().map(Step::params);
-    old.eq(new.steps.iter().map(Step::params))
+pub(super) fn has_same_params(old: &LinkedPass, new: &LinkedPass) -> bool {
+    old.params().eq(new.params())
 }
 
 /// Parts of an executor's state that a new plan keeps.
-struct Reused<'a> {
+pub(super) struct Reused<'a> {
     old: &'a State,
     plan: &'a Plan,
     memory: &'a Memory,
     /// Former position of each pass of the plan.
-    positions: Vec<Option<usize>>,
+    pub positions: Vec<Option<usize>>,
     /// The resources that are in the memory that they were in before, or go on with its content in
     /// a larger buffer, or are the provider's and as large as before; and what they were then.
     same: BTreeMap<ResourceId, ResourceId>,
 }
 
 impl<'a> Reused<'a> {
-    fn new(old: &'a State, plan: &'a Plan, memory: &'a Memory) -> Self {
+    pub fn new(old: &'a State, plan: &'a Plan, memory: &'a Memory) -> Self {
         let positions: HashMap<&str, usize> = old
             .plan
             .live()
@@ -291,7 +109,7 @@ impl<'a> Reused<'a> {
     }
 
     /// The passes of the plan, with what they remember of frames before.
-    fn passes(
+    pub fn passes(
         &self,
         pipelines: &mut Pipelines,
         device: &wgpu::Device,
@@ -313,7 +131,7 @@ impl<'a> Reused<'a> {
     }
 
     /// Names of the passes whose pipelines are not what they were.
-    fn made_pipelines(&self) -> Vec<String> {
+    pub fn made_pipelines(&self) -> Vec<String> {
         let passes = self.plan.live().enumerate();
         let made = passes.filter(|(at, pass)| {
             self.before(*at)
@@ -323,7 +141,7 @@ impl<'a> Reused<'a> {
     }
 
     /// Names of the resources whose content is lost.
-    fn made_resources(&self) -> Vec<String> {
+    pub fn made_resources(&self) -> Vec<String> {
         let schedule = self.plan.schedule();
         let own =
             |id: &&ResourceId| schedule.aliases.of.contains_key(id) && !self.same.contains_key(id);
@@ -333,7 +151,7 @@ impl<'a> Reused<'a> {
     }
 
     /// Returns true if something that stays from frame to frame is in new memory.
-    fn has_new_memory(&self) -> bool {
+    pub fn has_new_memory(&self) -> bool {
         let schedule = self.plan.schedule();
         let is_lasting =
             |id: &&ResourceId| self.plan.resource(**id).keep || schedule.ping_pong.contains(*id);
@@ -341,7 +159,7 @@ impl<'a> Reused<'a> {
         lasting.any(|id| !self.same.contains_key(id))
     }
 
-    fn contents(&self) -> Contents {
+    pub fn contents(&self) -> Contents {
         let mut contents = Contents::new(self.plan, self.old.contents.clock());
         let has_changed = |id: ResourceId, former: ResourceId| {
             self.memory.version(id) != self.old.memory.version(former)
@@ -406,7 +224,7 @@ impl<'a> Reused<'a> {
 
     /// The position before of a pass that needs no binding: word for word what it was, on the very
     /// memory.
-    fn bound(&self, at: usize) -> Option<usize> {
+    pub fn bound(&self, at: usize) -> Option<usize> {
         let [pass, old] = self.with_its_memory(at)?;
         let mut numbers = pass.accesses.iter().zip(&old.accesses);
         let same_numbers = numbers.all(|(new, old)| {

@@ -1,9 +1,7 @@
 //! Requests to a frame, and its report.
 
-use crate::{
-    readback::Readback,
-    timing::{statistics::PassStatistics, times::FrameTiming},
-};
+use super::{statistics::PassStatistics, times::FrameTiming};
+use crate::readback::Readback;
 
 /// Requests to a frame.
 #[derive(Clone, Copy, Debug, Default)]

@@ -8,6 +8,7 @@ use super::{
     in_flight::FrameInFlight,
     pass::GpuPass,
     poison::Poison,
+    statistics::Counters,
 };
 use crate::{
     error::{ExecuteError, with_table},
@@ -16,7 +17,6 @@ use crate::{
         physical::{Physical, PingPong},
     },
     pipelines::pipelines::Pipelines,
-    timing::statistics::Counters,
 };
 use skiagraph_graph::{LinkedPass, Origin, Plan, ResourceId, ResourceKind};
 use std::{sync::Arc, time::Instant};

@@ -23,7 +23,7 @@ pub(crate) fn upload(
     label: &str,
     step: &Step<Ids>,
 ) -> Result<Option<wgpu::Buffer>, ExecuteError> {
-    let Some(bytes) = step.params() else {
+    let Some(bytes) = step.program().and_then(LinkedProgram::params) else {
         return Ok(None);
     };
     let buffer = device.create_buffer(&wgpu::BufferDescriptor {

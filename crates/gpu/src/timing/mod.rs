@@ -1,10 +1,23 @@
 //! GPU timestamps that are true, or none; and what the device counts.
+//!
+//! ```no_run
+//! use skiagraph_gpu::{Executor, Frame, device::Gpu, timing::{self, Trust}};
+//!
+//! # fn time(gpu: &Gpu, executor: &mut Executor) -> Result<(), skiagraph_gpu::ExecuteError> {
+//! if let Trust::Untrusted { reason } = timing::check(&gpu.device, &gpu.queue)? {
+//!     println!("no GPU times: {reason}");
+//! }
+//! let mut encoder = gpu.device.create_command_encoder(&Default::default());
+//! executor.encode(&mut encoder, &Frame { timing: true, ..Frame::default() })?;
+//! gpu.queue.submit([encoder.finish()]);
+//! for pass in executor.finish()?.timing.into_iter().flat_map(|frame| frame.passes) {
+//!     println!("{}: {:?} on the GPU, {:?} on the CPU", pass.name, pass.gpu, pass.cpu);
+//! }
+//! # Ok(())
+//! # }
+//! ```
 
 mod check;
-pub(crate) mod statistics;
-pub(crate) mod timer;
-pub(crate) mod times;
 
+pub use crate::frame::{FrameTiming, PassStatistics, PassTiming};
 pub use check::{Trust, check};
-pub use statistics::PassStatistics;
-pub use times::{FrameTiming, PassTiming};

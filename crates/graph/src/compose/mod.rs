@@ -2,3 +2,4 @@
 
 pub(crate) mod reader;
 pub(crate) mod unique;
+pub(crate) mod used;

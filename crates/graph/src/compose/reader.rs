@@ -9,14 +9,14 @@ use crate::{
     },
     document::{
         extend::extend,
-        params::Param,
         raw::{self, Invalid, RawDocument},
         read,
         typed::{Document, Entry, Include, What},
     },
     errors::compose::ComposeError,
     kinds::registry::Registry,
-    language::name::Name,
+    language::{name::Name, syntax::Expr},
+    param::Param,
     source::{
         paths::{escapes, folder_of, include_candidates},
         sources::{self, Sources},
@@ -382,16 +382,26 @@ impl<'a> Reader<'a> {
                 exposed.push((param, name.span.clone()));
             }
         });
-        for (param, span) in exposed {
-            let known = document
-                .params
-                .iter()
-                .find(|known| known.name.value == param.name.value);
+        for (mut param, span) in exposed {
+            let mut params = document.params.iter();
+            let known = params.position(|known| known.name.value == param.name.value);
             // The same declaration twice is one param.
-            if known.is_some_and(|known| known.name.span == param.name.span) {
+            if known.is_some_and(|at| document.params[at].name.span == param.name.span) {
                 continue;
             }
-            if let Some(known) = known {
+            if let Some(at) = known {
+                let known = &document.params[at];
+                let (declared, exposing) = (document.rank(&known.name.span), document.rank(&span));
+                // It takes the place of a param of a document that this one extends.
+                if at < document.declared && declared > exposing {
+                    let known = document.params.remove(at);
+                    document.declared -= 1;
+                    let default = known.default;
+                    let is_edited = |default: &Expr| document.rank(&default.span) < declared;
+                    param.default = default.filter(is_edited).or(param.default);
+                    document.params.push(param);
+                    continue;
+                }
                 let error = ComposeError::ExposedTwice {
                     name: Located::new(param.name.value, span),
                     first: known.name.span.clone(),

@@ -27,6 +27,14 @@ pub(crate) struct Reports {
 }
 
 impl Reports {
+    /// A result whose mistake is reported.
+    pub fn check<T>(
+        &mut self,
+        result: Result<T, impl Into<Diagnostic>>,
+    ) -> Result<T, ErrorGuaranteed> {
+        result.map_err(|mistake| self.report(mistake))
+    }
+
     /// Takes a mistake of a phase, which `errors/` puts into words, or one that has them already.
     pub fn report(&mut self, mistake: impl Into<Diagnostic>) -> ErrorGuaranteed {
         let diagnostic = mistake.into();

@@ -71,6 +71,9 @@ pub(crate) struct PassFields {
     /// The shader without folder and ending; the pass's name without it.
     #[serde(default)]
     shader: Option<Located<String>>,
+    /// Materials that are cleared to zero each time before it runs.
+    #[serde(default)]
+    clear: Vec<Reference>,
     /// Materials that the pass writes in every texel or item, which reflection cannot see.
     #[serde(default)]
     overwrites: Vec<Reference>,
@@ -210,9 +213,10 @@ fn pass(
     own: Vec<Field>,
     registry: &Registry,
 ) -> Result<Pass, Diagnostic> {
+    const COMMON: [&str; 4] = ["shader", "clear", "overwrites", "reads"];
     let (common, own): (Vec<Field>, Vec<Field>) = own
         .into_iter()
-        .partition(|field| matches!(field.name.as_str(), "shader" | "overwrites" | "reads"));
+        .partition(|field| COMMON.contains(&field.name.as_str()));
     let common: PassFields = from_fields(&common, &tag.span)?;
     let kind = registry
         .get(tag)
@@ -224,6 +228,7 @@ fn pass(
         common
             .overwrites
             .iter()
+            .chain(&common.clear)
             .chain(common.reads.iter().flatten())
             .cloned(),
     );
@@ -236,6 +241,7 @@ fn pass(
     let features = lowering.features;
     Ok(Pass {
         shader: common.shader,
+        clear: common.clear,
         overwrites: common.overwrites,
         reads: common.reads,
         kind: kind.name,

@@ -1,7 +1,7 @@
 //! `extends`: a document is another one with edits, as if the result had been written out.
 
 use super::{
-    raw::{Invalid, RawDocument, RawEntry, RawItem, RawMap},
+    raw::{Invalid, REMOVE, RawDocument, RawEntry, RawItem, RawMap},
     typed::Narrow,
 };
 use crate::{diagnostics::reports::Reports, errors::edit::EditError, source::span::Located};
@@ -10,25 +10,25 @@ use std::collections::HashMap;
 
 type Entries = Vec<Result<RawEntry, Invalid>>;
 
-/// The edit that takes something out.
-const REMOVE: &str = "Remove";
-
 /// Where an entry that is no edit comes to stand.
 pub(crate) const PLACES: [&str; 3] = ["before", "after", "instead"];
 
 /// Applies the edits of `own` to `base`. An edit that cannot be made is reported and left out.
 pub(crate) fn extend(base: RawDocument, own: RawDocument, reports: &mut Reports) -> RawDocument {
+    let inputs = without(base.inputs, &own.materials);
+    let materials = without(base.materials, &own.inputs);
     let mut document = RawDocument {
         file: own.file,
+        extended: [vec![base.file.name.clone()], base.extended].concat(),
         description: own.description.or(base.description),
         extends: None,
         requires: [base.requires, own.requires].concat(),
-        params: merge(base.params, own.params, reports),
+        params: merge(base.params, own.params),
         values: redefine(base.values, own.values),
         narrow: narrower(base.narrow, own.narrow, reports),
         imports: [base.imports, own.imports].concat(),
-        inputs: merge(base.inputs, own.inputs, reports),
-        materials: merge(base.materials, own.materials, reports),
+        inputs: merge(inputs, own.inputs),
+        materials: merge(materials, own.materials),
         passes: base.passes,
         outputs: if own.outputs.is_empty() {
             base.outputs
@@ -113,21 +113,11 @@ fn narrower(base: RawMap, own: RawMap, reports: &mut Reports) -> RawMap {
     redefine(base, own)
 }
 
-/// Merges two lists. An item of the same name is replaced or, by `Remove`, taken out; the rest is
-/// added.
-fn merge(base: Vec<RawItem>, own: Vec<RawItem>, reports: &mut Reports) -> Vec<RawItem> {
+/// Merges two lists. An item of the same name is replaced, the rest is added.
+fn merge(base: Vec<RawItem>, own: Vec<RawItem>) -> Vec<RawItem> {
     let mut merged = base;
     for item in own {
-        let name = item.name().map(|name| name.value);
-        if *item.tag == REMOVE {
-            if let Err(error) = remove(&mut merged, &item) {
-                reports.report(error);
-            }
-            continue;
-        }
-        let mut known = merged.iter_mut();
-        let known = known.find(|other| name.is_some() && other.name().map(|n| n.value) == name);
-        match known {
+        match merged.iter_mut().find(|known| is_named_as(known, &item)) {
             Some(known) => *known = item,
             None => merged.push(item),
         }
@@ -135,38 +125,16 @@ fn merge(base: Vec<RawItem>, own: Vec<RawItem>, reports: &mut Reports) -> Vec<Ra
     merged
 }
 
-/// Takes the item of that name out.
-fn remove(merged: &mut Vec<RawItem>, edit: &RawItem) -> Result<(), EditError> {
-    let mut others = edit.fields.iter().filter(|field| *field.name != "name");
-    if let Some(field) = others.next() {
-        return Err(EditError::Field(field.name.clone(), REMOVE));
-    }
-    let name = edit
-        .name()
-        .ok_or_else(|| EditError::NoPath(edit.tag.clone(), "name"))?;
-    let known = merged
-        .iter()
-        .position(|item| item.name().is_some_and(|it| *it == *name));
-    let Some(at) = known else {
-        let known = merged.iter().filter_map(RawItem::name);
-        return Err(EditError::NoSuchItem {
-            known: known.map(|name| name.value).collect(),
-            name,
-        });
-    };
-    merged.remove(at);
-    Ok(())
+/// The items but those of a name that is another item's now: a material may take the place of an
+/// input, and an input that of a material.
+fn without(items: Vec<RawItem>, others: &[RawItem]) -> Vec<RawItem> {
+    let is_free = |item: &RawItem| others.iter().all(|other| !is_named_as(item, other));
+    items.into_iter().filter(is_free).collect()
 }
 
-/// Reports `Remove` in the sections of a document that extends none, and takes it out.
-pub(crate) fn no_removals(items: &mut Vec<RawItem>, reports: &mut Reports) {
-    items.retain(|item| {
-        let is_edit = *item.tag == REMOVE;
-        if is_edit {
-            reports.report(EditError::NotExtending(item.tag.clone()));
-        }
-        !is_edit
-    });
+fn is_named_as(item: &RawItem, other: &RawItem) -> bool {
+    let name = |item: &RawItem| item.name().map(|name| name.value);
+    name(item).is_some_and(|own| Some(own) == name(other))
 }
 
 /// Puts a field into the place of the one of its name, or behind the others.

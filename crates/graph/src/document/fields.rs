@@ -1,9 +1,9 @@
 //! Types of fields: names, expressions, references, words of the language.
 use crate::{
     errors::{document::DocumentError, language::SyntaxFault},
+    expressions::parser,
     language::{
         name::Name,
-        parser,
         syntax::{Expr, ExprKind, Reference},
         value::{Scalar, Value},
     },

@@ -1,6 +1,9 @@
 //! A document with all that it extends written out, each line with its origin.
 
-use super::raw::{Invalid, RawDocument, RawEntry, RawItem, RawMap};
+use super::{
+    raw::{Invalid, RawDocument, RawEntry, RawItem, RawMap},
+    typed::Document,
+};
 use crate::source::span::Span;
 use skiagraph_located_ron::reader::{Field, Node};
 
@@ -31,6 +34,25 @@ pub(crate) fn flat(document: &RawDocument) -> String {
     flat.map(1, "claims", &document.claims);
     flat.line(0, ")", &[]);
     flat.text
+}
+
+/// Leaves out the params, values, inputs and materials that are not in `document`, which was
+/// read from it.
+pub(crate) fn keep(raw: &mut RawDocument, document: &Document) {
+    let params: Vec<&str> = document.params.iter().map(|it| it.name.as_str()).collect();
+    let materials = document.materials.iter().map(|it| it.name().as_str());
+    let inputs = document.inputs.iter().map(|it| it.name.as_str());
+    let values = document.values.iter().map(|(name, _)| name.as_str());
+    let names: Vec<&str> = materials.chain(inputs).chain(values).collect();
+    let is_kept = |item: &RawItem, names: &[&str]| {
+        item.name()
+            .is_none_or(|name| names.contains(&name.as_str()))
+    };
+    raw.params.retain(|item| is_kept(item, &params));
+    raw.inputs.retain(|item| is_kept(item, &names));
+    raw.materials.retain(|item| is_kept(item, &names));
+    raw.values
+        .retain(|(name, _)| names.contains(&name.as_str()));
 }
 
 #[derive(Default)]

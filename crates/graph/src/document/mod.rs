@@ -14,4 +14,3 @@ pub(crate) mod written;
 
 pub use fields::Chosen;
 pub use materials::{Address, Filter};
-pub use params::{Param, ParamFault, ParamType, ParamValue};

@@ -1,120 +1,16 @@
-//! Params: the typed knobs of a document.
+//! Params as a document writes them.
 
 use super::fields::prose;
 use crate::{
-    diagnostics::{diagnostic::Diagnostic, suggest::likeness},
+    diagnostics::diagnostic::Diagnostic,
     errors::document::DocumentError,
-    language::{
-        name::Name,
-        syntax::Expr,
-        value::{Scalar, Value, Word},
-    },
+    language::{name::Name, syntax::Expr},
+    param::{Param, ParamType},
     source::span::Located,
 };
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use skiagraph_located_ron::reader::{Field, from_fields};
-use std::{
-    collections::{BTreeMap, HashSet},
-    fmt,
-    sync::Arc,
-};
-
-/// Type of a param.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum ParamType {
-    /// 32-bit float.
-    F32,
-    /// 32-bit signed integer.
-    I32,
-    /// 32-bit unsigned integer.
-    U32,
-    /// Boolean; travels to WGSL as `u32` 0 or 1.
-    Bool,
-    /// Two floats.
-    Vec2,
-    /// Three floats.
-    Vec3,
-    /// Four floats.
-    Vec4,
-    /// One of the named words; travels to WGSL as its index, `u32`.
-    Choice(Arc<[Name]>),
-}
-
-impl fmt::Display for ParamType {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Choice(words) => {
-                let words: Vec<&str> = words.iter().map(Name::as_str).collect();
-                f.write_str(&words.join("|"))
-            }
-            other => write!(f, "{}", format!("{other:?}").to_lowercase()),
-        }
-    }
-}
-
-/// Value of a param.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(untagged)]
-pub enum ParamValue {
-    /// 32-bit float.
-    F32(f32),
-    /// 32-bit signed integer.
-    I32(i32),
-    /// 32-bit unsigned integer.
-    U32(u32),
-    /// Boolean.
-    Bool(bool),
-    /// Two to four floats.
-    Vec(Vec<f32>),
-    /// A word of the param's [`ParamType::Choice`].
-    Choice(String),
-}
-
-impl fmt::Display for ParamValue {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::F32(value) => write!(f, "{value}"),
-            Self::I32(value) => write!(f, "{value}"),
-            Self::U32(value) => write!(f, "{value}"),
-            Self::Bool(value) => write!(f, "{value}"),
-            Self::Vec(values) => {
-                let parts: Vec<String> = values.iter().map(f32::to_string).collect();
-                write!(f, "{}", parts.join(","))
-            }
-            Self::Choice(word) => f.write_str(word),
-        }
-    }
-}
-
-/// A declared param.
-#[derive(Clone, Debug)]
-pub struct Param {
-    /// Name, as in `params.NAME` of a shader and `--set NAME=…`; that of a named include has a dot.
-    pub name: Located<String>,
-    /// Type.
-    pub ty: ParamType,
-    /// Value where nothing else is asked for; `None` if a value must be given.
-    pub default: Option<Expr>,
-    /// Least value of a number (each component of a vector).
-    pub min: Option<f64>,
-    /// Greatest value of a number (each component of a vector).
-    pub max: Option<f64>,
-    /// Description of its effect.
-    pub description: String,
-    /// Words of a [`ParamType::Choice`] that `narrow` took away, each with the reason.
-    pub refused: BTreeMap<String, String>,
-}
-
-/// Why a param, or a value of one, cannot be.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum ParamFault {
-    /// The value has another type.
-    #[error("the value must be of type {0}")]
-    Type(String),
-    /// The value has the type, but is not allowed.
-    #[error("{0}")]
-    Value(String),
-}
+use std::collections::{BTreeMap, HashSet};
 
 /// A param: a value from outside.
 #[derive(Deserialize)]
@@ -141,347 +37,54 @@ pub(crate) struct ParamFields {
     description: String,
 }
 
-impl Param {
-    /// Reads the entry of a param: its type, and its fields.
-    pub(super) fn read(tag: &Located<String>, fields: &[Field]) -> Result<Self, Diagnostic> {
-        let fields: ParamFields = from_fields(fields, &tag.span)?;
-        let wrong = |why: &str| DocumentError::Param {
-            name: fields.name.clone(),
-            why: why.to_owned(),
+/// Reads the entry of a param: its type, and its fields.
+pub(super) fn read(tag: &Located<String>, fields: &[Field]) -> Result<Param, Diagnostic> {
+    let fields: ParamFields = from_fields(fields, &tag.span)?;
+    let wrong = |why: &str| DocumentError::Param {
+        name: fields.name.clone(),
+        why: why.to_owned(),
+    };
+    let ty = match tag.as_str() {
+        "F32" => ParamType::F32,
+        "I32" => ParamType::I32,
+        "U32" => ParamType::U32,
+        "Bool" => ParamType::Bool,
+        "Vec2" => ParamType::Vec2,
+        "Vec3" => ParamType::Vec3,
+        "Vec4" => ParamType::Vec4,
+        "Choice" => ParamType::Choice(fields.words.iter().map(|w| w.value.clone()).collect()),
+        _ => return Err(DocumentError::UnknownParamType(tag.clone()).into()),
+    };
+    let mut different = HashSet::new();
+    let repeats = !fields
+        .words
+        .iter()
+        .all(|word| different.insert(&word.value));
+    let is_choice = matches!(ty, ParamType::Choice(_));
+    if is_choice == fields.words.is_empty() || repeats {
+        let why = if is_choice {
+            "a Choice has `words`, one at least, and each only once"
+        } else {
+            "only a Choice has `words`"
         };
-        let ty = match tag.as_str() {
-            "F32" => ParamType::F32,
-            "I32" => ParamType::I32,
-            "U32" => ParamType::U32,
-            "Bool" => ParamType::Bool,
-            "Vec2" => ParamType::Vec2,
-            "Vec3" => ParamType::Vec3,
-            "Vec4" => ParamType::Vec4,
-            "Choice" => ParamType::Choice(fields.words.iter().map(|w| w.value.clone()).collect()),
-            _ => return Err(DocumentError::UnknownParamType(tag.clone()).into()),
-        };
-        let mut different = HashSet::new();
-        let repeats = !fields
-            .words
-            .iter()
-            .all(|word| different.insert(&word.value));
-        let is_choice = matches!(ty, ParamType::Choice(_));
-        if is_choice == fields.words.is_empty() || repeats {
-            let why = if is_choice {
-                "a Choice has `words`, one at least, and each only once"
-            } else {
-                "only a Choice has `words`"
-            };
-            return Err(wrong(why).into());
-        }
-        if let (Some(min), Some(max)) = (fields.min, fields.max)
-            && min.partial_cmp(&max).is_none_or(std::cmp::Ordering::is_gt)
-        {
-            return Err(wrong(&format!("no value can lie in {min}..{max}")).into());
-        }
-        if *fields.name.value == *"index" {
-            let why = "`index` is that of a repetition, and no param";
-            return Err(wrong(why).into());
-        }
-        Ok(Self {
-            name: Located::new(fields.name.value.to_string(), fields.name.span),
-            ty,
-            default: fields.default,
-            min: fields.min,
-            max: fields.max,
-            description: fields.description,
-            refused: BTreeMap::new(),
-        })
+        return Err(wrong(why).into());
     }
-
-    /// The words of a `Choice` that may be set; none of another type.
-    pub fn words(&self) -> impl Iterator<Item = &Name> {
-        let words = match &self.ty {
-            ParamType::Choice(words) => &words[..],
-            _ => &[],
-        };
-        let is_left = |word: &&Name| !self.refused.contains_key(word.as_str());
-        words.iter().filter(is_left)
+    if let (Some(min), Some(max)) = (fields.min, fields.max)
+        && min.partial_cmp(&max).is_none_or(std::cmp::Ordering::is_gt)
+    {
+        return Err(wrong(&format!("no value can lie in {min}..{max}")).into());
     }
-
-    /// Keeps only these words; numbers of words stay. Fails with the first that is none, or with
-    /// `None` if this is no `Choice`.
-    pub(crate) fn narrow(
-        &mut self,
-        kept: &[Located<Name>],
-        because: &str,
-    ) -> Result<(), Option<Located<String>>> {
-        if !matches!(self.ty, ParamType::Choice(_)) {
-            return Err(None);
-        }
-        let unknown = kept
-            .iter()
-            .find(|word| self.words().all(|known| *known != word.value));
-        if let Some(word) = unknown {
-            return Err(Some(Located::new(
-                word.value.to_string(),
-                word.span.clone(),
-            )));
-        }
-        let gone = self
-            .words()
-            .filter(|word| kept.iter().all(|kept| kept.value != **word));
-        let gone: Vec<String> = gone.map(Name::to_string).collect();
-        self.refused
-            .extend(gone.into_iter().map(|word| (word, because.to_owned())));
-        Ok(())
+    if *fields.name.value == *"index" {
+        let why = "`index` is that of a repetition, and no param";
+        return Err(wrong(why).into());
     }
-
-    /// The value of an expression as one of this param.
-    pub(crate) fn convert(&self, value: &Value) -> Result<ParamValue, ParamFault> {
-        let wrong = || ParamFault::Type(self.ty.to_string());
-        let list = |count: usize| match value {
-            Value::List(list) if list.len() == count => {
-                let list = list.iter().map(|scalar| scalar.number() as f32);
-                Ok(ParamValue::Vec(list.collect()))
-            }
-            _ => Err(wrong()),
-        };
-        let converted = match (&self.ty, value) {
-            (ParamType::F32, Value::Scalar(scalar)) => ParamValue::F32(scalar.number() as f32),
-            (ParamType::I32, Value::Scalar(Scalar::Whole(whole))) => {
-                ParamValue::I32(i32::try_from(*whole).map_err(|_| wrong())?)
-            }
-            (ParamType::U32, Value::Scalar(Scalar::Whole(whole))) => {
-                ParamValue::U32(u32::try_from(*whole).map_err(|_| wrong())?)
-            }
-            (ParamType::Bool, Value::Bool(value)) => ParamValue::Bool(*value),
-            (ParamType::Vec2, _) => list(2)?,
-            (ParamType::Vec3, _) => list(3)?,
-            (ParamType::Vec4, _) => list(4)?,
-            (ParamType::Choice(_), Value::Word(word)) => ParamValue::Choice(word.word.to_string()),
-            _ => return Err(wrong()),
-        };
-        self.check(&converted).map(|()| converted)
-    }
-
-    /// A value of this param in an expression.
-    pub(crate) fn value(&self, value: &ParamValue) -> Value {
-        // The decimal number that it was written as: 0.51 is no f32, and yet `n >= 0.51` holds of
-        // it.
-        let number = |number: &f32| {
-            let written = number.to_string().parse();
-            Scalar::Number(written.unwrap_or(f64::from(*number)))
-        };
-        match value {
-            ParamValue::F32(value) => Value::Scalar(number(value)),
-            ParamValue::I32(value) => Value::whole(*value),
-            ParamValue::U32(value) => Value::whole(*value),
-            ParamValue::Bool(value) => Value::Bool(*value),
-            ParamValue::Vec(values) => Value::List(values.iter().map(number).collect()),
-            ParamValue::Choice(word) => {
-                let words = match &self.ty {
-                    ParamType::Choice(words) => Some(Arc::clone(words)),
-                    _ => None,
-                };
-                let known = words.iter().flat_map(|words| words.iter());
-                // A checked value is one of the words. Any other equals none of them.
-                match known.clone().find(|known| ***known == **word).cloned() {
-                    Some(word) => Value::Word(Word { word, of: words }),
-                    None => Value::Bool(false),
-                }
-            }
-        }
-    }
-
-    /// Returns a value where none is given: `min`, else 1, false, the first word.
-    pub(crate) fn stand_in(&self) -> ParamValue {
-        let number = self
-            .min
-            .unwrap_or(1.0)
-            .min(self.max.unwrap_or(f64::INFINITY));
-        match &self.ty {
-            ParamType::F32 => ParamValue::F32(number as f32),
-            ParamType::I32 => ParamValue::I32(number as i32),
-            ParamType::U32 => ParamValue::U32(number as u32),
-            ParamType::Bool => ParamValue::Bool(false),
-            ParamType::Vec2 => ParamValue::Vec(vec![number as f32; 2]),
-            ParamType::Vec3 => ParamValue::Vec(vec![number as f32; 3]),
-            ParamType::Vec4 => ParamValue::Vec(vec![number as f32; 4]),
-            ParamType::Choice(_) => {
-                ParamValue::Choice(self.words().next().map(Name::to_string).unwrap_or_default())
-            }
-        }
-    }
-
-    /// True if every value of `other` is a value of this param.
-    pub(crate) fn holds_all_of(&self, other: &Param) -> bool {
-        let within = match (self.min, other.min) {
-            (Some(least), Some(other)) => least <= other,
-            (least, _) => least.is_none(),
-        } && match (self.max, other.max) {
-            (Some(most), Some(other)) => most >= other,
-            (most, _) => most.is_none(),
-        };
-        match (&self.ty, &other.ty) {
-            (ParamType::Choice(_), ParamType::Choice(_)) => other
-                .words()
-                .all(|word| self.words().any(|known| known == word)),
-            (a, b) => a == b && within,
-        }
-    }
-
-    /// Reads a value from text as the command line writes it: `1024`, `0.5`, `true`, `front`,
-    /// `1,2,3`.
-    ///
-    /// # Errors
-    /// The expected type or range.
-    pub fn parse(&self, text: &str) -> Result<ParamValue, ParamFault> {
-        let wrong = || ParamFault::Type(self.ty.to_string());
-        let scalar = |text: &str| {
-            let text = text.trim();
-            let whole = text.parse().map(Scalar::Whole).ok();
-            // 1e3 and 4.0 are whole numbers, too.
-            let number = || {
-                let number: f64 = text.parse().ok()?;
-                let is_whole = number.fract() == 0.0 && number.abs() < 9e15;
-                Some(if is_whole && self.ty != ParamType::F32 {
-                    Scalar::Whole(number as i64)
-                } else {
-                    Scalar::Number(number)
-                })
-            };
-            whole.or_else(number).ok_or_else(wrong)
-        };
-        let value = match self.ty {
-            ParamType::Choice(_) => return self.checked(ParamValue::Choice(text.to_owned())),
-            ParamType::Bool => match text {
-                "true" | "1" => Value::Bool(true),
-                "false" | "0" => Value::Bool(false),
-                _ => {
-                    let why = "the value must be true or false";
-                    return Err(ParamFault::Value(why.to_owned()));
-                }
-            },
-            ParamType::Vec2 | ParamType::Vec3 | ParamType::Vec4 => {
-                Value::List(text.split(',').map(scalar).collect::<Result<_, _>>()?)
-            }
-            _ => Value::Scalar(scalar(text)?),
-        };
-        self.convert(&value)
-    }
-
-    fn checked(&self, value: ParamValue) -> Result<ParamValue, ParamFault> {
-        self.check(&value).map(|()| value)
-    }
-
-    /// Checks that a value has the param's type and lies in its range.
-    ///
-    /// # Errors
-    /// The expected type or range.
-    pub fn check(&self, value: &ParamValue) -> Result<(), ParamFault> {
-        let numbers: Vec<f64> = match (&self.ty, value) {
-            (ParamType::F32, ParamValue::F32(v)) => vec![f64::from(*v)],
-            (ParamType::I32, ParamValue::I32(v)) => vec![f64::from(*v)],
-            (ParamType::U32, ParamValue::U32(v)) => vec![f64::from(*v)],
-            (ParamType::Bool, ParamValue::Bool(_)) => Vec::new(),
-            (ParamType::Vec2, ParamValue::Vec(v)) if v.len() == 2 => {
-                v.iter().map(|&v| f64::from(v)).collect()
-            }
-            (ParamType::Vec3, ParamValue::Vec(v)) if v.len() == 3 => {
-                v.iter().map(|&v| f64::from(v)).collect()
-            }
-            (ParamType::Vec4, ParamValue::Vec(v)) if v.len() == 4 => {
-                v.iter().map(|&v| f64::from(v)).collect()
-            }
-            (ParamType::Choice(_), ParamValue::Choice(word)) => {
-                let words: Vec<&str> = self.words().map(Name::as_str).collect();
-                let known = words.join(", ");
-                return match (words.contains(&word.as_str()), self.refused.get(word)) {
-                    (true, _) => Ok(()),
-                    (_, None) => {
-                        let likeness = likeness(word, &words);
-                        let likeness = likeness.map_or(String::new(), |it| format!("; {it}"));
-                        let why = format!("must be one of {known}{likeness}");
-                        Err(ParamFault::Value(why))
-                    }
-                    (_, Some(why)) => Err(ParamFault::Value(format!(
-                        "`{word}` is refused: {why}; must be one of {known}"
-                    ))),
-                };
-            }
-            _ => return Err(ParamFault::Type(self.ty.to_string())),
-        };
-        // Bounds as values are stored: 0.51 is no f32, and yet within 0.51 and up.
-        let whole = matches!(self.ty, ParamType::I32 | ParamType::U32);
-        let stored = |bound: f64| {
-            if whole {
-                bound
-            } else {
-                f64::from(bound as f32)
-            }
-        };
-        for number in numbers {
-            if !number.is_finite() {
-                return Err(ParamFault::Value("the value must be finite".to_owned()));
-            }
-            let below = self.min.is_some_and(|min| number < stored(min));
-            if below || self.max.is_some_and(|max| number > stored(max)) {
-                let shown = if whole {
-                    number.to_string()
-                } else {
-                    (number as f32).to_string()
-                };
-                return Err(ParamFault::Value(match (self.min, self.max) {
-                    (Some(min), Some(max)) => format!("must lie in {min}..{max}, not {shown}"),
-                    (Some(min), None) => format!("must be at least {min}, not {shown}"),
-                    (None, max) => format!(
-                        "must be at most {}, not {shown}",
-                        max.unwrap_or(f64::INFINITY)
-                    ),
-                }));
-            }
-        }
-        Ok(())
-    }
-
-    /// The index of a choice's word, the number of a bool, or the integer of a value.
-    pub(crate) fn as_u32(&self, value: &ParamValue) -> Option<u32> {
-        match (value, &self.ty) {
-            (ParamValue::U32(value), _) => Some(*value),
-            (ParamValue::I32(value), _) => u32::try_from(*value).ok(),
-            (ParamValue::Bool(value), _) => Some(u32::from(*value)),
-            (ParamValue::Choice(word), ParamType::Choice(words)) => words
-                .iter()
-                .position(|known| **known == **word)
-                .and_then(|index| u32::try_from(index).ok()),
-            _ => None,
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::source::span::SourceFile;
-
-    #[test]
-    fn bounds_are_rounded_as_values_are() {
-        let param = Param {
-            name: Located::new("n".to_owned(), SourceFile::new("graph.ron", "").span(0..0)),
-            ty: ParamType::F32,
-            default: None,
-            min: Some(0.51),
-            max: Some(0.7),
-            description: String::new(),
-            refused: BTreeMap::new(),
-        };
-        for (text, inside) in [
-            ("0.51", true),
-            ("0.7", true),
-            ("0.5099999", false),
-            ("0.7000001", false),
-        ] {
-            assert_eq!(param.parse(text).is_ok(), inside, "{text}");
-        }
-        assert_eq!(
-            param.parse("0.3").unwrap_err().to_string(),
-            "must lie in 0.51..0.7, not 0.3"
-        );
-    }
+    Ok(Param {
+        name: Located::new(fields.name.value.to_string(), fields.name.span),
+        ty,
+        default: fields.default,
+        min: fields.min,
+        max: fields.max,
+        description: fields.description,
+        refused: BTreeMap::new(),
+    })
 }

@@ -2,15 +2,21 @@
 //! [`typed`](super::typed) reads them.
 use crate::{
     diagnostics::reports::{ErrorGuaranteed, Reports},
-    errors::document::DocumentError,
+    errors::{document::DocumentError, edit::EditError},
     source::span::{Located, SourceFile, Span},
 };
 use skiagraph_located_ron::reader::{Field, Node, field_twice, unknown_field};
-use std::collections::{HashMap, HashSet};
+use std::{
+    collections::{HashMap, HashSet},
+    sync::Arc,
+};
 
 /// Most entries of a list or map as it is written; each may name all others, so time may grow with
 /// the square.
 const MOST_ENTRIES: usize = 4096;
+
+/// The edit that takes a pass out.
+pub(crate) const REMOVE: &str = "Remove";
 
 /// The document format that is read.
 pub(crate) const FORMAT: u32 = 3;
@@ -22,6 +28,8 @@ pub(crate) type RawMap = Vec<(Located<String>, Node)>;
 #[derive(Debug)]
 pub(crate) struct RawDocument {
     pub file: SourceFile,
+    /// The paths of the documents that it extends, the nearest first.
+    pub extended: Vec<Arc<str>>,
     pub description: Option<Node>,
     pub extends: Option<Node>,
     pub requires: Vec<Node>,
@@ -195,6 +203,7 @@ pub(crate) fn split(
         passes: entries(passes, sections.reports),
         invalid_params: None,
         incomplete: sections.incomplete,
+        extended: Vec::new(),
         file,
     };
     (document.params, document.invalid_params) = params;
@@ -265,6 +274,9 @@ impl Sections<'_> {
         let (mut items, mut broken) = (Vec::new(), None);
         for node in self.list(section) {
             match item(&node, section) {
+                Ok(item) if *item.tag == REMOVE => {
+                    self.reports.report(EditError::RemovesItem(item.tag.span));
+                }
                 Ok(item) => items.push(item),
                 Err(error) => {
                     broken = Some(self.reports.report(error));

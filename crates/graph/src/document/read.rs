@@ -2,10 +2,10 @@
 
 use super::{
     entries,
-    extend::{no_edits, no_removals},
+    extend::no_edits,
     fields::one_line,
     materials::{BufferInput, Input, Material, SamplerInput, TextureInput},
-    params::Param,
+    params,
     raw::{RawDocument, RawItem, RawMap},
     typed::Document,
 };
@@ -27,14 +27,7 @@ use std::collections::BTreeSet;
 
 /// Reads a document and reports its mistakes. Its readable part is returned all the same, so that
 /// later phases find more mistakes in one go.
-pub(crate) fn document(
-    mut raw: RawDocument,
-    registry: &Registry,
-    reports: &mut Reports,
-) -> Document {
-    for items in [&mut raw.params, &mut raw.inputs, &mut raw.materials] {
-        no_removals(items, reports);
-    }
+pub(crate) fn document(raw: RawDocument, registry: &Registry, reports: &mut Reports) -> Document {
     let mut document = Document {
         description: String::new(),
         requires: Vec::new(),
@@ -57,6 +50,7 @@ pub(crate) fn document(
         incomplete: raw.incomplete,
         gives_values: BTreeSet::new(),
         include_depth: 0,
+        extended: raw.extended,
         file: raw.file,
     };
     if let Some(node) = &raw.description {
@@ -70,7 +64,7 @@ pub(crate) fn document(
         });
     }
     for item in &raw.params {
-        match Param::read(&item.tag, &item.fields) {
+        match params::read(&item.tag, &item.fields) {
             Ok(param) => document.params.push(param),
             Err(error) => document.invalid_params = Some(reports.report(error)),
         }
@@ -80,14 +74,14 @@ pub(crate) fn document(
         let input = input(item).and_then(|input| free(input.name.clone(), input));
         match input {
             Ok(input) => document.inputs.push(input),
-            Err(error) => document.lacks(item.name(), reports.report(error)),
+            Err(error) => lacks(&mut document, item.name(), reports.report(error)),
         }
     }
     for item in &raw.materials {
         let material = material(item).and_then(|read| free(read.name().clone(), read));
         match material {
             Ok(material) => document.materials.push(material),
-            Err(error) => document.lacks(item.name(), reports.report(error)),
+            Err(error) => lacks(&mut document, item.name(), reports.report(error)),
         }
     }
     let mut passes = raw.passes;
@@ -104,59 +98,67 @@ pub(crate) fn document(
             document.defaults.push((name, value))
         });
     }
-    document.values(raw.values, raw.narrow, &raw.imports, reports);
-    document.promises(&raw.lights, &raw.proven_on, raw.claims, reports);
+    values(&mut document, raw.values, raw.narrow, &raw.imports, reports);
+    promises(
+        &mut document,
+        (&raw.lights, &raw.proven_on),
+        raw.claims,
+        reports,
+    );
     document
 }
 
-impl Document {
-    /// Reads what expressions and shaders are given by name.
-    fn values(&mut self, values: RawMap, narrow: RawMap, imports: &[Node], reports: &mut Reports) {
-        for (name, node) in values {
-            match value(name.clone(), &node) {
-                Ok(value) => self.values.push(value),
-                Err(error) => self.lacks(Some(name), reports.report(error)),
-            }
-        }
-        for (name, node) in narrow {
-            keep(node.parse(), reports, |narrow| {
-                self.narrow.push((name, narrow))
-            });
-        }
-        for node in imports {
-            keep(node.parse(), reports, |entry| self.imports.push(entry));
+/// Reads what expressions and shaders are given by name.
+fn values(
+    document: &mut Document,
+    values: RawMap,
+    narrow: RawMap,
+    imports: &[Node],
+    reports: &mut Reports,
+) {
+    for (name, node) in values {
+        match value(name.clone(), &node) {
+            Ok(value) => document.values.push(value),
+            Err(error) => lacks(document, Some(name), reports.report(error)),
         }
     }
-
-    /// Reads what the document says of itself as a method.
-    fn promises(
-        &mut self,
-        lights: &[Node],
-        proven_on: &[Node],
-        claims: RawMap,
-        reports: &mut Reports,
-    ) {
-        for node in lights {
-            keep(node.parse(), reports, |kind| self.lights.push(kind));
-        }
-        for node in proven_on {
-            keep(node.parse(), reports, |backend| {
-                self.proven_on.push(backend)
-            });
-        }
-        for (name, node) in claims {
-            keep(node.parse(), reports, |value| {
-                self.claims.push((name, value))
-            });
-        }
+    for (name, node) in narrow {
+        keep(node.parse(), reports, |narrow| {
+            document.narrow.push((name, narrow))
+        });
     }
+    for node in imports {
+        keep(node.parse(), reports, |entry| document.imports.push(entry));
+    }
+}
 
-    /// Notes what cannot be read, by its name if that can.
-    fn lacks(&mut self, name: Option<Located<String>>, reported: ErrorGuaranteed) {
-        match name {
-            Some(name) => self.broken_materials.push((name.value, reported)),
-            None => self.incomplete = Some(reported),
-        }
+/// Reads what the document says of itself as a method.
+fn promises(
+    document: &mut Document,
+    (lights, proven_on): (&[Node], &[Node]),
+    claims: RawMap,
+    reports: &mut Reports,
+) {
+    for node in lights {
+        keep(node.parse(), reports, |kind| document.lights.push(kind));
+    }
+    for node in proven_on {
+        keep(node.parse(), reports, |backend| {
+            document.proven_on.push(backend)
+        });
+    }
+    for (name, node) in claims {
+        keep(node.parse(), reports, |value| {
+            document.claims.push((name, value))
+        });
+    }
+}
+
+/// Notes what cannot be read, by its name if that can.
+fn lacks(document: &mut Document, name: Option<Located<String>>, reported: ErrorGuaranteed) {
+    match name {
+        Some(name) => document.broken_materials.push((name.value, reported)),
+        None => document.incomplete = Some(reported),
     }
 }
 

@@ -3,7 +3,6 @@
 use super::{
     fields::{Mentions, prose, short_or_long},
     materials::{Input, Material},
-    params::Param,
     raw::Invalid,
 };
 use crate::{
@@ -13,16 +12,19 @@ use crate::{
         name::Name,
         syntax::{Expr, Leaf, Reference},
     },
-    source::span::{Located, SourceFile},
+    param::Param,
+    source::span::{Located, SourceFile, Span},
 };
 use serde::{Deserialize, Deserializer};
 use skiagraph_located_ron::reader::{raw, read};
 use std::{collections::BTreeSet, sync::Arc};
 
 /// A document as its author wrote it.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Document {
     pub file: SourceFile,
+    /// The paths of the documents that it extends, the nearest first.
+    pub extended: Vec<Arc<str>>,
     pub description: String,
     pub requires: Vec<(Located<String>, wgt::Features)>,
     /// The params that it declares, then those that it exposes.
@@ -175,7 +177,7 @@ impl<'de> Deserialize<'de> for Output {
 }
 
 /// One entry, at its place in the sequential program.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Entry {
     pub name: Located<Name>,
     /// Condition under which it exists.
@@ -189,7 +191,7 @@ pub(crate) struct Entry {
     pub what: What,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) enum What {
     Pass(Pass),
     Include(Include),
@@ -197,9 +199,11 @@ pub(crate) enum What {
 }
 
 /// A pass: the fields of every kind, and the kind's own body.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Pass {
     pub shader: Option<Located<String>>,
+    /// Materials that are cleared to zero before anything else of it runs.
+    pub clear: Vec<Reference>,
     /// Materials that the pass writes in every texel or item, as its author promises.
     pub overwrites: Vec<Reference>,
     /// Materials that the pass reads, if its author lists them.
@@ -215,7 +219,7 @@ pub(crate) struct Pass {
 }
 
 /// Another document whose passes stand here.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Include {
     /// The document that stands here; of an open include the one that was asked for.
     pub graph: Located<String>,
@@ -260,6 +264,18 @@ pub(crate) enum Run {
 }
 
 impl Document {
+    /// True if the document itself says what stands there, not one that it extends or includes.
+    pub fn is_own(&self, span: &Span) -> bool {
+        span.file.name == self.file.name
+    }
+
+    /// How many documents extend the one that says what stands there, this one last.
+    pub fn rank(&self, span: &Span) -> usize {
+        let mut extended = self.extended.iter();
+        let found = extended.position(|file| *file == span.file.name);
+        found.map_or(0, |below| below + 1)
+    }
+
     /// The outputs that are no values.
     pub fn material_outputs(&self) -> impl Iterator<Item = &Output> {
         let is_value = |output: &&Output| self.gives_values.contains(output.name.as_str());

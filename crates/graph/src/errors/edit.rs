@@ -15,9 +15,11 @@ mistakes! {
     NoSuchEntry { path: Located<String>, name: String, known: Vec<String> } =>
         Edit("the extended document has no entry `{path}`").at(path, "").suggest(&name, known);
 
-    NoSuchItem { name: Located<String>, known: Vec<String> } =>
-        Edit("the extended document has nothing called `{name}` here")
-        .at(&name, "").suggest(&name, known);
+    RemovesItem(place: Span) =>
+        Edit("`Remove` takes out passes alone")
+        .at(place, "").help(
+            "leave it out: what the extended document declares goes by itself once nothing uses it"
+        );
 
     Widens { name: Located<String>, word: Located<Name>, first: Span } =>
         Edit("`narrow` brings back the word `{word}` of `{name}`")

@@ -1,7 +1,7 @@
 //! Mistakes between documents: params, inputs, outputs, names.
 
 use crate::{
-    document::params::{Param, ParamFault, ParamValue},
+    param::{Param, ParamFault, ParamValue},
     source::span::{Located, Span},
 };
 
@@ -97,11 +97,11 @@ mistakes! {
 
     WrittenInput(name: Located<String>, by: Span) =>
         Input("the input `{name}` is written, but is not an output")
-        .at(&name, "an input").at(by, "written here")
-        .help(format!(
-            "name it among the `outputs`, so that its includers know; or make it a material, and \
-             take the input of an extended document out: `inputs: [Remove(name: \"{name}\")]`"
-        ));
+        .at(name, "an input").at(by, "written here")
+        .help(
+            "name it among the `outputs`, so that its includers know; or make it a material, \
+             which takes the place of an extended document's input"
+        );
 
     Unused { document: String, name: Located<String>, known: Vec<String> } =>
         Unused("`{document}` has no input, output or param `{name}`")

@@ -1,8 +1,8 @@
 //! Passes whose shaders, attachments, copies or dispatches do not fit.
 
 use crate::{
-    document::params::Param,
-    shader::class::ScalarClass,
+    param::Param,
+    scalar_class::ScalarClass,
     source::span::{Located, Span},
 };
 use wgt::TextureFormat;

@@ -1,8 +1,9 @@
 //! Walks the entries of documents: conditions, repetitions, groups.
 
 use super::{
-    flat::{Flat, FlatPass, Inherited, Interface, Merge, PlanInputs, Run},
-    merge::Site,
+    flat::{EntryContext, Flat, FlatPass, Inherited, Interface, Merge, PlanInputs, Run},
+    include::{self, Overrides},
+    merge::{Content, Site},
     params::Params,
     scopes::{Instance, InstanceId, Names, Position, ScopeId, Symbol},
     state::{Declared, DeclaredValue, ValueState},
@@ -12,16 +13,14 @@ use crate::{
     diagnostics::reports::{ErrorGuaranteed, Reports},
     document::{
         materials::{Input, InputKind},
-        params::ParamType,
         raw::Invalid,
-        typed::{Document, Entry, Pass, Run as RunEntry, What},
+        typed::{Document, Entry, Include, Pass, Run as RunEntry, What},
     },
     errors::instantiate::InterfaceError,
+    expressions::eval,
     graph::Graph,
-    language::{
-        name::Name,
-        syntax::{Expr, Leaf, Reference},
-    },
+    language::{name::Name, syntax::Leaf},
+    param::ParamType,
     provider::Import,
     request::PlanRequest,
     resource::{Buffer, Origin, Resource, ResourceKind, Sampler, Texture},
@@ -36,39 +35,6 @@ use std::{
 /// Most passes (groups and includes among them), and most materials, of a graph. A guard against
 /// documents that double with each include: more would take absurd time and memory.
 const MOST: usize = 16_384;
-
-/// Surroundings of an entry.
-#[derive(Clone)]
-pub(super) struct EntryContext<'a> {
-    pub scope: ScopeId,
-    /// Prefix of the names of passes.
-    pub prefix: String,
-    pub run: Option<(Run, bool)>,
-    pub bind: Vec<Inherited<'a, Reference>>,
-    pub set: Vec<Inherited<'a, Expr>>,
-}
-
-impl<'a> EntryContext<'a> {
-    fn new(scope: ScopeId) -> Self {
-        Self {
-            scope,
-            prefix: String::new(),
-            run: None,
-            bind: Vec::new(),
-            set: Vec::new(),
-        }
-    }
-
-    /// Returns the surroundings of the entries of an included document. Groups outside say nothing
-    /// of its names, for these are not their own.
-    pub fn inside(&self, scope: ScopeId) -> Self {
-        Self {
-            prefix: self.prefix.clone(),
-            run: self.run.clone(),
-            ..Self::new(scope)
-        }
-    }
-}
 
 pub(super) struct Builder<'a, 'r> {
     pub symbols: SymbolTable<'a>,
@@ -258,7 +224,8 @@ impl<'a> Builder<'a, '_> {
             }
             let name = material.name();
             let instance = self.symbols.scopes.instance_of(scope);
-            let symbol = match self.overridden(instance, material) {
+            let symbol = match include::overridden(instance, material, &self.symbols, self.reports)
+            {
                 Some(Ok(target)) => Symbol::Target(target),
                 Some(Err(reported)) => Symbol::Invalid(reported),
                 None => {
@@ -285,7 +252,9 @@ impl<'a> Builder<'a, '_> {
         let mut replaced = self.symbols.scopes.instance(instance).replaced.clone();
         for entry in &document.imports {
             // A condition without a value was reported.
-            if self.is_there(entry.condition.as_ref(), scope) == Ok(true) {
+            let place = Position { scope, index: None };
+            let mut at = self.symbols.at(place, None, self.reports);
+            if self.plan_inputs.is_there(entry.condition.as_ref(), &mut at) == Ok(true) {
                 let shaders = &self.symbols.graph.shaders;
                 shaders.replace(&mut replaced, &entry.of, &entry.is);
             }
@@ -325,27 +294,6 @@ impl<'a> Builder<'a, '_> {
         self.first_invalid.get_or_insert(above);
     }
 
-    /// True if an entry or output exists.
-    pub fn is_there(
-        &mut self,
-        condition: Option<&Expr>,
-        scope: ScopeId,
-    ) -> Result<bool, ErrorGuaranteed> {
-        let Some(condition) = condition else {
-            return Ok(true);
-        };
-        self.plan_inputs
-            .params
-            .extend(self.symbols.roots(scope, condition));
-        self.symbols.visit(scope, condition, &mut |_, leaf| {
-            if let Leaf::Has(feature) = leaf {
-                self.plan_inputs.features |= feature;
-            }
-        });
-        let position = Position { scope, index: None };
-        condition.boolean(&mut self.symbols.at(position, None, self.reports))
-    }
-
     fn entry(
         &mut self,
         entry: &'a Entry,
@@ -355,13 +303,17 @@ impl<'a> Builder<'a, '_> {
             return Err(reported);
         }
         let scope = context.scope;
-        if !self.is_there(entry.condition.as_ref(), scope)? {
+        let position = Position { scope, index: None };
+        let mut at = self.symbols.at(position, None, self.reports);
+        if !self
+            .plan_inputs
+            .is_there(entry.condition.as_ref(), &mut at)?
+        {
             return Ok(());
         }
-        let position = Position { scope, index: None };
         let count = match &entry.repeat {
             None => 1,
-            Some(repeat) => repeat.count32(&mut self.symbols.at(position, None, self.reports))?,
+            Some(repeat) => eval::count32(repeat, &mut at)?,
         };
         self.spent = self.spent.saturating_add(count as usize);
         if self.spent > MOST {
@@ -485,6 +437,97 @@ impl<'a> Builder<'a, '_> {
         }
     }
 
+    /// The names that one instance of an include gives; where it has no name of its own and is not
+    /// repeated, they are declared here.
+    fn include(
+        &mut self,
+        entry: &'a Entry,
+        include: &'a Include,
+        position: Position,
+        context: &EntryContext<'a>,
+    ) -> Result<Names, ErrorGuaranteed> {
+        let document = match &include.document {
+            Some(Ok(document)) => document,
+            Some(Err(reported)) => {
+                self.incomplete(position.scope, *reported);
+                return Err(*reported);
+            }
+            None => return Ok(Names::new()),
+        };
+        self.require(document);
+        let has_namespace = include.is_named || position.index.is_some();
+        let place = (position, has_namespace);
+        let mut at = self.symbols.at(position, None, self.reports);
+        let of_groups = include::said(entry, document, context, &mut at);
+        let said = Overrides::new(entry, &of_groups, position);
+        let params = include::params(entry, include, document, &said, &mut at);
+        let (scene, overrides) = include::outside(entry, document, &said, place, &mut at);
+        let given = |input| include::input(input, document, include, &said, &mut at);
+        let inputs: Vec<_> = document.inputs.iter().map(given).collect();
+        self.mark(&of_groups.0, &of_groups.1);
+        let around = self.symbols.scopes.instance_of(position.scope);
+        let replaced = self.symbols.scopes.instance(around).replaced.clone();
+        // With a name, or in a repetition, an include is one of its own; so is one that writes into
+        // what it is given.
+        let may_merge = self.merges
+            && !has_namespace
+            && overrides.is_empty()
+            && self.symbols.scopes.index(position, None).is_none()
+            && !document
+                .inputs
+                .iter()
+                .any(|it| include::is_output(document, it));
+        let content = may_merge.then(|| {
+            let mut bound = self.symbols.scopes.bound_scene(around);
+            bound.extend(scene.clone());
+            let run = context.run.clone();
+            Content::new(document, &params, &inputs, bound, &replaced, run)
+        });
+        let content = content.flatten();
+        let mut sites = self.sites.iter();
+        let site = sites.find(|site| Some(&site.content) == content.as_ref());
+        let scopes = &mut self.symbols.scopes;
+        if let Some(site) = site {
+            self.merged.push(site.merge(self.passes.len(), include));
+            include::give(entry, document, &site.names, place, scopes)?;
+            return Ok(site.names.clone());
+        }
+        let first_resource = self.symbols.resources.len();
+        let outer = include::outer(entry, position, has_namespace, context);
+        let instance = scopes.add_instance(Instance {
+            document: Arc::clone(document),
+            params: Arc::new(params),
+            scene,
+            outer: Some(outer),
+            overrides,
+            replaced,
+            incomplete: None,
+        });
+        let scope = scopes.add_scope(instance, None, String::new(), None);
+        let read_only = include::declare_inputs(scope, document, inputs, scopes);
+        let inner = context.inside(scope);
+        self.document(document, &inner);
+        let inside = Position { scope, index: None };
+        let mut at = self.symbols.at(inside, None, self.reports);
+        let plan_inputs = &mut self.plan_inputs;
+        let (names, outputs) = include::outputs(document, &said, plan_inputs, &mut at);
+        self.interfaces.push(Interface {
+            instance,
+            outputs,
+            read_only,
+        });
+        if let Some(content) = content {
+            self.sites.push(Site {
+                content,
+                names: names.clone(),
+                end: self.passes.len(),
+                owned: first_resource..self.symbols.resources.len(),
+            });
+        }
+        include::give(entry, document, &names, place, &mut self.symbols.scopes)?;
+        Ok(names)
+    }
+
     /// In which frames an entry runs, and what is in it and does not say otherwise.
     fn run(
         &mut self,
@@ -499,7 +542,10 @@ impl<'a> Builder<'a, '_> {
             Some(RunEntry::OnChange) => return Ok(Some((Run::OnChange, true))),
             Some(RunEntry::When(condition)) => condition,
         };
-        let enabled = condition.boolean(&mut self.symbols.at(position, None, self.reports))?;
+        let enabled = eval::boolean(
+            condition,
+            &mut self.symbols.at(position, None, self.reports),
+        )?;
         let instance = self.symbols.scopes.document(position.scope);
         let params = Arc::clone(&instance.params);
         let outer = instance.outer.as_ref();
@@ -529,7 +575,7 @@ impl<'a> Builder<'a, '_> {
                 None => name.to_owned(),
             },
             _ => {
-                let value = leaf.value(&mut self.symbols.at(position, None, self.reports));
+                let value = eval::value(leaf, &mut self.symbols.at(position, None, self.reports));
                 value.map_or_else(|_| leaf.text().to_owned(), |value| value.to_string())
             }
         });

@@ -1,14 +1,16 @@
 //! The tree of entries made flat: one list of passes.
 
 use super::{
-    scopes::{InstanceId, Position},
-    symbols::SymbolTable,
+    scopes::{InstanceId, Position, ScopeId},
+    symbols::{At, SymbolTable},
 };
 use crate::{
+    diagnostics::reports::ErrorGuaranteed,
     document::typed::{Entry, Pass},
+    expressions::eval,
     language::{
         name::Name,
-        syntax::{Expr, Reference},
+        syntax::{Expr, Leaf, Reference},
     },
     resource::{ResourceId, Target},
     source::span::{Located, Span},
@@ -77,6 +79,39 @@ pub(crate) struct FlatPass<'a> {
     pub set: Vec<Inherited<'a, Expr>>,
 }
 
+/// Surroundings of an entry.
+#[derive(Clone)]
+pub(super) struct EntryContext<'a> {
+    pub scope: ScopeId,
+    /// Prefix of the names of passes.
+    pub prefix: String,
+    pub run: Option<(Run, bool)>,
+    pub bind: Vec<Inherited<'a, Reference>>,
+    pub set: Vec<Inherited<'a, Expr>>,
+}
+
+impl<'a> EntryContext<'a> {
+    pub fn new(scope: ScopeId) -> Self {
+        Self {
+            scope,
+            prefix: String::new(),
+            run: None,
+            bind: Vec::new(),
+            set: Vec::new(),
+        }
+    }
+
+    /// Returns the surroundings of the entries of an included document. Groups outside say nothing
+    /// of its names, for these are not their own.
+    pub fn inside(&self, scope: ScopeId) -> Self {
+        Self {
+            prefix: self.prefix.clone(),
+            run: self.run.clone(),
+            ..Self::new(scope)
+        }
+    }
+}
+
 /// Setting of a group, with its place.
 pub(crate) struct Inherited<'a, T> {
     pub name: &'a Located<String>,
@@ -107,4 +142,25 @@ pub(crate) struct Interface {
 pub(crate) struct PlanInputs {
     pub params: BTreeSet<String>,
     pub features: wgt::Features,
+}
+
+impl PlanInputs {
+    /// True if an entry or output exists, on whose condition the plan depends then.
+    pub(super) fn is_there(
+        &mut self,
+        condition: Option<&Expr>,
+        at: &mut At<'_, '_, '_>,
+    ) -> Result<bool, ErrorGuaranteed> {
+        let Some(condition) = condition else {
+            return Ok(true);
+        };
+        let (symbols, scope) = (at.symbols(), at.scope());
+        self.params.extend(symbols.roots(scope, condition));
+        symbols.visit(scope, condition, &mut |_, leaf| {
+            if let Leaf::Has(feature) = leaf {
+                self.features |= feature;
+            }
+        });
+        eval::boolean(condition, at)
+    }
 }

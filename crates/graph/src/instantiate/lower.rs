@@ -9,7 +9,7 @@ use crate::{
     diagnostics::reports::Reports,
     kinds::{
         kind::Lowering,
-        step::{Names, ShaderUse, Step},
+        step::{Names, Operand, ShaderUse, Step},
     },
     resource::{Buffer, Origin, Resource, ResourceId, ResourceKind},
     source::span::Located,
@@ -41,10 +41,61 @@ pub(crate) struct Lowered<'a> {
 /// Lowers every pass.
 pub(crate) fn lower<'a>(flat: Flat<'a>, reports: &mut Reports) -> Lowered<'a> {
     let mut symbols = flat.symbols;
-    let passes = flat
-        .passes
-        .into_iter()
-        .map(|pass| lower_pass(pass, &mut symbols, reports));
+    let passes = flat.passes.into_iter().map(|flat| {
+        let (entry, pass) = (flat.entry, flat.pass);
+        let before = reports.errors();
+        let instance = symbols.scopes.document(flat.position.scope);
+        // Constants are those of the pass's own shader, or of the first that its kind brings.
+        let is_own = |shader: &&ShaderUse| pass.shader.as_ref() == Some(&shader.name);
+        let own = pass.shaders.iter().find(is_own);
+        let shader = own.or(pass.shaders.first()).and_then(|shader| {
+            let shaders = &symbols.graph.shaders;
+            shaders.get(&instance.document, shader, &instance.replaced)
+        });
+        let shader = shader.cloned();
+        let mut environment = symbols.at(flat.position, shader, reports);
+        let mut lowering = Lowering::new(
+            &entry.name,
+            pass.shader.as_ref(),
+            &entry.bind,
+            Some(&mut environment),
+        );
+        for material in &pass.clear {
+            lowering.step(Step::Clear {
+                target: Operand::from(material),
+                value: [0.0; 4],
+            });
+        }
+        pass.body.lower(&mut lowering);
+        let (steps, scratch, diagnostics) =
+            (lowering.steps, lowering.scratch, lowering.diagnostics);
+        for diagnostic in diagnostics {
+            reports.report(diagnostic);
+        }
+        let own = Located::new(entry.name.value.to_string(), entry.name.span.clone());
+        // A slash stands in no name: nothing in a document can mean this buffer.
+        let scratch = scratch.into_iter().map(|(name, bytes)| {
+            symbols.add(Resource {
+                name: format!("{}/{name}", flat.name.value),
+                declared: None,
+                kind: ResourceKind::Buffer(Buffer {
+                    count: Some(bytes / 4),
+                    ..Buffer::default()
+                }),
+                origin: Origin::Own,
+                growth: None,
+                keep: false,
+            })
+        });
+        LoweredPass {
+            scratch: scratch.collect(),
+            instance: symbols.scopes.instance_of(flat.position.scope),
+            steps,
+            shader: pass.shader.clone().unwrap_or(own),
+            is_broken: reports.errors() > before,
+            flat,
+        }
+    });
     let passes = passes.collect();
     Lowered {
         symbols,
@@ -53,58 +104,5 @@ pub(crate) fn lower<'a>(flat: Flat<'a>, reports: &mut Reports) -> Lowered<'a> {
         interfaces: flat.interfaces,
         merged: flat.merged,
         plan_inputs: flat.plan_inputs,
-    }
-}
-
-fn lower_pass<'a>(
-    flat: FlatPass<'a>,
-    symbols: &mut SymbolTable<'a>,
-    reports: &mut Reports,
-) -> LoweredPass<'a> {
-    let (entry, pass) = (flat.entry, flat.pass);
-    let before = reports.errors();
-    let instance = symbols.scopes.document(flat.position.scope);
-    // Constants are those of the pass's own shader, or of the first that its kind brings.
-    let is_own = |shader: &&ShaderUse| pass.shader.as_ref() == Some(&shader.name);
-    let own = pass.shaders.iter().find(is_own);
-    let shader = own.or(pass.shaders.first()).and_then(|shader| {
-        let shaders = &symbols.graph.shaders;
-        shaders.get(&instance.document, shader, &instance.replaced)
-    });
-    let shader = shader.cloned();
-    let mut environment = symbols.at(flat.position, shader, reports);
-    let mut lowering = Lowering::new(
-        &entry.name,
-        pass.shader.as_ref(),
-        &entry.bind,
-        Some(&mut environment),
-    );
-    pass.body.lower(&mut lowering);
-    let (steps, scratch, diagnostics) = (lowering.steps, lowering.scratch, lowering.diagnostics);
-    for diagnostic in diagnostics {
-        reports.report(diagnostic);
-    }
-    let own = Located::new(entry.name.value.to_string(), entry.name.span.clone());
-    // A slash stands in no name: nothing in a document can mean this buffer.
-    let scratch = scratch.into_iter().map(|(name, bytes)| {
-        symbols.add(Resource {
-            name: format!("{}/{name}", flat.name.value),
-            declared: None,
-            kind: ResourceKind::Buffer(Buffer {
-                count: Some(bytes / 4),
-                ..Buffer::default()
-            }),
-            origin: Origin::Own,
-            growth: None,
-            keep: false,
-        })
-    });
-    LoweredPass {
-        scratch: scratch.collect(),
-        instance: symbols.scopes.instance_of(flat.position.scope),
-        steps,
-        shader: pass.shader.clone().unwrap_or(own),
-        is_broken: reports.errors() > before,
-        flat,
     }
 }

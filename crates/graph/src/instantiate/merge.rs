@@ -2,12 +2,13 @@
 //! over a method includes the G-buffer beside it, and it is drawn once.
 
 use super::{
-    flat::Run,
-    scopes::{InstanceId, Names, Scopes},
+    flat::{Merge, Run},
+    scopes::Names,
 };
 use crate::{
     diagnostics::reports::ErrorGuaranteed,
-    document::{params::ParamValue, typed::Document},
+    document::typed::{Document, Include},
+    param::ParamValue,
     resource::Target,
     shader::expand::Replaced,
 };
@@ -43,6 +44,19 @@ pub(super) struct Site {
     pub owned: Range<usize>,
 }
 
+impl Site {
+    /// Notes that another include of the same content stands behind so many passes.
+    pub fn merge(&self, passes: usize, include: &Include) -> Merge {
+        Merge {
+            between: self.end..passes,
+            inputs: self.content.inputs.iter().map(|target| target.id).collect(),
+            owned: self.owned.clone(),
+            graph: include.graph.value.clone(),
+            span: include.graph.span.clone(),
+        }
+    }
+}
+
 impl Content {
     /// `None` where something in it is wrong.
     pub fn new(
@@ -68,21 +82,5 @@ impl Content {
             replaced: replaced.clone(),
             run,
         })
-    }
-}
-
-impl Scopes {
-    /// Returns the targets of names of the scene in an instance.
-    pub(super) fn bound_scene(
-        &self,
-        id: InstanceId,
-    ) -> BTreeMap<String, Result<Target, ErrorGuaranteed>> {
-        let mut bound = BTreeMap::new();
-        for instance in self.outer_instances(id) {
-            for (name, target) in &self.instance(instance).scene {
-                bound.entry(name.clone()).or_insert_with(|| target.clone());
-            }
-        }
-        bound
     }
 }

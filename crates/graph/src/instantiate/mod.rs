@@ -8,12 +8,13 @@ pub(crate) mod flat;
 mod growth;
 pub(crate) mod include;
 pub(crate) mod lower;
-pub(crate) mod materials;
+mod materials;
 pub(crate) mod merge;
 pub(crate) mod params;
-pub(crate) mod position;
+mod parts;
 pub(crate) mod scopes;
 pub(crate) mod state;
 pub(crate) mod symbols;
 
 pub use flat::Run;
+pub use params::Claim;

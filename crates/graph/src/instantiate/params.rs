@@ -1,25 +1,32 @@
 //! Values of params: the root's from the request, an included document's from the including one.
 
 use crate::{
-    diagnostics::{
-        list::Diagnostics,
-        reports::{ErrorGuaranteed, Reports},
-    },
-    document::{
-        params::{Param, ParamValue},
-        typed::Document,
-    },
+    diagnostics::reports::{ErrorGuaranteed, Reports},
+    document::typed::Document,
     errors::{evaluation::EvaluationError, instantiate::ParamError},
-    graph::{Claim, Graph},
+    expressions::eval::{self, Environment},
     language::{
-        eval::Environment,
         name::{Name, wgsl_identifier},
         syntax::{Attribute, Expr, Leaf, Reference},
         value::Value,
     },
+    param::{Param, ParamValue, find},
     source::span::{Located, Span},
 };
 use std::collections::{BTreeMap, BTreeSet};
+
+/// Promise of a method about itself. The graph knows no meaning of it: its caller judges it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Claim {
+    /// The promise, a word that the judge knows.
+    pub name: String,
+    /// The condition as the document writes it; empty without one.
+    pub condition: String,
+    /// Why it holds, as the document says.
+    pub because: String,
+    /// True if the condition holds for these values of params.
+    pub holds: bool,
+}
 
 /// The params of a document with the values of one plan.
 #[derive(Clone, Debug, Default)]
@@ -155,8 +162,8 @@ impl Environment for ParamsAlone<'_> {
         Err(self.report(EvaluationError::NoShader(span.clone())))
     }
 
-    fn report(&mut self, error: EvaluationError) -> ErrorGuaranteed {
-        self.reports.report(error)
+    fn reports(&mut self) -> &mut Reports {
+        self.reports
     }
 }
 
@@ -182,7 +189,7 @@ fn default(
         context,
         reports,
     };
-    let value = default.value(&mut environment)?;
+    let value = eval::value(default, &mut environment)?;
     param.convert(&value).map_err(|why| {
         reports.report(ParamError::Default {
             param: Located::new(param.name.value.clone(), default.span.clone()),
@@ -348,92 +355,57 @@ impl Given<'_> {
     }
 }
 
-impl Graph {
-    /// The value of every param: that which is asked for, else the default for this viewport on a
-    /// device with these features.
-    ///
-    /// # Errors
-    /// If there is no such param, or a value does not fit.
-    pub fn values(
-        &self,
-        asked: &BTreeMap<String, ParamValue>,
-        viewport: [u32; 2],
-        features: wgt::Features,
-    ) -> Result<BTreeMap<String, ParamValue>, Diagnostics> {
-        let mut reports = Reports::default();
-        let context = Surroundings { viewport, features };
-        let params = self.checked_params(asked, context, &mut reports);
-        match params {
-            Ok(params) => Ok(params
-                .list
-                .into_iter()
-                .filter_map(|bound| Some((bound.param.name.value, bound.value.ok()?)))
-                .collect()),
-            Err(_) => Err(self.diagnostics(reports.into_list())),
-        }
+/// The params of the root document, all of them right.
+pub(crate) fn checked(
+    document: &Document,
+    asked: &BTreeMap<String, ParamValue>,
+    context: Surroundings,
+    reports: &mut Reports,
+) -> Result<Params, ErrorGuaranteed> {
+    let mut wrong = None;
+    for (name, value) in asked {
+        let mistake = match find(&document.params, name, &document.file.name) {
+            Ok(param) => param.check(value).err().map(|why| ParamError::Asked {
+                name: Located::new(name.clone(), param.name.span.clone()),
+                value: value.clone(),
+                why,
+            }),
+            Err(error) => Some(ParamError::Unknown(error.to_string())),
+        };
+        wrong = mistake.map(|mistake| reports.report(mistake)).or(wrong);
     }
+    let params = root(document, asked, context, reports);
+    let bad = params
+        .list
+        .iter()
+        .find_map(|bound| bound.value.as_ref().err());
+    wrong.or(bad.copied()).map_or(Ok(params), Err)
+}
 
-    /// The params of the root document, all of them right.
-    pub(crate) fn checked_params(
-        &self,
-        asked: &BTreeMap<String, ParamValue>,
-        context: Surroundings,
-        reports: &mut Reports,
-    ) -> Result<Params, ErrorGuaranteed> {
-        let mut wrong = None;
-        for (name, value) in asked {
-            let mistake = match self.param(name) {
-                Ok(param) => param.check(value).err().map(|why| ParamError::Asked {
-                    name: Located::new(name.clone(), param.name.span.clone()),
-                    value: value.clone(),
-                    why,
-                }),
-                Err(error) => Some(ParamError::Unknown(error.to_string())),
+/// Returns the promises of a document about itself for these values of params.
+pub(crate) fn claims(
+    document: &Document,
+    asked: &BTreeMap<String, ParamValue>,
+    context: Surroundings,
+    reports: &mut Reports,
+) -> Vec<Claim> {
+    let mut claims = Vec::new();
+    if let Ok(params) = checked(document, asked, context, reports) {
+        for (name, claim) in &document.claims {
+            let mut environment = ParamsAlone {
+                params: &params,
+                context,
+                reports,
             };
-            wrong = mistake.map(|mistake| reports.report(mistake)).or(wrong);
-        }
-        let params = root(&self.document, asked, context, reports);
-        let bad = params
-            .list
-            .iter()
-            .find_map(|bound| bound.value.as_ref().err());
-        wrong.or(bad.copied()).map_or(Ok(params), Err)
-    }
-
-    /// Returns the promises of the document about itself for these values of params and this
-    /// viewport, on a device with these features.
-    ///
-    /// # Errors
-    /// If a value does not fit, or a condition has no value.
-    pub fn claims(
-        &self,
-        asked: &BTreeMap<String, ParamValue>,
-        viewport: [u32; 2],
-        features: wgt::Features,
-    ) -> Result<Vec<Claim>, Diagnostics> {
-        let mut reports = Reports::default();
-        let mut claims = Vec::new();
-        let context = Surroundings { viewport, features };
-        if let Ok(params) = self.checked_params(asked, context, &mut reports) {
-            for (name, claim) in &self.document.claims {
-                let mut environment = ParamsAlone {
-                    params: &params,
-                    context,
-                    reports: &mut reports,
-                };
-                let condition = claim.condition.as_ref();
-                let holds = condition.map_or(Ok(true), |c| c.boolean(&mut environment));
-                claims.extend(holds.ok().map(|holds| Claim {
-                    name: name.value.clone(),
-                    condition: condition.map_or("", |c| c.text()).to_owned(),
-                    because: claim.because.clone(),
-                    holds,
-                }));
-            }
-        }
-        match reports.errors() {
-            0 => Ok(claims),
-            _ => Err(self.diagnostics(reports.into_list())),
+            let condition = claim.condition.as_ref();
+            let holds = condition.map_or(Ok(true), |c| eval::boolean(c, &mut environment));
+            claims.extend(holds.ok().map(|holds| Claim {
+                name: name.value.clone(),
+                condition: condition.map_or("", |c| c.text()).to_owned(),
+                because: claim.because.clone(),
+                holds,
+            }));
         }
     }
+    claims
 }

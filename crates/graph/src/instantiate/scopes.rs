@@ -265,7 +265,7 @@ impl Scopes {
     }
 
     /// An instance and those around it, from the inside out.
-    pub(super) fn outer_instances(&self, id: InstanceId) -> impl Iterator<Item = InstanceId> {
+    fn outer_instances(&self, id: InstanceId) -> impl Iterator<Item = InstanceId> {
         std::iter::successors(Some(id), |id| self.parent(*id))
     }
 
@@ -273,6 +273,17 @@ impl Scopes {
     pub fn scene(&self, id: InstanceId, name: &str) -> Option<Result<Target, ErrorGuaranteed>> {
         self.outer_instances(id)
             .find_map(|id| self.instance(id).scene.get(name).cloned())
+    }
+
+    /// Returns the targets of names of the scene in an instance.
+    pub fn bound_scene(&self, id: InstanceId) -> BTreeMap<String, Result<Target, ErrorGuaranteed>> {
+        let mut bound = BTreeMap::new();
+        for instance in self.outer_instances(id) {
+            for (name, target) in &self.instance(instance).scene {
+                bound.entry(name.clone()).or_insert_with(|| target.clone());
+            }
+        }
+        bound
     }
 
     /// True if one instance stands in another one.

@@ -1,30 +1,43 @@
 //! Resources of a plan, and how references of its documents find them.
 
 use super::{
-    scopes::{Position, ScopeId, Scopes, Symbol, ValueId},
+    growth::Sizing,
+    materials, parts,
+    scopes::{Instance, Position, ScopeId, Scopes, Symbol, ValueId},
     state::{Declared, DeclaredValue, State, ValueState},
 };
 use crate::{
     diagnostics::reports::{ErrorGuaranteed, Reports},
     errors::{evaluation::EvaluationError, instantiate::InterfaceError},
+    expressions::{
+        eval::{self, Environment},
+        parser,
+    },
     graph::Graph,
     language::{
-        name::wgsl_identifier,
-        parser,
-        syntax::{Expr, Leaf, Reference, Segment, Selection},
+        name::{Name, wgsl_identifier},
+        syntax::{Attribute, Expr, Leaf, Reference, Segment, Selection},
         value::Value,
     },
     provided_kind::ProvidedKind,
     provider::{Provided, ProvidedBinding},
     request::PlanRequest,
     resource::{FRAME, Origin, Resource, ResourceId, ResourceKind, SubresourceRange, Target},
+    shader::reflect::Shader,
     source::span::{Located, SourceFile, Span},
 };
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::{
+    collections::{BTreeMap, BTreeSet, HashMap},
+    ops::Range,
+    sync::Arc,
+};
 
 /// Longest chain of values that are made of each other; far above any sensible one, far below the
 /// stack.
 const DEEPEST_VALUE: usize = 64;
+
+/// Most sizes of which each is asked for while another is found.
+const NESTED: usize = 8;
 
 /// Everything that names of a graph can mean in one plan.
 pub(crate) struct SymbolTable<'a> {
@@ -66,6 +79,22 @@ impl<'a> SymbolTable<'a> {
             scene: HashMap::new(),
             wgsl_name: names.map(|name| (wgsl_identifier(&name), name)).collect(),
             previous: BTreeMap::new(),
+        }
+    }
+
+    /// Meaning of the names of an expression at a place; `shader`: that of the pass, where it is
+    /// one's expression.
+    pub fn at<'w, 'r>(
+        &'w mut self,
+        position: Position,
+        shader: Option<Result<Arc<Shader>, ErrorGuaranteed>>,
+        reports: &'r mut Reports,
+    ) -> At<'w, 'a, 'r> {
+        At {
+            symbols: self,
+            position,
+            shader,
+            reports,
         }
     }
 
@@ -128,7 +157,7 @@ impl<'a> SymbolTable<'a> {
         };
         let expr = declared.expr().clone();
         self.resolving.push(id);
-        let value = expr.value(&mut self.at(position, None, reports));
+        let value = eval::value(&expr, &mut self.at(position, None, reports));
         self.resolving.pop();
         self.values[id.0].state = ValueState::Known(value.clone());
         value
@@ -231,186 +260,7 @@ impl<'a> SymbolTable<'a> {
         position: Position,
         reports: &mut Reports,
     ) -> Result<Target, ErrorGuaranteed> {
-        let mut reference = reference;
-        while let Some(otherwise) = &reference.otherwise {
-            let (condition, other) = &**otherwise;
-            if condition.boolean(&mut self.at(position, None, reports))? {
-                break;
-            }
-            reference = other;
-        }
-        let (mut target, selection) = self.named(reference, position, reports)?;
-        self.resolve_size(target.id, reports)?;
-        // A part of an input is a part of what is bound to it; a whole one is known only now.
-        if target.part == SubresourceRange::WHOLE {
-            target = self.whole(target.id);
-        }
-        // Mips first: of a 3D texture they have fewer slices.
-        if let Some(mips) = &reference.mips {
-            self.select_mips(&mut target, mips, reference, position, reports)?;
-        }
-        if let Some(selection) = selection {
-            self.select_layers(&mut target, selection, reference, position, reports)?;
-        }
-        if reference.previous {
-            let kept = self.kept(target.id);
-            let id = self.previous(target.id);
-            target.id = id.map_err(|what| {
-                reports.report(InterfaceError::NoPrevious {
-                    name: reference.text().to_owned(),
-                    span: reference.span.clone(),
-                    what,
-                    kept,
-                })
-            })?;
-        }
-        Ok(target)
-    }
-
-    /// Resolves the names of a reference. Returns their meanings, and the selection behind the last
-    /// name.
-    fn named<'r>(
-        &mut self,
-        reference: &'r Reference,
-        position: Position,
-        reports: &mut Reports,
-    ) -> Result<(Target, Option<&'r Selection>), ErrorGuaranteed> {
-        let first = &reference.segments[0];
-        let Some(symbol) = self.scopes.find(position.scope, &first.name.value).cloned() else {
-            return self.of_scene(reference, position, reports);
-        };
-        let mut symbol = symbol;
-        let mut walked = first.name.value.to_string();
-        let mut segments = reference.segments.iter().peekable();
-        while let Some(segment) = segments.next() {
-            let names = match symbol {
-                Symbol::Invalid(reported) => return Err(reported),
-                Symbol::Value(_) => {
-                    let name = Located::new(walked, segment.name.span.clone());
-                    return Err(reports.report(InterfaceError::IsValue(name)));
-                }
-                Symbol::Target(target) => {
-                    return match segments.peek() {
-                        None => Ok((target, segment.selection.as_ref())),
-                        Some(next) => Err(reports.report(InterfaceError::NotOfMaterial {
-                            of: walked,
-                            name: Located::new(next.name.value.to_string(), next.name.span.clone()),
-                        })),
-                    };
-                }
-                Symbol::Namespace(names) => names,
-                Symbol::Repeated(list) => {
-                    let index = self.repetition(segment, list.len(), position, reports)?;
-                    list.into_iter().nth(index).unwrap_or_default()
-                }
-            };
-            let Some(next) = segments.peek() else {
-                let name = Located::new(walked, segment.name.span.clone());
-                return Err(reports.report(InterfaceError::Namespace(name)));
-            };
-            let Some(found) = names.get(&next.name.value) else {
-                let known = reports.known(names.keys().map(|name| name.to_string()));
-                return Err(self.private(&walked, &next.name, known, reports));
-            };
-            walked = format!("{walked}.{}", next.name.value);
-            symbol = found.clone();
-        }
-        Err(self.unknown(reference, position, reports))
-    }
-
-    fn private(
-        &self,
-        entry: &str,
-        name: &Located<crate::language::name::Name>,
-        known: Vec<String>,
-        reports: &mut Reports,
-    ) -> ErrorGuaranteed {
-        reports.report(InterfaceError::Private {
-            entry: entry.to_owned(),
-            name: Located::new(name.value.to_string(), name.span.clone()),
-            known,
-        })
-    }
-
-    /// Which repetition a segment selects.
-    fn repetition(
-        &mut self,
-        segment: &Segment,
-        count: usize,
-        position: Position,
-        reports: &mut Reports,
-    ) -> Result<usize, ErrorGuaranteed> {
-        let name = &segment.name;
-        let Some(Selection::One(expr)) = &segment.selection else {
-            let name = Located::new(name.value.to_string(), name.span.clone());
-            return Err(reports.report(InterfaceError::Namespace(name)));
-        };
-        let index = expr.count(&mut self.at(position, None, reports))?;
-        let index = usize::try_from(index).ok().filter(|index| *index < count);
-        index.ok_or_else(|| {
-            reports.report(InterfaceError::Range {
-                text: format!("{}[{}]", name.value, expr.text()),
-                span: expr.span.clone(),
-                what: format!("it is repeated {count} times, counted from 0"),
-                declared: None,
-            })
-        })
-    }
-
-    /// Resolves a reference to a name of the scene.
-    fn of_scene<'r>(
-        &mut self,
-        reference: &'r Reference,
-        position: Position,
-        reports: &mut Reports,
-    ) -> Result<(Target, Option<&'r Selection>), ErrorGuaranteed> {
-        let path = reference.path();
-        let (last, others) = match reference.segments.split_last() {
-            Some((last, others)) => (last.selection.as_ref(), others),
-            None => (None, &[][..]),
-        };
-        let is_plain = others.iter().all(|segment| segment.selection.is_none());
-        if let (Some(Selection::One(number)), true) = (last, is_plain)
-            && let Some(of_list) = self.of_list(&path, number, reference, position, reports)
-        {
-            return of_list.map(|target| (target, None));
-        }
-        match self.find_scene(&path, position.scope).filter(|_| is_plain) {
-            Some(target) => Ok((target?, last)),
-            None => Err(self.unknown(reference, position, reports)),
-        }
-    }
-
-    /// One of a list whose members have names of their own, such as `lights[1]`: it may be of
-    /// another kind than the others. `None` if it is no such list, or an own material stands in.
-    fn of_list(
-        &mut self,
-        list: &str,
-        number: &Expr,
-        reference: &Reference,
-        position: Position,
-        reports: &mut Reports,
-    ) -> Option<Result<Target, ErrorGuaranteed>> {
-        let instance = self.scopes.instance_of(position.scope);
-        if self.scopes.scene(instance, list).is_some() {
-            return None;
-        }
-        let provider = self.request.provider;
-        provider.describe(&format!("{list}.0"))?;
-        let count = provider.describe(list)?.items?;
-        let number = match number.count(&mut self.at(position, None, reports)) {
-            Ok(number) => number,
-            Err(reported) => return Some(Err(reported)),
-        };
-        let found = self.find_scene(&format!("{list}.{number}"), position.scope);
-        Some(found.unwrap_or_else(|| {
-            Err(reports.report(InterfaceError::Range {
-                text: reference.text().to_owned(),
-                span: reference.span.clone(),
-                what: format!("there are {count} of them, counted from 0; this is [{number}]"),
-                declared: None,
-            }))
-        }))
+        self.at(position, None, reports).resolve(reference)
     }
 
     /// Finds the target of a name of the scene in a frame.
@@ -494,25 +344,6 @@ impl<'a> SymbolTable<'a> {
             Some(Target { id, ..base })
         });
         previous.transpose()
-    }
-
-    /// Reports a reference that names nothing.
-    fn unknown(
-        &self,
-        reference: &Reference,
-        position: Position,
-        reports: &mut Reports,
-    ) -> ErrorGuaranteed {
-        let instance = self.scopes.document(position.scope);
-        if let Some(reported) = instance.incomplete {
-            return reported;
-        }
-        let known = reports.known(self.known(position.scope));
-        reports.report(InterfaceError::Unknown {
-            name: Located::new(reference.path(), reference.span.clone()),
-            document: instance.document.file.name.to_string(),
-            known,
-        })
     }
 
     /// The place of the root document's own expressions.
@@ -616,5 +447,496 @@ impl<'a> SymbolTable<'a> {
         for (base, previous) in &self.previous {
             self.resources[previous.0].kind = self.resources[base.0].kind.clone();
         }
+    }
+
+    /// Finds the size of a resource if it is not known yet. Materials that it is made of come
+    /// first, so that no chain of sizes is as deep as the stack. The exception is a material in an
+    /// expression that is itself made of the expression's material: it is found on the way.
+    pub fn resolve_size(
+        &mut self,
+        id: ResourceId,
+        reports: &mut Reports,
+    ) -> Result<(), ErrorGuaranteed> {
+        if matches!(self.states[id.0], State::Declared(_)) {
+            match self.evaluating.len() {
+                0 => self.resolve_sizes_of_parts(id, reports),
+                1..NESTED => self.evaluate(id, reports),
+                _ => return Err(self.circular(id, reports)),
+            }
+        }
+        match &self.states[id.0] {
+            State::Known => Ok(()),
+            State::Invalid(reported) => Err(*reported),
+            State::Declared(_) | State::Resolving => Err(self.circular(id, reports)),
+        }
+    }
+
+    fn circular(&self, id: ResourceId, reports: &mut Reports) -> ErrorGuaranteed {
+        // The walk began with the one that is evaluated last, which is the one that the first asks
+        // for.
+        let mut found = self.evaluating.iter().skip_while(|found| **found != id);
+        let resource = self.get(found.nth(1).copied().unwrap_or(id));
+        let span = resource.declared.clone();
+        let span = span.unwrap_or_else(|| self.graph.place());
+        reports.report(EvaluationError::Circular(Located::new(
+            resource.name.clone(),
+            span,
+        )))
+    }
+
+    fn resolve_sizes_of_parts(&mut self, id: ResourceId, reports: &mut Reports) {
+        let mut seen = BTreeSet::from([id]);
+        let mut open = vec![(id, self.parts(id))];
+        while let Some((last, parts)) = open.last_mut() {
+            match parts.pop() {
+                Some(part) if seen.insert(part) => open.push((part, self.parts(part))),
+                Some(_) => {}
+                None => {
+                    let last = *last;
+                    open.pop();
+                    self.evaluate(last, reports);
+                }
+            }
+        }
+    }
+
+    /// Returns the materials that the size of one is made of, if their own sizes are not found yet.
+    fn parts(&self, id: ResourceId) -> Vec<ResourceId> {
+        let State::Declared(declared) = &self.states[id.0] else {
+            return Vec::new();
+        };
+        let mut parts = Vec::new();
+        declared.material().visit(&mut |leaf| {
+            let Leaf::Material(of) = leaf else {
+                return;
+            };
+            let mut names = of.segments.iter().map(|segment| &segment.name.value);
+            let first = names.next();
+            let Some(first) = first.and_then(|name| self.scopes.find(declared.scope, name)) else {
+                return;
+            };
+            let mut meanings = vec![first];
+            for name in names {
+                meanings = meanings.iter().flat_map(|of| of.named(name)).collect();
+            }
+            parts.extend(meanings.iter().filter_map(|symbol| match symbol {
+                Symbol::Target(target) => Some(target.id),
+                _ => None,
+            }));
+        });
+        parts.retain(|part| matches!(self.states[part.index()], State::Declared(_)));
+        parts
+    }
+
+    fn evaluate(&mut self, id: ResourceId, reports: &mut Reports) {
+        let state = &mut self.states[id.0];
+        let State::Declared(declared) = std::mem::replace(state, State::Resolving) else {
+            return;
+        };
+        self.evaluating.push(id);
+        let full_name = self.resources[id.0].name.clone();
+        let (graph, request) = (self.graph, self.request);
+        let position = Position {
+            scope: declared.scope,
+            index: None,
+        };
+        let mut at = self.at(position, None, reports);
+        let kind = materials::kind(&declared, &full_name, (graph, request), &mut at);
+        self.evaluating.pop();
+        self.states[id.0] = match kind {
+            Ok((kind, growth)) => {
+                let is_constant = match &kind {
+                    ResourceKind::Texture(texture) => texture.picture.is_some(),
+                    ResourceKind::Buffer(buffer) => buffer.data.is_some(),
+                    _ => false,
+                };
+                if is_constant {
+                    self.resources[id.0].origin = Origin::Constant;
+                }
+                self.resources[id.0].kind = kind;
+                self.resources[id.0].growth = growth;
+                State::Known
+            }
+            Err(reported) => State::Invalid(reported),
+        };
+    }
+}
+
+/// Meaning of the names of an expression at a place of a document.
+pub(crate) struct At<'w, 'a, 'r> {
+    symbols: &'w mut SymbolTable<'a>,
+    position: Position,
+    /// The shader of the pass, where it is one's expression.
+    shader: Option<Result<Arc<Shader>, ErrorGuaranteed>>,
+    reports: &'r mut Reports,
+}
+
+impl<'a> At<'_, 'a, '_> {
+    pub fn symbols(&self) -> &SymbolTable<'a> {
+        self.symbols
+    }
+
+    pub fn scope(&self) -> ScopeId {
+        self.position.scope
+    }
+
+    /// The instance of a document that the place stands in.
+    pub fn instance(&self) -> &Instance {
+        self.symbols.scopes.document(self.position.scope)
+    }
+
+    /// Another place, without a shader.
+    pub fn elsewhere(&mut self, position: Position) -> At<'_, 'a, '_> {
+        self.symbols.at(position, None, self.reports)
+    }
+
+    pub fn value(&mut self, id: ValueId) -> Result<Value, ErrorGuaranteed> {
+        self.symbols.value(id, self.reports)
+    }
+
+    /// Finds the target of a name of the scene.
+    pub fn find_scene(&mut self, name: &str) -> Option<Result<Target, ErrorGuaranteed>> {
+        self.symbols.find_scene(name, self.position.scope)
+    }
+
+    /// Finds the target of a name in a command.
+    pub fn find_full(&mut self, name: &str) -> Option<Result<Target, ErrorGuaranteed>> {
+        self.symbols.find_full(name, self.reports)
+    }
+
+    /// Resolves a reference.
+    pub fn resolve(&mut self, reference: &Reference) -> Result<Target, ErrorGuaranteed> {
+        let mut reference = reference;
+        while let Some(otherwise) = &reference.otherwise {
+            let (condition, other) = &**otherwise;
+            if eval::boolean(condition, self)? {
+                break;
+            }
+            reference = other;
+        }
+        let (mut target, selection) = self.named(reference)?;
+        self.symbols.resolve_size(target.id, self.reports)?;
+        // A part of an input is a part of what is bound to it; a whole one is known only now.
+        if target.part == SubresourceRange::WHOLE {
+            target = self.symbols.whole(target.id);
+        }
+        // Mips first: of a 3D texture they have fewer slices.
+        if let Some(mips) = &reference.mips {
+            let have = parts::mips(&target, self.symbols.get(target.id), reference);
+            let have = self.reports.check(have)?;
+            let range = self.range(mips, have, reference, &target)?;
+            let resource = self.symbols.get(target.id);
+            let selected = parts::select_mips(&mut target, range, resource, reference);
+            self.reports.check(selected)?;
+        }
+        if let Some(selection) = selection {
+            let resource = self.symbols.get(target.id);
+            let have = parts::layers(&target, resource, reference, self.reports)?;
+            let range = self.range(selection, have, reference, &target)?;
+            parts::select_layers(&mut target, range);
+        }
+        if reference.previous {
+            let kept = self.symbols.kept(target.id);
+            let id = self.symbols.previous(target.id);
+            target.id = id.map_err(|what| {
+                self.reports.report(InterfaceError::NoPrevious {
+                    name: reference.text().to_owned(),
+                    span: reference.span.clone(),
+                    what,
+                    kept,
+                })
+            })?;
+        }
+        Ok(target)
+    }
+
+    /// Resolves the names of a reference. Returns their meanings, and the selection behind the last
+    /// name.
+    fn named<'r>(
+        &mut self,
+        reference: &'r Reference,
+    ) -> Result<(Target, Option<&'r Selection>), ErrorGuaranteed> {
+        let first = &reference.segments[0];
+        let scope = self.position.scope;
+        let symbol = self.symbols.scopes.find(scope, &first.name.value);
+        let Some(mut symbol) = symbol.cloned() else {
+            return self.of_scene(reference);
+        };
+        let mut walked = first.name.value.to_string();
+        let mut segments = reference.segments.iter().peekable();
+        while let Some(segment) = segments.next() {
+            let names = match symbol {
+                Symbol::Invalid(reported) => return Err(reported),
+                Symbol::Value(_) => {
+                    let name = Located::new(walked, segment.name.span.clone());
+                    return Err(self.reports.report(InterfaceError::IsValue(name)));
+                }
+                Symbol::Target(target) => {
+                    return match segments.peek() {
+                        None => Ok((target, segment.selection.as_ref())),
+                        Some(next) => Err(self.reports.report(InterfaceError::NotOfMaterial {
+                            of: walked,
+                            name: Located::new(next.name.value.to_string(), next.name.span.clone()),
+                        })),
+                    };
+                }
+                Symbol::Namespace(names) => names,
+                Symbol::Repeated(list) => {
+                    let index = self.repetition(segment, list.len())?;
+                    list.into_iter().nth(index).unwrap_or_default()
+                }
+            };
+            let Some(next) = segments.peek() else {
+                let name = Located::new(walked, segment.name.span.clone());
+                return Err(self.reports.report(InterfaceError::Namespace(name)));
+            };
+            let Some(found) = names.get(&next.name.value) else {
+                let known = names.keys().map(|name| name.to_string());
+                let known = self.reports.known(known);
+                return Err(self.reports.report(InterfaceError::Private {
+                    entry: walked,
+                    name: Located::new(next.name.value.to_string(), next.name.span.clone()),
+                    known,
+                }));
+            };
+            walked = format!("{walked}.{}", next.name.value);
+            symbol = found.clone();
+        }
+        Err(self.unknown(reference))
+    }
+
+    /// Which repetition a segment selects.
+    fn repetition(&mut self, segment: &Segment, count: usize) -> Result<usize, ErrorGuaranteed> {
+        let name = &segment.name;
+        let Some(Selection::One(expr)) = &segment.selection else {
+            let name = Located::new(name.value.to_string(), name.span.clone());
+            return Err(self.reports.report(InterfaceError::Namespace(name)));
+        };
+        let index = eval::count(expr, self)?;
+        let index = usize::try_from(index).ok().filter(|index| *index < count);
+        index.ok_or_else(|| {
+            self.reports.report(InterfaceError::Range {
+                text: format!("{}[{}]", name.value, expr.text()),
+                span: expr.span.clone(),
+                what: format!("it is repeated {count} times, counted from 0"),
+                declared: None,
+            })
+        })
+    }
+
+    /// Resolves a reference to a name of the scene.
+    fn of_scene<'r>(
+        &mut self,
+        reference: &'r Reference,
+    ) -> Result<(Target, Option<&'r Selection>), ErrorGuaranteed> {
+        let path = reference.path();
+        let (last, others) = match reference.segments.split_last() {
+            Some((last, others)) => (last.selection.as_ref(), others),
+            None => (None, &[][..]),
+        };
+        let is_plain = others.iter().all(|segment| segment.selection.is_none());
+        if let (Some(Selection::One(number)), true) = (last, is_plain)
+            && let Some(of_list) = self.of_list(&path, number, reference)
+        {
+            return of_list.map(|target| (target, None));
+        }
+        let found = self.symbols.find_scene(&path, self.position.scope);
+        match found.filter(|_| is_plain) {
+            Some(target) => Ok((target?, last)),
+            None => Err(self.unknown(reference)),
+        }
+    }
+
+    /// One of a list whose members have names of their own, such as `lights[1]`: it may be of
+    /// another kind than the others. `None` if it is no such list, or an own material stands in.
+    fn of_list(
+        &mut self,
+        list: &str,
+        number: &Expr,
+        reference: &Reference,
+    ) -> Option<Result<Target, ErrorGuaranteed>> {
+        let instance = self.symbols.scopes.instance_of(self.position.scope);
+        if self.symbols.scopes.scene(instance, list).is_some() {
+            return None;
+        }
+        let provider = self.symbols.request.provider;
+        provider.describe(&format!("{list}.0"))?;
+        let count = provider.describe(list)?.items?;
+        let number = match eval::count(number, self) {
+            Ok(number) => number,
+            Err(reported) => return Some(Err(reported)),
+        };
+        let found = self
+            .symbols
+            .find_scene(&format!("{list}.{number}"), self.position.scope);
+        Some(found.unwrap_or_else(|| {
+            Err(self.reports.report(InterfaceError::Range {
+                text: reference.text().to_owned(),
+                span: reference.span.clone(),
+                what: format!("there are {count} of them, counted from 0; this is [{number}]"),
+                declared: None,
+            }))
+        }))
+    }
+
+    /// Reports a reference that names nothing.
+    fn unknown(&mut self, reference: &Reference) -> ErrorGuaranteed {
+        let instance = self.symbols.scopes.document(self.position.scope);
+        if let Some(reported) = instance.incomplete {
+            return reported;
+        }
+        let known = self.reports.known(self.symbols.known(self.position.scope));
+        self.reports.report(InterfaceError::Unknown {
+            name: Located::new(reference.path(), reference.span.clone()),
+            document: instance.document.file.name.to_string(),
+            known,
+        })
+    }
+
+    /// The range that is selected of so many layers, items or mips.
+    fn range(
+        &mut self,
+        selection: &Selection,
+        have: (&str, u64),
+        reference: &Reference,
+        target: &Target,
+    ) -> Result<Range<u32>, ErrorGuaranteed> {
+        let selected = match selection {
+            Selection::One(one) => {
+                let first = eval::count(one, self)?;
+                (first..first.saturating_add(1), &one.span)
+            }
+            Selection::Range(ends) => {
+                let [first, end] = &**ends;
+                (
+                    eval::count(first, self)?..eval::count(end, self)?,
+                    &end.span,
+                )
+            }
+        };
+        let resource = self.symbols.get(target.id);
+        self.reports
+            .check(parts::narrow(selected, have, reference, resource))
+    }
+}
+
+impl Sizing for At<'_, '_, '_> {
+    fn resource(&mut self, of: &Reference) -> Result<(Target, &Resource), ErrorGuaranteed> {
+        let target = self.resolve(of)?;
+        let resource = self.symbols.get(target.id);
+        Ok((target, resource))
+    }
+}
+
+impl Environment for At<'_, '_, '_> {
+    fn viewport(&self) -> [u32; 2] {
+        self.symbols.request.viewport
+    }
+
+    fn has(&self, feature: wgt::Features) -> bool {
+        self.symbols.request.features.contains(feature)
+    }
+
+    fn provided_items(&self, name: &str) -> Option<u64> {
+        self.symbols.request.provider.describe(name)?.items
+    }
+
+    fn param(&mut self, name: &str, span: &Span) -> Result<Value, ErrorGuaranteed> {
+        let instance = self.symbols.scopes.document(self.position.scope);
+        if let Some(value) = instance.params.value(name, self.reports) {
+            return value;
+        }
+        if let Some(id) = self.symbols.scopes.find_value(self.position.scope, name) {
+            return self.symbols.value(id, self.reports);
+        }
+        if let Some(reported) = instance.document.invalid_params {
+            return Err(reported);
+        }
+        let is_material = self
+            .symbols
+            .scopes
+            .find(self.position.scope, name)
+            .is_some();
+        let values = instance
+            .document
+            .values
+            .iter()
+            .map(|(name, _)| name.as_str());
+        let known = self.reports.known(instance.params.names().chain(values));
+        Err(self.report(EvaluationError::param(name, span, is_material, known)))
+    }
+
+    fn word_or_param(&mut self, name: &Name) -> Option<Value> {
+        let instance = self.symbols.scopes.document(self.position.scope);
+        if let Some(value) = instance.params.value(name, self.reports) {
+            return value.ok();
+        }
+        let id = self.symbols.scopes.find_value(self.position.scope, name)?;
+        self.symbols.value(id, self.reports).ok()
+    }
+
+    fn index(&mut self, of: Option<&Name>, span: &Span) -> Result<u32, ErrorGuaranteed> {
+        let index = self.symbols.scopes.index(self.position, of);
+        let missing = || EvaluationError::NoIndex(span.clone(), of.cloned());
+        index.ok_or_else(|| self.reports.report(missing()))
+    }
+
+    fn attribute(
+        &mut self,
+        of: &Reference,
+        attribute: Attribute,
+        span: &Span,
+    ) -> Result<Value, ErrorGuaranteed> {
+        let target = self.symbols.resolve(of, self.position, self.reports)?;
+        if let Some(value) = parts::attribute(self.symbols.get(target.id), &target, attribute) {
+            return Ok(value);
+        }
+        if attribute == Attribute::Kind
+            && let Some(kind) = self.symbols.provided_kind(&of.path(), self.position.scope)
+        {
+            return Ok(Value::kind(kind));
+        }
+        let resource = self.symbols.get(target.id);
+        let error = match (attribute, &resource.kind) {
+            (Attribute::Count, ResourceKind::Buffer(_) | ResourceKind::Provided(_)) => {
+                parts::uncounted(resource, of)
+            }
+            _ => EvaluationError::NoAttribute {
+                span: span.clone(),
+                of: format!("`{}`, {},", resource.name, resource.kind.describe()),
+            },
+        };
+        let counts = matches!(error, EvaluationError::NoCount(_));
+        let reported = self.report(error);
+        if counts {
+            // Its shaders would miss the same number.
+            self.symbols.mark_invalid(target.id, reported);
+        }
+        Err(reported)
+    }
+
+    fn constant(&mut self, name: &str, span: &Span) -> Result<Value, ErrorGuaranteed> {
+        let shader = match &self.shader {
+            Some(shader) => shader.as_ref().map_err(|reported| *reported)?,
+            None => return Err(self.reports.report(EvaluationError::NoShader(span.clone()))),
+        };
+        if let Some(value) = shader.constant(name) {
+            return Ok(Value::Scalar(value));
+        }
+        let known = self.reports.known(shader.constants());
+        Err(self.reports.report(EvaluationError::NoConstant {
+            span: span.clone(),
+            file: shader.source.file.name.to_string(),
+            name: name.to_owned(),
+            known,
+        }))
+    }
+
+    fn kind(&mut self, of: &str) -> Option<ProvidedKind> {
+        self.symbols.provided_kind(of, self.position.scope)
+    }
+
+    fn reports(&mut self) -> &mut Reports {
+        self.reports
     }
 }

@@ -5,8 +5,8 @@ use crate::{
     diagnostics::{code::Code, diagnostic::Diagnostic, reports::ErrorGuaranteed},
     document::fields::Chosen,
     errors::evaluation::EvaluationError,
+    expressions::eval::{self, Environment},
     language::{
-        eval::Environment,
         name::Name,
         syntax::{Attribute, Expr, ExprKind, Reference, Subject},
         value::{Scalar, Value},
@@ -16,7 +16,7 @@ use crate::{
 use std::fmt;
 
 /// The body of a pass of some kind. Its fields are what the RON entry holds beside `name`,
-/// `shader`, `bind`, `set`, `if`, `repeat`, `run` and `overwrites`.
+/// `shader`, `bind`, `set`, `if`, `repeat`, `run`, `clear` and `overwrites`.
 pub trait PassKind: fmt::Debug + Send + Sync {
     /// Says which GPU work the pass is, in order. Called without a GPU, more than once; it must
     /// depend on nothing but the body and values that it asks for. A shader that it names only for
@@ -25,7 +25,7 @@ pub trait PassKind: fmt::Debug + Send + Sync {
 }
 
 /// Fields of a pass beside those of its kind.
-pub(crate) const OF_PASS: [&str; 9] = [
+pub(crate) const OF_PASS: [&str; 10] = [
     "name",
     "shader",
     "bind",
@@ -33,6 +33,7 @@ pub(crate) const OF_PASS: [&str; 9] = [
     "if",
     "repeat",
     "run",
+    "clear",
     "overwrites",
     "reads",
 ];
@@ -166,22 +167,22 @@ impl<'a> Lowering<'a> {
 
     /// A number of things; 1 where the document is only read.
     pub fn count(&mut self, expr: &Expr) -> u64 {
-        self.evaluate(1, |environment| expr.count(environment))
+        self.evaluate(1, |environment| eval::count(expr, environment))
     }
 
     /// A number of things that 32 bits hold; 1 where the document is only read.
     pub fn count32(&mut self, expr: &Expr) -> u32 {
-        self.evaluate(1, |environment| expr.count32(environment))
+        self.evaluate(1, |environment| eval::count32(expr, environment))
     }
 
     /// A number; 0 where the document is only read.
     pub fn number(&mut self, expr: &Expr) -> f64 {
-        self.evaluate(0.0, |environment| expr.number(environment))
+        self.evaluate(0.0, |environment| eval::number(expr, environment))
     }
 
     /// True or false; false where the document is only read.
     pub fn boolean(&mut self, expr: &Expr) -> bool {
-        self.evaluate(false, |environment| expr.boolean(environment))
+        self.evaluate(false, |environment| eval::boolean(expr, environment))
     }
 
     /// The word for the kind of something that is provided, where it has one; `None` where the
@@ -194,9 +195,9 @@ impl<'a> Lowering<'a> {
     /// One number, or several; none where the document is only read.
     pub(crate) fn list(&mut self, expr: &Expr) -> Vec<Scalar> {
         self.evaluate(Vec::new(), |environment| {
-            Ok(match expr.value(environment)? {
+            Ok(match eval::value(expr, environment)? {
                 Value::List(list) => list,
-                _ => vec![expr.scalar(environment)?],
+                _ => vec![eval::scalar(expr, environment)?],
             })
         })
     }
@@ -204,7 +205,7 @@ impl<'a> Lowering<'a> {
     /// Two or three edges, two equal ones of one number; of one texel where the document is only
     /// read.
     pub(crate) fn edges(&mut self, expr: &Expr) -> Vec<u64> {
-        self.evaluate(vec![1, 1], |environment| expr.edges(environment))
+        self.evaluate(vec![1, 1], |environment| eval::edges(expr, environment))
     }
 
     /// A thread for each texel of a texture; one where the document is only read.
@@ -248,7 +249,7 @@ impl<'a> Lowering<'a> {
             return *value;
         }
         self.evaluate(words[0].1, |environment| {
-            let value = expr.value(environment)?;
+            let value = eval::value(expr, environment)?;
             if let Value::Word(word) = &value
                 && word
                     .of

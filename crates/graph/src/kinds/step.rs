@@ -1,5 +1,43 @@
 //! Steps of passes: draws, dispatches, copies and clears. One type over names (as a pass kind
 //! lowers to them), ids (linked with resources and shaders) and handles (made on a device).
+//!
+//! A pass kind of a host adds steps in [`PassKind::lower`](crate::PassKind::lower):
+//!
+//! ```
+//! use serde::Deserialize;
+//! use skiagraph_graph::{Lowering, PassKind, Reference, Registry, step::{Operand, Step}};
+//! # use skiagraph_graph::{Graph, NoProvider, PlanRequest, Sources};
+//! # struct Files;
+//! # impl Sources for Files {
+//! #     fn read(&self, _: &str) -> Result<Option<std::sync::Arc<str>>, String> {
+//! #         Ok(Some("(format: 3, materials: [Texture(name: \"image\", format: R32Float)],
+//! #             passes: [Reset(name: \"reset\", target: \"image\")],
+//! #             outputs: [\"image\"])".into()))
+//! #     }
+//! #     fn list(&self, _: &str) -> Vec<String> { Vec::new() }
+//! # }
+//!
+//! /// Written in documents as `Reset(name: "reset", target: "image")`.
+//! #[derive(Debug, Deserialize)]
+//! struct Reset {
+//!     target: Reference,
+//! }
+//!
+//! impl PassKind for Reset {
+//!     fn lower(&self, pass: &mut Lowering<'_>) {
+//!         let target = Operand::from(&self.target);
+//!         pass.step(Step::Clear { target, value: [0.0; 4] });
+//!     }
+//! }
+//!
+//! let mut registry = Registry::standard();
+//! registry.register::<Reset>("Reset");
+//! let graph = Graph::load("reset.ron", &registry, &Files)?;
+//! let plan = graph.plan(&PlanRequest::new([64, 32], &NoProvider))?;
+//! let pass = plan.live().next().ok_or("a pass runs")?;
+//! assert!(matches!(pass.steps[..], [Step::Clear { value: [0.0, ..], .. }]));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::{language::syntax::Reference, source::span::Located};
 use std::fmt::Debug;

@@ -1,10 +1,8 @@
-//! The two small grammars inside the strings of a document: references and expressions.
+//! The two small languages inside the strings of a document: references and expressions. They
+//! are read and evaluated in `expressions/`.
 
-pub(crate) mod eval;
 pub(crate) mod formats;
-pub(crate) mod lexer;
 pub(crate) mod name;
-pub(crate) mod parser;
 pub(crate) mod syntax;
 pub(crate) mod value;
 

@@ -215,6 +215,11 @@ impl Reference {
         text(&self.span)
     }
 
+    /// The reference as it is written, with its place.
+    pub(crate) fn located(&self) -> Located<String> {
+        Located::new(self.text().to_owned(), self.span.clone())
+    }
+
     /// Its names with dots between them, without selections: the name for a provider.
     pub(crate) fn path(&self) -> String {
         let names: Vec<&str> = self

@@ -2,11 +2,13 @@
 
 use super::{
     covered::{fully_overwrites, within},
-    linker::{Linker, PassScope},
+    layouts::Layouts,
     pass::{CAPTURE, LinkedPass},
+    scope::PassScope,
+    steps,
 };
 use crate::{
-    diagnostics::reports::ErrorGuaranteed,
+    diagnostics::reports::{ErrorGuaranteed, Reports},
     errors::plan::OutputError,
     instantiate::flat::Run,
     kinds::step::{Operand, Scratch, Step},
@@ -16,85 +18,74 @@ use crate::{
     source::span::Located,
 };
 
-impl Linker<'_, '_> {
-    /// A copy of a material as it stands after the last of these passes: of as much of it as has
-    /// been written by then.
-    pub(super) fn capture(
-        &mut self,
-        capture: &Capture,
-        passes: &[LinkedPass],
-    ) -> Result<LinkedPass, ErrorGuaranteed> {
-        let Some(target) = self.symbols.find_full(&capture.material, self.reports) else {
-            let known = self.reports.known(self.symbols.full_names());
-            return Err(self.reports.report(OutputError::NoMaterial {
-                graph: self.symbols.graph.path().to_owned(),
-                name: capture.material.clone(),
-                known,
-            }));
-        };
-        let mut target = target?;
-        if let Some(part) = written_part(self.symbols.get(target.id), &target, passes) {
-            target.part = part;
-        }
-        let kind = self.copy_of(capture, &target)?;
-        let name = Located::new(capture.name(), self.symbols.graph.place());
-        let copy = self.symbols.add(Resource {
-            name: name.value.clone(),
-            declared: None,
-            kind,
-            origin: Origin::Own,
-            growth: None,
-            keep: false,
-        });
-        // Both ends are known by number: neither is a name of a document.
-        let whole = self.symbols.whole(copy);
-        self.pass = PassScope {
-            captured: vec![target, whole],
-            ..PassScope::default()
-        };
-        let steps = [Step::Copy {
-            from: Operand::Scratch(Scratch(0)),
-            to: Operand::Scratch(Scratch(1)),
-        }];
-        let mut pass = self.steps(name, CAPTURE, &steps)?;
-        // A capture runs even if the pass that it comes after does not: the change may have been
-        // written above that one.
-        pass.run = Run::OnChange;
-        Ok(pass)
+/// A copy of a material as it stands after the last of these passes: of as much of it as has
+/// been written by then.
+pub(super) fn link(
+    capture: &Capture,
+    passes: &[LinkedPass],
+    scope: &mut PassScope<'_>,
+    layouts: &mut Layouts,
+    reports: &mut Reports,
+) -> Result<LinkedPass, ErrorGuaranteed> {
+    let Some(target) = scope.resolve_full(&capture.material, reports) else {
+        let known = reports.known(scope.symbols().full_names());
+        return Err(reports.report(OutputError::NoMaterial {
+            graph: scope.symbols().graph.path().to_owned(),
+            name: capture.material.clone(),
+            known,
+        }));
+    };
+    let mut target = target?;
+    if let Some(part) = written_part(scope.get(target.id), &target, passes) {
+        target.part = part;
     }
+    let kind = copy_of(capture, &target, scope, reports)?;
+    let name = Located::new(capture.name(), scope.symbols().graph.place());
+    let copy = scope.add(name.value.clone(), kind);
+    scope.enter_capture(target, copy);
+    let steps = [Step::Copy {
+        from: Operand::Scratch(Scratch(0)),
+        to: Operand::Scratch(Scratch(1)),
+    }];
+    let mut pass = steps::link(name, CAPTURE, &steps, scope, layouts, reports)?;
+    // A capture runs even if the pass that it comes after does not: the change may have been
+    // written above that one.
+    pass.run = Run::OnChange;
+    Ok(pass)
+}
 
-    /// A texture or buffer that a part of a resource can be copied into.
-    fn copy_of(
-        &mut self,
-        capture: &Capture,
-        target: &Target,
-    ) -> Result<ResourceKind, ErrorGuaranteed> {
-        let name = capture.material.clone();
-        Ok(match &self.symbols.get(target.id).kind {
-            ResourceKind::Texture(texture) => {
-                let mut copy = texture.clone();
-                copy.size = texture.mip_size(target.part.mips.start);
-                copy.mips = target.part.mips.len() as u32;
-                copy.layers = target.part.layers.len() as u32;
-                copy.picture = None;
-                ResourceKind::Texture(copy)
-            }
-            ResourceKind::Provided(Provided { items: None, .. }) => {
-                return Err(self.reports.report(OutputError::Unsized(name)));
-            }
-            // It becomes as large as what is copied into it.
-            ResourceKind::Buffer(_) | ResourceKind::Provided(_) | ResourceKind::Frame => {
-                ResourceKind::Buffer(Buffer::default())
-            }
-            ResourceKind::Sampler(_) => {
-                return Err(self.reports.report(OutputError::Sampler(name)));
-            }
-            ResourceKind::AccelerationStructure => {
-                let what = "an acceleration structure".to_owned();
-                return Err(self.reports.report(OutputError::Unreadable { name, what }));
-            }
-        })
-    }
+/// A texture or buffer that a part of a resource can be copied into.
+fn copy_of(
+    capture: &Capture,
+    target: &Target,
+    scope: &PassScope<'_>,
+    reports: &mut Reports,
+) -> Result<ResourceKind, ErrorGuaranteed> {
+    let name = capture.material.clone();
+    Ok(match &scope.get(target.id).kind {
+        ResourceKind::Texture(texture) => {
+            let mut copy = texture.clone();
+            copy.size = texture.mip_size(target.part.mips.start);
+            copy.mips = target.part.mips.len() as u32;
+            copy.layers = target.part.layers.len() as u32;
+            copy.picture = None;
+            ResourceKind::Texture(copy)
+        }
+        ResourceKind::Provided(Provided { items: None, .. }) => {
+            return Err(reports.report(OutputError::Unsized(name)));
+        }
+        // It becomes as large as what is copied into it.
+        ResourceKind::Buffer(_) | ResourceKind::Provided(_) | ResourceKind::Frame => {
+            ResourceKind::Buffer(Buffer::default())
+        }
+        ResourceKind::Sampler(_) => {
+            return Err(reports.report(OutputError::Sampler(name)));
+        }
+        ResourceKind::AccelerationStructure => {
+            let what = "an acceleration structure".to_owned();
+            return Err(reports.report(OutputError::Unreadable { name, what }));
+        }
+    })
 }
 
 /// The part of a target that passes have written: all of it from the first mip, layer or item that

@@ -82,13 +82,19 @@ impl Layouts {
         }));
     }
 
-    /// Gives every buffer its size, or says why it has none.
-    pub fn finalize(self, symbols: &mut SymbolTable<'_>, reports: &mut Reports) {
-        let mut errors = Vec::new();
-        for index in 0..symbols.resources.len() {
+    /// Every buffer with its size; reports those that can have none.
+    pub fn sized(
+        self,
+        symbols: &SymbolTable<'_>,
+        reports: &mut Reports,
+    ) -> BTreeMap<ResourceId, Buffer> {
+        let (mut buffers, mut errors) = (BTreeMap::new(), Vec::new());
+        for (index, resource) in symbols.resources.iter().enumerate() {
             let id = symbols.id(index);
             let seen = self.seen.get(&id).map_or(&[][..], Vec::as_slice);
-            let resource = symbols.get(id);
+            if let ResourceKind::Buffer(buffer) = &resource.kind {
+                buffers.insert(id, buffer.clone());
+            }
             if let Some(error) = disagreement(&resource.name, seen) {
                 errors.push(error);
                 continue;
@@ -109,17 +115,15 @@ impl Layouts {
                     errors.extend(self.imported(id, &name, buffer, seen));
                 }
                 (ResourceKind::Buffer(buffer), Origin::Own | Origin::Constant) => {
-                    match self.sized(id, buffer, seen, symbols) {
-                        Ok(buffer) => {
-                            symbols.resources[index].kind = ResourceKind::Buffer(buffer);
-                        }
+                    match self.size(id, buffer, seen, symbols) {
+                        Ok(buffer) => drop(buffers.insert(id, buffer)),
                         Err(error) => errors.push(error),
                     }
                 }
                 _ => {}
             }
         }
-        errors.extend(self.equal_sizes(symbols));
+        errors.extend(self.equal_sizes(symbols, &mut buffers));
         for error in errors {
             match error {
                 LayoutError::TooLarge { .. } | LayoutError::Alignment { .. } => {
@@ -129,7 +133,7 @@ impl Layouts {
                 error => drop(reports.report(error)),
             }
         }
-        symbols.size_previous();
+        buffers
     }
 
     /// Checks that an import is large enough.
@@ -157,7 +161,7 @@ impl Layouts {
     }
 
     /// A buffer of the document with its size and content.
-    fn sized(
+    fn size(
         &self,
         id: ResourceId,
         buffer: &Buffer,
@@ -275,28 +279,31 @@ impl Layouts {
 
     /// A buffer that no shader sees has the size of what it is copied from or to; others must
     /// agree.
-    fn equal_sizes(&self, symbols: &mut SymbolTable<'_>) -> Vec<LayoutError> {
-        fn bytes(symbols: &SymbolTable<'_>, copied: &Copied) -> u64 {
-            let (bytes, stride) = match &symbols.get(copied.id).kind {
-                ResourceKind::Buffer(buffer) => (buffer.bytes, buffer.stride),
-                ResourceKind::Provided(provided) => {
+    fn equal_sizes(
+        &self,
+        symbols: &SymbolTable<'_>,
+        buffers: &mut BTreeMap<ResourceId, Buffer>,
+    ) -> Vec<LayoutError> {
+        let bytes = |buffers: &BTreeMap<ResourceId, Buffer>, copied: &Copied| {
+            let (bytes, stride) = match (buffers.get(&copied.id), &symbols.get(copied.id).kind) {
+                (Some(buffer), _) => (buffer.bytes, buffer.stride),
+                (_, ResourceKind::Provided(provided)) => {
                     let items = provided.items.unwrap_or(0);
                     (items.saturating_mul(provided.stride), provided.stride)
                 }
-                ResourceKind::Frame => (FRAME_BYTES, FRAME_BYTES),
+                (_, ResourceKind::Frame) => (FRAME_BYTES, FRAME_BYTES),
                 _ => (0, 0),
             };
             let items = copied.part.items().map(|items| items.len() as u64 * stride);
             items.unwrap_or(bytes)
-        }
+        };
         // Copies of copies: each round sizes one more link at least, or is the last.
         let mut sized = true;
         while std::mem::take(&mut sized) {
             for [a, b] in &self.same {
-                let sizes = [bytes(symbols, b), bytes(symbols, a)];
+                let sizes = [bytes(buffers, b), bytes(buffers, a)];
                 for (copied, size) in [a, b].into_iter().zip(sizes) {
-                    let resource = &mut symbols.resources[copied.id.index()];
-                    if let ResourceKind::Buffer(buffer) = &mut resource.kind
+                    if let Some(buffer) = buffers.get_mut(&copied.id)
                         && buffer.bytes == 0
                         && size > 0
                         && copied.part == SubresourceRange::WHOLE
@@ -307,13 +314,13 @@ impl Layouts {
                 }
             }
         }
-        let differs = |[a, b]: &&[Copied; 2]| bytes(symbols, a) != bytes(symbols, b);
+        let differs = |[a, b]: &&[Copied; 2]| bytes(buffers, a) != bytes(buffers, b);
         let different = self.same.iter().filter(differs);
         different
             .map(|[a, b]| LayoutError::Copy {
                 from: a.name.clone(),
                 to: b.name.clone(),
-                bytes: [bytes(symbols, a), bytes(symbols, b)],
+                bytes: [bytes(buffers, a), bytes(buffers, b)],
             })
             .collect()
     }

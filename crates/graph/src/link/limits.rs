@@ -1,9 +1,9 @@
 //! Limits of a device that shaders meet beside their bindings: memory of workgroups and threads,
 //! values between stages, numbers of locations and bindings.
 
-use super::{linker::Linker, pass::LinkedProgram};
+use super::pass::LinkedProgram;
 use crate::{
-    diagnostics::reports::ErrorGuaranteed,
+    diagnostics::reports::{ErrorGuaranteed, Reports},
     errors::limits::{Entry, Excess, LimitError},
     kinds::step::{Draw, Names},
     shader::{
@@ -26,205 +26,236 @@ const MOST_OF_ALL: u64 = 65_536;
 /// that is indexed is put among the variables.
 const MOST_OF_A_VALUE: u64 = 2048 * 16;
 
-impl Linker<'_, '_> {
-    /// Checks the memory that each entry point of a program takes.
-    pub(super) fn footprints(&mut self, program: &LinkedProgram) -> Result<(), ErrorGuaranteed> {
-        let mut wrong = None;
-        for &index in &program.entries {
-            let shader = &program.shader;
-            let checked = match shader.footprint(index, &program.constants) {
-                Ok(footprint) => self.footprint(&entry(shader, index), &footprint),
-                Err(error) => Err(self.reports.report(error)),
-            };
-            wrong = checked.err().or(wrong);
-        }
-        wrong.map_or(Ok(()), Err)
-    }
-
-    fn footprint(&mut self, entry: &Entry, of: &Footprint) -> Result<(), ErrorGuaranteed> {
-        let most = self
-            .symbols
-            .request
-            .limits
-            .max_compute_workgroup_storage_size;
-        if let Some(excess) = beyond(&of.workgroup, u64::from(most), entry) {
-            let entry = entry.clone();
-            self.reports
-                .unsupported(LimitError::Workgroup { entry, excess })?;
-        }
-        if let Some(excess) = beyond(&of.private, MOST_OF_ONE, entry) {
-            let entry = entry.clone();
-            return Err(self.reports.report(LimitError::Private { entry, excess }));
-        }
-        for (function, memory) in &of.functions {
-            if let Some(excess) = beyond(memory, MOST_OF_ONE, entry) {
-                return Err(self.reports.report(LimitError::Function {
-                    file: entry.file.clone(),
-                    function: function.clone(),
-                    excess,
-                }));
-            }
-        }
-        let all = of.functions.iter().map(|(_, memory)| memory.bytes);
-        let all = all.fold(0, u64::saturating_add);
-        let largest = of.functions.iter().map(|(_, memory)| memory);
-        if let Some(largest) = largest.max_by_key(|memory| memory.bytes)
-            && all > MOST_OF_ALL
-        {
-            let (of_largest, largest) = largest.largest(&entry.span);
-            let excess = Excess {
-                bytes: all,
-                most: MOST_OF_ALL,
-                of_largest,
-                largest,
-            };
-            let entry = entry.clone();
-            return Err(self.reports.report(LimitError::Functions { entry, excess }));
-        }
-        if let Some(Excess { bytes, largest, .. }) = beyond(&of.value, MOST_OF_A_VALUE, entry) {
-            return Err(self.reports.report(LimitError::Value {
-                file: entry.file.clone(),
-                function: largest,
-                bytes,
-                most: MOST_OF_A_VALUE,
-            }));
-        }
-        Ok(())
-    }
-
-    /// Numbers of bindings that the adapter does not have.
-    pub(super) fn binding_numbers(
-        &mut self,
-        shader: &Shader,
-        globals: &[Global],
-    ) -> Result<(), ErrorGuaranteed> {
-        let most = self.symbols.request.limits.max_bindings_per_bind_group;
-        for global in globals.iter().filter(|global| global.binding >= most) {
-            self.reports.unsupported(LimitError::BindingNumber {
-                file: shader.file().to_owned(),
-                global: global.name.clone(),
-                binding: global.binding,
-                most,
-                span: global.span.clone(),
-            })?;
-        }
-        Ok(())
-    }
-
-    /// Checks that the values between a draw's stages fit together and into the adapter.
-    pub(super) fn stages(
-        &mut self,
-        program: &LinkedProgram,
-        draw: &Draw<Names>,
-    ) -> Result<(), ErrorGuaranteed> {
+/// Checks the memory that each entry point of a program takes.
+pub(super) fn footprints(
+    program: &LinkedProgram,
+    limits: &wgt::Limits,
+    reports: &mut Reports,
+) -> Result<(), ErrorGuaranteed> {
+    let mut wrong = None;
+    for &index in &program.entries {
         let shader = &program.shader;
-        let of = |stage: ShaderStage| {
-            let at = program.stages.iter().position(|known| *known == stage)?;
-            program.entries.get(at).copied()
+        let checked = match shader.footprint(index, &program.constants) {
+            Ok(footprint) => check_footprint(&entry(shader, index), &footprint, limits, reports),
+            Err(error) => Err(reports.report(error)),
         };
-        let vertex = of(ShaderStage::Vertex);
-        if let Some(index) = vertex {
-            let points = draw.primitive.topology == wgt::PrimitiveTopology::PointList;
-            self.vertex(&entry(shader, index), shader, index, points)?;
-        }
-        let Some(fragment) = of(ShaderStage::Fragment) else {
-            return Ok(());
-        };
-        let at = entry(shader, fragment);
-        self.fragment(&at, shader, fragment)?;
-        let most = self.symbols.request.limits.max_color_attachments;
-        // Too many targets were reported already.
-        if draw.colors.len() <= most as usize {
-            self.locations(&at, "writes", &shader.outputs(fragment), most)?;
-        }
-        let given = vertex.map_or_else(Varyings::default, |index| shader.outputs(index));
-        let mut wrong = None;
-        for taken in &shader.inputs(fragment).locations {
-            if let Some(why) = misfit(taken, &given.locations) {
-                wrong = Some(self.reports.report(LimitError::NoVarying {
-                    entry: at.clone(),
-                    location: taken.location,
-                    why,
-                    vertex: vertex.map(|index| shader.entry_span(index)),
-                }));
-            }
-        }
-        wrong.map_or(Ok(()), Err)
+        wrong = checked.err().or(wrong);
     }
+    wrong.map_or(Ok(()), Err)
+}
 
-    fn vertex(
-        &mut self,
-        at: &Entry,
-        shader: &Shader,
-        index: usize,
-        points: bool,
-    ) -> Result<(), ErrorGuaranteed> {
-        if let Some(attribute) = shader.inputs(index).locations.first() {
-            return Err(self.reports.report(LimitError::Attribute {
-                entry: at.clone(),
-                location: attribute.location,
+fn check_footprint(
+    entry: &Entry,
+    of: &Footprint,
+    limits: &wgt::Limits,
+    reports: &mut Reports,
+) -> Result<(), ErrorGuaranteed> {
+    let most = limits.max_compute_workgroup_storage_size;
+    if let Some(excess) = beyond(&of.workgroup, u64::from(most), entry) {
+        let entry = entry.clone();
+        reports.unsupported(LimitError::Workgroup { entry, excess })?;
+    }
+    if let Some(excess) = beyond(&of.private, MOST_OF_ONE, entry) {
+        let entry = entry.clone();
+        return Err(reports.report(LimitError::Private { entry, excess }));
+    }
+    for (function, memory) in &of.functions {
+        if let Some(excess) = beyond(memory, MOST_OF_ONE, entry) {
+            return Err(reports.report(LimitError::Function {
+                file: entry.file.clone(),
+                function: function.clone(),
+                excess,
             }));
         }
-        let outputs = shader.outputs(index);
-        let locations = self.most_varyings().saturating_sub(outputs.builtins);
-        self.locations(at, "writes", &outputs, locations)?;
-        self.varyings(at, "writes", &outputs, outputs.builtins + u32::from(points))
     }
-
-    fn fragment(
-        &mut self,
-        at: &Entry,
-        shader: &Shader,
-        index: usize,
-    ) -> Result<(), ErrorGuaranteed> {
-        let inputs = shader.inputs(index);
-        self.locations(at, "reads", &inputs, self.most_varyings())?;
-        self.varyings(at, "reads", &inputs, inputs.builtins)
+    let all = of.functions.iter().map(|(_, memory)| memory.bytes);
+    let all = all.fold(0, u64::saturating_add);
+    let largest = of.functions.iter().map(|(_, memory)| memory);
+    if let Some(largest) = largest.max_by_key(|memory| memory.bytes)
+        && all > MOST_OF_ALL
+    {
+        let (of_largest, largest) = largest.largest(&entry.span);
+        let excess = Excess {
+            bytes: all,
+            most: MOST_OF_ALL,
+            of_largest,
+            largest,
+        };
+        let entry = entry.clone();
+        return Err(reports.report(LimitError::Functions { entry, excess }));
     }
-
-    fn most_varyings(&self) -> u32 {
-        self.symbols.request.limits.max_inter_stage_shader_variables
+    if let Some(Excess { bytes, largest, .. }) = beyond(&of.value, MOST_OF_A_VALUE, entry) {
+        return Err(reports.report(LimitError::Value {
+            file: entry.file.clone(),
+            function: largest,
+            bytes,
+            most: MOST_OF_A_VALUE,
+        }));
     }
+    Ok(())
+}
 
-    fn locations(
-        &mut self,
-        at: &Entry,
-        verb: &'static str,
-        of: &Varyings,
-        most: u32,
-    ) -> Result<(), ErrorGuaranteed> {
-        let locations = of.locations.iter().map(|varying| varying.location);
-        match locations.max() {
-            Some(location) if location >= most => self.reports.unsupported(LimitError::Location {
+/// Numbers of bindings that the adapter does not have.
+pub(super) fn binding_numbers(
+    shader: &Shader,
+    globals: &[Global],
+    limits: &wgt::Limits,
+    reports: &mut Reports,
+) -> Result<(), ErrorGuaranteed> {
+    let most = limits.max_bindings_per_bind_group;
+    for global in globals.iter().filter(|global| global.binding >= most) {
+        reports.unsupported(LimitError::BindingNumber {
+            file: shader.file().to_owned(),
+            global: global.name.clone(),
+            binding: global.binding,
+            most,
+            span: global.span.clone(),
+        })?;
+    }
+    Ok(())
+}
+
+/// Checks that the values between a draw's stages fit together and into the adapter.
+pub(super) fn stages(
+    program: &LinkedProgram,
+    draw: &Draw<Names>,
+    limits: &wgt::Limits,
+    reports: &mut Reports,
+) -> Result<(), ErrorGuaranteed> {
+    let shader = &program.shader;
+    let of = |stage: ShaderStage| {
+        let at = program.stages.iter().position(|known| *known == stage)?;
+        program.entries.get(at).copied()
+    };
+    let vertex = of(ShaderStage::Vertex);
+    if let Some(index) = vertex {
+        let points = draw.primitive.topology == wgt::PrimitiveTopology::PointList;
+        check_vertex(
+            &entry(shader, index),
+            shader,
+            index,
+            points,
+            limits,
+            reports,
+        )?;
+    }
+    let Some(fragment) = of(ShaderStage::Fragment) else {
+        return Ok(());
+    };
+    let at = entry(shader, fragment);
+    check_fragment(&at, shader, fragment, limits, reports)?;
+    let most = limits.max_color_attachments;
+    // Too many targets were reported already.
+    if draw.colors.len() <= most as usize {
+        check_locations(
+            &at,
+            "writes",
+            &Varyings::outputs(shader, fragment),
+            most,
+            reports,
+        )?;
+    }
+    let given = vertex.map_or_else(Varyings::default, |index| Varyings::outputs(shader, index));
+    let mut wrong = None;
+    for taken in &Varyings::inputs(shader, fragment).locations {
+        if let Some(why) = misfit(taken, &given.locations) {
+            wrong = Some(reports.report(LimitError::NoVarying {
                 entry: at.clone(),
-                verb,
-                location,
-                most,
-            }),
-            _ => Ok(()),
+                location: taken.location,
+                why,
+                vertex: vertex.map(|index| shader.entry_span(index)),
+            }));
         }
     }
+    wrong.map_or(Ok(()), Err)
+}
 
-    fn varyings(
-        &mut self,
-        at: &Entry,
-        verb: &'static str,
-        of: &Varyings,
-        builtins: u32,
-    ) -> Result<(), ErrorGuaranteed> {
-        let most = self.most_varyings();
-        let number = of.locations.len() as u64 + u64::from(builtins);
-        if number <= u64::from(most) {
-            return Ok(());
-        }
-        self.reports.unsupported(LimitError::TooManyVaryings {
+fn check_vertex(
+    at: &Entry,
+    shader: &Shader,
+    index: usize,
+    points: bool,
+    limits: &wgt::Limits,
+    reports: &mut Reports,
+) -> Result<(), ErrorGuaranteed> {
+    if let Some(attribute) = Varyings::inputs(shader, index).locations.first() {
+        return Err(reports.report(LimitError::Attribute {
+            entry: at.clone(),
+            location: attribute.location,
+        }));
+    }
+    let outputs = Varyings::outputs(shader, index);
+    let locations = limits
+        .max_inter_stage_shader_variables
+        .saturating_sub(outputs.builtins);
+    check_locations(at, "writes", &outputs, locations, reports)?;
+    check_varyings(
+        at,
+        "writes",
+        &outputs,
+        outputs.builtins + u32::from(points),
+        limits,
+        reports,
+    )
+}
+
+fn check_fragment(
+    at: &Entry,
+    shader: &Shader,
+    index: usize,
+    limits: &wgt::Limits,
+    reports: &mut Reports,
+) -> Result<(), ErrorGuaranteed> {
+    let inputs = Varyings::inputs(shader, index);
+    check_locations(
+        at,
+        "reads",
+        &inputs,
+        limits.max_inter_stage_shader_variables,
+        reports,
+    )?;
+    check_varyings(at, "reads", &inputs, inputs.builtins, limits, reports)
+}
+
+fn check_locations(
+    at: &Entry,
+    verb: &'static str,
+    of: &Varyings,
+    most: u32,
+    reports: &mut Reports,
+) -> Result<(), ErrorGuaranteed> {
+    let locations = of.locations.iter().map(|varying| varying.location);
+    match locations.max() {
+        Some(location) if location >= most => reports.unsupported(LimitError::Location {
             entry: at.clone(),
             verb,
-            number,
-            builtins,
+            location,
             most,
-        })
+        }),
+        _ => Ok(()),
     }
+}
+
+fn check_varyings(
+    at: &Entry,
+    verb: &'static str,
+    of: &Varyings,
+    builtins: u32,
+    limits: &wgt::Limits,
+    reports: &mut Reports,
+) -> Result<(), ErrorGuaranteed> {
+    let most = limits.max_inter_stage_shader_variables;
+    let number = of.locations.len() as u64 + u64::from(builtins);
+    if number <= u64::from(most) {
+        return Ok(());
+    }
+    reports.unsupported(LimitError::TooManyVaryings {
+        entry: at.clone(),
+        verb,
+        number,
+        builtins,
+        most,
+    })
 }
 
 fn entry(shader: &Shader, index: usize) -> Entry {

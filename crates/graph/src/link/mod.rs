@@ -13,6 +13,8 @@ pub(crate) mod linker;
 pub(crate) mod params;
 pub(crate) mod pass;
 mod programs;
+mod scope;
+mod steps;
 mod textures;
 mod transfers;
 

@@ -46,6 +46,32 @@ impl LinkedPass {
     pub fn is_capture(&self) -> bool {
         self.kind == CAPTURE
     }
+
+    /// The bytes of each step's `params` uniform.
+    pub fn params(&self) -> impl Iterator<Item = Option<&[u8]>> {
+        self.steps.iter().map(|step| step.program()?.params())
+    }
+
+    /// Notes that a step reads or writes a whole part.
+    pub(crate) fn access(
+        &mut self,
+        target: &Target,
+        (reads, writes, fully_overwrites): (bool, bool, bool),
+        usage: Usage,
+        span: &Span,
+    ) {
+        self.accesses.push(Access {
+            resource: target.id,
+            part: target.part.clone(),
+            reads,
+            writes,
+            fully_overwrites,
+            triggers: true,
+            usage,
+            span: span.clone(),
+            step: 0,
+        });
+    }
 }
 
 /// One use of a part of a resource by a step.
@@ -122,6 +148,16 @@ pub struct LinkedProgram {
     pub bindings: Vec<LinkedBinding>,
 }
 
+impl LinkedProgram {
+    /// The bytes of the `params` uniform.
+    pub fn params(&self) -> Option<&[u8]> {
+        self.bindings.iter().find_map(|it| match &it.target {
+            BindTarget::Params(block) => Some(&block.bytes[..]),
+            _ => None,
+        })
+    }
+}
+
 /// One binding of a program.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinkedBinding {
@@ -186,27 +222,16 @@ impl PartialEq for Block {
     }
 }
 
-impl Step<Ids> {
-    /// The bytes of the `params` uniform.
-    pub fn params(&self) -> Option<&[u8]> {
-        let bindings = &self.program()?.bindings;
-        bindings.iter().find_map(|binding| match &binding.target {
-            BindTarget::Params(block) => Some(&block.bytes[..]),
-            _ => None,
-        })
-    }
-
-    /// The uniform `params` of the program.
-    pub(crate) fn block_mut(&mut self) -> Option<&mut Block> {
-        let program = match self {
-            Self::Draw(draw) => &mut draw.program,
-            Self::Dispatch(dispatch) => &mut dispatch.program,
-            Self::Copy { .. } | Self::Clear { .. } => return None,
-        };
-        let mut bindings = program.bindings.iter_mut();
-        bindings.find_map(|binding| match &mut binding.target {
-            BindTarget::Params(block) => Some(block),
-            _ => None,
-        })
-    }
+/// The uniform `params` of a step's program.
+pub(crate) fn block_mut(step: &mut Step<Ids>) -> Option<&mut Block> {
+    let program = match step {
+        Step::Draw(draw) => &mut draw.program,
+        Step::Dispatch(dispatch) => &mut dispatch.program,
+        Step::Copy { .. } | Step::Clear { .. } => return None,
+    };
+    let mut bindings = program.bindings.iter_mut();
+    bindings.find_map(|binding| match &mut binding.target {
+        BindTarget::Params(block) => Some(block),
+        _ => None,
+    })
 }

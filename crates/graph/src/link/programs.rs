@@ -1,187 +1,196 @@
 //! Programs: their entry points, and the bindings that they need.
 
 use super::{
-    linker::Linker,
+    bindings,
+    layouts::Layouts,
+    limits as device, params,
     pass::{LinkedBinding, LinkedPass, LinkedProgram},
+    scope::PassScope,
 };
 use crate::{
-    diagnostics::reports::ErrorGuaranteed,
+    diagnostics::reports::{ErrorGuaranteed, Reports},
     errors::link::LinkError,
     kinds::step::Program,
     shader::reflect::{Global, Shader},
 };
 use naga::ShaderStage;
 
-impl Linker<'_, '_> {
-    pub(super) fn program(
-        &mut self,
-        program: &Program,
-        stages: &[ShaderStage],
-        depth_only: bool,
-        pass: &mut LinkedPass,
-    ) -> Result<LinkedProgram, ErrorGuaranteed> {
-        let shader = self.shader(program)?;
-        let wanted = program
-            .shader
-            .as_ref()
-            .map_or(&pass.name.span, |name| &name.span);
-        let mut entries = Vec::new();
-        let mut wrong = None;
-        for stage in stages {
-            let name = match stage {
-                ShaderStage::Vertex => &program.vertex,
-                ShaderStage::Fragment => &program.fragment,
-                _ => &program.compute,
-            };
-            match shader.entry(*stage, depth_only, name.as_ref(), wanted) {
-                Ok(entry) => entries.push(entry),
-                Err(error) => wrong = Some(self.reports.report(error)),
-            }
-        }
-        if let Some(reported) = wrong {
-            return Err(reported);
-        }
-        let globals = shader.globals(&entries);
-        self.bound_globals(program, &shader, &globals)?;
-        self.groups_exist(&shader)?;
-        self.binding_numbers(&shader, &globals)?;
-        let mut linked = LinkedProgram {
-            constants: self.constants(program, &shader)?,
-            bindings: Vec::with_capacity(globals.len()),
-            shader,
-            entries,
-            stages: stages.to_vec(),
+pub(super) fn link(
+    program: &Program,
+    stages: &[ShaderStage],
+    depth_only: bool,
+    pass: &mut LinkedPass,
+    scope: &mut PassScope<'_>,
+    layouts: &mut Layouts,
+    reports: &mut Reports,
+) -> Result<LinkedProgram, ErrorGuaranteed> {
+    let limits = &scope.request().limits;
+    let shader = scope.shader(program, reports)?;
+    let wanted = program
+        .shader
+        .as_ref()
+        .map_or(&pass.name.span, |name| &name.span);
+    let mut entries = Vec::new();
+    let mut wrong = None;
+    for stage in stages {
+        let name = match stage {
+            ShaderStage::Vertex => &program.vertex,
+            ShaderStage::Fragment => &program.fragment,
+            _ => &program.compute,
         };
-        let mut wrong = None;
-        for global in &globals {
-            match self.bind(global, program, &linked, pass) {
-                Ok(binding) => linked.bindings.push(binding),
-                Err(reported) => wrong = Some(reported),
-            }
+        match shader.entry(*stage, depth_only, name.as_ref(), wanted) {
+            Ok(entry) => entries.push(entry),
+            Err(error) => wrong = Some(reports.report(error)),
         }
-        self.counts(&linked.bindings, pass)?;
-        let checked = self.footprints(&linked);
-        wrong.or(checked.err()).map_or(Ok(linked), Err)
     }
-
-    /// Checks that the entry binds only globals of its own shader. (A kind with several shaders
-    /// hands its bindings to all of them.)
-    fn bound_globals(
-        &mut self,
-        program: &Program,
-        shader: &Shader,
-        globals: &[Global],
-    ) -> Result<(), ErrorGuaranteed> {
-        let mut wrong = None;
-        let own = self.pass.shader.clone();
-        let is_own = program.shader.as_ref().map(|s| &s.value) == own.as_ref().map(|s| &s.value);
-        for (bound, _) in &program.bind {
-            let exists = shader.global_names().any(|global| global == bound.as_str());
-            if !exists && is_own {
-                let known = globals.iter().map(|global| global.name.clone());
-                wrong = Some(self.report(LinkError::UnusedBind {
-                    shader: shader.source.file.name.to_string(),
-                    name: bound.clone(),
-                    known: self.reports.known(known),
-                }));
-            }
+    if let Some(reported) = wrong {
+        return Err(reported);
+    }
+    let globals = shader.globals(&entries);
+    bound_globals(program, &shader, &globals, scope, reports)?;
+    groups_exist(&shader, limits, reports)?;
+    device::binding_numbers(&shader, &globals, limits, reports)?;
+    let mut linked = LinkedProgram {
+        constants: params::constants(program, &shader, scope, reports)?,
+        bindings: Vec::with_capacity(globals.len()),
+        shader,
+        entries,
+        stages: stages.to_vec(),
+    };
+    let mut wrong = None;
+    for global in &globals {
+        match bindings::bind(global, program, &linked, pass, scope, layouts, reports) {
+            Ok(binding) => linked.bindings.push(binding),
+            Err(reported) => wrong = Some(reported),
         }
-        wrong.map_or(Ok(()), Err)
     }
+    counts(&linked.bindings, pass, limits, reports)?;
+    let checked = device::footprints(&linked, limits, reports);
+    wrong.or(checked.err()).map_or(Ok(linked), Err)
+}
 
-    /// Group numbers that the adapter does not have, be it of globals that nothing uses: a device
-    /// refuses the whole module. (One number for two globals is found when the shader is
-    /// validated.)
-    fn groups_exist(&mut self, shader: &Shader) -> Result<(), ErrorGuaranteed> {
-        let most = self.symbols.request.limits.max_bind_groups;
-        let groups = shader.groups();
-        for (global, group, span) in groups.filter(|(_, group, _)| *group >= most) {
-            self.reports.unsupported(LinkError::BindGroup {
-                global: global.to_owned(),
-                group,
+/// Checks that the entry binds only globals of its own shader. (A kind with several shaders
+/// hands its bindings to all of them.)
+fn bound_globals(
+    program: &Program,
+    shader: &Shader,
+    globals: &[Global],
+    scope: &PassScope<'_>,
+    reports: &mut Reports,
+) -> Result<(), ErrorGuaranteed> {
+    let mut wrong = None;
+    let own = scope.own_shader();
+    let is_own = program.shader.as_ref().map(|s| &s.value) == own.map(|s| &s.value);
+    for (bound, _) in &program.bind {
+        let exists = shader.global_names().any(|global| global == bound.as_str());
+        if !exists && is_own {
+            let known = globals.iter().map(|global| global.name.clone());
+            wrong = Some(reports.report(LinkError::UnusedBind {
+                shader: shader.source.file.name.to_string(),
+                name: bound.clone(),
+                known: reports.known(known),
+            }));
+        }
+    }
+    wrong.map_or(Ok(()), Err)
+}
+
+/// Group numbers that the adapter does not have, be it of globals that nothing uses: a device
+/// refuses the whole module. (One number for two globals is found when the shader is
+/// validated.)
+fn groups_exist(
+    shader: &Shader,
+    limits: &wgt::Limits,
+    reports: &mut Reports,
+) -> Result<(), ErrorGuaranteed> {
+    let most = limits.max_bind_groups;
+    let groups = shader.groups();
+    for (global, group, span) in groups.filter(|(_, group, _)| *group >= most) {
+        reports.unsupported(LinkError::BindGroup {
+            global: global.to_owned(),
+            group,
+            most,
+            span,
+        })?;
+    }
+    Ok(())
+}
+
+/// The numbers of bindings that wgpu limits per stage.
+fn counts(
+    bindings: &[LinkedBinding],
+    pass: &LinkedPass,
+    limits: &wgt::Limits,
+    reports: &mut Reports,
+) -> Result<(), ErrorGuaranteed> {
+    type IsOf = fn(&wgt::BindingType) -> bool;
+    let kinds: [(&str, IsOf, u32); 7] = [
+        (
+            "storage buffers",
+            |ty| {
+                is_buffer(ty, |ty| {
+                    matches!(ty, wgt::BufferBindingType::Storage { .. })
+                })
+            },
+            limits.max_storage_buffers_per_shader_stage,
+        ),
+        (
+            "uniform buffers",
+            |ty| is_buffer(ty, |ty| *ty == wgt::BufferBindingType::Uniform),
+            limits.max_uniform_buffers_per_shader_stage,
+        ),
+        (
+            "textures",
+            |ty| matches!(ty, wgt::BindingType::Texture { .. }),
+            limits.max_sampled_textures_per_shader_stage,
+        ),
+        (
+            "storage textures",
+            |ty| matches!(ty, wgt::BindingType::StorageTexture { .. }),
+            limits.max_storage_textures_per_shader_stage,
+        ),
+        (
+            "samplers",
+            |ty| matches!(ty, wgt::BindingType::Sampler(_)),
+            limits.max_samplers_per_shader_stage,
+        ),
+        (
+            "acceleration structures",
+            |ty| matches!(ty, wgt::BindingType::AccelerationStructure { .. }),
+            limits.max_acceleration_structures_per_shader_stage,
+        ),
+        (
+            "buffers and acceleration structures",
+            |ty| {
+                is_buffer(ty, |_| true)
+                    || matches!(ty, wgt::BindingType::AccelerationStructure { .. })
+            },
+            limits.max_buffers_and_acceleration_structures_per_shader_stage,
+        ),
+    ];
+    for (what, is, most) in kinds {
+        let of_stage = |stage: wgt::ShaderStages| {
+            let seen = bindings
+                .iter()
+                .filter(|bound| bound.visibility.contains(stage));
+            seen.filter(|bound| is(&bound.ty)).count()
+        };
+        let stages = [
+            wgt::ShaderStages::VERTEX,
+            wgt::ShaderStages::FRAGMENT,
+            wgt::ShaderStages::COMPUTE,
+        ];
+        let number = stages.map(of_stage).into_iter().max().unwrap_or(0);
+        if number > most as usize {
+            reports.unsupported(LinkError::TooManyBindings {
+                pass: pass.name.clone(),
+                what,
+                number,
                 most,
-                span,
             })?;
         }
-        Ok(())
     }
-
-    /// The numbers of bindings that wgpu limits per stage.
-    fn counts(
-        &mut self,
-        bindings: &[LinkedBinding],
-        pass: &LinkedPass,
-    ) -> Result<(), ErrorGuaranteed> {
-        let limits = &self.symbols.request.limits;
-        type IsOf = fn(&wgt::BindingType) -> bool;
-        let kinds: [(&str, IsOf, u32); 7] = [
-            (
-                "storage buffers",
-                |ty| {
-                    is_buffer(ty, |ty| {
-                        matches!(ty, wgt::BufferBindingType::Storage { .. })
-                    })
-                },
-                limits.max_storage_buffers_per_shader_stage,
-            ),
-            (
-                "uniform buffers",
-                |ty| is_buffer(ty, |ty| *ty == wgt::BufferBindingType::Uniform),
-                limits.max_uniform_buffers_per_shader_stage,
-            ),
-            (
-                "textures",
-                |ty| matches!(ty, wgt::BindingType::Texture { .. }),
-                limits.max_sampled_textures_per_shader_stage,
-            ),
-            (
-                "storage textures",
-                |ty| matches!(ty, wgt::BindingType::StorageTexture { .. }),
-                limits.max_storage_textures_per_shader_stage,
-            ),
-            (
-                "samplers",
-                |ty| matches!(ty, wgt::BindingType::Sampler(_)),
-                limits.max_samplers_per_shader_stage,
-            ),
-            (
-                "acceleration structures",
-                |ty| matches!(ty, wgt::BindingType::AccelerationStructure { .. }),
-                limits.max_acceleration_structures_per_shader_stage,
-            ),
-            (
-                "buffers and acceleration structures",
-                |ty| {
-                    is_buffer(ty, |_| true)
-                        || matches!(ty, wgt::BindingType::AccelerationStructure { .. })
-                },
-                limits.max_buffers_and_acceleration_structures_per_shader_stage,
-            ),
-        ];
-        for (what, is, most) in kinds {
-            let of_stage = |stage: wgt::ShaderStages| {
-                let seen = bindings
-                    .iter()
-                    .filter(|bound| bound.visibility.contains(stage));
-                seen.filter(|bound| is(&bound.ty)).count()
-            };
-            let stages = [
-                wgt::ShaderStages::VERTEX,
-                wgt::ShaderStages::FRAGMENT,
-                wgt::ShaderStages::COMPUTE,
-            ];
-            let number = stages.map(of_stage).into_iter().max().unwrap_or(0);
-            if number > most as usize {
-                self.reports.unsupported(LinkError::TooManyBindings {
-                    pass: pass.name.clone(),
-                    what,
-                    number,
-                    most,
-                })?;
-            }
-        }
-        Ok(())
-    }
+    Ok(())
 }
 
 fn is_buffer(ty: &wgt::BindingType, is: fn(&wgt::BufferBindingType) -> bool) -> bool {

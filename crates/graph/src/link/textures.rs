@@ -1,16 +1,14 @@
 //! Fit of a texture to a shader's declaration: format, dimension, filtering, storage access.
 
-use super::{linker::Linker, pass::LinkedProgram};
+use super::{pass::LinkedProgram, scope::PassScope};
 use crate::{
-    diagnostics::reports::ErrorGuaranteed,
+    diagnostics::reports::{ErrorGuaranteed, Reports},
     document::materials::Filter,
     errors::link::{LinkError, TextureMisfit},
-    kinds::step::{Operand, Program},
-    resource::{ResourceKind, Target, Texture},
-    shader::{
-        class::{ScalarClass, TextureClass},
-        reflect::Global,
-    },
+    kinds::step::Program,
+    resource::{Target, Texture},
+    scalar_class::ScalarClass,
+    shader::{class::TextureClass, reflect::Global},
 };
 use wgt::{TextureAspect, TextureFormat, TextureFormatFeatureFlags, TextureUsages};
 
@@ -26,180 +24,174 @@ pub(super) fn scalar_of(format: TextureFormat, aspect: TextureAspect) -> Option<
 /// Binding, usage, and the aspect that is bound.
 type Bound = (wgt::BindingType, TextureUsages, TextureAspect);
 
-impl Linker<'_, '_> {
-    pub(super) fn texture(
-        &mut self,
-        global: &Global,
-        class: &TextureClass,
-        (texture, target): (&Texture, &Target),
-        (linked, program): (&LinkedProgram, &Program),
-    ) -> Result<Bound, ErrorGuaranteed> {
-        let misfit = match class {
-            TextureClass::Sampled { dimension, .. } | TextureClass::Storage { dimension, .. } => {
-                let grows = self.symbols.get(target.id).growth.is_some();
-                wrong_shape(*dimension, texture, target, grows)
-            }
-        };
-        let bound = match (misfit, class) {
-            (Some(misfit), _) => Err(misfit),
-            (None, TextureClass::Sampled { .. }) => {
-                self.sampled(global, class, texture, (linked, program))
-            }
-            (
-                None,
-                TextureClass::Storage {
-                    format,
-                    access,
-                    dimension,
-                },
-            ) => self.storage((format, *access, *dimension), texture, target),
-        };
-        bound.map_err(|misfit| {
-            let resource = self.symbols.get(target.id);
-            let error = LinkError::Texture {
-                name: resource.name.clone(),
-                format: texture.format,
-                global: global.name.clone(),
-                span: global.span.clone(),
-                declared: resource.declared.clone(),
-                misfit: Box::new(misfit),
-            };
-            self.report(error)
-        })
-    }
-
-    fn sampled(
-        &mut self,
-        global: &Global,
-        class: &TextureClass,
-        texture: &Texture,
-        (linked, program): (&LinkedProgram, &Program),
-    ) -> Result<Bound, TextureMisfit> {
-        let TextureClass::Sampled {
-            scalar,
-            dimension,
-            depth,
-            multisampled,
-        } = *class
-        else {
-            return Err(TextureMisfit::Samples(texture.samples));
-        };
-        let format = texture.format;
-        let features = format.guaranteed_format_features(self.symbols.request.features);
-        // For a texture with both, the shader's type says which is meant.
-        let aspect = match (format.is_combined_depth_stencil_format(), scalar) {
-            (false, _) => TextureAspect::All,
-            (true, ScalarClass::Uint) => TextureAspect::StencilOnly,
-            (true, _) => TextureAspect::DepthOnly,
-        };
-        let declared = scalar_of(format, aspect);
-        if declared != Some(scalar) || (depth && !format.is_depth_stencil_format()) {
-            return Err(TextureMisfit::Scalar {
-                reads: scalar,
-                holds: declared,
-                depth,
-            });
+pub(super) fn texture(
+    global: &Global,
+    class: &TextureClass,
+    (texture, target): (&Texture, &Target),
+    (linked, program): (&LinkedProgram, &Program),
+    scope: &mut PassScope<'_>,
+    reports: &mut Reports,
+) -> Result<Bound, ErrorGuaranteed> {
+    let grows = scope.get(target.id).growth.is_some();
+    let misfit = wrong_shape(class.dimension(), texture, target, grows);
+    let bound = match (misfit, class) {
+        (Some(misfit), _) => Err(misfit),
+        (None, TextureClass::Sampled { .. }) => {
+            sampled(global, class, texture, (linked, program), scope, reports)
         }
-        if multisampled != (texture.samples > 1) {
-            return Err(TextureMisfit::Samples(texture.samples));
-        }
-        let is_depth = format.is_depth_stencil_format();
-        let filterable = features
-            .flags
-            .contains(TextureFormatFeatureFlags::FILTERABLE)
-            && !is_depth;
-        let able = wgt::Features::FLOAT32_FILTERABLE;
-        let with_feature = format.guaranteed_format_features(able).flags;
-        let by_feature = with_feature.contains(TextureFormatFeatureFlags::FILTERABLE);
-        let asks = by_feature && self.symbols.graph.features().contains(able);
-        if !(filterable || asks && self.reports.any_adapter)
-            && let Some(sampler) = self.linear_sampler(global, linked, program)
-        {
-            return Err(TextureMisfit::Filtered {
-                sampler,
-                by_feature,
-            });
-        }
-        let sample_type = match (scalar, depth) {
-            (_, true) => wgt::TextureSampleType::Depth,
-            (ScalarClass::Float, _) => wgt::TextureSampleType::Float {
-                filterable: filterable && !multisampled,
+        (
+            None,
+            TextureClass::Storage {
+                format,
+                access,
+                dimension,
             },
-            (ScalarClass::Uint, _) => wgt::TextureSampleType::Uint,
-            (ScalarClass::Sint, _) => wgt::TextureSampleType::Sint,
+        ) => storage(
+            (format, *access, *dimension),
+            texture,
+            target,
+            scope,
+            reports,
+        ),
+    };
+    bound.map_err(|misfit| {
+        let resource = scope.get(target.id);
+        let error = LinkError::Texture {
+            name: resource.name.clone(),
+            format: texture.format,
+            global: global.name.clone(),
+            span: global.span.clone(),
+            declared: resource.declared.clone(),
+            misfit: Box::new(misfit),
         };
-        let ty = wgt::BindingType::Texture {
-            sample_type,
-            view_dimension: dimension,
-            multisampled,
-        };
-        Ok((ty, TextureUsages::TEXTURE_BINDING, aspect))
-    }
+        reports.report(error)
+    })
+}
 
-    /// A linear sampler through which the shader samples a texture.
-    fn linear_sampler(
-        &mut self,
-        global: &Global,
-        linked: &LinkedProgram,
-        program: &Program,
-    ) -> Option<String> {
-        let samplers = linked.shader.samplers_of(&linked.entries, global.handle);
-        samplers.into_iter().find(|sampler| {
-            let bound = program.bind.iter().find(|(name, _)| name.value == *sampler);
-            let position = self.pass.position.unwrap_or_else(|| self.symbols.root());
-            let target = match bound {
-                Some((_, Operand::Named(reference))) => {
-                    self.symbols.resolve(reference, position, self.reports).ok()
-                }
-                Some((_, Operand::Scratch(_))) => None,
-                None => self
-                    .symbols
-                    .find_global(sampler, position.scope, self.reports)
-                    .and_then(Result::ok),
-            };
-            target.is_some_and(|target| {
-                matches!(&self.symbols.get(target.id).kind, ResourceKind::Sampler(entry)
-                    if entry.filter == Filter::Linear && entry.compare.is_none())
-            })
-        })
+fn sampled(
+    global: &Global,
+    class: &TextureClass,
+    texture: &Texture,
+    (linked, program): (&LinkedProgram, &Program),
+    scope: &mut PassScope<'_>,
+    reports: &mut Reports,
+) -> Result<Bound, TextureMisfit> {
+    let TextureClass::Sampled {
+        scalar,
+        dimension,
+        depth,
+        multisampled,
+    } = *class
+    else {
+        return Err(TextureMisfit::Samples(texture.samples));
+    };
+    let format = texture.format;
+    let features = format.guaranteed_format_features(scope.request().features);
+    // For a texture with both, the shader's type says which is meant.
+    let aspect = match (format.is_combined_depth_stencil_format(), scalar) {
+        (false, _) => TextureAspect::All,
+        (true, ScalarClass::Uint) => TextureAspect::StencilOnly,
+        (true, _) => TextureAspect::DepthOnly,
+    };
+    let declared = scalar_of(format, aspect);
+    if declared != Some(scalar) || (depth && !format.is_depth_stencil_format()) {
+        return Err(TextureMisfit::Scalar {
+            reads: scalar,
+            holds: declared,
+            depth,
+        });
     }
+    if multisampled != (texture.samples > 1) {
+        return Err(TextureMisfit::Samples(texture.samples));
+    }
+    let is_depth = format.is_depth_stencil_format();
+    let filterable = features
+        .flags
+        .contains(TextureFormatFeatureFlags::FILTERABLE)
+        && !is_depth;
+    let able = wgt::Features::FLOAT32_FILTERABLE;
+    let with_feature = format.guaranteed_format_features(able).flags;
+    let by_feature = with_feature.contains(TextureFormatFeatureFlags::FILTERABLE);
+    let asks = by_feature && scope.symbols().graph.features().contains(able);
+    if !(filterable || asks && reports.any_adapter)
+        && let Some(sampler) = linear_sampler(global, linked, program, scope, reports)
+    {
+        return Err(TextureMisfit::Filtered {
+            sampler,
+            by_feature,
+        });
+    }
+    let sample_type = match (scalar, depth) {
+        (_, true) => wgt::TextureSampleType::Depth,
+        (ScalarClass::Float, _) => wgt::TextureSampleType::Float {
+            filterable: filterable && !multisampled,
+        },
+        (ScalarClass::Uint, _) => wgt::TextureSampleType::Uint,
+        (ScalarClass::Sint, _) => wgt::TextureSampleType::Sint,
+    };
+    let ty = wgt::BindingType::Texture {
+        sample_type,
+        view_dimension: dimension,
+        multisampled,
+    };
+    Ok((ty, TextureUsages::TEXTURE_BINDING, aspect))
+}
 
-    fn storage(
-        &mut self,
-        (declared, access, dimension): (&str, wgt::StorageTextureAccess, wgt::TextureViewDimension),
-        texture: &Texture,
-        target: &Target,
-    ) -> Result<Bound, TextureMisfit> {
-        let format = texture.format;
-        let features = format.guaranteed_format_features(self.symbols.request.features);
-        // naga's storage formats bear wgpu's names.
-        if declared != format!("{format:?}") {
-            return Err(TextureMisfit::StorageFormat(declared.to_owned()));
-        }
-        if texture.samples > 1 {
-            return Err(TextureMisfit::StorageSamples(texture.samples));
-        }
-        let both = access == wgt::StorageTextureAccess::ReadWrite;
-        let allowed = features
-            .allowed_usages
-            .contains(TextureUsages::STORAGE_BINDING)
-            && (!both
-                || features
-                    .flags
-                    .contains(TextureFormatFeatureFlags::STORAGE_READ_WRITE));
-        if !allowed && !self.reports.any_adapter {
-            return Err(TextureMisfit::NoStorage);
-        }
-        if target.part.mips.len() > 1 {
-            return Err(TextureMisfit::StorageMips);
-        }
-        let ty = wgt::BindingType::StorageTexture {
-            access,
-            format,
-            view_dimension: dimension,
-        };
-        Ok((ty, TextureUsages::STORAGE_BINDING, TextureAspect::All))
+/// A linear sampler through which the shader samples a texture.
+fn linear_sampler(
+    global: &Global,
+    linked: &LinkedProgram,
+    program: &Program,
+    scope: &mut PassScope<'_>,
+    reports: &mut Reports,
+) -> Option<String> {
+    let samplers = linked.shader.samplers_of(&linked.entries, global.handle);
+    samplers.into_iter().find(|name| {
+        let bound = program
+            .bind
+            .iter()
+            .find(|(global, _)| global.value == *name);
+        let sampler = scope.sampler(bound.map(|(_, operand)| operand), name, reports);
+        sampler.is_some_and(|it| it.filter == Filter::Linear && it.compare.is_none())
+    })
+}
+
+fn storage(
+    (declared, access, dimension): (&str, wgt::StorageTextureAccess, wgt::TextureViewDimension),
+    texture: &Texture,
+    target: &Target,
+    scope: &PassScope<'_>,
+    reports: &mut Reports,
+) -> Result<Bound, TextureMisfit> {
+    let format = texture.format;
+    let features = format.guaranteed_format_features(scope.request().features);
+    // naga's storage formats bear wgpu's names.
+    if declared != format!("{format:?}") {
+        return Err(TextureMisfit::StorageFormat(declared.to_owned()));
     }
+    if texture.samples > 1 {
+        return Err(TextureMisfit::StorageSamples(texture.samples));
+    }
+    let both = access == wgt::StorageTextureAccess::ReadWrite;
+    let allowed = features
+        .allowed_usages
+        .contains(TextureUsages::STORAGE_BINDING)
+        && (!both
+            || features
+                .flags
+                .contains(TextureFormatFeatureFlags::STORAGE_READ_WRITE));
+    if !allowed && !reports.any_adapter {
+        return Err(TextureMisfit::NoStorage);
+    }
+    if target.part.mips.len() > 1 {
+        return Err(TextureMisfit::StorageMips);
+    }
+    let ty = wgt::BindingType::StorageTexture {
+        access,
+        format,
+        view_dimension: dimension,
+    };
+    Ok((ty, TextureUsages::STORAGE_BINDING, TextureAspect::All))
 }
 
 fn wrong_shape(

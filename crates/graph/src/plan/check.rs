@@ -1,20 +1,21 @@
-//! `check`: everything that is wrong with a graph, for all values that decide which entries are
-//! there.
+//! From a graph to a plan: once, or with everything that is wrong for all values that decide which
+//! entries are there.
 
-use super::{make::Outcome, plan::Plan};
+use super::{
+    make::{Outcome, plan_all},
+    plan::Plan,
+};
 use crate::{
     diagnostics::{
         code::Code,
         diagnostic::{Diagnostic, Severity},
         list::Diagnostics,
     },
-    document::{
-        materials::InputKind,
-        params::{Param, ParamType, ParamValue},
-    },
+    document::{materials::InputKind, typed::Document},
     graph::Graph,
     instantiate::flat::PlanInputs,
     kinds::registry::Registry,
+    param::{Param, ParamType, ParamValue},
     provider::Import,
     request::PlanRequest,
     source::sources::Sources,
@@ -31,6 +32,16 @@ const TRIED: [wgt::TextureFormat; 5] = [
 ];
 
 impl Graph {
+    /// Plans the graph: resolves names and sizes, links shaders, orders and culls passes. Touches
+    /// no GPU.
+    ///
+    /// # Errors
+    /// Everything that is wrong, with its place.
+    pub fn plan(&self, request: &PlanRequest<'_>) -> Result<Plan, Diagnostics> {
+        let outcome = plan_all(self, request);
+        outcome.plan.ok_or_else(|| self.diagnostics(outcome.found))
+    }
+
     /// [`Graph::load`] and [`Graph::plan`] in one, for all mistakes at once. The readable part of a
     /// document is planned even if another part is wrong, and for each param and feature in an `if`
     /// changed alone. Inputs that the request does not import are taken for what the document asks
@@ -54,7 +65,7 @@ impl Graph {
         let request = &request;
         // Without its params nothing of the document has a size.
         let outcome = match graph.document.invalid_params {
-            None => graph.plan_for_any(request),
+            None => plan_for_any(&graph, request),
             Some(_) => Outcome {
                 plan: None,
                 found: Vec::new(),
@@ -62,7 +73,7 @@ impl Graph {
             },
         };
         if outcome.plan.is_some() && errors.is_empty() {
-            errors.extend(graph.sweep(request, &outcome.plan_inputs));
+            errors.extend(sweep(&graph, request, &outcome.plan_inputs));
             if let Err(wrong) = graph.claims(&request.params, request.viewport, request.features) {
                 errors.extend(wrong.iter().cloned());
             }
@@ -75,116 +86,120 @@ impl Graph {
             _ => Err(graph.diagnostics(errors)),
         }
     }
+}
 
-    /// Plans with what the document asks for in place of imports that the request has not.
-    fn plan_for_any(&self, request: &PlanRequest<'_>) -> Outcome {
-        let takes_any = self.document.inputs.iter().any(|input| {
-            matches!(input.kind, InputKind::Texture(None))
-                && !request.imports.contains_key(input.name.as_str())
-        });
-        let tried = if takes_any { &TRIED[..] } else { &TRIED[..1] };
-        let mut first = None;
-        for format in tried {
-            let request = PlanRequest {
-                imports: self.stand_ins(request, *format),
-                ..request.clone()
-            };
-            let outcome = self.plan_all(&request);
-            if outcome.plan.is_some() {
-                return outcome;
-            }
-            first.get_or_insert(outcome);
+/// Plans with what the document asks for in place of imports that the request has not.
+fn plan_for_any(graph: &Graph, request: &PlanRequest<'_>) -> Outcome {
+    let takes_any = graph.document.inputs.iter().any(|input| {
+        matches!(input.kind, InputKind::Texture(None))
+            && !request.imports.contains_key(input.name.as_str())
+    });
+    let tried = if takes_any { &TRIED[..] } else { &TRIED[..1] };
+    let mut first = None;
+    for format in tried {
+        let request = PlanRequest {
+            imports: stand_ins(&graph.document, request, *format),
+            ..request.clone()
+        };
+        let outcome = plan_all(graph, &request);
+        if outcome.plan.is_some() {
+            return outcome;
         }
-        first.unwrap_or_else(|| self.plan_all(request))
+        first.get_or_insert(outcome);
     }
+    first.unwrap_or_else(|| plan_all(graph, request))
+}
 
-    /// The request's imports, and what the document asks for besides.
-    fn stand_ins(
-        &self,
-        request: &PlanRequest<'_>,
-        any: wgt::TextureFormat,
-    ) -> BTreeMap<String, Import> {
-        let mut imports = request.imports.clone();
-        for input in &self.document.inputs {
-            let import = match input.kind {
-                InputKind::Texture(format) => Import::Texture {
-                    format: format.unwrap_or(any),
-                    size: request.viewport,
-                    mips: 1,
-                    layers: 1,
-                    is_3d: false,
-                    samples: 1,
-                    usage: wgt::TextureUsages::all(),
-                },
-                InputKind::Buffer => Import::Buffer {
-                    bytes: u64::from(u32::MAX),
-                    items: Some(1),
-                    usage: wgt::BufferUsages::all(),
-                },
-                InputKind::Sampler { compare } => Import::Sampler {
-                    filter: Default::default(),
-                    compare,
-                },
-            };
-            imports
-                .entry(input.name.value.to_string())
-                .or_insert(import);
-        }
+/// The request's imports, and what the document asks for besides.
+fn stand_ins(
+    document: &Document,
+    request: &PlanRequest<'_>,
+    any: wgt::TextureFormat,
+) -> BTreeMap<String, Import> {
+    let mut imports = request.imports.clone();
+    for input in &document.inputs {
+        let import = match input.kind {
+            InputKind::Texture(format) => Import::Texture {
+                format: format.unwrap_or(any),
+                size: request.viewport,
+                mips: 1,
+                layers: 1,
+                is_3d: false,
+                samples: 1,
+                usage: wgt::TextureUsages::all(),
+            },
+            InputKind::Buffer => Import::Buffer {
+                bytes: u64::from(u32::MAX),
+                items: Some(1),
+                usage: wgt::BufferUsages::all(),
+            },
+            InputKind::Sampler { compare } => Import::Sampler {
+                filter: Default::default(),
+                compare,
+            },
+        };
         imports
+            .entry(input.name.value.to_string())
+            .or_insert(import);
     }
+    imports
+}
 
-    /// Returns the mistakes for other values of the things that decide which entries exist, each
-    /// changed alone.
-    fn sweep(&self, request: &PlanRequest<'_>, plan_inputs: &PlanInputs) -> Vec<Diagnostic> {
-        let mut found = Vec::new();
-        for name in &plan_inputs.params {
-            let Ok(param) = self.param(name) else {
-                continue;
-            };
-            for value in ends(param) {
-                let mut changed = request.clone();
-                changed.params.insert(name.clone(), value.clone());
-                found.extend(self.wrong_with(&changed, &format!("with `{name}` = {value}")));
-            }
-        }
-        for feature in plan_inputs.features.iter() {
+/// Returns the mistakes for other values of the things that decide which entries exist, each
+/// changed alone.
+fn sweep(graph: &Graph, request: &PlanRequest<'_>, plan_inputs: &PlanInputs) -> Vec<Diagnostic> {
+    let mut found = Vec::new();
+    for name in &plan_inputs.params {
+        let Ok(param) = graph.param(name) else {
+            continue;
+        };
+        for value in ends(param) {
             let mut changed = request.clone();
-            changed.features.toggle(feature);
-            let has = if changed.features.contains(feature) {
-                "with"
-            } else {
-                "without"
-            };
-            let names: Vec<&str> = feature.iter_names().map(|(name, _)| name).collect();
-            let condition = format!("{has} the feature {}", names.join(", "));
-            found.extend(self.wrong_with(&changed, &condition));
+            changed.params.insert(name.clone(), value.clone());
+            found.extend(wrong_with(
+                graph,
+                &changed,
+                &format!("with `{name}` = {value}"),
+            ));
         }
-        found
     }
+    for feature in plan_inputs.features.iter() {
+        let mut changed = request.clone();
+        changed.features.toggle(feature);
+        let has = if changed.features.contains(feature) {
+            "with"
+        } else {
+            "without"
+        };
+        let names: Vec<&str> = feature.iter_names().map(|(name, _)| name).collect();
+        let condition = format!("{has} the feature {}", names.join(", "));
+        found.extend(wrong_with(graph, &changed, &condition));
+    }
+    found
+}
 
-    /// Returns the mistakes of one condition; the rest was looked at before.
-    fn wrong_with(&self, request: &PlanRequest<'_>, condition: &str) -> Vec<Diagnostic> {
-        let outcome = self.plan_for_any(request);
-        let errors = outcome
-            .found
-            .into_iter()
-            .filter(|found| found.severity == Severity::Error);
-        // A value at the end of a range may well be too large for a device, or for memory; a word
-        // may be for other lights.
-        let errors = errors.filter(|found| {
-            !matches!(
-                found.code,
-                Code::Limit | Code::Size | Code::Memory | Code::Feature | Code::Light
-            )
-        });
-        errors
-            .map(|found| Diagnostic {
-                code: Code::Condition,
-                message: format!("{condition}: {}", found.message),
-                ..found
-            })
-            .collect()
-    }
+/// Returns the mistakes of one condition; the rest was looked at before.
+fn wrong_with(graph: &Graph, request: &PlanRequest<'_>, condition: &str) -> Vec<Diagnostic> {
+    let outcome = plan_for_any(graph, request);
+    let errors = outcome
+        .found
+        .into_iter()
+        .filter(|found| found.severity == Severity::Error);
+    // A value at the end of a range may well be too large for a device, or for memory; a word
+    // may be for other lights.
+    let errors = errors.filter(|found| {
+        !matches!(
+            found.code,
+            Code::Limit | Code::Size | Code::Memory | Code::Feature | Code::Light
+        )
+    });
+    errors
+        .map(|found| Diagnostic {
+            code: Code::Condition,
+            message: format!("{condition}: {}", found.message),
+            ..found
+        })
+        .collect()
 }
 
 /// The values of a param that `check` looks at: every word, true and false, the ends of its range.

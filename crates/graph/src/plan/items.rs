@@ -1,10 +1,9 @@
 //! Origin of the content of an output or capture: without it the content cannot be read.
 
-use super::plan::Plan;
 use crate::{
     kinds::step::Step,
-    link::pass::{Access, BindTarget, Ids},
-    resource::{ResourceId, ResourceKind},
+    link::pass::{Access, BindTarget, Ids, LinkedPass},
+    resource::{Resource, ResourceId, ResourceKind, Target},
     shader::items::{Item, item},
 };
 use std::{collections::BTreeSet, ops::Range};
@@ -28,89 +27,88 @@ impl PartSummary {
     }
 }
 
-impl Plan {
-    /// The provided resources that are bound by the passes that write an output or capture: depths
-    /// that are written with a `camera` bound are that camera's.
-    pub fn provided_behind(&self, output: &str) -> BTreeSet<&str> {
-        let Some(origin) = self.origin(output) else {
-            return BTreeSet::new();
-        };
-        let writes = |access: &Access| access.writes && access.resource == origin;
-        let writers = self.live().filter(|pass| pass.accesses.iter().any(writes));
-        writers
-            .flat_map(|pass| &pass.accesses)
-            .map(|access| self.resource(access.resource))
-            .filter(|resource| matches!(resource.kind, ResourceKind::Provided(_)))
-            .map(|resource| resource.name.as_str())
-            .collect()
-    }
+/// The provided resources that are bound by the passes that write a target.
+pub(super) fn provided_behind<'p>(
+    live: impl Iterator<Item = &'p LinkedPass> + Clone,
+    target: &Target,
+    resources: &'p [Resource],
+) -> BTreeSet<&'p str> {
+    let origin = origin(live.clone(), target);
+    let writes = |access: &Access| access.writes && access.resource == origin;
+    let writers = live.clone().filter(|pass| pass.accesses.iter().any(writes));
+    writers
+        .flat_map(|pass| &pass.accesses)
+        .map(|access| &resources[access.resource.0])
+        .filter(|resource| matches!(resource.kind, ResourceKind::Provided(_)))
+        .map(|resource| resource.name.as_str())
+        .collect()
+}
 
-    /// The items of an output or capture that is a buffer; `None` if it is none, or no live pass
-    /// binds it as an array of plain items or as a single one.
-    pub fn item(&self, output: &str) -> Option<Item> {
-        let origin = self.origin(output)?;
-        let programs = self
-            .live()
-            .flat_map(|pass| &pass.steps)
-            .filter_map(Step::program);
-        let mut seen = programs.flat_map(|program| {
-            let bindings = program.bindings.iter();
-            bindings.map(move |binding| (&program.shader.module, binding))
+/// The items of a buffer that a live pass binds as an array of plain items or as a single one.
+pub(super) fn item_of<'p>(
+    live: impl Iterator<Item = &'p LinkedPass> + Clone,
+    target: &Target,
+) -> Option<Item> {
+    let origin = origin(live.clone(), target);
+    let programs = live.flat_map(|pass| &pass.steps).filter_map(Step::program);
+    let mut seen = programs.flat_map(|program| {
+        let bindings = program.bindings.iter();
+        bindings.map(move |binding| (&program.shader.module, binding))
+    });
+    let (module, binding) = seen.find(|(_, binding)| {
+        matches!(&binding.target, BindTarget::Buffer(target)
+            if target.id == origin && target.part.items().is_none())
+    })?;
+    let place = naga::ResourceBinding {
+        group: binding.group,
+        binding: binding.binding,
+    };
+    let mut globals = module.global_variables.iter();
+    let (_, global) = globals.find(|(_, global)| global.binding == Some(place))?;
+    item(module, global.ty)
+}
+
+/// Which mips and layers of a texture, or items of a buffer, a target holds.
+pub(super) fn part<'p>(
+    live: impl Iterator<Item = &'p LinkedPass>,
+    target: &Target,
+    resources: &[Resource],
+) -> PartSummary {
+    // A capture holds the part that its step copies.
+    let captures = live.filter(|pass| pass.is_capture());
+    let copied = captures
+        .flat_map(|pass| &pass.steps)
+        .find_map(|step| match step {
+            Step::Copy { from, to } if to.id == target.id => Some(from),
+            _ => None,
         });
-        let (module, binding) = seen.find(|(_, binding)| {
-            matches!(&binding.target, BindTarget::Buffer(target)
-                if target.id == origin && target.part.items().is_none())
-        })?;
-        let place = naga::ResourceBinding {
-            group: binding.group,
-            binding: binding.binding,
-        };
-        let mut globals = module.global_variables.iter();
-        let (_, global) = globals.find(|(_, global)| global.binding == Some(place))?;
-        item(module, global.ty)
-    }
-
-    /// Which mips and layers of a texture, or items of a buffer, an output or capture holds. A
-    /// capture after a pass holds what has been written by then, which may be less than was named.
-    pub fn part(&self, output: &str) -> Option<PartSummary> {
-        let (_, target) = self.readable().iter().find(|(name, _)| name == output)?;
-        // A capture holds the part that its step copies.
-        let captures = self.live().filter(|pass| pass.is_capture());
-        let copied = captures
-            .flat_map(|pass| &pass.steps)
-            .find_map(|step| match step {
-                Step::Copy { from, to } if to.id == target.id => Some(from),
-                _ => None,
-            });
-        let target = copied.unwrap_or(target);
-        let of = match &self.resource(target.id).kind {
-            ResourceKind::Texture(texture) => [texture.mips, texture.layers],
-            ResourceKind::Buffer(buffer) => {
-                let count = buffer.count.map(u32::try_from);
-                [1, count.and_then(Result::ok).unwrap_or(u32::MAX)]
-            }
-            _ => [1, u32::MAX],
-        };
-        let layers = &target.part.layers;
-        Some(PartSummary {
-            mips: target.part.mips.clone(),
-            layers: layers.start..layers.end.min(of[1]),
-            of,
-        })
-    }
-
-    /// The resource that an output or capture is a copy of, or is itself.
-    fn origin(&self, output: &str) -> Option<ResourceId> {
-        let (_, target) = self.readable().iter().find(|(name, _)| name == output)?;
-        let mut origin = target.id;
-        let mut steps: Vec<&Step<Ids>> = self.live().flat_map(|pass| &pass.steps).collect();
-        // The last copy onto it counts; its source was copied before.
-        while let Some(step) = steps.pop() {
-            origin = match step {
-                Step::Copy { from, to } if to.id == origin => from.id,
-                _ => origin,
-            };
+    let target = copied.unwrap_or(target);
+    let of = match &resources[target.id.0].kind {
+        ResourceKind::Texture(texture) => [texture.mips, texture.layers],
+        ResourceKind::Buffer(buffer) => {
+            let count = buffer.count.map(u32::try_from);
+            [1, count.and_then(Result::ok).unwrap_or(u32::MAX)]
         }
-        Some(origin)
+        _ => [1, u32::MAX],
+    };
+    let layers = &target.part.layers;
+    PartSummary {
+        mips: target.part.mips.clone(),
+        layers: layers.start..layers.end.min(of[1]),
+        of,
     }
+}
+
+/// The resource that a target is a copy of, or is itself.
+fn origin<'p>(live: impl Iterator<Item = &'p LinkedPass>, target: &Target) -> ResourceId {
+    let mut origin = target.id;
+    let mut steps: Vec<&Step<Ids>> = live.flat_map(|pass| &pass.steps).collect();
+    // The last copy onto it counts; its source was copied before.
+    while let Some(step) = steps.pop() {
+        origin = match step {
+            Step::Copy { from, to } if to.id == origin => from.id,
+            _ => origin,
+        };
+    }
+    origin
 }

@@ -1,12 +1,14 @@
 //! From a graph to a plan: one phase after the other, each with what the one before has made.
 
 use super::{
+    backend::not_proven,
+    memory::growing,
     plan::{CulledPass, Plan},
     readable::{check_captures, readable},
     usages,
 };
 use crate::{
-    diagnostics::{diagnostic::Diagnostic, list::Diagnostics, reports::Reports},
+    diagnostics::{diagnostic::Diagnostic, reports::Reports},
     errors::{
         flow::OrderError, instantiate::InterfaceError, plan::OutputError, resource::SizeError,
     },
@@ -24,6 +26,7 @@ use crate::{
         build::flatten,
         flat::{Merge, PlanInputs},
         lower::lower,
+        params::checked,
     },
     link::{
         linker::{Linked, link},
@@ -43,187 +46,184 @@ pub(super) struct Outcome {
     pub plan_inputs: PlanInputs,
 }
 
-impl Graph {
-    /// Plans the graph: resolves names and sizes, links shaders, orders and culls passes. Touches
-    /// no GPU.
-    ///
-    /// # Errors
-    /// Everything that is wrong, with its place.
-    pub fn plan(&self, request: &PlanRequest<'_>) -> Result<Plan, Diagnostics> {
-        let outcome = self.plan_all(request);
-        outcome.plan.ok_or_else(|| self.diagnostics(outcome.found))
+/// The plan, or everything that is wrong, even if some of the document could not be read.
+pub(super) fn plan_all(graph: &Graph, request: &PlanRequest<'_>) -> Outcome {
+    let mut reports = Reports::default();
+    reports.any_adapter = request.any_adapter;
+    let params = checked(
+        &graph.document,
+        &request.params,
+        request.surroundings(),
+        &mut reports,
+    );
+    if request.viewport.contains(&0) {
+        reports.report(OutputError::NoViewport(graph.place()));
     }
+    let backend = request.partial_backend.as_ref();
+    if let Some(error) = backend.and_then(|backend| not_proven(graph, backend)) {
+        reports.report(error);
+        return Outcome::lacking(reports, PlanInputs::default());
+    }
+    let Ok(params) = params else {
+        return Outcome::failed(reports, PlanInputs::default());
+    };
+    if reports.errors() > 0 {
+        return Outcome::failed(reports, PlanInputs::default());
+    }
+    let values = params.list.iter().filter_map(|bound| {
+        let value = bound.value.clone().ok()?;
+        Some((bound.param.name.value.clone(), value))
+    });
+    let values = values.collect();
+    let before = reports.clone();
+    let mut merges = true;
+    let mut linked = loop {
+        let flat = flatten(graph, request, params.clone(), merges, &mut reports);
+        if lacks_features(&reports) {
+            return Outcome::lacking(reports, flat.plan_inputs);
+        }
+        let lowered = lower(flat, &mut reports);
+        check_captures(request, &lowered.passes, &mut reports);
+        let linked = link(lowered, &mut reports);
+        let Some(copies) = linked.two_copies() else {
+            break linked;
+        };
+        // Something between two includes of one content changes what they read or write.
+        reports = before.clone();
+        reports.warn(copies);
+        merges = false;
+    };
+    let plan_inputs = std::mem::take(&mut linked.plan_inputs);
+    match schedule(graph, linked, request, &mut reports) {
+        Some(scheduled) => finish(graph, scheduled, request, values, (reports, plan_inputs)),
+        None => Outcome::failed(reports, plan_inputs),
+    }
+}
 
-    /// The plan, or everything that is wrong, even if some of the document could not be read.
-    pub(super) fn plan_all(&self, request: &PlanRequest<'_>) -> Outcome {
-        let mut reports = Reports::default();
-        reports.any_adapter = request.any_adapter;
-        let params = self.checked_params(&request.params, request.surroundings(), &mut reports);
-        if request.viewport.contains(&0) {
-            reports.report(OutputError::NoViewport(self.place()));
-        }
-        let backend = request.partial_backend.as_ref();
-        if let Some(error) = backend.and_then(|backend| self.not_proven(backend)) {
-            reports.report(error);
-            return Outcome::lacking(reports, PlanInputs::default());
-        }
-        let Ok(params) = params else {
-            return Outcome::failed(reports, PlanInputs::default());
-        };
-        if reports.errors() > 0 {
-            return Outcome::failed(reports, PlanInputs::default());
-        }
-        let values = params.list.iter().filter_map(|bound| {
-            let value = bound.value.clone().ok()?;
-            Some((bound.param.name.value.clone(), value))
-        });
-        let values = values.collect();
-        let before = reports.clone();
-        let mut merges = true;
-        let mut linked = loop {
-            let flat = flatten(self, request, params.clone(), merges, &mut reports);
-            if lacks_features(&reports) {
-                return Outcome::lacking(reports, flat.plan_inputs);
-            }
-            let lowered = lower(flat, &mut reports);
-            check_captures(request, &lowered.passes, &mut reports);
-            let linked = link(lowered, &mut reports);
-            let Some(copies) = linked.two_copies() else {
-                break linked;
-            };
-            // Something between two includes of one content changes what they read or write.
-            reports = before.clone();
-            reports.warn(copies);
-            merges = false;
-        };
-        let plan_inputs = std::mem::take(&mut linked.plan_inputs);
-        match self.schedule(linked, request, &mut reports) {
-            Some(scheduled) => self.finish(scheduled, request, values, (reports, plan_inputs)),
-            None => Outcome::failed(reports, plan_inputs),
+/// Orders and culls what was linked, unless something is wrong with it.
+fn schedule(
+    graph: &Graph,
+    mut linked: Linked<'_>,
+    request: &PlanRequest<'_>,
+    reports: &mut Reports,
+) -> Option<Scheduled> {
+    let is_complete = linked.first_invalid.is_none();
+    let first_invalid = linked.first_invalid.unwrap_or(linked.passes.len());
+    let order = order(view(&linked), first_invalid, reports);
+    if is_complete {
+        never_written(view(&linked), &order, reports);
+        check_counters(view(&linked), &order, reports);
+        interfaces(&linked, reports);
+    }
+    let written = |target: &Target| !is_complete || !order.final_writers(target).is_empty();
+    let root = linked.symbols.root();
+    let readable = {
+        let mut at = linked.symbols.at(root, None, reports);
+        readable(graph, request, &mut at, written)
+    };
+    if !is_complete || reports.errors() > 0 {
+        return None;
+    }
+    let named_values = linked.symbols.found_values();
+    let (passes, resources) = (linked.passes, linked.symbols.resources);
+    let view = GraphView {
+        passes: &passes,
+        resources: &resources,
+    };
+    let live = live(view, &readable, &order);
+    let sequence = sequence(&order_of_live(view, &live), &live);
+    let mut lifetimes = lifetimes(view, &sequence);
+    unsized_buffers(&lifetimes, view, reports);
+    // Conditions must agree for any choice of outputs.
+    let all: Vec<PassId> = view.ids().map(|(id, _)| id).collect();
+    conditions(view, &all, reports);
+    let conditions = conditions(view, &sequence, &mut Reports::default());
+    let previous = previous(&lifetimes, view);
+    for (id, base) in &previous {
+        // A resource of the host is copied behind the frame, so it must exist then.
+        let lifetime = lifetimes[id].clone();
+        lifetimes.entry(*base).or_insert(lifetime);
+    }
+    further_uses(&mut lifetimes, &readable, &previous, request, view);
+    let counters: Vec<ResourceId> = growing(lifetimes.keys(), view.resources)
+        .map(|(_, growth)| growth.counter.id)
+        .collect();
+    for counter in &counters {
+        if let Some(lifetime) = lifetimes.get_mut(counter) {
+            lifetime.buffers |= wgt::BufferUsages::COPY_SRC;
         }
     }
-
-    /// Orders and culls what was linked, unless something is wrong with it.
-    fn schedule(
-        &self,
-        mut linked: Linked<'_>,
-        request: &PlanRequest<'_>,
-        reports: &mut Reports,
-    ) -> Option<Scheduled> {
-        let is_complete = linked.first_invalid.is_none();
-        let first_invalid = linked.first_invalid.unwrap_or(linked.passes.len());
-        let order = order(linked.view(), first_invalid, reports);
-        if is_complete {
-            never_written(linked.view(), &order, reports);
-            check_counters(linked.view(), &order, reports);
-            interfaces(&linked, reports);
-        }
-        let written = |target: &Target| !is_complete || !order.final_writers(target).is_empty();
-        let readable = readable(self, request, &mut linked.symbols, written, reports);
-        if !is_complete || reports.errors() > 0 {
-            return None;
-        }
-        let named_values = linked.symbols.found_values();
-        let (passes, resources) = (linked.passes, linked.symbols.resources);
-        let view = GraphView {
-            passes: &passes,
-            resources: &resources,
-        };
-        let live = live(view, &readable, &order);
-        let sequence = sequence(&order_of_live(view, &live), &live);
-        let mut lifetimes = lifetimes(view, &sequence);
-        unsized_buffers(&lifetimes, view, reports);
-        // Conditions must agree for any choice of outputs.
-        let all: Vec<PassId> = view.ids().map(|(id, _)| id).collect();
-        conditions(view, &all, reports);
-        let conditions = conditions(view, &sequence, &mut Reports::default());
-        let previous = previous(&lifetimes, view);
-        for (id, base) in &previous {
-            // A resource of the host is copied behind the frame, so it must exist then.
-            let lifetime = lifetimes[id].clone();
-            lifetimes.entry(*base).or_insert(lifetime);
-        }
-        further_uses(&mut lifetimes, &readable, &previous, request, view);
-        let counters: Vec<ResourceId> = growing(lifetimes.keys(), view.resources)
-            .map(|(_, growth)| growth.counter.id)
-            .collect();
-        for counter in &counters {
-            if let Some(lifetime) = lifetimes.get_mut(counter) {
-                lifetime.buffers |= wgt::BufferUsages::COPY_SRC;
-            }
-        }
-        usages::check(view, &sequence, request, reports);
-        if reports.errors() > 0 {
-            return None;
-        }
-        let constants = lifetimes
-            .keys()
-            .filter(|id| view.resource(**id).origin == Origin::Constant);
-        let kept: BTreeSet<ResourceId> = conditions
-            .kept
-            .iter()
-            .chain(constants)
-            .copied()
-            .chain(readable.iter().map(|(_, target)| target.id))
-            .chain(previous.values().copied())
-            .chain(counters)
-            .collect();
-        let aliases = aliases(view, &sequence, &lifetimes, &kept);
-        let culled = culled(view, &live);
-        let own = previous
-            .values()
-            .filter(|base| view.resource(**base).origin == Origin::Own);
-        let schedule = Schedule {
-            ping_pong: own.copied().collect(),
-            passes: sequence,
-            lifetimes,
-            conditions,
-            aliases,
-        };
-        Some(Scheduled {
-            named_values,
-            passes,
-            resources,
-            schedule,
-            readable,
-            culled,
-        })
+    usages::check(view, &sequence, request, reports);
+    if reports.errors() > 0 {
+        return None;
     }
+    let constants = lifetimes
+        .keys()
+        .filter(|id| view.resource(**id).origin == Origin::Constant);
+    let kept: BTreeSet<ResourceId> = conditions
+        .kept
+        .iter()
+        .chain(constants)
+        .copied()
+        .chain(readable.iter().map(|(_, target)| target.id))
+        .chain(previous.values().copied())
+        .chain(counters)
+        .collect();
+    let aliases = aliases(view, &sequence, &lifetimes, &kept);
+    let culled = culled(view, &live);
+    let own = previous
+        .values()
+        .filter(|base| view.resource(**base).origin == Origin::Own);
+    let schedule = Schedule {
+        ping_pong: own.copied().collect(),
+        passes: sequence,
+        lifetimes,
+        conditions,
+        aliases,
+    };
+    Some(Scheduled {
+        named_values,
+        passes,
+        resources,
+        schedule,
+        readable,
+        culled,
+    })
+}
 
-    fn finish(
-        &self,
-        scheduled: Scheduled,
-        request: &PlanRequest<'_>,
-        values: BTreeMap<String, crate::document::params::ParamValue>,
-        (mut reports, plan_inputs): (Reports, PlanInputs),
-    ) -> Outcome {
-        let mut plan = Plan {
-            graph: self.clone(),
-            request: Request::new(request),
-            values,
-            named_values: scheduled.named_values,
-            resources: scheduled.resources,
-            passes: scheduled.passes,
-            schedule: scheduled.schedule,
-            readable: scheduled.readable,
-            culled: scheduled.culled,
-            warnings: Vec::new(),
-            depends_on: std::mem::take(&mut reports.depends_on),
-        };
-        if let Some(too_much) = plan.check_memory(request.memory_limit) {
-            reports.report(too_much);
-            return Outcome::failed(reports, plan_inputs);
-        }
-        if let Some(error) = plan.refused_light() {
-            reports.report(error);
-            return Outcome::failed(reports, plan_inputs);
-        }
-        plan.warnings = reports.into_list();
-        Outcome {
-            plan: Some(plan),
-            found: Vec::new(),
-            plan_inputs,
-        }
+fn finish(
+    graph: &Graph,
+    scheduled: Scheduled,
+    request: &PlanRequest<'_>,
+    values: BTreeMap<String, crate::param::ParamValue>,
+    (mut reports, plan_inputs): (Reports, PlanInputs),
+) -> Outcome {
+    let mut plan = Plan {
+        graph: graph.clone(),
+        request: Request::new(request),
+        values,
+        named_values: scheduled.named_values,
+        resources: scheduled.resources,
+        passes: scheduled.passes,
+        schedule: scheduled.schedule,
+        readable: scheduled.readable,
+        culled: scheduled.culled,
+        warnings: Vec::new(),
+        depends_on: std::mem::take(&mut reports.depends_on),
+    };
+    if let Some(too_much) = plan.check_memory(request.memory_limit) {
+        reports.report(too_much);
+        return Outcome::failed(reports, plan_inputs);
+    }
+    if let Some(error) = plan.refused_light() {
+        reports.report(error);
+        return Outcome::failed(reports, plan_inputs);
+    }
+    plan.warnings = reports.into_list();
+    Outcome {
+        plan: Some(plan),
+        found: Vec::new(),
+        plan_inputs,
     }
 }
 
@@ -263,12 +263,10 @@ fn lacks_features(reports: &Reports) -> bool {
     reports.iter().any(is_lacking)
 }
 
-impl Linked<'_> {
-    fn view(&self) -> GraphView<'_> {
-        GraphView {
-            passes: &self.passes,
-            resources: &self.symbols.resources,
-        }
+fn view<'l>(linked: &'l Linked<'_>) -> GraphView<'l> {
+    GraphView {
+        passes: &linked.passes,
+        resources: &linked.symbols.resources,
     }
 }
 
@@ -325,21 +323,6 @@ fn writers(view: GraphView<'_>, target: &Target) -> BTreeSet<PassId> {
     let passes = view.ids();
     let writers = passes.filter(|(_, pass)| pass.accesses.iter().any(writes));
     writers.map(|(id, _)| id).collect()
-}
-
-/// Those of some resources that grow; last frame's version of one is no other.
-pub(super) fn growing<'a>(
-    ids: impl Iterator<Item = &'a ResourceId>,
-    resources: &'a [Resource],
-) -> impl Iterator<Item = (ResourceId, &'a Growth)> {
-    ids.filter_map(|id| match &resources[id.index()] {
-        Resource {
-            origin: Origin::Own,
-            growth: Some(growth),
-            ..
-        } => Some((*id, growth)),
-        _ => None,
-    })
 }
 
 /// The resources that are last frame's version of another one, with that one.

@@ -1,10 +1,11 @@
 //! Memory of a plan's own textures and buffers, and the limit on it.
 
-use super::{make::growing, plan::Plan, text};
+use super::text;
 use crate::{
     errors::plan::OutputError,
-    flow::aliases::Allocation,
-    resource::{Growth, ResourceId, ResourceKind},
+    flow::{aliases::Allocation, schedule::Schedule},
+    resource::{Growth, Origin, Resource, ResourceId, ResourceKind},
+    source::span::Span,
 };
 
 /// Rows of a memory table: the small ones rarely show what does not fit.
@@ -30,12 +31,18 @@ pub struct MemoryEntry {
     pub shared_with: Vec<String>,
 }
 
-impl Plan {
-    /// The graph's own textures and buffers with what they take, in the order of the document.
-    pub fn memory(&self) -> Vec<MemoryEntry> {
+/// A plan's own textures and buffers.
+#[derive(Clone, Copy)]
+pub(super) struct Memory<'a> {
+    pub resources: &'a [Resource],
+    pub schedule: &'a Schedule,
+}
+
+impl Memory<'_> {
+    pub fn entries(&self) -> Vec<MemoryEntry> {
         let entry = |id: &ResourceId| {
-            let resource = self.resource(*id);
-            let slot = self.schedule().aliases.of.get(id)?;
+            let resource = &self.resources[id.0];
+            let slot = self.schedule.aliases.of.get(id)?;
             let (format, size, mips, layers) = match &resource.kind {
                 ResourceKind::Texture(texture) => (
                     Some(texture.format),
@@ -48,7 +55,7 @@ impl Plan {
                     (None, [edge, 1], 1, 1)
                 }
             };
-            let others = self.schedule().aliases.list[*slot].aliases.iter();
+            let others = self.schedule.aliases.list[*slot].aliases.iter();
             Some(MemoryEntry {
                 name: resource.name.clone(),
                 format,
@@ -61,24 +68,20 @@ impl Plan {
                     .saturating_mul(self.versions(*id) as u64),
                 shared_with: others
                     .filter(|other| *other != id)
-                    .map(|other| self.resource(*other).name.clone())
+                    .map(|other| self.resources[other.0].name.clone())
                     .collect(),
             })
         };
-        self.schedule().lifetimes.keys().filter_map(entry).collect()
+        self.schedule.lifetimes.keys().filter_map(entry).collect()
     }
 
-    /// The live buffers and textures that may grow, each with where its frame counts the items or
-    /// layers that it would have needed, and the most that it may have: by the document, and by the
-    /// device's limits.
-    pub fn growing(&self) -> Vec<(ResourceId, Growth)> {
-        let limits = &self.request.limits;
+    pub fn growing(&self, limits: &wgt::Limits) -> Vec<(ResourceId, Growth)> {
         let largest = limits
             .max_buffer_size
             .min(limits.max_storage_buffer_binding_size);
-        let live = growing(self.schedule().lifetimes.keys(), &self.resources);
+        let live = growing(self.schedule.lifetimes.keys(), self.resources);
         let bounded = |(id, growth): (ResourceId, &Growth)| {
-            let fits = match &self.resource(id).kind {
+            let fits = match &self.resources[id.0].kind {
                 ResourceKind::Buffer(buffer) => {
                     let items = buffer.stride.saturating_mul(buffer.count?);
                     let fixed = buffer.bytes.saturating_sub(items);
@@ -93,29 +96,23 @@ impl Plan {
         live.filter_map(bounded).collect()
     }
 
-    /// Bytes of the graph's own textures and buffers. One that is also read as it was in the frame
-    /// before takes its size twice.
-    pub fn memory_bytes(&self) -> u64 {
-        let allocations = self.schedule().aliases.list.iter();
+    pub fn bytes(&self) -> u64 {
+        let allocations = self.schedule.aliases.list.iter();
         let bytes = allocations.map(|allocation| self.allocation_bytes(allocation));
         bytes.fold(0, u64::saturating_add)
     }
 
-    /// Bytes that would be needed besides if no two resources shared memory.
     pub fn saved_bytes(&self) -> u64 {
         let saved = |allocation: &Allocation| {
             let others = allocation.aliases.len() as u64 - 1;
             others.saturating_mul(self.allocation_bytes(allocation))
         };
-        let allocations = self.schedule().aliases.list.iter();
+        let allocations = self.schedule.aliases.list.iter();
         allocations.map(saved).fold(0, u64::saturating_add)
     }
 
-    /// Returns a table of the largest uses of memory: a line per allocation, the largest first,
-    /// then the rest in one, then the sum. Materials that take turns in one allocation stand
-    /// together.
-    pub fn memory_table(&self) -> String {
-        let allocations = self.schedule().aliases.list.iter();
+    pub fn table(&self) -> String {
+        let allocations = self.schedule.aliases.list.iter();
         let mut rows: Vec<(u64, [String; 3])> = allocations
             .map(|allocation| (self.allocation_bytes(allocation), self.row(allocation)))
             .collect();
@@ -129,7 +126,7 @@ impl Plan {
             rows.push((sum, [name, String::new(), String::new()]));
         }
         let all = ["all together".to_owned(), String::new(), String::new()];
-        rows.push((self.memory_bytes(), all));
+        rows.push((self.bytes(), all));
         let width = |column: usize| {
             let cells = rows.iter().map(|(_, cells)| cells[column].chars().count());
             cells.max().unwrap_or_default()
@@ -150,13 +147,13 @@ impl Plan {
         let names: Vec<&str> = allocation
             .aliases
             .iter()
-            .map(|alias| self.resource(*alias).name.as_str())
+            .map(|alias| self.resources[alias.0].name.as_str())
             .collect();
         let versions = match self.versions(allocation.aliases[0]) {
             1 => String::new(),
             versions => format!(", {versions} versions"),
         };
-        let (size, format) = match &self.resource(allocation.aliases[0]).kind {
+        let (size, format) = match &self.resources[allocation.aliases[0].0].kind {
             ResourceKind::Texture(texture) => {
                 let mut size = format!("{}×{}", texture.size[0], texture.size[1]);
                 if texture.layers > 1 {
@@ -184,39 +181,47 @@ impl Plan {
     }
 
     /// Reports a plan that takes more memory than there is.
-    pub(super) fn check_memory(&self, limit: Option<u64>) -> Option<OutputError> {
-        let takes = self.memory_bytes();
+    pub fn check(&self, limit: Option<u64>, place: Span) -> Option<OutputError> {
+        let takes = self.bytes();
         let limit = limit.filter(|limit| takes > *limit)?;
-        let largest = self
-            .schedule()
-            .aliases
-            .list
-            .iter()
-            .max_by_key(|allocation| {
-                // Among equals the first one counts: `max_by_key` would take the last.
-                let first = std::cmp::Reverse(allocation.aliases[0]);
-                (self.allocation_bytes(allocation), first)
-            });
-        let place = self.graph().place();
+        let largest = self.schedule.aliases.list.iter().max_by_key(|allocation| {
+            // Among equals the first one counts: `max_by_key` would take the last.
+            let first = std::cmp::Reverse(allocation.aliases[0]);
+            (self.allocation_bytes(allocation), first)
+        });
         Some(OutputError::Memory {
             graph: place.file.name.to_string(),
             takes: text::bytes(takes),
             limit: text::bytes(limit),
-            table: self.memory_table(),
-            largest: largest.and_then(|largest| self.resource(largest.aliases[0]).declared.clone()),
+            table: self.table(),
+            largest: largest
+                .and_then(|largest| self.resources[largest.aliases[0].0].declared.clone()),
             place,
         })
     }
 
     fn allocation_bytes(&self, allocation: &Allocation) -> u64 {
         let alias = allocation.aliases[0];
-        let bytes = self.resource(alias).kind.bytes();
+        let bytes = self.resources[alias.0].kind.bytes();
         bytes.saturating_mul(self.versions(alias) as u64)
     }
 
-    /// How many textures or buffers a resource takes: two if it is also read as it was in the frame
-    /// before.
     pub fn versions(&self, id: ResourceId) -> usize {
-        1 + usize::from(self.schedule().ping_pong.contains(&id))
+        1 + usize::from(self.schedule.ping_pong.contains(&id))
     }
+}
+
+/// Those of some resources that grow; last frame's version of one is no other.
+pub(super) fn growing<'a>(
+    ids: impl Iterator<Item = &'a ResourceId>,
+    resources: &'a [Resource],
+) -> impl Iterator<Item = (ResourceId, &'a Growth)> {
+    ids.filter_map(|id| match &resources[id.index()] {
+        Resource {
+            origin: Origin::Own,
+            growth: Some(growth),
+            ..
+        } => Some((*id, growth)),
+        _ => None,
+    })
 }

@@ -2,7 +2,6 @@
 
 mod backend;
 pub(crate) mod check;
-mod idle;
 pub(crate) mod items;
 pub(crate) mod make;
 pub(crate) mod memory;

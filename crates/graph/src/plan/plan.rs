@@ -1,19 +1,31 @@
 //! [`Plan`]: a graph on a viewport with values for its params, checked against an adapter's limits.
 //! Pure data.
 
+use super::{
+    backend::not_proven,
+    items::{self, PartSummary},
+    memory::{Memory, MemoryEntry},
+    summary::{OutputSummary, PassSummary, refused_light},
+    uniforms,
+};
 use crate::{
-    diagnostics::diagnostic::Diagnostic,
-    document::params::ParamValue,
+    diagnostics::{diagnostic::Diagnostic, list::Diagnostics, reports::Reports},
+    errors::plan::OutputError,
     flow::{
         order::{Dependences, dependences},
         schedule::Schedule,
         view::GraphView,
     },
     graph::Graph,
-    link::pass::{LinkedPass, PassId},
+    link::{
+        params::words,
+        pass::{LinkedPass, PassId},
+    },
+    param::{ParamType, ParamValue},
     provider::Import,
-    request::Request,
-    resource::{Resource, ResourceId, Target},
+    request::{PartialBackend, PlanRequest, Request},
+    resource::{Growth, Origin, Resource, ResourceId, ResourceKind, Target},
+    shader::items::Item,
 };
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -117,4 +129,273 @@ impl Plan {
     pub fn offers(&self, name: &str) -> bool {
         self.request.offers(name)
     }
+
+    /// The graph's own textures and buffers with what they take, in the order of the document.
+    pub fn memory(&self) -> Vec<MemoryEntry> {
+        self.own_memory().entries()
+    }
+
+    /// The live buffers and textures that may grow, each with where its frame counts the items or
+    /// layers that it would have needed, and the most that it may have: by the document, and by the
+    /// device's limits.
+    pub fn growing(&self) -> Vec<(ResourceId, Growth)> {
+        self.own_memory().growing(&self.request.limits)
+    }
+
+    /// Bytes of the graph's own textures and buffers. One that is also read as it was in the frame
+    /// before takes its size twice.
+    pub fn memory_bytes(&self) -> u64 {
+        self.own_memory().bytes()
+    }
+
+    /// Bytes that would be needed besides if no two resources shared memory.
+    pub fn saved_bytes(&self) -> u64 {
+        self.own_memory().saved_bytes()
+    }
+
+    /// Returns a table of the largest uses of memory: a line per allocation, the largest first,
+    /// then the rest in one, then the sum. Materials that take turns in one allocation stand
+    /// together.
+    pub fn memory_table(&self) -> String {
+        self.own_memory().table()
+    }
+
+    /// How many textures or buffers a resource takes: two if it is also read as it was in the frame
+    /// before.
+    pub fn versions(&self, id: ResourceId) -> usize {
+        self.own_memory().versions(id)
+    }
+
+    /// Finds out if the plan may run on a backend that gives less than WebGPU, whichever it was
+    /// made for.
+    ///
+    /// # Errors
+    /// If the graph's document does not list the backend in `proven_on`.
+    pub fn check_backend(&self, backend: &PartialBackend) -> Result<(), Diagnostics> {
+        let Some(error) = not_proven(&self.graph, backend) else {
+            return Ok(());
+        };
+        let mut reports = Reports::default();
+        reports.report(error);
+        Err(self.graph.diagnostics(reports.into_list()))
+    }
+
+    /// The params that were asked for and change nothing here: with their defaults a frame would do
+    /// the same, and shaders read the same values. A `fit` of shadow maps does not, say, where the
+    /// light has but one.
+    pub fn idle_params(&self) -> Vec<&str> {
+        let by_default = |name: &&String| {
+            let others = self.with(|request| {
+                request.params.remove(*name);
+            });
+            others.is_ok_and(|others| {
+                self.values.get(*name) != others.values.get(*name) && self.does_the_same_as(&others)
+            })
+        };
+        let asked = self.request.params.keys();
+        asked.filter(by_default).map(String::as_str).collect()
+    }
+
+    /// True if a frame would do the same with another value of a param. False for a value that it
+    /// cannot have.
+    pub fn is_same_with(&self, name: &str, value: ParamValue) -> bool {
+        self.with_param(name, value)
+            .is_ok_and(|other| self.does_the_same_as(&other))
+    }
+
+    fn does_the_same_as(&self, other: &Self) -> bool {
+        let resources = |plan: &Self| {
+            let live = plan.schedule.lifetimes.keys();
+            live.map(|id| plan.resource(*id).kind.clone())
+                .collect::<Vec<_>>()
+        };
+        self.readable == other.readable
+            && self.live().count() == other.live().count()
+            && self.live().zip(other.live()).all(is_same_pass)
+            && resources(self) == resources(other)
+    }
+
+    /// The provided resources that are bound by the passes that write an output or capture: depths
+    /// that are written with a `camera` bound are that camera's.
+    pub fn provided_behind(&self, output: &str) -> BTreeSet<&str> {
+        let target = self.readable_target(output);
+        let behind = |target| items::provided_behind(self.live(), target, &self.resources);
+        target.map_or_else(BTreeSet::new, behind)
+    }
+
+    /// The items of an output or capture that is a buffer; `None` if it is none, or no live pass
+    /// binds it as an array of plain items or as a single one.
+    pub fn item(&self, output: &str) -> Option<Item> {
+        items::item_of(self.live(), self.readable_target(output)?)
+    }
+
+    /// Which mips and layers of a texture, or items of a buffer, an output or capture holds. A
+    /// capture after a pass holds what has been written by then, which may be less than was named.
+    pub fn part(&self, output: &str) -> Option<PartSummary> {
+        let target = self.readable_target(output)?;
+        Some(items::part(self.live(), target, &self.resources))
+    }
+
+    fn readable_target(&self, output: &str) -> Option<&Target> {
+        let (_, target) = self.readable.iter().find(|(name, _)| name == output)?;
+        Some(target)
+    }
+
+    /// True if a param may have this value without planning anew: it has the type and lies in the
+    /// range, and nothing but members of `var<uniform> params` follows from it.
+    pub fn is_in_uniforms(&self, name: &str, value: &ParamValue) -> bool {
+        self.graph.param(name).is_ok_and(|param| {
+            // A document that is included may count its words in another order.
+            let is_counted = matches!(param.ty, ParamType::Choice(_));
+            !is_counted && !self.depends_on.contains(name) && param.check(value).is_ok()
+        })
+    }
+
+    /// Gives a param that [`is_in_uniforms`](Self::is_in_uniforms) another value. Returns the
+    /// positions in the schedule of the passes that read other bytes now. Other params are left as
+    /// they are.
+    pub fn set_in_uniforms(&mut self, name: &str, value: ParamValue) -> Vec<usize> {
+        let Ok(param) = self.graph.param(name) else {
+            return Vec::new();
+        };
+        if !self.is_in_uniforms(name, &value) {
+            return Vec::new();
+        }
+        let (_, words) = words(param, &value);
+        let changed = uniforms::write(&mut self.passes, name, &words);
+        self.values.insert(name.to_owned(), value.clone());
+        self.request.params.insert(name.to_owned(), value);
+        let live = self.schedule.passes.iter().enumerate();
+        live.filter(|(_, id)| changed[id.0])
+            .map(|(position, _)| position)
+            .collect()
+    }
+
+    /// The live passes in the order in which they run.
+    pub fn passes(&self) -> Vec<PassSummary> {
+        let summary = |pass: &LinkedPass| PassSummary {
+            name: pass.name.value.clone(),
+            kind: pass.kind.to_owned(),
+        };
+        self.live().map(summary).collect()
+    }
+
+    /// The passes that do not run.
+    pub fn culled(&self) -> &[CulledPass] {
+        &self.culled
+    }
+
+    /// The provided resources that live passes bind; only these are built.
+    pub fn provided(&self) -> Vec<&str> {
+        self.schedule
+            .lifetimes
+            .keys()
+            .map(|id| self.resource(*id))
+            .filter(|resource| {
+                matches!(
+                    resource.kind,
+                    ResourceKind::Provided(_) | ResourceKind::AccelerationStructure
+                )
+            })
+            .map(|resource| resource.name.as_str())
+            .collect()
+    }
+
+    /// True if a frame may depend on those before it though the host changes nothing: live passes
+    /// read what the graph left in the frame before, or the frame's number.
+    pub fn remembers(&self) -> bool {
+        let used = self.schedule.lifetimes.keys();
+        used.map(|id| self.resource(*id))
+            .any(|resource| match (&resource.kind, resource.origin) {
+                _ if resource.keep => true,
+                (ResourceKind::Frame, _) => true,
+                (ResourceKind::Provided(_), _) => false,
+                (_, origin) => matches!(origin, Origin::Previous(_)),
+            })
+    }
+
+    /// Returns the outputs that can be read back after a frame.
+    pub fn outputs(&self) -> Vec<OutputSummary> {
+        let summary = |(name, target): &(String, Target)| {
+            OutputSummary::new(name, target, &self.resource(target.id).kind)
+        };
+        self.readable.iter().map(summary).collect()
+    }
+
+    /// The graph that was planned.
+    pub fn graph(&self) -> &Graph {
+        &self.graph
+    }
+
+    /// Width and height of the viewport in pixels.
+    pub fn viewport(&self) -> [u32; 2] {
+        self.request.viewport
+    }
+
+    /// The value of a param in this plan.
+    pub fn param(&self, name: &str) -> Option<&ParamValue> {
+        self.values.get(name)
+    }
+
+    /// This plan for another viewport.
+    ///
+    /// # Errors
+    /// Everything that is wrong then.
+    pub fn with_viewport(&self, viewport: [u32; 2]) -> Result<Self, Diagnostics> {
+        self.with(|request| request.viewport = viewport)
+    }
+
+    /// This plan with another value of a param.
+    ///
+    /// # Errors
+    /// Everything that is wrong then.
+    pub fn with_param(&self, name: &str, value: ParamValue) -> Result<Self, Diagnostics> {
+        self.with(|request| {
+            request.params.insert(name.to_owned(), value);
+        })
+    }
+
+    /// Plans anew with several parts of the request changed at once, such as the viewport and the
+    /// imports that follow it. The provider's descriptions stay, unless another provider is put in.
+    ///
+    /// # Errors
+    /// Everything that is wrong then.
+    pub fn with<'a>(
+        &'a self,
+        change: impl FnOnce(&mut PlanRequest<'a>),
+    ) -> Result<Self, Diagnostics> {
+        let mut request = self.request.again();
+        change(&mut request);
+        self.graph.plan(&request)
+    }
+
+    /// Returns the warnings.
+    pub fn warnings(&self) -> &[Diagnostic] {
+        &self.warnings
+    }
+
+    /// The light that live passes bind, if it is of a kind that the document does not take.
+    pub(super) fn refused_light(&self) -> Option<OutputError> {
+        let bound = self.schedule.lifetimes.keys().map(|id| self.resource(*id));
+        refused_light(&self.graph.document, bound)
+    }
+
+    /// Reports a plan that takes more memory than there is.
+    pub(super) fn check_memory(&self, limit: Option<u64>) -> Option<OutputError> {
+        self.own_memory().check(limit, self.graph.place())
+    }
+
+    fn own_memory(&self) -> Memory<'_> {
+        Memory {
+            resources: &self.resources,
+            schedule: &self.schedule,
+        }
+    }
+}
+
+fn is_same_pass((one, other): (&LinkedPass, &LinkedPass)) -> bool {
+    one.name.value == other.name.value
+        && (one.enabled, &one.run) == (other.enabled, &other.run)
+        && one.steps == other.steps
+        && one.params().eq(other.params())
 }

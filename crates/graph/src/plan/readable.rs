@@ -3,8 +3,12 @@
 use crate::{
     diagnostics::reports::Reports,
     errors::plan::OutputError,
+    expressions::eval::{self, Environment},
     graph::Graph,
-    instantiate::{lower::LoweredPass, symbols::SymbolTable},
+    instantiate::{
+        lower::LoweredPass,
+        symbols::{At, SymbolTable},
+    },
     request::PlanRequest,
     resource::{ResourceKind, Target},
     source::span::Located,
@@ -14,39 +18,38 @@ use crate::{
 pub(super) fn readable(
     graph: &Graph,
     request: &PlanRequest<'_>,
-    symbols: &mut SymbolTable<'_>,
+    at: &mut At<'_, '_, '_>,
     written: impl Fn(&Target) -> bool,
-    reports: &mut Reports,
 ) -> Vec<(String, Target)> {
     let mut readable = Vec::new();
     let declared = graph.outputs();
     for wanted in request.outputs.iter().flatten() {
         if !declared.contains(&wanted.as_str()) {
-            reports.report(OutputError::NoOutput {
+            at.reports().report(OutputError::NoOutput {
                 graph: graph.path().to_owned(),
                 name: wanted.clone(),
                 known: declared.iter().map(|&name| name.to_owned()).collect(),
             });
         }
     }
-    let place = symbols.root();
     for output in graph.document.material_outputs() {
         if let Some(condition) = &output.condition {
-            match condition.boolean(&mut symbols.at(place, None, reports)) {
+            match eval::boolean(condition, at) {
                 Ok(true) => {}
                 Ok(false) | Err(_) => continue,
             }
         }
         let name = Located::new(output.name.value.to_string(), output.name.span.clone());
         let material = &output.material;
-        let Ok(target) = symbols.resolve(material, place, reports) else {
+        let Ok(target) = at.resolve(material) else {
             continue;
         };
         if !written(&target) {
-            let material = Located::new(material.text().to_owned(), material.span.clone());
-            reports.report(OutputError::UnwrittenOutput { name, material });
-        } else if let Some(what) = unreadable(symbols, &target) {
-            reports.report(OutputError::UnreadableOutput {
+            let material = material.located();
+            at.reports()
+                .report(OutputError::UnwrittenOutput { name, material });
+        } else if let Some(what) = unreadable(at.symbols(), &target) {
+            at.reports().report(OutputError::UnreadableOutput {
                 name,
                 material: material.span.clone(),
                 what,
@@ -65,14 +68,15 @@ pub(super) fn readable(
             continue;
         }
         // Those after a pass were entered as resources of their own.
-        let target = match symbols.find_full(&name, reports) {
+        let target = match at.find_full(&name) {
             Some(Ok(target)) => target,
             Some(Err(_)) => continue,
             None => {
                 if capture.after.is_none() {
                     let outputs = declared.iter().map(|&name| name.to_owned());
-                    let known = reports.known(symbols.full_names().into_iter().chain(outputs));
-                    reports.report(OutputError::NoMaterial {
+                    let known = at.symbols().full_names().into_iter().chain(outputs);
+                    let known = at.reports().known(known);
+                    at.reports().report(OutputError::NoMaterial {
                         graph: graph.path().to_owned(),
                         name,
                         known,
@@ -82,14 +86,14 @@ pub(super) fn readable(
             }
         };
         if matches!(
-            symbols.get(target.id).kind,
+            at.symbols().get(target.id).kind,
             ResourceKind::Provided(_) | ResourceKind::AccelerationStructure | ResourceKind::Frame
         ) {
-            reports.report(OutputError::Provided(name));
+            at.reports().report(OutputError::Provided(name));
         } else if !written(&target) {
-            reports.report(OutputError::Unwritten(name));
-        } else if let Some(what) = unreadable(symbols, &target) {
-            reports.report(OutputError::Unreadable { name, what });
+            at.reports().report(OutputError::Unwritten(name));
+        } else if let Some(what) = unreadable(at.symbols(), &target) {
+            at.reports().report(OutputError::Unreadable { name, what });
         } else {
             readable.push((name, target));
         }

@@ -1,4 +1,11 @@
 //! Numbers and names as people read them.
+//!
+//! ```
+//! use skiagraph_graph::text::{bytes, cut};
+//!
+//! assert_eq!(bytes(3 << 20), "3.0 MiB");
+//! assert_eq!(cut("create_shadow_map.outer", 13), "create_s…uter");
+//! ```
 
 /// The text, cut to at most `characters`, with an ellipsis where something is missing. The end of a
 /// name often tells more than its middle, so the middle goes.

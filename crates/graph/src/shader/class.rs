@@ -1,7 +1,7 @@
 //! Class of a resource global: a uniform, a storage buffer of some layout, a texture, a sampler.
 
+use crate::scalar_class::ScalarClass;
 use naga::{AddressSpace, Handle, ImageClass, TypeInner, proc::Layouter};
-use std::fmt;
 
 /// Class of a global.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -43,31 +43,10 @@ pub(crate) enum TextureClass {
     },
 }
 
-/// Type of one channel of a texture in a shader.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum ScalarClass {
-    Float,
-    Uint,
-    Sint,
-}
-
-impl fmt::Display for ScalarClass {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Float => "f32",
-            Self::Uint => "u32",
-            Self::Sint => "i32",
-        })
-    }
-}
-
-impl ScalarClass {
-    pub fn from_kind(kind: naga::ScalarKind) -> Option<Self> {
-        match kind {
-            naga::ScalarKind::Float => Some(Self::Float),
-            naga::ScalarKind::Uint => Some(Self::Uint),
-            naga::ScalarKind::Sint => Some(Self::Sint),
-            _ => None,
+impl TextureClass {
+    pub fn dimension(&self) -> wgt::TextureViewDimension {
+        match self {
+            Self::Sampled { dimension, .. } | Self::Storage { dimension, .. } => *dimension,
         }
     }
 }

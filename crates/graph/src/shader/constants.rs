@@ -3,8 +3,8 @@
 
 use super::{expand::Expanded, reflect::Shader, text::identifiers};
 use crate::{
-    document::params::{Param, ParamType},
     errors::shader::ShaderError,
+    param::{Param, ParamType},
     source::span::Span,
 };
 use std::collections::{BTreeMap, BTreeSet, HashMap};

@@ -3,31 +3,29 @@
 use super::{footprint::called, reflect::Shader};
 use naga::{Expression, Function, GlobalVariable, Handle, TypeInner};
 
-impl Shader {
-    /// True if an entry point reads a member of a uniform that begins in its first `bytes`, or all
-    /// of it at once.
-    pub(crate) fn reads_below(
-        &self,
-        entry: usize,
-        global: Handle<GlobalVariable>,
-        bytes: u32,
-    ) -> bool {
-        let first = &self.module.entry_points[entry].function;
-        let called = called(&self.module, first).into_iter();
-        let called = called.map(|handle| &self.module.functions[handle]);
-        let begins_below = |member: u32| {
-            let global = &self.module.global_variables[global];
-            match &self.module.types[global.ty].inner {
-                TypeInner::Struct { members, .. } => members
-                    .get(member as usize)
-                    .is_none_or(|member| member.offset < bytes),
-                _ => true,
-            }
-        };
-        called
-            .chain([first])
-            .any(|function| reads(function, global, begins_below))
-    }
+/// True if an entry point reads a member of a uniform that begins in its first `bytes`, or all
+/// of it at once.
+pub(crate) fn reads_below(
+    shader: &Shader,
+    entry: usize,
+    global: Handle<GlobalVariable>,
+    bytes: u32,
+) -> bool {
+    let first = &shader.module.entry_points[entry].function;
+    let called = called(&shader.module, first).into_iter();
+    let called = called.map(|handle| &shader.module.functions[handle]);
+    let begins_below = |member: u32| {
+        let global = &shader.module.global_variables[global];
+        match &shader.module.types[global.ty].inner {
+            TypeInner::Struct { members, .. } => members
+                .get(member as usize)
+                .is_none_or(|member| member.offset < bytes),
+            _ => true,
+        }
+    };
+    called
+        .chain([first])
+        .any(|function| reads(function, global, begins_below))
 }
 
 /// True if a function reads a global: one of the members, or all of it.

@@ -9,7 +9,7 @@ pub(crate) mod expand;
 pub(crate) mod footprint;
 mod guard;
 pub(crate) mod items;
-mod members;
+pub(crate) mod members;
 pub(crate) mod reflect;
 pub(crate) mod store;
 mod text;

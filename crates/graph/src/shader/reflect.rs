@@ -2,7 +2,7 @@
 //! per entry point.
 
 use super::{
-    class::{Class, ScalarClass, TextureClass, class_of, vector},
+    class::{Class, TextureClass, class_of, vector},
     compiled::{compiled, specialised},
     expand::Expanded,
     footprint::Footprint,
@@ -14,6 +14,7 @@ use super::{
 use crate::{
     errors::shader::ShaderError,
     language::value::Scalar,
+    scalar_class::ScalarClass,
     source::span::{Located, Span},
 };
 use naga::{

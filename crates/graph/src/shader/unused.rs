@@ -70,8 +70,8 @@ impl<'s> UnusedFinder<'s> {
     /// file declares. The document names those in `constants`.
     pub fn find(&mut self, shader: &'s Shader, constants: &BTreeSet<&str>) -> Vec<Unused> {
         let mut unused = self.imports(&shader.source, constants);
-        unused.extend(shader.unused_params());
-        unused.extend(shader.unused_globals());
+        unused.extend(unused_params(shader));
+        unused.extend(unused_globals(shader));
         unused
     }
 
@@ -118,72 +118,72 @@ impl<'s> UnusedFinder<'s> {
     }
 }
 
-impl Shader {
-    /// Members of the uniform `params` that no function reads.
-    fn unused_params(&self) -> Vec<Unused> {
-        let module = self.module();
-        let mut globals = module.global_variables.iter();
-        let params = globals.find(|(_, global)| global.name.as_deref() == Some("params"));
-        let Some((params, global)) = params else {
-            return Vec::new();
-        };
-        let TypeInner::Struct { members, .. } = &module.types[global.ty].inner else {
-            return Vec::new();
-        };
-        let mut read = vec![false; members.len()];
-        for function in functions(module) {
-            for (handle, expression) in function.expressions.iter() {
-                if !matches!(expression, Expression::GlobalVariable(known) if *known == params) {
-                    continue;
-                }
-                let mut indices = 0;
-                for (_, user) in function.expressions.iter() {
-                    match user {
-                        Expression::AccessIndex { base, index } if *base == handle => {
-                            read[*index as usize] = true;
-                            indices += 1;
-                        }
-                        Expression::Load { pointer } if *pointer == handle => read.fill(true),
-                        _ => {}
+/// Members of the uniform `params` that no function reads.
+fn unused_params(shader: &Shader) -> Vec<Unused> {
+    let module = shader.module();
+    let mut globals = module.global_variables.iter();
+    let params = globals.find(|(_, global)| global.name.as_deref() == Some("params"));
+    let Some((params, global)) = params else {
+        return Vec::new();
+    };
+    let TypeInner::Struct { members, .. } = &module.types[global.ty].inner else {
+        return Vec::new();
+    };
+    let mut read = vec![false; members.len()];
+    for function in functions(module) {
+        for (handle, expression) in function.expressions.iter() {
+            if !matches!(expression, Expression::GlobalVariable(known) if *known == params) {
+                continue;
+            }
+            let mut indices = 0;
+            for (_, user) in function.expressions.iter() {
+                match user {
+                    Expression::AccessIndex { base, index } if *base == handle => {
+                        read[*index as usize] = true;
+                        indices += 1;
                     }
-                }
-                // Handed on whole.
-                if indices == 0 {
-                    read.fill(true);
+                    Expression::Load { pointer } if *pointer == handle => read.fill(true),
+                    _ => {}
                 }
             }
+            // Handed on whole.
+            if indices == 0 {
+                read.fill(true);
+            }
         }
-        let names = members.iter().zip(read).filter(|(_, read)| !read);
-        let names = names.filter_map(|(member, _)| member.name.as_deref());
-        names.filter_map(|name| self.own(name, "param")).collect()
     }
+    let names = members.iter().zip(read).filter(|(_, read)| !read);
+    let names = names.filter_map(|(member, _)| member.name.as_deref());
+    names
+        .filter_map(|name| own(shader, name, "param"))
+        .collect()
+}
 
-    /// Globals that no entry point uses.
-    fn unused_globals(&self) -> Vec<Unused> {
-        let module = self.module();
-        let entries: Vec<usize> = (0..module.entry_points.len()).collect();
-        let is_used = |handle| entries.iter().any(|entry| self.uses(*entry, handle));
-        let globals = module.global_variables.iter();
-        let unused = globals.filter(|(handle, global)| {
-            global.binding.is_some()
-                && global.name.as_deref() != Some("params")
-                && !is_used(*handle)
-        });
-        let names = unused.filter_map(|(_, global)| global.name.as_deref());
-        names.filter_map(|name| self.own(name, "global")).collect()
-    }
+/// Globals that no entry point uses.
+fn unused_globals(shader: &Shader) -> Vec<Unused> {
+    let module = shader.module();
+    let entries: Vec<usize> = (0..module.entry_points.len()).collect();
+    let is_used = |handle| entries.iter().any(|entry| shader.uses(*entry, handle));
+    let globals = module.global_variables.iter();
+    let unused = globals.filter(|(handle, global)| {
+        global.binding.is_some() && global.name.as_deref() != Some("params") && !is_used(*handle)
+    });
+    let names = unused.filter_map(|(_, global)| global.name.as_deref());
+    names
+        .filter_map(|name| own(shader, name, "global"))
+        .collect()
+}
 
-    /// A name that the shader's own file declares.
-    fn own(&self, name: &str, what: &'static str) -> Option<Unused> {
-        let at = super::text::words(&self.source.text, name).find(|at| {
-            self.source.text[at + name.len()..]
-                .trim_start()
-                .starts_with(':')
-        })?;
-        let span = self.source.locate(at..at + name.len());
-        let name = Located::new(name.to_owned(), span);
-        (name.span.file == self.source.file).then_some(Unused { what, name })
-    }
+/// A name that the shader's own file declares.
+fn own(shader: &Shader, name: &str, what: &'static str) -> Option<Unused> {
+    let at = super::text::words(&shader.source.text, name).find(|at| {
+        shader.source.text[at + name.len()..]
+            .trim_start()
+            .starts_with(':')
+    })?;
+    let span = shader.source.locate(at..at + name.len());
+    let name = Located::new(name.to_owned(), span);
+    (name.span.file == shader.source.file).then_some(Unused { what, name })
 }
 
 fn functions(module: &naga::Module) -> impl Iterator<Item = &naga::Function> {

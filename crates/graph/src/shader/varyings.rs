@@ -23,6 +23,24 @@ pub(crate) struct Varyings {
 }
 
 impl Varyings {
+    /// The arguments of an entry point.
+    pub fn inputs(shader: &Shader, entry: usize) -> Self {
+        let mut inputs = Self::default();
+        for argument in &shader.module.entry_points[entry].function.arguments {
+            inputs.add(shader, argument.binding.as_ref(), argument.ty);
+        }
+        inputs
+    }
+
+    /// The result of an entry point.
+    pub fn outputs(shader: &Shader, entry: usize) -> Self {
+        let mut outputs = Self::default();
+        if let Some(result) = &shader.module.entry_points[entry].function.result {
+            outputs.add(shader, result.binding.as_ref(), result.ty);
+        }
+        outputs
+    }
+
     fn add(&mut self, shader: &Shader, binding: Option<&Binding>, ty: Handle<Type>) {
         match (binding, &shader.module.types[ty].inner) {
             (None, TypeInner::Struct { members, .. }) => {
@@ -83,25 +101,5 @@ fn variables(builtin: BuiltIn, ty: &TypeInner) -> u32 {
         ) => 1,
         (BuiltIn::Barycentric { .. }, _) => 3,
         _ => 0,
-    }
-}
-
-impl Shader {
-    /// The arguments of an entry point.
-    pub(crate) fn inputs(&self, entry: usize) -> Varyings {
-        let mut inputs = Varyings::default();
-        for argument in &self.module.entry_points[entry].function.arguments {
-            inputs.add(self, argument.binding.as_ref(), argument.ty);
-        }
-        inputs
-    }
-
-    /// The result of an entry point.
-    pub(crate) fn outputs(&self, entry: usize) -> Varyings {
-        let mut outputs = Varyings::default();
-        if let Some(result) = &self.module.entry_points[entry].function.result {
-            outputs.add(self, result.binding.as_ref(), result.ty);
-        }
-        outputs
     }
 }

@@ -1,5 +1,6 @@
 //! Where documents, shaders and pictures come from.
 
+use crate::picture::Picture;
 use std::{io::Read, path::PathBuf, sync::Arc};
 
 /// A store of RON documents and WGSL files: a folder, embedded files, or a host's own.
@@ -27,21 +28,6 @@ pub trait Sources: Send + Sync {
             Ok(None) => Ok(None),
             _ => Err("this program decodes no pictures".to_owned()),
         }
-    }
-}
-
-/// A decoded picture.
-#[derive(Clone, PartialEq, Eq)]
-pub struct Picture {
-    /// Width and height in texels.
-    pub size: [u32; 2],
-    /// Red, green, blue and alpha of each texel, rows from the top; 65,535 is one.
-    pub texels: Arc<[[u16; 4]]>,
-}
-
-impl std::fmt::Debug for Picture {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "Picture({}×{})", self.size[0], self.size[1])
     }
 }
 

@@ -168,8 +168,10 @@ fn what_a_group_says() {
     assert_eq!(bound.resource(read.resource).name, "maps");
     assert_eq!(read.part.layers, 1..2);
     assert_eq!(
-        bound.all_passes()[3].steps[0]
+        bound.all_passes()[3]
             .params()
+            .next()
+            .flatten()
             .map(|b| b[..4].to_vec()),
         Some(5f32.to_le_bytes().to_vec())
     );

@@ -134,8 +134,11 @@ fn a_change_replaces_what_it_gives() {
     let value = |files: &Files, pass: &str| {
         let plan = right(plan(files));
         let found = plan.all_passes().iter().find(|found| *found.name == *pass);
-        let bytes = found.expect("it is there").steps[0]
+        let bytes = found
+            .expect("it is there")
             .params()
+            .next()
+            .flatten()
             .map(<[u8]>::to_vec);
         f32::from_le_bytes(
             bytes.expect("it has params")[..4]
@@ -476,7 +479,7 @@ fn the_flat_text_is_the_document() {
             Clear(name: "new", before: "over", target: "second"),
         ]"#,
     );
-    let text = right(Graph::flat("graph.ron", &files));
+    let text = right(Graph::flat("graph.ron", &Registry::default(), &files));
     let flat = files.clone().with("graph.ron", text.clone());
     assert_eq!(all(&flat), all(&files));
     assert_eq!(right(plan(&flat)).outputs(), right(plan(&files)).outputs());

@@ -25,7 +25,7 @@ fn width(plan: &Plan, name: &str) -> u32 {
 fn program(plan: &Plan) -> (Vec<(String, f64)>, Vec<u32>) {
     let step = &plan.live().next().expect("a pass").steps[0];
     let program = step.program().expect("a program");
-    let words = step.params().unwrap_or_default().chunks_exact(4);
+    let words = program.params().unwrap_or_default().chunks_exact(4);
     let words = words.map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]));
     (program.constants.clone(), words.collect())
 }
@@ -212,7 +212,11 @@ fn a_child_redefines_a_value_that_the_parent_uses() {
     ));
     let plan = right(graph.plan(&PlanRequest::new([64, 64], &NoProvider)));
     assert_eq!(width(&plan, "image"), 32);
-    let flat = right(Graph::flat("pipelines/graph.ron", &files));
+    let flat = right(Graph::flat(
+        "pipelines/graph.ron",
+        &Registry::default(),
+        &files,
+    ));
     assert!(
         flat.contains(r#""edge": "32", // pipelines/graph.ron:1"#),
         "{flat}"
@@ -282,7 +286,7 @@ fn narrow_only_shrinks_and_tells_why() {
 }
 
 #[test]
-fn params_and_materials_are_removed() {
+fn what_a_child_does_not_use_goes() {
     let files = Files::new([(
         "shaders/one.wgsl",
         "@fragment fn fragment() -> @location(0) f32 { return 1.0; }",
@@ -305,23 +309,115 @@ fn params_and_materials_are_removed() {
         "pipelines/graph.ron",
         r#"
         extends: "parent.ron",
-        params: [Remove(name: "bias")],
-        materials: [Remove(name: "scratch")],
+        set: {"bias": 1},
         passes: [Remove(pass: "clear")],
         outputs: ["image"]"#,
+    )
+    .document(
+        "pipelines/around.ron",
+        r#"passes: [Include(graph: "graph.ron", expose: All)], outputs: ["image"]"#,
+    )
+    .document(
+        "pipelines/flat.ron",
+        r#"extends: "graph.ron", set: {"edge": 4}"#,
     );
-    let graph = right(Graph::load(
+    let load = |path: &str| right(Graph::load(path, &Registry::standard(), &files));
+    for path in ["pipelines/graph.ron", "pipelines/around.ron"] {
+        let graph = load(path);
+        let params = graph.params().iter();
+        let names: Vec<&str> = params.map(|param| param.name.as_str()).collect();
+        assert_eq!(names, ["edge"], "{path}");
+        right(graph.plan(&PlanRequest::new([8, 8], &NoProvider)));
+    }
+    let graph = load("pipelines/graph.ron");
+    let warnings: Vec<&str> = graph.warnings().iter().map(|it| &*it.message).collect();
+    assert_eq!(warnings, ["nothing uses the param `bias`"]);
+    let flat = Graph::flat("pipelines/flat.ron", &Registry::standard(), &files);
+    let flat = right(flat);
+    assert!(
+        !flat.contains("bias") && !flat.contains("scratch"),
+        "{flat}"
+    );
+}
+
+#[test]
+fn a_material_takes_the_place_of_an_input_and_an_exposed_param_that_of_a_param() {
+    let files = Files::new([
+        (
+            "shaders/one.wgsl",
+            "struct Params { level: f32 }
+             var<uniform> params: Params;
+             @fragment fn fragment() -> @location(0) f32 { return params.level; }",
+        ),
+        (
+            "shaders/double.wgsl",
+            "var image: texture_2d<f32>;
+             @fragment fn fragment() -> @location(0) f32 {
+                 return 2.0 * textureLoad(image, vec2(0u), 0).x;
+             }",
+        ),
+    ])
+    .document(
+        "pipelines/one.ron",
+        r#"
+        params: [F32(name: "level", default: 3)],
+        inputs: [Texture(name: "image", format: R32Float)],
+        passes: [Fullscreen(name: "one", color: ["image"])],
+        outputs: ["image"]"#,
+    )
+    .document(
+        "pipelines/parent.ron",
+        r#"
+        params: [F32(name: "level", default: 1)],
+        inputs: [Texture(name: "image", format: R32Float)],
+        materials: [Texture(name: "answer", format: R32Float)],
+        passes: [
+            Clear(name: "clear", target: "answer", value: "level"),
+            Fullscreen(name: "double", color: ["answer"]),
+        ],
+        outputs: ["answer"]"#,
+    )
+    .document(
         "pipelines/graph.ron",
-        &Registry::standard(),
-        &files,
-    ));
-    let names: Vec<&str> = graph
-        .params()
-        .iter()
-        .map(|param| param.name.as_str())
-        .collect();
-    assert_eq!(names, ["edge"]);
-    right(graph.plan(&PlanRequest::new([8, 8], &NoProvider)));
+        r#"
+        extends: "parent.ron",
+        materials: [Texture(name: "image", format: R32Float)],
+        passes: [
+            Include(before: "double", graph: "one.ron", expose: All),
+            Remove(pass: "clear"),
+        ]"#,
+    );
+    let path = "pipelines/graph.ron";
+    let graph = right(Graph::load(path, &Registry::standard(), &files));
+    assert_eq!(graph.inputs(), [""; 0]);
+    let request = PlanRequest::new([8, 8], &NoProvider);
+    let values = graph.values(&request.params, [8, 8], request.features);
+    assert_eq!(right(values)["level"], ParamValue::F32(3.0));
+    right(graph.plan(&request));
+}
+
+#[test]
+fn a_pass_clears_materials_before_it_runs() {
+    let files = Files::new([(
+        "shaders/count.wgsl",
+        "var<storage, read_write> counter: atomic<u32>;
+         @compute @workgroup_size(1) fn main() { atomicAdd(&counter, 1u); }",
+    )])
+    .document(
+        "pipelines/graph.ron",
+        r#"
+        materials: [Buffer(name: "counter")],
+        passes: [Compute(name: "count", clear: ["counter"], dispatch: Groups(1, 1, 1))],
+        outputs: ["counter"]"#,
+    );
+    let path = "pipelines/graph.ron";
+    let graph = right(Graph::load(path, &Registry::standard(), &files));
+    let plan = right(graph.plan(&PlanRequest::new([8, 8], &NoProvider)));
+    let steps = &plan.all_passes()[0].steps;
+    assert!(
+        matches!(steps[..], [Step::Clear { .. }, Step::Dispatch(_)]),
+        "{steps:?}"
+    );
 }
 
 /// `solid` and `masked`, of which `masked` has a binding more; `fill` imports the former, and a

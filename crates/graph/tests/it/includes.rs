@@ -61,8 +61,11 @@ fn uses<'p>(plan: &'p Plan, pass: &str) -> Vec<(&'p str, bool)> {
 /// The first number of a pass's params.
 fn number(plan: &Plan, pass: &str) -> f32 {
     let found = plan.all_passes().iter().find(|found| *found.name == *pass);
-    let bytes = found.expect("it is there").steps[0]
+    let bytes = found
+        .expect("it is there")
         .params()
+        .next()
+        .flatten()
         .expect("it has params");
     f32::from_le_bytes(bytes[..4].try_into().expect("they are four"))
 }

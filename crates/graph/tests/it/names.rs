@@ -178,7 +178,11 @@ fn a_suggestion_is_what_may_stand_there() {
 
 /// The first step's params of a pass, as words.
 fn params(pass: &LinkedPass) -> Vec<u32> {
-    let bytes = pass.steps[0].params().expect("its shader has params");
+    let bytes = pass
+        .params()
+        .next()
+        .flatten()
+        .expect("its shader has params");
     let word = |word: &[u8]| u32::from_le_bytes(word.try_into().expect("it has four bytes"));
     bytes.chunks(4).map(word).collect()
 }

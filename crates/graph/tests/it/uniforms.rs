@@ -69,9 +69,7 @@ fn uses() -> Files {
 
 /// The uniforms of the live passes, pass by pass.
 fn uniforms(plan: &Plan) -> Vec<Vec<Option<&[u8]>>> {
-    plan.live()
-        .map(|pass| pass.steps.iter().map(|step| step.params()).collect())
-        .collect()
+    plan.live().map(|pass| pass.params().collect()).collect()
 }
 
 #[test]

@@ -368,11 +368,11 @@ fn params_and_overrides_are_laid_out() {
     // The words of the uniform, and the overrides that have a value of the document.
     let filled = |request: &PlanRequest<'_>| {
         let plan = right(graph.plan(request));
-        let step = &plan.all_passes()[0].steps[0];
-        let bytes = step.params().expect("the shader has params");
+        let program = plan.all_passes()[0].steps[0].program().expect("it has one");
+        let bytes = program.params().expect("the shader has params");
         let words = bytes.chunks(4);
         let words = words.map(|word| u32::from_le_bytes(word.try_into().expect("it has four")));
-        let mut constants = step.program().expect("it has one").constants.clone();
+        let mut constants = program.constants.clone();
         constants.sort_by(|a, b| a.0.cmp(&b.0));
         (words.collect::<Vec<u32>>(), constants)
     };

@@ -1,14 +1,12 @@
-//! The content of the page, as JSON.
+//! Words and pictures of the page, as JSON for its script.
 
 use crate::html::pictures::Pictures;
+use crate::html::shown::Shown;
 use crate::html::sources::Source;
 use crate::results_table::timed_frames;
-use crate::summary::{Row, by_wall};
-use crate::summary_table::{Group, Summary, summaries};
+use crate::summary::Row;
 use serde::Serialize;
-use serde_json::Value;
-use skiagraph_compare::records::results::{PROGRAM, Part, Results};
-use skiagraph_compare::records::sequence::SequenceFrame;
+use skiagraph_compare::records::results::{PROGRAM, Results};
 use std::collections::BTreeSet;
 
 /// All of it.
@@ -18,7 +16,6 @@ struct Data<'a> {
     sources: Vec<Conditions<'a>>,
     tables: Vec<Table<'a>>,
     pictures: &'a Pictures,
-    stress: &'a [Value],
     left_out: &'a [String],
 }
 
@@ -43,13 +40,11 @@ struct Conditions<'a> {
 struct Table<'a> {
     source: usize,
     viewport: [u32; 2],
-    /// `view main`, `9 views`.
-    what: String,
+    /// Source and viewport in words.
+    of: &'a str,
     title: &'a str,
     /// By wrong pixels; else by the root mean square error of shares.
     hard: bool,
-    /// True if times are the wall clock's.
-    wall: bool,
     sentences: Vec<String>,
     conditions: Vec<String>,
     notes: Vec<String>,
@@ -61,48 +56,16 @@ struct Table<'a> {
 struct Line<'a> {
     label: &'a str,
     method: &'a str,
-    map: Option<u32>,
-    views: usize,
-    /// True if it is the fastest with nothing wrong outside the band.
-    best: bool,
     wrong: u64,
-    facing: u64,
-    in_band: u64,
-    rmse: Option<f64>,
-    /// The error of the worst frame of all paths: the share of its wrong pixels, or its root mean
-    /// square error.
-    worst_frame: Option<f64>,
-    shimmer: Option<f64>,
-    frame_ms: Option<f64>,
-    kept_ms: Option<f64>,
-    rays: Option<f64>,
-    bytes: u64,
-    steps: Vec<(&'a str, f64)>,
-    unavailable: Option<&'a str>,
 }
 
 /// As text that may stand in a script element.
-pub fn text(sources: &[Source], stress: &[Value], pictures: &Pictures) -> String {
-    let all: Vec<(usize, Summary)> = sources
-        .iter()
-        .enumerate()
-        .flat_map(|(index, source)| {
-            let summaries = summaries(&source.results).into_iter();
-            summaries.map(move |summary| (index, summary))
-        })
-        .collect();
+pub fn text(sources: &[Source], tables: &[Shown], pictures: &Pictures) -> String {
     let data = Data {
         program: PROGRAM,
         sources: sources.iter().map(conditions).collect(),
-        tables: all
-            .iter()
-            .flat_map(|(source, summary)| {
-                let tables = summary.groups.iter();
-                tables.map(|group| table(*source, summary, group))
-            })
-            .collect(),
+        tables: tables.iter().map(table).collect(),
         pictures,
-        stress,
         left_out: &pictures.left_out,
     };
     let json = serde_json::to_string(&data).expect("plain structs with string keys serialise");
@@ -138,46 +101,21 @@ fn conditions(source: &Source) -> Conditions<'_> {
     }
 }
 
-fn table<'a>(source: usize, summary: &'a Summary, group: &'a Group) -> Table<'a> {
-    let verdict = group.verdict();
-    let wall = by_wall(&group.rows);
-    let rows = group.rows.iter().enumerate();
-    Table {
-        source,
-        viewport: summary.viewport,
-        what: summary.what(),
-        title: group.title(),
-        hard: group.is_hard,
-        wall,
-        sentences: verdict.sentences,
-        conditions: summary.conditions(),
-        notes: summary.notes(),
-        rows: rows
-            .map(|(index, row)| line(row, verdict.fastest_exact == Some(index), wall))
-            .collect(),
-    }
-}
-
-fn line<'a>(row: &'a Row, best: bool, wall: bool) -> Line<'a> {
-    let share = |part: Part| part.count as f64 / part.of.max(1) as f64;
-    let wrong = row.wrong();
-    Line {
+fn table<'a>(of: &'a Shown) -> Table<'a> {
+    let line = |row: &'a Row| Line {
         label: &row.label,
         method: &row.method,
-        map: row.map_size(),
-        views: row.views(),
-        best,
-        wrong: wrong.outside_band,
-        facing: wrong.facing_light,
-        in_band: wrong.in_band,
-        rmse: row.rmse(),
-        worst_frame: row.worst_frame().map(SequenceFrame::error),
-        shimmer: row.shimmer().map(share),
-        frame_ms: row.frame_ms(wall),
-        kept_ms: row.kept_ms(wall),
-        rays: row.rays(),
-        bytes: row.bytes(),
-        steps: row.steps(),
-        unavailable: row.unavailable,
+        wrong: row.wrong().outside_band,
+    };
+    Table {
+        source: of.source,
+        viewport: of.summary.viewport,
+        of: &of.title,
+        title: of.group.title(),
+        hard: of.group.is_hard,
+        sentences: of.group.verdict().sentences,
+        conditions: of.summary.conditions(),
+        notes: of.summary.notes(),
+        rows: of.group.rows.iter().map(line).collect(),
     }
 }

@@ -1,30 +1,40 @@
 //! `report.html`: everything that `compare` and `stress` kept, in one file that needs no network.
-//! Every figure is worked out here, by the same rules as the tables; the page only draws it.
+//! Every figure is worked out here, by the same rules as the tables, and the charts and tables are
+//! written here; the page's script shows what is chosen of them.
 //!
 //! | | |
 //! |-|-|
 //! | `sources` | folders that were measured alike become one |
-//! | `data` | what the page draws, as JSON |
+//! | `shown` | tables to choose from, and parts of the page that are of some of them |
+//! | `charts`, `steps`, `rows` | these parts: charts, bars of steps, tables |
+//! | `stress` | matrices of hard cases |
+//! | `data` | all other words, as JSON |
 //! | `pictures` | which pictures go in, as far as there is room |
 //! | `report.html`, `.css`, `*.js` | the page |
 
+mod charts;
 mod data;
 mod pictures;
+mod rows;
+mod shown;
 mod sources;
+mod steps;
+mod stress;
 
 pub use sources::{Source, sources};
 
+use crate::summary_table::{Summary, summaries};
 use pictures::Pictures;
-use serde_json::Value;
+use shown::shown;
+use skiagraph_compare::records::stress::Report;
 
 /// The most that a page may have: more is slow to open, and too large for a mail.
 pub const LIMIT: usize = 30_000_000;
 
 /// In the order in which they need each other.
-const SCRIPTS: [&str; 7] = [
+const SCRIPTS: [&str; 6] = [
     include_str!("page.js"),
-    include_str!("figures.js"),
-    include_str!("charts.js"),
+    include_str!("shown.js"),
     include_str!("table.js"),
     include_str!("picture.js"),
     include_str!("viewer.js"),
@@ -39,33 +49,46 @@ pub struct Page {
     pub left_out: Vec<String>,
 }
 
-/// The page of these sources, and of these contents of `stress.json`.
-pub fn page(sources: &[Source], stress: &[Value]) -> Page {
-    page_within(sources, stress, LIMIT)
+/// The page of these sources, and of these matrices of hard cases.
+pub fn page(sources: &[Source], reports: &[Report]) -> Page {
+    page_within(sources, reports, LIMIT)
 }
 
-fn page_within(sources: &[Source], stress: &[Value], limit: usize) -> Page {
-    let empty = filled(&data::text(sources, stress, &Pictures::default()));
-    let pictures = Pictures::embed(sources, limit.saturating_sub(empty.len()));
-    Page {
-        html: filled(&data::text(sources, stress, &pictures)),
-        left_out: pictures.left_out,
-    }
-}
-
-/// The template with its parts put in; the data last, in which anything may stand.
-fn filled(data: &str) -> String {
-    include_str!("report.html")
+fn page_within(sources: &[Source], reports: &[Report], limit: usize) -> Page {
+    let all = sources.iter().enumerate().flat_map(|(index, source)| {
+        let summaries = summaries(&source.results).into_iter();
+        summaries.map(move |summary| (index, summary))
+    });
+    let all: Vec<(usize, Summary)> = all.collect();
+    let tables = shown(sources, &all);
+    let frame = include_str!("report.html")
         .replace("/*STYLE*/", include_str!("report.css"))
         .replace("/*SCRIPT*/", &SCRIPTS.concat())
-        .replacen("/*DATA*/", data, 1)
+        // Names are escaped: none looks like a comment.
+        .replace("<!--FRONTS-->", &charts::fronts(&tables))
+        .replace("<!--LEGEND-->", &charts::legends(&tables))
+        .replace("<!--TABLES-->", &rows::tables(&tables))
+        .replace("<!--STEPS-->", &steps::bars(&tables))
+        .replace("<!--GROWTHS-->", &charts::growths(&tables))
+        .replace("<!--STRESS-->", &stress::matrices(reports));
+    let filled = |pictures: &Pictures| {
+        // Last, since anything may stand in it.
+        frame.replacen("<!--DATA-->", &data::text(sources, &tables, pictures), 1)
+    };
+    let empty = filled(&Pictures::default());
+    let pictures = Pictures::embed(sources, limit.saturating_sub(empty.len()));
+    Page {
+        html: filled(&pictures),
+        left_out: pictures.left_out,
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::charts::Kept;
-    use crate::samples::results as sample;
+    use crate::samples::{results as sample, stress};
+    use serde_json::Value;
     use skiagraph_compare::records::results::Results;
     use std::path::Path;
 
@@ -93,6 +116,12 @@ mod tests {
         assert_eq!(data["sources"][0]["scene"], name);
         let rows = data["tables"][0]["rows"].as_array().unwrap();
         assert!(rows.iter().any(|row| row["method"] == name), "{rows:?}");
+        // In the legend, the charts, the tables.
+        assert!(
+            html.matches("&lt;/script&gt;&lt;b onload=x&gt;&amp;")
+                .count()
+                > 3
+        );
     }
 
     #[test]
@@ -154,9 +183,12 @@ mod tests {
     }
 
     #[test]
-    fn the_data_is_pinned() {
-        let html = page(&source(Path::new("nowhere"), sample()), &[]).html;
+    fn the_data_and_the_tables_are_pinned() {
+        let html = page(&source(Path::new("nowhere"), sample()), &[stress()]).html;
         let text = serde_json::to_string_pretty(&data_of(&html)).unwrap();
-        insta::assert_snapshot!(text);
+        insta::assert_snapshot!("data", text);
+        let tables = html.split("<table>").skip(1);
+        let tables = tables.filter_map(|table| Some(table.split_once("</table>")?.0));
+        insta::assert_snapshot!("tables", tables.collect::<Vec<_>>().join("\n"));
     }
 }

@@ -6,29 +6,27 @@ const data = JSON.parse(document.getElementById('data').textContent);
 const state = {
   /** Index of the table: a source and viewport. */
   table: 0,
-  /** 'frame' with every pass run, 'kept' with what is kept while only the camera moves. */
-  time: 'frame',
+  /** 'true' for times with what is kept while only the camera moves, 'false' with every pass run. */
+  kept: 'false',
   /** Names of methods that are not drawn. */
   hidden: new Set(),
   /** Label of the row that was clicked last. */
   row: null,
+  /** The table of all sizes and sources. */
+  all: false,
 };
 const drawers = [];
 const changed = () => drawers.forEach((draw) => draw());
 
 const byId = (id) => document.getElementById(id);
+const all = (selector) => [...document.querySelectorAll(selector)];
+
+const size = ([width, height]) => `${width}x${height}`;
+const table = () => data.tables[state.table];
 
 /** An element with attributes and children; strings become text. */
 function el(name, attributes = {}, ...children) {
-  return filled(document.createElement(name), attributes, children);
-}
-
-/** The same of SVG. */
-function svg(name, attributes = {}, ...children) {
-  return filled(document.createElementNS('http://www.w3.org/2000/svg', name), attributes, children);
-}
-
-function filled(element, attributes, children) {
+  const element = document.createElement(name);
   for (const [name, value] of Object.entries(attributes)) {
     if (name.startsWith('on')) element.addEventListener(name.slice(2), value);
     else if (value !== null && value !== undefined && value !== false) element.setAttribute(name, value);
@@ -64,18 +62,13 @@ const tip = byId('tip');
 function showTip(event, text) {
   tip.textContent = text;
   tip.hidden = false;
-  const box = event.type === 'focus' ? event.target.getBoundingClientRect() : null;
+  const box = event.type === 'focusin' ? event.target.getBoundingClientRect() : null;
   const [x, y] = box ? [box.right, box.bottom] : [event.clientX, event.clientY];
   const { width, height } = tip.getBoundingClientRect();
   tip.style.left = `${Math.max(4, Math.min(x + 14, innerWidth - width - 8))}px`;
   tip.style.top = `${Math.max(4, y + 14 + height > innerHeight ? y - height - 14 : y + 14)}px`;
 }
 const hideTip = () => { tip.hidden = true; };
-/** What an element shows while pointed at or focused. */
-const told = (text) => ({
-  onpointermove: (event) => showTip(event, text), onpointerleave: hideTip,
-  onfocus: (event) => showTip(event, text), onblur: hideTip,
-});
 
 function setTheme(theme) {
   document.documentElement.dataset.theme = theme;

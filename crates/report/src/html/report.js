@@ -10,6 +10,7 @@ function drawHead() {
   // Text between backquotes is a name.
   const words = (text) => text.split('`').map((part, index) => (index % 2 === 1 ? el('code', {}, part) : part));
   byId('verdict').replaceChildren(...table().sentences.map((text) => el('p', {}, ...words(text))));
+  byId('notes').replaceChildren(...table().notes.map((text) => el('li', { class: lineClass(text) }, text)));
 }
 
 /** Warnings stand out. */
@@ -17,7 +18,7 @@ const lineClass = (text) => (text.startsWith('warning: ') ? 'warning' : 'quiet')
 
 function headControls() {
   const names = data.tables.map((of) => (data.tables.some((other) => other.hard !== of.hard)
-    ? `${where(of)}: ${of.title.toLowerCase()}` : where(of)));
+    ? `${of.of}: ${of.title.toLowerCase()}` : of.of));
   if (names.length > 1) {
     byId('choice').replaceChildren(choice('table-choice', 'Shown', names, state.table, (chosen) => {
       state.table = chosen;
@@ -26,11 +27,11 @@ function headControls() {
       changed();
     }));
   }
-  if (data.tables.some((of) => of.rows.some((row) => row.kept_ms !== null))) {
+  if (all('[data-kept="true"]').length > 0) {
     byId('front-controls').replaceChildren(toggle('time', [
-      ['frame', 'light or meshes move'], ['kept', 'only the camera moves'],
-    ], () => state.time, (value) => {
-      state.time = value;
+      ['false', 'light or meshes move'], ['true', 'only the camera moves'],
+    ], () => state.kept, (value) => {
+      state.kept = value;
       changed();
     }));
   }
@@ -51,47 +52,10 @@ function drawGraph() {
     src: `data:image/svg+xml;base64,${data.pictures.files[graphs[index].file]}` }));
 }
 
-/** The matrix of hard cases: what is wrong outside the band, whether that breaks a promise, what fails, what could not run. */
-function drawStress() {
-  byId('stress-section').hidden = data.stress.length === 0;
-  const label = (of) => (of.map_size === null ? of.preset : `${of.preset} ${of.map_size}`);
-  byId('stress').replaceChildren(...data.stress.flatMap((matrix) => {
-    const columns = matrix.methods.filter((method) => !method.unavailable);
-    const cell = (found) => {
-      if (!found) return el('td', {}, '–');
-      if (found.failed) return el('td', { class: 'fail', title: found.failed }, 'failed');
-      const { lit, shadow } = found.outside_band;
-      const text = `${lit + shadow === 0 ? '0' : `${lit}+${shadow}`}${found.set ? ` ${found.set}` : ''}`;
-      return el('td', { class: found.verdict, title: `${found.verdict}; uncertain ${percent(found.uncertain_share)}` },
-        found.verdict === 'fail' ? `✗ ${text}` : text);
-    };
-    const cells = (one, method) => one.cells.filter((found) => label(found) === label(method));
-    const broken = matrix.cases.flatMap((one) => one.cells).filter((found) => found.verdict === 'fail').length;
-    const failed = matrix.cases.filter((one) => one.verdict === 'fail');
-    const band = ({ verdict, failed: why, band: count, pixels: { facing_light: facing } }) => {
-      const share = why ? 'no reference' : count === 0 ? '0' : percent(count / Math.max(facing, 1));
-      return el('td', { class: verdict === 'fail' ? 'fail' : null, title: why ?? null }, verdict === 'fail' ? `✗ ${share}` : share);
-    };
-    return [
-      el('p', { class: 'quiet' }, `${matrix.adapter.name}, ${size(matrix.viewport)}: ${matrix.cases.length} cases; pixels outside the band, `
-        + `wrongly lit + wrongly in shadow. ${broken === 0 ? 'No promise is broken.' : `${broken} cells break a promise (✗).`}`),
-      ...failed.map((one) => el('p', { class: 'warning' }, one.failed ? `${one.name}: ${one.failed}`
-        : `${one.name}: the band is larger than the case allows (${one.band_cap}); what lies in it is not proven`)),
-      ...matrix.methods.filter((method) => method.unavailable)
-        .map((method) => el('p', { class: 'quiet' }, `${label(method)} is unavailable: ${method.unavailable}`)),
-      el('table', { class: 'matrix' },
-        el('thead', {}, el('tr', {}, el('th', {}, 'case'), el('th', {}, 'band'), ...columns.map((method) => el('th', {}, label(method), el('br'),
-          method.promise ?? '')))),
-        el('tbody', {}, ...matrix.cases.map((one) => el('tr', {}, el('td', { title: one.reason }, one.name), band(one),
-          ...columns.map((method) => cell(cells(one, method).at(-1))))))),
-    ];
-  }));
-}
-
 function drawConditions() {
   byId('conditions').replaceChildren(...data.sources.flatMap((source) => [
     el('dl', {}, ...Object.entries({
-      scene: `${source.scene}, ${thousands(source.triangles)} triangles`,
+      scene: `${source.scene}, ${source.triangles.toLocaleString('en-US')} triangles`,
       adapter: `${source.adapter} (${source.device_type})`,
       measured: source.dates.join(', ') || 'on an unknown day',
       frames: `${source.frames}, timed after ${source.warmup} to warm up`,
@@ -107,15 +71,11 @@ function drawConditions() {
 if (data.tables.length > 0) {
   headControls();
   tableControls();
-  drawers.push(drawHead, drawLegend, drawFront, drawTable, drawViewer, drawPasses, drawGrowth, drawGraph);
+  drawers.push(drawHead, show, drawViewer, drawGraph);
   changed();
-  addEventListener('resize', () => {
-    drawFront();
-    drawPasses();
-    paint();
-  });
+  addEventListener('resize', paint);
 } else {
   for (const id of ['front', 'table', 'pictures', 'passes', 'growth', 'graph']) byId(`${id}-section`).hidden = true;
 }
-drawStress();
+hide(byId('stress-section'), all('#stress table').length === 0);
 drawConditions();

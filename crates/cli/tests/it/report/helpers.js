@@ -2,6 +2,8 @@
 const failed = [];
 const find = (selector) => document.querySelector(selector);
 const all = (selector) => [...document.querySelectorAll(selector)];
+/** Those that are shown: of what can be chosen all stands in the page. */
+const seen = (selector) => all(selector).filter((part) => part.getClientRects().length > 0);
 function check(what, holds, found = '') {
   if (!holds) failed.push(`${what}: ${found}`);
 }
@@ -12,8 +14,9 @@ async function until(holds) {
   for (let turn = 0; turn < 50 && !holds(); turn += 1) await new Promise((resolve) => { setTimeout(resolve, 100); });
   return holds();
 }
-const rows = () => all('#table tbody tr').map((row) => row.dataset.label);
-const cells = (index) => all('#table tbody tr').map((row) => row.children[index]?.textContent);
+const rows = () => seen('#table tbody tr').map((row) => row.dataset.label);
+const cells = (name) => seen('#table tbody tr').map((row) => row.cells[head(name).cellIndex].textContent);
+const head = (text) => seen('#table thead th').find((cell) => cell.textContent === text);
 function set(selector, text) {
   const select = find(selector);
   select.selectedIndex = [...select.options].findIndex((option) => option.text === text);

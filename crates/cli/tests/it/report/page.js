@@ -6,34 +6,59 @@ try {
   check('a verdict', find('#verdict').textContent.includes('light_buffer'), find('#verdict').textContent);
 
   // The chart has a mark for each row, and a front.
-  const marks = () => all('#front .mark').map((mark) => mark.dataset.label);
+  const marks = () => seen('#front .mark').map((mark) => mark.dataset.name);
   check('a mark for each row', marks().length === 5, marks());
-  check('the front is drawn', find('#front .pareto'));
-  check('no text beyond the chart', all('#front text').every((text) => {
-    const [inner, outer] = [text.getBoundingClientRect(), find('#front svg').getBoundingClientRect()];
+  check('in one chart', seen('#front svg').length === 1, seen('#front svg').length);
+  check('the front is drawn', seen('#front [stroke="var(--front)"]').length === 1);
+  const names = () => seen('#front .name').map((name) => name.textContent);
+  check('names beside marks', names().length >= 4 && names().every((name) => marks().includes(name)), names());
+  const [chart] = seen('#front svg');
+  check('as wide as its place', Math.abs(chart.getBoundingClientRect().width - find('#front').clientWidth) < 1);
+  const letter = seen('#front .name')[0].getBoundingClientRect().height;
+  check('names can be read', letter >= 11, letter);
+  check('no text beyond the chart', seen('#front text').every((text) => {
+    const [inner, outer] = [text.getBoundingClientRect(), chart.getBoundingClientRect()];
     return inner.left >= outer.left - 1 && inner.right <= outer.right + 1;
-  }), all('#front text').map((text) => text.textContent));
+  }), seen('#front text').map((text) => text.textContent));
+  const contrast = getComputedStyle(seen('#front text')[0]).fill !== getComputedStyle(find('section')).backgroundColor;
+  check('words stand out', contrast && getComputedStyle(seen('#front text')[0]).fill === getComputedStyle(document.body).color);
+  const bars = seen('#passes .bar > div').length;
+  check('nothing is hidden at first', seen('#hidden').length === 0);
   find('#legend [data-method="nsm"]').click();
   check('the legend takes a method away', !marks().includes('nsm 64') && marks().length === 3, marks());
+  check('its name', !names().includes('nsm 64'), names());
+  check('its bars, too', seen('#passes .bar > div').length < bars || bars === 0, bars);
+  check('its lines', seen('#growth [data-series="nsm"]').length === 0);
+  check('and says of which methods the front is', seen('#hidden').length === 1);
   find('#legend [data-method="nsm"]').click();
   check('and brings it back', marks().length === 5, marks());
-  find('#time [data-value="kept"]').click();
-  check('the other time is drawn', find('#front').textContent.includes('only the camera moves'));
-  find('#time [data-value="frame"]').click();
-  point(find('#front .mark'), 'pointermove', 0.5, 0.5);
-  check('a mark tells its figures', !find('#tip').hidden && find('#tip').textContent.includes('ms a frame'), find('#tip').textContent);
-  point(find('#front .mark'), 'pointerleave', 0.5, 0.5);
+  find('#time [data-value="true"]').click();
+  check('the other time is drawn', seen('#front text').some((text) => text.textContent.includes('only the camera moves')));
+  check('alone', seen('#front svg').length === 1, seen('#front svg').length);
+  find('#time [data-value="false"]').click();
+  point(seen('#front .mark')[0], 'pointermove', 0.5, 0.5);
+  check('a mark tells its figures', !find('#tip').hidden && find('#tip').textContent.includes('frame ms: '), find('#tip').textContent);
+  check('in lines', find('#tip').textContent.split('\n').length >= 4, find('#tip').textContent);
+  point(find('#front'), 'pointermove', 0.5, 0.5);
   check('and stops', find('#tip').hidden);
+  seen('#front .mark')[0].focus();
+  check('a focused mark tells them, too', !find('#tip').hidden);
+  seen('#front .mark')[0].blur();
 
   // The table: sorted, filtered.
   check('a row each', rows().length === 5, rows());
-  check('the best is marked', all('tr.best').length === 1 && find('tr.best').children[1].textContent === '0', all('tr.best').length);
-  const wrong = () => cells(1).map((text) => Number(text.replaceAll(',', '')));
-  find('#table th[data-key="wrong"] button').click();
+  check('the best is marked', seen('tr.best').length === 1 && seen('tr.best')[0].children[2].textContent === '0', seen('tr.best').length);
+  const wrong = () => cells('wrong outside band').map((text) => Number(text.replaceAll(',', '')));
+  head('wrong outside band').firstChild.click();
   check('sorted upwards', wrong().every((value, index, list) => index === 0 || list[index - 1] <= value), wrong());
-  find('#table th[data-key="wrong"] button').click();
+  head('wrong outside band').firstChild.click();
   check('sorted downwards', wrong().every((value, index, list) => index === 0 || list[index - 1] >= value), wrong());
-  check('and says so', find('#table th[data-key="wrong"]').getAttribute('aria-sort') === 'descending');
+  check('and says so', head('wrong outside band').ariaSort === 'descending');
+  head('method').firstChild.click();
+  check('by words', cells('method').every((text, index, list) => index === 0 || list[index - 1] <= text), cells('method'));
+  head('memory').firstChild.click();
+  const [least, most] = [cells('memory')[0], cells('memory').at(-1)];
+  check('by bytes, whatever their prefix', least.endsWith('KiB') === most.endsWith('KiB') || least.endsWith('KiB'), cells('memory'));
   type('#filter', 'nsm 128');
   check('filtered by words', rows().join() === 'nsm 128', rows());
   type('#filter', '');
@@ -41,8 +66,9 @@ try {
   check('only exact ones', rows().every((label) => /^(rt|light_buffer)/.test(label)) && rows().length === 3, rows());
   find('#only-exact').click();
   find('#all-tables').click();
-  check('all sizes', rows().length === 10, rows());
+  check('all sizes', rows().length === 10 && new Set(cells('of')).size === 2, rows());
   find('#all-tables').click();
+  check('and this one again', rows().length === 5 && !head('of'), rows());
 
   // The pictures.
   const canvases = () => all('.stage canvas');
@@ -86,13 +112,15 @@ try {
   await settled();
 
   // A click on a row shows its picture.
-  find('#table tr[data-label="nsm 128"]').click();
+  seen('#table tr[data-label="nsm 128"]')[0].click();
   await settled();
+  const chosen = seen('#front .mark.chosen').map((mark) => mark.dataset.name);
+  check('a row’s mark', chosen.join() === 'nsm 128', chosen);
   check('a row’s picture', find('#method-right').selectedOptions[0].text === 'nsm 128', find('#method-right').selectedOptions[0].text);
 
   // Passes, growth, graph, conditions.
-  check('bars', all('#passes .step').length > 10, all('#passes .step').length);
-  check('growth by viewport and map', all('#growth svg').length === 2, all('#growth svg').length);
+  check('bars', seen('#passes .step').length > 10, seen('#passes .step').length);
+  check('growth by viewport and map', seen('#growth svg').length === 2, seen('#growth svg').length);
   set('#graph-method', 'light_buffer');
   await settled();
   check('a graph', find('#graph img').naturalWidth > 300, find('#graph img').naturalWidth);
@@ -103,10 +131,10 @@ try {
   set('#table-choice', [...find('#table-choice').options].map((option) => option.text).find((text) => text.includes('graded')));
   await settled();
   check('graded answers have an RMSE', rows().join() === 'pcf 64,pcf 128' || rows().join() === 'pcf 128,pcf 64', rows());
-  check('and marks', all('#front .mark').length === 2 && find('#table th[data-key="rmse"]'), all('#front .mark').length);
+  check('and marks', marks().length === 2 && head('RMSE'), marks());
   set('#table-choice', [...find('#table-choice').options].map((option) => option.text).find((text) => text.includes('96x64')));
   await settled();
-  check('the other size', find('#table').textContent.includes('light_buffer 128') && all('#front .mark').length > 0);
+  check('the other size', rows().includes('light_buffer 128') && marks().length > 0);
   const theme = document.documentElement.dataset.theme;
   const paper = getComputedStyle(document.body).backgroundColor;
   find('#theme').click();

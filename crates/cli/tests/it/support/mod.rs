@@ -29,12 +29,3 @@ pub fn results(folder: &Path, line: &str) -> (Vec<Value>, String) {
     let table = String::from_utf8_lossy(&output.stdout).into_owned();
     (results["runs"].as_array().unwrap().clone(), table)
 }
-
-/// Copies a method that traces a quarter of its pixels in each frame, `temporal.ron`, to a folder.
-#[allow(dead_code, reason = "not every test needs it")]
-pub fn temporal(folder: &Path) {
-    let from = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/foreign/temporal");
-    for file in ["temporal.ron", "choose.wgsl"] {
-        fs::copy(Path::new(from).join(file), folder.join(file)).unwrap();
-    }
-}

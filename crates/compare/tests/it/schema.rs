@@ -1,9 +1,8 @@
-//! `skiagraph schema`: all presets are documents by it, and what is misspelt is none.
+//! The JSON Schemas: all presets and scene files are by them, and what is misspelt is not.
 
-use crate::support::skiagraph;
 use jsonschema::Validator;
 use serde_json::{Map, Value};
-use std::{fs, path::Path};
+use std::{collections::BTreeSet, fs, path::Path};
 
 /// RON as JSON: `Kind(field: value)` is `{"Kind": {"field": value}}`, a bare word a text, a tuple a
 /// list.
@@ -125,12 +124,17 @@ impl<'t> Ron<'t> {
     }
 }
 
-fn validator() -> Validator {
-    let output = skiagraph(Path::new("."), "schema");
-    assert!(output.status.success());
-    let schema = serde_json::from_slice(&output.stdout).unwrap();
+fn schema(of: &str) -> Value {
+    let schema = match of {
+        "scenes" => skiagraph_scene::schema(),
+        _ => skiagraph_graph::schema(&skiagraph_passes::registry()),
+    };
     jsonschema::meta::validate(&schema).unwrap();
-    jsonschema::validator_for(&schema).unwrap()
+    schema
+}
+
+fn validator(of: &str) -> Validator {
+    jsonschema::validator_for(&schema(of)).unwrap()
 }
 
 /// Lists what is wrong with a document, and where.
@@ -142,11 +146,10 @@ fn mistakes(schema: &Validator, text: &str) -> Vec<String> {
         .collect()
 }
 
-#[test]
-fn every_preset_is_a_document() {
-    let schema = validator();
+/// Asserts that the RON files of these folders are by a schema, and counts them.
+fn all_are_by(schema: &Validator, folders: &[&str]) -> usize {
     let mut count = 0;
-    for folder in ["pipelines", "pipelines/shared", "tests/foreign/temporal"] {
+    for folder in folders {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
             .join("../..")
             .join(folder);
@@ -156,23 +159,107 @@ fn every_preset_is_a_document() {
                 continue;
             }
             let text = fs::read_to_string(&path).unwrap();
-            let mistakes = mistakes(&schema, &text);
+            let mistakes = mistakes(schema, &text);
             assert!(mistakes.is_empty(), "{}: {mistakes:#?}", path.display());
             count += 1;
         }
     }
+    count
+}
+
+#[test]
+fn every_preset_is_a_document() {
+    let folders = ["pipelines", "pipelines/shared", "tests/foreign/temporal"];
+    let count = all_are_by(&validator("documents"), &folders);
     assert!(count > 25, "{count} documents");
 }
 
 #[test]
-fn the_reference_of_the_language_is_that_of_its_types() {
-    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/reference.md");
-    let output = skiagraph(Path::new("."), "schema --format markdown");
-    let same = fs::read(page).unwrap() == output.stdout;
-    assert!(
-        same,
-        "skiagraph schema --format markdown > docs/reference.md"
-    );
+fn every_scene_file_is_by_the_schema_of_scenes() {
+    let schema = validator("scenes");
+    let count = all_are_by(&schema, &["scenes"]);
+    assert!(count > 5, "{count} scenes");
+    let right = r#"(
+        format: 1, name: "a", mesh: Obj(file: "a.obj", quads: SecondFourth),
+        lights: [Spot(name: "b", position: (0, 1, 0), direction: (0, -1, 0), cone_degrees: 9)],
+        views: [(
+            name: "c", eye: (0, 0, 0), direction: (0, 0, 1), fov_y_degrees: 9, near: 1, far: 2,
+        )],
+    )"#;
+    assert_eq!(mistakes(&schema, right), [""; 0]);
+    for (right_one, wrong) in [
+        ("name: \"a\",", ""),
+        ("file:", "fiel:"),
+        ("Obj(", "Object("),
+        ("SecondFourth", "Second"),
+        ("Spot(", "Sport("),
+        ("cone_degrees: 9", ""),
+        ("lights:", "light:"),
+        ("eye: (0, 0, 0)", "eye: (0, 0)"),
+        ("near: 1", "near: \"1\""),
+    ] {
+        let text = right.replacen(right_one, wrong, 1);
+        assert_ne!(text, right, "{right_one}");
+        assert_ne!(mistakes(&schema, &text), [""; 0], "{wrong} is accepted");
+    }
+}
+
+/// Collects the structs of a definition: itself, or the bodies of its variants.
+fn structs(of: &Value) -> Vec<&Value> {
+    let is_kind = |name: &str| name.starts_with(char::is_uppercase);
+    match (&of["oneOf"], of["properties"].as_object()) {
+        (_, Some(fields)) if fields.keys().all(|name| is_kind(name)) => {
+            fields.values().flat_map(structs).collect()
+        }
+        (_, Some(_)) => vec![of],
+        (Value::Array(several), None) => several.iter().flat_map(structs).collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// `docs/scenes.md` has every field of scene files under its heading, in bold those that must be
+/// given.
+#[test]
+fn the_page_of_scenes_has_every_field() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/scenes.md");
+    let page = fs::read_to_string(page).unwrap();
+    let fields = page.split("## Every field\n").nth(1).unwrap();
+    let schema = schema("scenes");
+    let defs = &schema["$defs"];
+    for (part, of, inner) in [
+        (0, vec![&schema], vec![]),
+        (1, vec![&defs["Mesh"]], vec![]),
+        (2, vec![&defs["NamedLight"]], vec![]),
+        (3, vec![&defs["View"]], vec![]),
+        (
+            4,
+            vec![&defs["Path"], &defs["Motion"]],
+            vec!["Key", "LightKey", "RigidKey"],
+        ),
+    ] {
+        let text = fields.split("\n### ").nth(part).unwrap();
+        let code = text.split('`').skip(1).step_by(2);
+        let word = |c: char| !c.is_ascii_lowercase() && c != '_';
+        let words: BTreeSet<&str> = code.flat_map(|code| code.split(word)).collect();
+        let bold: BTreeSet<&str> = text
+            .split("**`")
+            .skip(1)
+            .filter_map(|rest| rest.split("`**").next())
+            .collect();
+        let of: Vec<&Value> = of.into_iter().flat_map(structs).collect();
+        let required = of.iter().flat_map(|of| of["required"].as_array().unwrap());
+        let required: BTreeSet<&str> = required.filter_map(Value::as_str).collect();
+        assert_eq!(bold, required, "{text}");
+        let inner = inner.into_iter().map(|name| &defs[name]);
+        for of in of.into_iter().chain(inner) {
+            for name in of["properties"].as_object().unwrap().keys() {
+                assert!(
+                    words.contains(name.as_str()),
+                    "`{name}` is missing in {text}"
+                );
+            }
+        }
+    }
 }
 
 /// A document with one pass, material and param, into which mistakes are put.
@@ -199,7 +286,7 @@ const RIGHT: &str = r#"(
 
 #[test]
 fn what_is_misspelt_is_no_document() {
-    let schema = validator();
+    let schema = validator("documents");
     assert_eq!(mistakes(&schema, RIGHT), [""; 0]);
     let misspelt = [
         ("format: 3", "format: 1"),
@@ -228,42 +315,6 @@ fn what_is_misspelt_is_no_document() {
     for (right, wrong) in misspelt {
         let text = RIGHT.replacen(right, wrong, 1);
         assert_ne!(text, RIGHT, "{right}");
-        assert_ne!(mistakes(&schema, &text), [""; 0], "{wrong} is accepted");
-    }
-}
-
-#[test]
-fn every_scene_file_is_by_the_schema_of_scenes() {
-    let schema = skiagraph_scene::scene_schema();
-    jsonschema::meta::validate(&schema).unwrap();
-    let schema = jsonschema::validator_for(&schema).unwrap();
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scene/scenes");
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        let mistakes = mistakes(&schema, &fs::read_to_string(&path).unwrap());
-        assert!(mistakes.is_empty(), "{}: {mistakes:#?}", path.display());
-    }
-    let right = r#"(
-        format: 1, name: "a", mesh: Obj(file: "a.obj", quads: SecondFourth),
-        lights: [Spot(name: "b", position: (0, 1, 0), direction: (0, -1, 0), cone_degrees: 9)],
-        views: [(
-            name: "c", eye: (0, 0, 0), direction: (0, 0, 1), fov_y_degrees: 9, near: 1, far: 2,
-        )],
-    )"#;
-    assert_eq!(mistakes(&schema, right), [""; 0]);
-    for (right_one, wrong) in [
-        ("name: \"a\",", ""),
-        ("file:", "fiel:"),
-        ("Obj(", "Object("),
-        ("SecondFourth", "Second"),
-        ("Spot(", "Sport("),
-        ("cone_degrees: 9", ""),
-        ("lights:", "light:"),
-        ("eye: (0, 0, 0)", "eye: (0, 0)"),
-        ("near: 1", "near: \"1\""),
-    ] {
-        let text = right.replacen(right_one, wrong, 1);
-        assert_ne!(text, right, "{right_one}");
         assert_ne!(mistakes(&schema, &text), [""; 0], "{wrong} is accepted");
     }
 }

@@ -1,16 +1,17 @@
 //! Tokens become expressions and references: recursive descent, a level of binding at a time.
 
-use super::{
-    formats::format_named,
-    lexer::{Token, tokens},
-    name::Name,
-    syntax::{
-        Attribute, Binary, Expr, ExprKind, Function, Reference, Segment, Selection, Subject, Unary,
-    },
-    value::{Scalar, Value},
-};
+use super::lexer::{Token, tokens};
 use crate::{
     errors::language::SyntaxFault,
+    language::{
+        formats::format_named,
+        name::Name,
+        syntax::{
+            Attribute, Binary, Expr, ExprKind, Function, Reference, Segment, Selection, Subject,
+            Unary,
+        },
+        value::{Scalar, Value},
+    },
     source::span::{Located, SourceFile, Span},
 };
 use std::ops::Range;

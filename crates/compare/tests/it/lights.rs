@@ -1,0 +1,221 @@
+//! Lights of a scene: a view's own, several at once, and one that has an extent.
+
+use crate::support::{Heard, LIT, NOWHERE, comparison, count, gpu, keep, runs, scene};
+use serde_json::Value;
+use skiagraph_compare::{
+    comparison::Comparison,
+    graphs::{
+        idle_params::{IdleParams, under_other_lights},
+        planning::Capabilities,
+        shadow_method::load_methods,
+    },
+    measuring::{
+        resume::Kept,
+        view_or_path::{ViewOrPath, under_lights},
+    },
+    sink::Session,
+};
+use skiagraph_passes::{EmbeddedSources, SceneProvider};
+use std::fs;
+
+/// Park under a spot light, a point light and a directional one.
+const LAMPS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/lamps.ron");
+
+/// The same comparison under the light of that name, or under all.
+fn under(mut comparison: Comparison, light: &str) -> Comparison {
+    let views = comparison.scene.views[..1].to_vec();
+    let views = under_lights(&comparison.scene, views, Some(light)).unwrap();
+    comparison.views = views.into_iter().map(ViewOrPath::Still).collect();
+    comparison
+}
+
+/// `rt` is judged under the light that it has drawn with, and a run of another light is not kept.
+#[test]
+fn a_views_own_light_is_drawn_judged_and_remembered() {
+    let folder = tempfile::tempdir().unwrap();
+    let compare = |light: &str, kept| {
+        let text = format!(
+            r#"(format: 1, name: "s", mesh: Generated("park"), light: (direction: (1, -1, 0)),
+            views: [(name: "a", eye: (-23.277, 18.541, 30.143), direction: (0.397, -0.645, -0.652),
+                fov_y_degrees: 60, near: 1, far: 400{light})])"#
+        );
+        let file = folder.path().join("s.ron");
+        fs::write(&file, text).unwrap();
+        let scene = scene(file.to_str().unwrap(), None);
+        let mut comparison = comparison(scene, &["rt"], NOWHERE.as_ref(), &[]);
+        comparison.viewports = vec![[48, 48]];
+        let (heard, results) = keep(&comparison, folder.path(), kept).unwrap();
+        let run = &results["runs"][0];
+        let wrong = &run["wrong"];
+        assert_eq!(wrong["total"], wrong["in_band"], "{light}");
+        (count(&run["pixels"]["shadow"]), heard.notes())
+    };
+    let (of_scene, _) = compare("", Kept::Others);
+    let (own, text) = compare(", light: (direction: (-1, -0.3, 0.2))", Kept::All);
+    assert!(text.contains("0 of 1 runs are kept"), "{text}");
+    assert!(own > 0 && own != of_scene, "{own} shadow pixels");
+    let (same, text) = compare(", light: (direction: (-1, -0.3, 0.2))", Kept::All);
+    assert!(text.contains("1 of 1 runs are kept"), "{text}");
+    assert_eq!(same, own);
+}
+
+/// The park's first view under a wide light.
+const SOFT: &str = r#"(format: 1, name: "soft", mesh: Generated("park"),
+    light: (direction: (0.744, -0.408, 0.527), angle_degrees: 8),
+    views: [(name: "bench_side", eye: (-23.277, 18.541, 30.143),
+        direction: (0.397, -0.645, -0.652), fov_y_degrees: 60, near: 1, far: 400)])"#;
+
+/// Under a light that has an extent all is judged by shares; a graph needs no status.
+#[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
+fn a_light_with_extent_is_judged_by_shares() {
+    let folder = tempfile::tempdir().unwrap();
+    let bare = LIT.replace(", \"status\"]", "]");
+    let hard = "visibility\", format: R8Uint";
+    let soft = bare.replace(hard, "visibility\", format: R16Float");
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+    write("lit.ron", &bare);
+    write("half.ron", &soft.replace("value: 1", "value: 0.5"));
+    write("odd.ron", &soft.replace("value: 1", "value: 1.5"));
+    write("soft.ron", SOFT);
+    let methods = ["lit.ron", "half.ron", "odd.ron"];
+    let compared = |argument: &str| {
+        let mut comparison = comparison(scene(argument, None), &methods, folder.path(), &[]);
+        comparison.viewports = vec![[32, 32]];
+        comparison
+    };
+    let park = runs(&compared("park"));
+    assert_eq!(
+        (&park[0]["answer"], &park[0]["graded"]),
+        (&"hard".into(), &Value::Null)
+    );
+    let certain = count(&park[0]["certain"]["lit"]);
+    assert_eq!(
+        certain,
+        count(&park[0]["pixels"]["facing_light"]),
+        "certain of all that it lights"
+    );
+    assert_eq!(park[1]["answer"], "graded");
+    assert_eq!(park[1]["graded"]["rmse"], 0.5);
+    assert_eq!(count(&park[2]["graded"]["invalid"]["outside"]), certain);
+
+    let mut soft = compared(folder.path().join("soft.ron").to_str().unwrap());
+    soft.protocol.reference_samples = 32;
+    let (_, results) = keep(&soft, folder.path(), Kept::Others).unwrap();
+    let runs = &results["runs"];
+    let area = &runs[0]["area"];
+    assert_eq!(area["samples"], 32);
+    assert!(count(&area["penumbra"]) > 20);
+    assert!(area["standard_error_rms"].as_f64().unwrap() > 0.0);
+    // A hard answer is judged by shares, too; what is lit throughout is off by the shadow alone.
+    let mean = |run: usize| runs[run]["graded"]["mean_absolute_error"].as_f64().unwrap();
+    assert_eq!(runs[0]["answer"], "hard");
+    assert!(mean(0) < 0.5 && mean(0) > 0.01, "{}", mean(0));
+    assert_eq!(mean(0), mean(2), "1.5 counts as 1");
+    // Another number of samples is another reference.
+    for (samples, kept) in [(32, "3 of 3 runs are kept"), (64, "0 of 3 runs are kept")] {
+        soft.protocol.reference_samples = samples;
+        let (heard, _) = keep(&soft, folder.path(), Kept::All).unwrap();
+        assert!(heard.notes().contains(kept), "{}", heard.notes());
+    }
+}
+
+/// A graph that includes `rt` for each light.
+const EVERY_LIGHT: &str = r#"(
+    format: 3,
+    materials: [
+        Texture(name: "visibility", format: R32Uint, layers: "lights.count"),
+        Texture(name: "status", format: R32Uint, layers: "lights.count"),
+    ],
+    passes: [
+        Include(
+            graph: "rt.ron",
+            name: "lit",
+            repeat: "lights.count",
+            bind: {
+                "light": "lights[index]",
+                "visibility": "visibility[index]",
+                "status": "status[index]",
+            },
+        ),
+    ],
+    outputs: ["visibility", "status"],
+    lights: [directional, spot, point],
+)"#;
+
+/// Spot, point and directional: each layer against its own light, whatever the others are.
+#[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
+fn a_layer_for_each_light_is_judged_by_itself() {
+    let folder = tempfile::tempdir().unwrap();
+    let turned = EVERY_LIGHT.replace("lights[index]", "lights[lights.count - 1 - index]");
+    fs::write(folder.path().join("each.ron"), EVERY_LIGHT).unwrap();
+    fs::write(folder.path().join("turned.ron"), turned).unwrap();
+    let compare = |light: &str| {
+        let methods = ["each.ron", "turned.ron"];
+        let mut comparison = comparison(scene(LAMPS, None), &methods, folder.path(), &[]);
+        comparison.viewports = vec![[64, 48]];
+        runs(&under(comparison, light))
+    };
+    let outside = |run: &Value| count(&run["wrong"]["total"]) - count(&run["wrong"]["in_band"]);
+    let runs = compare("all");
+    let views: Vec<&str> = runs
+        .iter()
+        .map(|run| run["view"].as_str().unwrap())
+        .collect();
+    let lights = ["lamp", "lamp", "bulb", "bulb", "moon", "moon"];
+    assert_eq!(views, lights.map(|light| format!("bench@{light}")));
+    let wrong: Vec<u64> = runs.iter().map(outside).collect();
+    assert_eq!([wrong[0], wrong[2], wrong[4]], [0; 3]);
+    // The second of three is the second from the end.
+    assert!(
+        wrong[1] > 100 && wrong[3] == 0 && wrong[5] > 100,
+        "{wrong:?}"
+    );
+    let bulb = compare("bulb");
+    assert_eq!(bulb.len(), 2);
+    assert_eq!(bulb[0]["pixels"], runs[2]["pixels"]);
+    assert_eq!(outside(&bulb[0]), 0);
+}
+
+/// A `fit` under a light that has but one.
+#[test]
+fn params_without_effect_are_told_once() {
+    let fit = ["fit=camera".parse().unwrap()];
+    let methods = load_methods(&["nsm", "rt"], &fit, &[], &EmbeddedSources).unwrap();
+    let mut comparison = Comparison::new(scene(LAMPS, None), methods).unwrap();
+    comparison.viewports = vec![[16, 16]];
+    let told = |heard: &Heard| {
+        let text = heard.notes();
+        text.matches("fit=camera has no effect on nsm under a spot light")
+            .count()
+    };
+    let checked = |comparison: &Comparison| {
+        let heard = Heard::default();
+        comparison.check(Session::new(gpu(), &heard)).unwrap();
+        told(&heard)
+    };
+    let all = under(comparison, "all");
+    assert_eq!(checked(&all), 1);
+    let lamp = under(all, "lamp");
+    let mut provider = SceneProvider::new(lamp.scene.clone());
+    let [ViewOrPath::Still(view)] = &lamp.views[..] else {
+        panic!("one view under one light");
+    };
+    provider.set_view(view, [16, 16]);
+    let plan = lamp.methods[0].plan([16, 16], Capabilities::new(gpu()), &provider);
+    let (heard, mut idle) = (Heard::default(), IdleParams::default());
+    let plan = plan.unwrap_or_else(|error| panic!("{error}"));
+    idle.note_of(&heard, "nsm", &plan, provider.light());
+    assert_eq!(told(&heard), 1);
+    assert_eq!(checked(&under(lamp, "moon")), 0);
+}
+
+#[test]
+fn params_that_a_kind_of_light_has_no_use_for_are_named() {
+    let methods = load_methods(&["nsm", "rt"], &[], &[], &EmbeddedSources).unwrap();
+    let [nsm, rt] = [0, 1].map(|at| under_other_lights(&methods[at].preset.graph));
+    let told = "; under a spot light fit has no effect; under a point light fit has no effect";
+    assert_eq!(nsm, told);
+    assert!(!rt.contains("no effect"), "{rt}");
+}

@@ -1,0 +1,148 @@
+//! Which names a document uses. What it has of an extended document and does not use goes.
+
+use crate::{
+    diagnostics::reports::Reports,
+    document::{
+        raw::Invalid,
+        typed::{Document, Entry, Include, What, each_entry},
+    },
+    errors::compose::ComposeError,
+    language::syntax::Leaf,
+    shader::{reflect::Shader, store::Shaders},
+    source::span::{Located, Span},
+};
+use std::{
+    collections::{BTreeSet, HashMap},
+    sync::Arc,
+};
+
+/// Names that a document uses.
+#[derive(Default)]
+pub(crate) struct Used {
+    pub materials: BTreeSet<String>,
+    pub params: BTreeSet<String>,
+}
+
+impl Used {
+    pub fn new(document: &Document, shaders: &Shaders) -> Self {
+        let mut used = Self::default();
+        document.visit(&mut |leaf| match leaf {
+            Leaf::Param(name) => drop(used.params.insert(name.to_owned())),
+            Leaf::Word(name) => drop(used.params.insert(name.to_string())),
+            Leaf::Material(of) => drop(used.materials.insert(of.segments[0].name.to_string())),
+            Leaf::Constant(_) | Leaf::Has(_) => {}
+        });
+        each_entry(&document.entries, &mut |entry| match &entry.what {
+            What::Pass(pass) => {
+                let variants = pass.shaders.iter();
+                for shader in variants.flat_map(|shader| shaders.variants(document, shader)) {
+                    used.params.extend(shader.params().map(str::to_owned));
+                    used.materials
+                        .extend(shader.global_names().map(str::to_owned));
+                    used.choices(document, shader);
+                }
+            }
+            What::Include(include) => {
+                let Some(inner) = include.document() else {
+                    return;
+                };
+                let inputs = inner.inputs.iter().map(|input| input.name.to_string());
+                used.materials.extend(inputs);
+                let asked = inner.params.iter().filter(|param| param.default.is_none());
+                used.params
+                    .extend(asked.map(|param| param.name.value.clone()));
+            }
+            What::Group(_) => {}
+        });
+        used
+    }
+
+    /// Params of whose words the shader has constants.
+    fn choices(&mut self, document: &Document, shader: &Shader) {
+        let constants: BTreeSet<&str> = shader.constants().collect();
+        for param in &document.params {
+            let prefix = format!("{}_", param.name.value.replace('.', "_").to_uppercase());
+            if constants.iter().any(|name| name.starts_with(&prefix)) {
+                self.params.insert(param.name.value.clone());
+            }
+        }
+    }
+}
+
+/// Drops the params, values, inputs and materials that a document, or one that it includes, has of
+/// an extended one and does not use. Warns of a default for one of these. `known`: the included
+/// documents that are done, by path.
+pub(crate) fn drop_unused(
+    document: &mut Document,
+    shaders: &Shaders,
+    known: &mut HashMap<Arc<str>, Arc<Document>>,
+    reports: &mut Reports,
+) {
+    let mut given: Vec<Span> = Vec::new();
+    each_include(&mut document.entries, &mut |include| {
+        let Some(Ok(inner)) = &mut include.document else {
+            return;
+        };
+        let path = Arc::clone(&inner.file.name);
+        if !known.contains_key(&path) {
+            let mut document = Document::clone(inner);
+            drop_unused(&mut document, shaders, known, reports);
+            known.insert(Arc::clone(&path), Arc::new(document));
+        }
+        *inner = Arc::clone(&known[&path]);
+        let is_there = |name: &Located<String>| inner.params.iter().any(|it| *it.name == **name);
+        include.expose.retain(is_there);
+        given.extend(inner.params.iter().map(|param| param.name.span.clone()));
+    });
+    let exposed = document.params.split_off(document.declared);
+    let file = Arc::clone(&document.file.name);
+    let is_own = |span: &Span| span.file.name == file;
+    loop {
+        let used = Used::new(document, shaders);
+        let is_used = |name: &str| used.params.contains(name) || used.materials.contains(name);
+        let count = |it: &Document| {
+            it.params.len() + it.values.len() + it.inputs.len() + it.materials.len()
+        };
+        let before = count(document);
+        document
+            .materials
+            .retain(|it| is_own(&it.name().span) || is_used(it.name().as_str()));
+        document
+            .inputs
+            .retain(|it| is_own(&it.name.span) || is_used(it.name.as_str()));
+        document
+            .values
+            .retain(|(name, _)| is_own(&name.span) || is_used(name.as_str()));
+        document.params.retain(|param| {
+            let is_kept = is_own(&param.name.span) || used.params.contains(&param.name.value);
+            let default = param
+                .default
+                .as_ref()
+                .filter(|it| !is_kept && is_own(&it.span));
+            if let Some(default) = default {
+                let name = Located::new(param.name.value.clone(), default.span.clone());
+                reports.warn(ComposeError::UnusedParam(name));
+            }
+            is_kept
+        });
+        document.declared = document.params.len();
+        if count(document) == before {
+            break;
+        }
+    }
+    let exposed = exposed.into_iter();
+    document
+        .params
+        .extend(exposed.filter(|param| given.contains(&param.name.span)));
+}
+
+/// Calls `each` with every include, those in groups, too.
+fn each_include(entries: &mut [Result<Entry, Invalid>], each: &mut dyn FnMut(&mut Include)) {
+    for entry in entries.iter_mut().flatten() {
+        match &mut entry.what {
+            What::Include(include) => each(include),
+            What::Group(inner) => each_include(inner, each),
+            What::Pass(_) => {}
+        }
+    }
+}

@@ -1,0 +1,392 @@
+//! Values of expressions.
+
+use crate::{
+    diagnostics::reports::{ErrorGuaranteed, Reports},
+    errors::evaluation::EvaluationError,
+    language::{
+        name::Name,
+        syntax::{Attribute, Binary, Expr, ExprKind, Function, Reference, Subject, Unary},
+        value::{Scalar, Value, Word},
+    },
+    provided_kind::ProvidedKind,
+    source::span::Span,
+};
+
+/// Values of names in an expression at its place.
+pub(crate) trait Environment {
+    /// Width and height in pixels.
+    fn viewport(&self) -> [u32; 2];
+
+    fn has(&self, feature: wgt::Features) -> bool;
+
+    /// Items of what the scene provides, where that is known.
+    fn provided_items(&self, _: &str) -> Option<u64> {
+        None
+    }
+
+    fn param(&mut self, name: &str, span: &Span) -> Result<Value, ErrorGuaranteed>;
+
+    /// A param of that name, where a word may stand as well.
+    fn word_or_param(&mut self, name: &Name) -> Option<Value>;
+
+    fn index(&mut self, of: Option<&Name>, span: &Span) -> Result<u32, ErrorGuaranteed>;
+
+    fn attribute(
+        &mut self,
+        of: &Reference,
+        attribute: Attribute,
+        span: &Span,
+    ) -> Result<Value, ErrorGuaranteed>;
+
+    fn constant(&mut self, name: &str, span: &Span) -> Result<Value, ErrorGuaranteed>;
+
+    /// The kind of something that is provided, by its name.
+    fn kind(&mut self, _of: &str) -> Option<ProvidedKind> {
+        None
+    }
+
+    fn reports(&mut self) -> &mut Reports;
+
+    fn report(&mut self, error: EvaluationError) -> ErrorGuaranteed {
+        self.reports().report(error)
+    }
+}
+
+type Evaluated<T> = Result<T, ErrorGuaranteed>;
+
+/// The value of the expression.
+pub(crate) fn value(expr: &Expr, env: &mut dyn Environment) -> Evaluated<Value> {
+    match &expr.kind {
+        ExprKind::Literal(value) => Ok(value.clone()),
+        ExprKind::Word(word) => Ok(word_alone(word)),
+        ExprKind::Tuple(list) => {
+            let list = list.iter().map(|expr| scalar(expr, env));
+            Ok(Value::List(list.collect::<Result<_, _>>()?))
+        }
+        ExprKind::Param(name) => env.param(name, &expr.span),
+        ExprKind::Attribute(subject, attribute) => match subject {
+            Subject::Viewport => of_viewport(expr, *attribute, env),
+            Subject::Repetition(of) => env.index(of.as_ref(), &expr.span).map(Value::whole),
+            Subject::Material(of) => env.attribute(of, *attribute, &expr.span),
+        },
+        ExprKind::Constant(name) => env.constant(name, &expr.span),
+        ExprKind::Has(feature) => Ok(Value::Bool(env.has(*feature))),
+        ExprKind::Unary(Unary::Not, of) => Ok(Value::Bool(!boolean(of, env)?)),
+        ExprKind::Unary(Unary::Minus, of) => {
+            let value = value(of, env)?;
+            each(
+                expr,
+                [value, Value::whole(0)],
+                env,
+                |value, _| match value {
+                    Scalar::Whole(whole) => whole.checked_neg().map(Scalar::Whole),
+                    Scalar::Number(number) => Some(Scalar::Number(-number)),
+                },
+            )
+        }
+        ExprKind::Binary(operator, sides) => binary(expr, *operator, sides, env),
+        ExprKind::Ternary(of) => {
+            let [condition, yes, no] = &**of;
+            if boolean(condition, env)? {
+                value(yes, env)
+            } else {
+                value(no, env)
+            }
+        }
+        ExprKind::Call(function, arguments) => call(expr, *function, arguments, env),
+    }
+}
+
+fn of_viewport(expr: &Expr, attribute: Attribute, env: &mut dyn Environment) -> Evaluated<Value> {
+    let [width, height] = env.viewport();
+    Ok(match attribute {
+        Attribute::Size => Value::List([width, height].map(whole).to_vec()),
+        Attribute::Width => Value::whole(width),
+        Attribute::Height => Value::whole(height),
+        Attribute::Count => Value::count(u64::from(width) * u64::from(height)),
+        Attribute::Layers | Attribute::Mips | Attribute::Samples => Value::whole(1),
+        Attribute::Format | Attribute::Kind | Attribute::Index => {
+            let error = EvaluationError::NoAttribute {
+                span: expr.span.clone(),
+                of: "the viewport".to_owned(),
+            };
+            return Err(env.report(error));
+        }
+    })
+}
+
+fn wrong(
+    expr: &Expr,
+    expected: &'static str,
+    found: &Value,
+    env: &mut dyn Environment,
+) -> ErrorGuaranteed {
+    env.report(EvaluationError::Type {
+        span: expr.span.clone(),
+        expected,
+        found: found.clone(),
+    })
+}
+
+pub(crate) fn boolean(expr: &Expr, env: &mut dyn Environment) -> Evaluated<bool> {
+    match value(expr, env)? {
+        Value::Bool(value) => Ok(value),
+        other => Err(wrong(expr, "true or false", &other, env)),
+    }
+}
+
+pub(crate) fn scalar(expr: &Expr, env: &mut dyn Environment) -> Evaluated<Scalar> {
+    match value(expr, env)? {
+        Value::Scalar(scalar) => Ok(scalar),
+        other => Err(wrong(expr, "a number", &other, env)),
+    }
+}
+
+pub(crate) fn number(expr: &Expr, env: &mut dyn Environment) -> Evaluated<f64> {
+    scalar(expr, env).map(Scalar::number)
+}
+
+pub(crate) fn whole_number(expr: &Expr, env: &mut dyn Environment) -> Evaluated<i64> {
+    match value(expr, env)? {
+        Value::Scalar(Scalar::Whole(whole)) => Ok(whole),
+        other => Err(wrong(expr, "a whole number", &other, env)),
+    }
+}
+
+/// A number of things: whole, and none at least.
+pub(crate) fn count(expr: &Expr, env: &mut dyn Environment) -> Evaluated<u64> {
+    let whole = whole_number(expr, env)?;
+    let negative = || EvaluationError::Negative(expr.span.clone(), whole);
+    u64::try_from(whole).map_err(|_| env.report(negative()))
+}
+
+/// The same where 32 bits must do.
+pub(crate) fn count32(expr: &Expr, env: &mut dyn Environment) -> Evaluated<u32> {
+    let count = count(expr, env)?;
+    let large = || EvaluationError::Large(expr.span.clone(), count);
+    u32::try_from(count).map_err(|_| env.report(large()))
+}
+
+/// Two or three edges; one number stands for a square.
+pub(crate) fn edges(expr: &Expr, env: &mut dyn Environment) -> Evaluated<Vec<u64>> {
+    let list = match value(expr, env)? {
+        Value::Scalar(edge) => vec![edge; 2],
+        Value::List(list) if list.len() < 4 => list,
+        other => return Err(wrong(expr, "a size", &other, env)),
+    };
+    let mut edges = Vec::new();
+    for edge in list {
+        edges.push(match edge {
+            Scalar::Whole(whole @ 0..) => whole.unsigned_abs(),
+            Scalar::Whole(whole) => {
+                return Err(env.report(EvaluationError::Negative(expr.span.clone(), whole)));
+            }
+            other => return Err(wrong(expr, "a whole number", &Value::Scalar(other), env)),
+        });
+    }
+    Ok(edges)
+}
+
+fn binary(
+    expr: &Expr,
+    operator: Binary,
+    [left, right]: &[Expr; 2],
+    env: &mut dyn Environment,
+) -> Evaluated<Value> {
+    match operator {
+        Binary::Or => return Ok(Value::Bool(boolean(left, env)? || boolean(right, env)?)),
+        Binary::And => return Ok(Value::Bool(boolean(left, env)? && boolean(right, env)?)),
+        Binary::Equal => return equal([left, right], env).map(Value::Bool),
+        Binary::NotEqual => {
+            return equal([left, right], env).map(|equal| Value::Bool(!equal));
+        }
+        _ => {}
+    }
+    if let Some(holds) = comparison(operator) {
+        let (a, b) = (scalar(left, env)?, scalar(right, env)?);
+        // Whole numbers beyond 2^53 would be equal as floats.
+        let order = match (a, b) {
+            (Scalar::Whole(a), Scalar::Whole(b)) => Some(a.cmp(&b)),
+            _ => a.number().partial_cmp(&b.number()),
+        };
+        return Ok(Value::Bool(order.is_some_and(holds)));
+    }
+    let values = [value(left, env)?, value(right, env)?];
+    let by_zero = matches!(operator, Binary::Divide | Binary::Remainder) && {
+        let is_zero = |scalar: &Scalar| scalar.number() == 0.0;
+        match &values[1] {
+            Value::Scalar(scalar) => is_zero(scalar),
+            Value::List(list) => list.iter().any(is_zero),
+            _ => false,
+        }
+    };
+    if by_zero {
+        return Err(env.report(EvaluationError::DivisionByZero(expr.span.clone())));
+    }
+    each(expr, values, env, |a, b| arithmetic(operator, a, b))
+}
+
+fn equal([left, right]: [&Expr; 2], env: &mut dyn Environment) -> Evaluated<bool> {
+    let a = value(left, env)?;
+    let b = match (&a, right.as_param()) {
+        // Beside a word a bare name is a word, too.
+        (
+            Value::Word(Word {
+                of: Some(words), ..
+            }),
+            Some(name),
+        ) => match words.iter().find(|word| ***word == *name) {
+            Some(word) => word_alone(word),
+            None => {
+                let known = Name::new(name)
+                    .ok()
+                    .and_then(|name| env.word_or_param(&name));
+                let unknown = || EvaluationError::NoSuchWord {
+                    span: right.span.clone(),
+                    word: name.to_owned(),
+                    words: words.to_vec(),
+                };
+                known.ok_or_else(|| env.report(unknown()))?
+            }
+        },
+        _ => value(right, env)?,
+    };
+    match (&a, &b) {
+        (Value::Scalar(Scalar::Whole(a)), Value::Scalar(Scalar::Whole(b))) => Ok(a == b),
+        (Value::Scalar(a), Value::Scalar(b)) => Ok(a.number() == b.number()),
+        (Value::List(list), Value::List(other)) => {
+            let numbers = |list: &[Scalar]| -> Vec<f64> {
+                list.iter().map(|scalar| scalar.number()).collect()
+            };
+            Ok(numbers(list) == numbers(other))
+        }
+        (Value::Bool(a), Value::Bool(b)) => Ok(a == b),
+        (Value::Word(a), Value::Word(b)) => Ok(a == b),
+        (Value::Format(a), Value::Format(b)) => Ok(a == b),
+        _ => Err(wrong(right, a.describe(), &b, env)),
+    }
+}
+
+fn call(
+    expr: &Expr,
+    function: Function,
+    arguments: &[Expr],
+    env: &mut dyn Environment,
+) -> Evaluated<Value> {
+    let mut values = arguments.iter().map(|argument| value(argument, env));
+    let first = values.next().transpose()?.unwrap_or(Value::whole(0));
+    let second = values.next().transpose()?.unwrap_or(Value::whole(1));
+    if function == Function::CeilDiv {
+        let is_whole = |value: &Value| match value {
+            Value::Scalar(Scalar::Whole(_)) => true,
+            Value::List(list) => list.iter().all(|part| matches!(part, Scalar::Whole(_))),
+            _ => false,
+        };
+        for (value, argument) in [&first, &second].into_iter().zip(arguments) {
+            if !is_whole(value) {
+                return Err(wrong(argument, "a whole number", value, env));
+            }
+        }
+    }
+    each(expr, [first, second], env, |a, b| apply(function, a, b))
+}
+
+/// Applies an operator number by number; one number goes with each of several.
+fn each(
+    expr: &Expr,
+    values: [Value; 2],
+    env: &mut dyn Environment,
+    apply: impl Fn(Scalar, Scalar) -> Option<Scalar>,
+) -> Evaluated<Value> {
+    let apply = |a, b| apply(a, b).filter(|result| result.number().is_finite());
+    let result = match &values {
+        [Value::Scalar(a), Value::Scalar(b)] => apply(*a, *b).map(Value::Scalar),
+        [Value::List(a), Value::List(b)] if a.len() == b.len() => {
+            let list = a.iter().zip(b).map(|(a, b)| apply(*a, *b));
+            list.collect::<Option<_>>().map(Value::List)
+        }
+        [Value::List(a), Value::Scalar(b)] => {
+            let list = a.iter().map(|a| apply(*a, *b));
+            list.collect::<Option<_>>().map(Value::List)
+        }
+        [Value::Scalar(a), Value::List(b)] => {
+            let list = b.iter().map(|b| apply(*a, *b));
+            list.collect::<Option<_>>().map(Value::List)
+        }
+        [Value::List(a), Value::List(b)] => {
+            return Err(env.report(EvaluationError::Lengths {
+                span: expr.span.clone(),
+                lengths: [a.len(), b.len()],
+            }));
+        }
+        [Value::Scalar(_) | Value::List(_), other] | [other, _] => {
+            return Err(wrong(expr, "a number", other, env));
+        }
+    };
+    result.ok_or_else(|| env.report(EvaluationError::Overflow(expr.span.clone())))
+}
+
+fn whole(number: u32) -> Scalar {
+    Scalar::Whole(number.into())
+}
+
+fn word_alone(word: &Name) -> Value {
+    Value::Word(Word {
+        word: word.clone(),
+        of: None,
+    })
+}
+
+fn comparison(operator: Binary) -> Option<fn(std::cmp::Ordering) -> bool> {
+    Some(match operator {
+        Binary::Less => std::cmp::Ordering::is_lt,
+        Binary::LessEqual => std::cmp::Ordering::is_le,
+        Binary::Greater => std::cmp::Ordering::is_gt,
+        Binary::GreaterEqual => std::cmp::Ordering::is_ge,
+        _ => return None,
+    })
+}
+
+/// `None` where the result does not fit.
+fn arithmetic(operator: Binary, a: Scalar, b: Scalar) -> Option<Scalar> {
+    if let (Scalar::Whole(a), Scalar::Whole(b)) = (a, b) {
+        return match operator {
+            Binary::Add => a.checked_add(b),
+            Binary::Subtract => a.checked_sub(b),
+            Binary::Multiply => a.checked_mul(b),
+            Binary::Divide => a.checked_div(b),
+            _ => a.checked_rem(b),
+        }
+        .map(Scalar::Whole);
+    }
+    let (a, b) = (a.number(), b.number());
+    Some(Scalar::Number(match operator {
+        Binary::Add => a + b,
+        Binary::Subtract => a - b,
+        Binary::Multiply => a * b,
+        Binary::Divide => a / b,
+        _ => a % b,
+    }))
+}
+
+fn apply(function: Function, a: Scalar, b: Scalar) -> Option<Scalar> {
+    // A value that rounds to a whole number fits into one, or is no size anyway.
+    let rounded =
+        |number: f64| (number.abs() < i64::MAX as f64).then_some(Scalar::Whole(number as i64));
+    match (function, a, b) {
+        (Function::CeilDiv, Scalar::Whole(a), Scalar::Whole(b)) => {
+            let (quotient, rest) = (a.checked_div(b)?, a.checked_rem(b)?);
+            let up = i64::from(rest != 0 && (rest > 0) == (b > 0));
+            quotient.checked_add(up).map(Scalar::Whole)
+        }
+        (Function::CeilDiv, ..) => None,
+        (Function::Min, ..) => Some(if b.number() < a.number() { b } else { a }),
+        (Function::Max, ..) => Some(if b.number() > a.number() { b } else { a }),
+        (Function::Floor, a, _) => rounded(a.number().floor()),
+        (Function::Ceil, a, _) => rounded(a.number().ceil()),
+        (Function::Exp, a, _) => Some(Scalar::Number(a.number().exp())),
+        (Function::Log2, a, _) => Some(Scalar::Number(a.number().log2())),
+        (Function::Pow, a, b) => Some(Scalar::Number(a.number().powf(b.number()))),
+        (Function::Sqrt, a, _) => Some(Scalar::Number(a.number().sqrt())),
+    }
+}

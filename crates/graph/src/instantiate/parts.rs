@@ -1,0 +1,180 @@
+//! Parts of resources: what is selected of one, and its attributes.
+
+use crate::{
+    diagnostics::reports::{ErrorGuaranteed, Reports},
+    errors::{evaluation::EvaluationError, instantiate::InterfaceError},
+    language::{
+        syntax::{Attribute, Reference},
+        value::{Scalar, Value},
+    },
+    resource::{Resource, ResourceKind, SubresourceRange, Target},
+    source::span::{Located, Span},
+};
+use std::ops::Range;
+
+/// How many layers, slices or items a target has, and which of these they are.
+pub(super) fn layers(
+    target: &Target,
+    resource: &Resource,
+    reference: &Reference,
+    reports: &mut Reports,
+) -> Result<(&'static str, u64), ErrorGuaranteed> {
+    let what = match &resource.kind {
+        ResourceKind::Texture(texture) => {
+            let what = if texture.is_3d { "slices" } else { "layers" };
+            return Ok((what, target.part.layers.len() as u64));
+        }
+        ResourceKind::Buffer(_) | ResourceKind::Provided(_) => "items",
+        ResourceKind::Sampler(_) | ResourceKind::AccelerationStructure | ResourceKind::Frame => {
+            return Err(reports.report(InterfaceError::NoPart {
+                text: reference.text().to_owned(),
+                span: reference.span.clone(),
+                what: "only textures and buffers have parts",
+            }));
+        }
+    };
+    let uncounted = || uncounted(resource, reference);
+    let count = items(resource, target).ok_or_else(|| reports.report(uncounted()));
+    Ok((what, count?))
+}
+
+/// Narrows a target to some of its layers, slices or items.
+pub(super) fn select_layers(target: &mut Target, range: Range<u32>) {
+    let start = if target.part == SubresourceRange::WHOLE {
+        0
+    } else {
+        target.part.layers.start
+    };
+    target.part.layers = start + range.start..start + range.end;
+}
+
+/// The items of a buffer are asked for, and not known.
+pub(super) fn uncounted(resource: &Resource, reference: &Reference) -> EvaluationError {
+    let name = Located::new(reference.path(), reference.span.clone());
+    match &resource.kind {
+        ResourceKind::Provided(_) => EvaluationError::Uncounted(name),
+        _ => EvaluationError::NoCount(name),
+    }
+}
+
+/// How many mips a target has.
+pub(super) fn mips(
+    target: &Target,
+    resource: &Resource,
+    reference: &Reference,
+) -> Result<(&'static str, u64), InterfaceError> {
+    match resource.kind {
+        ResourceKind::Texture(_) => Ok(("mips", target.part.mips.len() as u64)),
+        _ => Err(InterfaceError::NoPart {
+            text: reference.path(),
+            span: reference.span.clone(),
+            what: "only textures have mips",
+        }),
+    }
+}
+
+/// Narrows a target to some of its mips.
+pub(super) fn select_mips(
+    target: &mut Target,
+    range: Range<u32>,
+    resource: &Resource,
+    reference: &Reference,
+) -> Result<(), InterfaceError> {
+    let start = target.part.mips.start;
+    target.part.mips = start + range.start..start + range.end;
+    if let ResourceKind::Texture(texture) = &resource.kind
+        && texture.is_3d
+    {
+        let layers = texture.mip_layers(target.part.mips.start);
+        if target.part.layers.start >= layers {
+            return Err(InterfaceError::NoPart {
+                text: reference.text().to_owned(),
+                span: reference.span.clone(),
+                what: "this mip has fewer slices",
+            });
+        }
+        target.part.layers.end = target.part.layers.end.min(layers);
+    }
+    Ok(())
+}
+
+/// A range that lies in so many layers, items or mips.
+pub(super) fn narrow(
+    (range, span): (Range<u64>, &Span),
+    (what, count): (&str, u64),
+    reference: &Reference,
+    resource: &Resource,
+) -> Result<Range<u32>, InterfaceError> {
+    let fits = range.start < range.end && range.end <= count;
+    let narrow = || Some(u32::try_from(range.start).ok()?..u32::try_from(range.end).ok()?);
+    narrow().filter(|_| fits).ok_or_else(|| {
+        let last = count.saturating_sub(1);
+        InterfaceError::Range {
+            text: reference.text().to_owned(),
+            span: span.clone(),
+            what: match count {
+                1 => format!("its {what} are [0] alone, this is [{}]", range.start),
+                _ => format!("its {what} are [0] to [{last}], this is [{}]", range.start),
+            },
+            declared: resource.declared.clone(),
+        }
+    })
+}
+
+/// An attribute of a target; `None` if it has no such one.
+pub(super) fn attribute(
+    resource: &Resource,
+    target: &Target,
+    attribute: Attribute,
+) -> Option<Value> {
+    let part = &target.part;
+    let texture = match &resource.kind {
+        ResourceKind::Texture(texture) => texture,
+        ResourceKind::Buffer(_) | ResourceKind::Provided(_) if attribute == Attribute::Count => {
+            return items(resource, target).map(Value::count);
+        }
+        ResourceKind::Provided(provided) if attribute == Attribute::Kind => {
+            return provided.kind.map(Value::kind);
+        }
+        _ => return None,
+    };
+    let [width, height] = texture.mip_size(part.mips.start);
+    let layers = if texture.is_3d {
+        part.layers
+            .len()
+            .min(texture.mip_layers(part.mips.start) as usize)
+    } else {
+        part.layers.len()
+    };
+    let whole = |number: u32| Scalar::Whole(number.into());
+    Some(match attribute {
+        Attribute::Size if texture.is_3d => Value::List(vec![
+            whole(width),
+            whole(height),
+            Scalar::Whole(layers as i64),
+        ]),
+        Attribute::Size => Value::List(vec![whole(width), whole(height)]),
+        Attribute::Width => Value::whole(width),
+        Attribute::Height => Value::whole(height),
+        Attribute::Layers => Value::count(layers as u64),
+        Attribute::Mips => Value::count(part.mips.len() as u64),
+        Attribute::Samples => Value::whole(texture.samples),
+        Attribute::Count => {
+            let depth = if texture.is_3d { layers as u64 } else { 1 };
+            let count = u64::from(width).saturating_mul(height.into());
+            Value::count(count.saturating_mul(depth))
+        }
+        Attribute::Format => Value::Format(texture.format),
+        Attribute::Kind | Attribute::Index => return None,
+    })
+}
+
+/// How many items of a buffer a target is, where that is known.
+pub(super) fn items(resource: &Resource, target: &Target) -> Option<u64> {
+    let selected = target.part.items().map(|items| items.len() as u64);
+    selected.or(match &resource.kind {
+        ResourceKind::Buffer(buffer) => buffer.count,
+        ResourceKind::Provided(provided) => provided.items,
+        _ => None,
+    })
+}

@@ -1,0 +1,196 @@
+//! Charts of the page, one for each choice that it offers.
+
+use crate::html::shown::{Shown, part, times};
+use crate::summary::Row;
+use skiagraph_chart::{Error, Figure, Kind, Mark, Panel, Series, xml};
+use skiagraph_compare::lists::unique;
+use skiagraph_compare::wording::{ms, size};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Widths of a chart for classes of windows, pixels.
+const WIDTHS: [(&str, u16); 3] = [("broad", 1100), ("middle", 700), ("narrow", 400)];
+/// Width of a chart beside another one.
+const HALF: u16 = 520;
+
+/// A figure in which each method looks the same as in all others of the page.
+fn figure(tables: &[Shown], panels: Vec<Panel>) -> Figure {
+    let rows = tables.iter().flat_map(|table| &table.group.rows);
+    let methods: BTreeSet<&String> = rows.map(|row| &row.method).collect();
+    Figure {
+        looks: methods.into_iter().cloned().collect(),
+        panels,
+        ..Figure::default()
+    }
+}
+
+/// A picture, or a line that says why there is none.
+fn drawn(svg: Result<String, Error>) -> String {
+    svg.unwrap_or_else(|why| format!("<p class=\"quiet\">{}</p>", xml(&why.to_string())))
+}
+
+/// Time against error, of each table and time.
+pub fn fronts(tables: &[Shown]) -> String {
+    let mut html = String::new();
+    for (index, table) in tables.iter().enumerate() {
+        for kept in times(tables).iter().copied() {
+            let figure = figure(tables, vec![front(table, kept)]);
+            for (class, width) in WIDTHS {
+                let svg = drawn(figure.to_page_svg(width));
+                html += &part(class, &[index], Some(kept), &svg);
+            }
+        }
+    }
+    html
+}
+
+/// Each row is a series, so that it has a lane of its own where it is exact.
+fn front(table: &Shown, kept: bool) -> Panel {
+    let row = |(index, row): (usize, &Row)| {
+        let (x, y) = (table.ms(row, kept)?, table.error(row)?);
+        y.is_finite().then(|| Series {
+            name: row.method.clone(),
+            marks: vec![Mark {
+                about: about(table, index),
+                ..Mark::new(x, y)
+            }],
+        })
+    };
+    let rows = table.group.rows.iter().enumerate();
+    let mut series: Vec<Series> = rows.filter_map(row).collect();
+    series.sort_by(|one, other| one.marks[0].x.total_cmp(&other.marks[0].x));
+    let clock = if table.by_wall { "wall clock" } else { "GPU" };
+    let frame = if kept {
+        "only the camera moves"
+    } else {
+        "every pass run"
+    };
+    let error = if table.group.is_hard {
+        "wrong pixels, % of those facing the light"
+    } else {
+        "RMSE of the shares of light"
+    };
+    Panel {
+        title: table.title.clone(),
+        kind: Kind::Front,
+        x: format!("{clock} ms a frame, {frame}"),
+        y: error.into(),
+        series,
+    }
+}
+
+/// The figures of a row, as the table has them.
+fn about(table: &Shown, index: usize) -> String {
+    let cells = table.table.heads.iter().zip(&table.table.rows[index]);
+    let told = cells.skip(1).filter(|(_, cell)| *cell != "–");
+    let told = told.map(|(head, cell)| format!("\n{head}: {cell}"));
+    table.group.rows[index].label.clone() + &told.collect::<String>()
+}
+
+/// Buttons for the methods of each table, which show a method or not.
+pub fn legends(tables: &[Shown]) -> String {
+    let figure = figure(tables, Vec::new());
+    let button = |name: &String| {
+        let (sign, name) = (drawn(figure.sign(name)), xml(name));
+        format!(
+            "<button type=\"button\" aria-pressed=\"true\" data-method=\"{name}\">{sign}{name}\
+             </button>\n"
+        )
+    };
+    let legend = |(index, table): (usize, &Shown)| {
+        let rows = table.group.rows.iter().filter(|row| row.views() > 0);
+        let methods: Vec<String> = rows.map(|row| row.method.clone()).collect();
+        let buttons: String = unique(&methods).iter().map(button).collect();
+        part("legend", &[index], None, &buttons)
+    };
+    tables.iter().enumerate().map(legend).collect()
+}
+
+/// How time grows with the viewport and with the map, where several were measured.
+pub fn growths(tables: &[Shown]) -> String {
+    let mut html = String::new();
+    for (index, table) in tables.iter().enumerate() {
+        let key = |table: &Shown| (table.source, table.group.is_hard, table.summary.what());
+        let alike = (0..tables.len()).filter(|other| key(&tables[*other]) == key(table));
+        let alike: Vec<usize> = alike.collect();
+        let viewport = size(table.summary.viewport);
+        let mut add = |of: &[usize], [title, x]: [&str; 2], kept, place: Place| {
+            let rows = of.iter().flat_map(|index| {
+                let table = &tables[*index];
+                table.group.rows.iter().map(move |row| (table, row))
+            });
+            let (panel, ticks) = growth(rows, [title, x], kept, place);
+            if !panel.series.is_empty() {
+                let panels = figure(tables, vec![panel]);
+                let svg = Figure { ticks, ..panels }.to_page_svg(HALF);
+                html += &part("growth", of, Some(kept), &drawn(svg));
+            }
+        };
+        for kept in times(tables).iter().copied() {
+            if alike[0] == index {
+                add(&alike, ["By viewport", "viewport"], kept, by_viewport);
+            }
+            let title = format!("By map, {viewport}");
+            add(&[index], [&title, "edge of the map, texels"], kept, by_map);
+        }
+    }
+    html
+}
+
+/// Returns the line that a row is on, and its place along it, with that place's name.
+type Place = for<'a> fn(&Shown, &'a Row) -> Option<(&'a str, f64, String)>;
+
+fn by_viewport<'a>(table: &Shown, row: &'a Row) -> Option<(&'a str, f64, String)> {
+    // A method may choose its map by the viewport: then rows differ in it and are one method all
+    // the same.
+    let rows = table.group.rows.iter();
+    let maps = rows.filter(|other| other.method == row.method).count();
+    let line = if maps > 1 { &row.label } else { &row.method };
+    let viewport = table.summary.viewport;
+    let pixels = viewport.map(f64::from).iter().product();
+    Some((line, pixels, size(viewport)))
+}
+
+fn by_map<'a>(_: &Shown, row: &'a Row) -> Option<(&'a str, f64, String)> {
+    let map = row.map_size()?;
+    Some((&row.method, map.into(), map.to_string()))
+}
+
+/// A panel of lines of two marks and more, and the names of places along it.
+fn growth<'a>(
+    rows: impl Iterator<Item = (&'a Shown<'a>, &'a Row<'a>)>,
+    [title, x]: [&str; 2],
+    kept: bool,
+    place: Place,
+) -> (Panel, Vec<(f64, String)>) {
+    let mut lines: BTreeMap<&str, Series> = BTreeMap::new();
+    let mut ticks = Vec::new();
+    for (table, row) in rows.filter(|(table, row)| table.error(row).is_some()) {
+        let (Some(y), Some((line, x, name))) = (table.ms(row, kept), place(table, row)) else {
+            continue;
+        };
+        let line = lines.entry(line).or_insert_with(|| Series {
+            name: row.method.clone(),
+            marks: Vec::new(),
+        });
+        line.marks.push(Mark {
+            about: format!("{}\n{name}: {} ms", row.label, ms(y)),
+            ..Mark::new(x, y)
+        });
+        ticks.push((x, name));
+    }
+    let mut series: Vec<Series> = lines.into_values().collect();
+    series.retain(|series| series.marks.len() > 1);
+    for series in &mut series {
+        series.marks.sort_by(|one, other| one.x.total_cmp(&other.x));
+    }
+    ticks.sort_by(|one, other| one.0.total_cmp(&other.0));
+    ticks.dedup();
+    let panel = Panel {
+        title: title.into(),
+        kind: Kind::Growth,
+        x: x.into(),
+        y: "ms".into(),
+        series,
+    };
+    (panel, ticks)
+}

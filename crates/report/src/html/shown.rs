@@ -1,0 +1,101 @@
+//! Tables of the page, and the parts of the page that are of some of them: each stands in the page,
+//! and its script shows those that are chosen.
+
+use crate::html::sources::Source;
+use crate::summary::{Row, by_wall};
+use crate::summary_table::{Group, Summary};
+use skiagraph_compare::records::table::Table;
+use skiagraph_compare::wording::size;
+use std::collections::BTreeSet;
+
+/// Rows that are judged alike, of one source and viewport.
+pub struct Shown<'a> {
+    /// Index of its source.
+    pub source: usize,
+    /// All of the source in that viewport.
+    pub summary: &'a Summary<'a>,
+    /// Its rows.
+    pub group: &'a Group<'a>,
+    /// The same as the terminal shows them.
+    pub table: Table,
+    /// True if times are the wall clock's.
+    pub by_wall: bool,
+    /// Source and viewport in words.
+    pub title: String,
+}
+
+/// All tables of the summaries, each of which comes with the index of its source.
+pub fn shown<'a>(sources: &[Source], all: &'a [(usize, Summary<'a>)]) -> Vec<Shown<'a>> {
+    let adapters = sources.iter().map(|source| &source.results.adapter);
+    let adapters: BTreeSet<String> = adapters.map(ToString::to_string).collect();
+    let table = |source: usize, summary: &'a Summary, group: &'a Group| {
+        let results = &sources[source].results;
+        let mut title = format!(
+            "{}, {}, {}",
+            results.scene.name,
+            summary.what(),
+            size(summary.viewport)
+        );
+        if adapters.len() > 1 {
+            title += &format!(" · {}", results.adapter);
+        }
+        Shown {
+            source,
+            summary,
+            group,
+            table: summary.table(group),
+            by_wall: by_wall(&group.rows),
+            title,
+        }
+    };
+    let tables = all.iter().flat_map(|(source, summary)| {
+        let groups = summary.groups.iter();
+        groups.map(move |group| table(*source, summary, group))
+    });
+    tables.collect()
+}
+
+impl Shown<'_> {
+    /// The error of a row that was judged: the percentage of wrong pixels outside the band of those
+    /// that face the light, or the root mean square error of shares.
+    pub fn error(&self, row: &Row) -> Option<f64> {
+        if self.group.is_hard {
+            let wrong = row.wrong();
+            (wrong.facing_light > 0).then(|| 100.0 * wrong.share())
+        } else {
+            row.rmse()
+        }
+    }
+
+    /// Milliseconds of a frame of a row that may stand on an axis; if `kept` of one in which only
+    /// the camera has moved.
+    pub fn ms(&self, row: &Row, kept: bool) -> Option<f64> {
+        let kept = row.kept_ms(self.by_wall).filter(|_| kept);
+        let ms = kept.or(row.frame_ms(self.by_wall));
+        ms.filter(|ms| ms.is_finite() && *ms > 0.0)
+    }
+}
+
+/// Which times the tables' rows have: true stands for those with what is kept.
+pub fn times(tables: &[Shown]) -> &'static [bool] {
+    let keeps = |table: &Shown| {
+        let mut rows = table.group.rows.iter();
+        rows.any(|row| row.kept_ms(table.by_wall).is_some())
+    };
+    if tables.iter().any(keeps) {
+        &[false, true]
+    } else {
+        &[false]
+    }
+}
+
+/// An element that the script shows while one of these tables is chosen, and that time, if any.
+pub fn part(class: &str, tables: &[usize], kept: Option<bool>, content: &str) -> String {
+    let time = kept.map_or(String::new(), |kept| format!(" data-kept=\"{kept}\""));
+    let names: Vec<String> = tables.iter().map(ToString::to_string).collect();
+    // The script begins with the first table.
+    let is_shown = tables.contains(&0) && kept != Some(true);
+    let hidden = if is_shown { "" } else { " hidden" };
+    let names = names.join(" ");
+    format!("<div class=\"{class}\" data-table=\"{names}\"{time}{hidden}>{content}</div>\n")
+}

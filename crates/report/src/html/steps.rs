@@ -1,0 +1,64 @@
+//! Where the time goes: a bar for each row, in parts for its steps.
+
+use crate::html::shown::{Shown, part};
+use skiagraph_chart::xml;
+use skiagraph_compare::wording::ms;
+
+/// Steps that have a colour of their own: those that take the longest, over all rows.
+const COLOURS: usize = 7;
+
+/// The bars of each table with GPU times.
+pub fn bars(tables: &[Shown]) -> String {
+    let of_table = |(index, table): (usize, &Shown)| {
+        let rows = table.group.rows.iter().map(|row| (row, row.steps()));
+        let rows: Vec<_> = rows.filter(|(_, steps)| !steps.is_empty()).collect();
+        let sum = |steps: &[(&str, f64)]| steps.iter().map(|(_, ms)| ms).sum::<f64>();
+        let most = rows
+            .iter()
+            .map(|(_, steps)| sum(steps))
+            .fold(1e-9, f64::max);
+        let mut totals: Vec<(&str, f64)> = Vec::new();
+        for (name, ms) in rows.iter().flat_map(|(_, steps)| steps) {
+            match totals.iter_mut().find(|(known, _)| known == name) {
+                Some((_, total)) => *total += ms,
+                None => totals.push((name, *ms)),
+            }
+        }
+        totals.sort_by(|(_, one), (_, other)| other.total_cmp(one));
+        let colour = |name: &str| match totals.iter().position(|(known, _)| *known == name) {
+            Some(place) if place < COLOURS => format!("var(--s{place})"),
+            _ => "var(--quiet)".into(),
+        };
+        let step = |label: &str, (name, time): &(&str, f64)| {
+            let (colour, share, time, name) = (colour(name), time / most, ms(*time), xml(name));
+            format!(
+                "<i class=\"step\" style=\"--share:{share:.5};background:{colour}\" \
+                 aria-label=\"{label}&#10;{name}: {time} ms\"><b>{name}</b></i>"
+            )
+        };
+        let mut html = String::new();
+        for (row, steps) in &rows {
+            let label = xml(&row.label);
+            let parts: String = steps.iter().map(|of| step(&label, of)).collect();
+            let (method, whole) = (xml(&row.method), ms(sum(steps)));
+            html += &format!(
+                "<div class=\"bar\" data-series=\"{method}\"><span>{label}</span>\
+                 <div>{parts}<span class=\"tick\">{whole} ms</span></div></div>\n"
+            );
+        }
+        let swatch = |colour: &str, name: &str| {
+            format!(
+                "<span><i style=\"background:{colour}\"></i>{}</span>",
+                xml(name)
+            )
+        };
+        let named = totals.iter().take(COLOURS);
+        let mut swatches: String = named.map(|(name, _)| swatch(&colour(name), name)).collect();
+        if totals.len() > COLOURS {
+            swatches += &swatch("var(--quiet)", "others");
+        }
+        let html = format!("{html}<div class=\"swatches\">{swatches}</div>");
+        (!rows.is_empty()).then(|| part("bars", &[index], None, &html))
+    };
+    tables.iter().enumerate().filter_map(of_table).collect()
+}

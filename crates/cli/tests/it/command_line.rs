@@ -356,25 +356,6 @@ fn a_scene_or_view_that_is_not_there_is_named() {
     assert!(stderr(&own).contains("parallel"), "{}", stderr(&own));
 }
 
-/// A scene file is told of as a document is, with the lines that are wrong.
-#[test]
-fn a_broken_scene_file_is_shown_in_its_lines() {
-    let folder = tempfile::tempdir().unwrap();
-    let scene = "(\n    format: 1,\n    name: \"a\",\n    mesh: Genrated(\"park\"),\n)";
-    fs::write(folder.path().join("a.ron"), scene).unwrap();
-    let output = skiagraph(folder.path(), &["run", "rt", "--scene", "a.ron"]);
-    assert_exit(&output, 1);
-    for part in [
-        "╭─[a.ron:4:11]",
-        "4 │     mesh: Genrated(\"park\"),",
-        "did you mean `Generated`?",
-        "a scene needs at least one view",
-        "cannot load the scene `a.ron`",
-    ] {
-        assert!(stderr(&output).contains(part), "{}", stderr(&output));
-    }
-}
-
 /// The results that a unit test pins, as `compare` would have kept them.
 fn kept(folder: &Path, change: impl FnOnce(&mut serde_json::Value)) {
     let pinned = include_str!(

@@ -15,7 +15,10 @@ use crate::{
     },
     errors::compose::ComposeError,
     kinds::registry::Registry,
-    language::{name::Name, syntax::Expr},
+    language::{
+        name::Name,
+        syntax::{Expr, Leaf},
+    },
     param::Param,
     source::{
         paths::{escapes, folder_of, include_candidates},
@@ -368,13 +371,7 @@ impl<'a> Reader<'a> {
                 if include.is_named {
                     param.name.value = format!("{}.{}", *entry.name, **name);
                 }
-                let mut is_constant = true;
-                if let Some(default) = &param.default {
-                    default.visit(&mut |leaf| {
-                        is_constant &= !matches!(leaf, crate::language::syntax::Leaf::Param(_));
-                    });
-                }
-                if !is_constant {
+                if !has_constant_default(&param) {
                     self.reports
                         .report(ComposeError::ExposedDefault(name.clone()));
                     continue;
@@ -498,6 +495,15 @@ fn collect<'e>(
             What::Pass(_) => {}
         }
     }
+}
+
+/// True if a param's default asks for no other param.
+fn has_constant_default(param: &Param) -> bool {
+    let mut is_constant = true;
+    if let Some(default) = &param.default {
+        default.visit(&mut |leaf| is_constant &= !matches!(leaf, Leaf::Param(_)));
+    }
+    is_constant
 }
 
 /// Says for mistakes in other documents where these are asked for.

@@ -116,22 +116,22 @@ fn edge(@builtin(vertex_index) index: u32) -> Vertex {
     let p = from_here.texel.xy;
     let q = casters[first + (edge + 1u) % 3u].texel.xy;
     let apex = casters[first + (edge + 2u) % 3u].texel.xy;
-    let whole = distance(p, q);
+    let edge_length = distance(p, q);
     // No texel that overlaps an edge beyond which nothing goes on is covered; those of a masked
     // triangle have no length.
-    if all(vertex.clip == NOWHERE) || from_here.tag < KEPT || whole == 0.0 {
+    if all(vertex.clip == NOWHERE) || from_here.tag < KEPT || edge_length == 0.0 {
         vertex.clip = NOWHERE;
         return vertex;
     }
     let third = corner_beyond(from_here.tag, edge).xy;
-    let along = (q - p) / whole;
+    let along = (q - p) / edge_length;
     let inward = select(1.0, -1.0, cross_2d(along, apex - p) < 0.0) * vec2(-along.y, along.x);
     let at_p = max(end_reach(along, apex - p), end_reach(along, third - p));
     let at_q = max(end_reach(-along, apex - q), end_reach(-along, third - q));
     var low = -REACH;
-    var high = whole + REACH;
-    if at_p + at_q < whole {
-        low = select(low, whole - at_q, is_second);
+    var high = edge_length + REACH;
+    if at_p + at_q < edge_length {
+        low = select(low, edge_length - at_q, is_second);
         high = select(at_p, high, is_second);
     } else if is_second {
         vertex.clip = NOWHERE;

@@ -8,13 +8,13 @@
 // light, by more than rounding.
 fn is_beside(a: vec4<f32>, b: vec4<f32>, c: vec4<f32>) -> bool {
     let spread = light_spread();
-    let room = 2.0 * CLIP_ROUNDING * (1.0 + spread) * light.range
+    let tolerance = 2.0 * CLIP_ROUNDING * (1.0 + spread) * light.range
         + 8.0 * HALF_ULP * light.max_distance * spread;
-    let wide = (1.0 + 2.0 / map_fit.size) * vec3(a.w, b.w, c.w) + room;
+    let wide = (1.0 + 2.0 / map_fit.size) * vec3(a.w, b.w, c.w) + tolerance;
     let x = vec3(a.x, b.x, c.x);
     let y = vec3(a.y, b.y, c.y);
     return all(x > wide) || all(-x > wide) || all(y > wide) || all(-y > wide)
-        || all(vec3(a.w, b.w, c.w) < vec3(-room));
+        || all(vec3(a.w, b.w, c.w) < vec3(-tolerance));
 }
 
 struct FaceTriangle {
@@ -54,7 +54,7 @@ fn face_triangle(primitive: u32) -> FaceTriangle {
         * max(1.0, light_spread());
     return FaceTriangle(
         corners,
-        (1.0 + map_fit.scale + map_fit.reach) * summed,
+        (1.0 + map_fit.scale + map_fit.extent) * summed,
         select(0.0, volume, is_clear),
         nearest,
         is_beside(seen[0], seen[1], seen[2]),

@@ -30,7 +30,7 @@ const FARTHEST: f32 = 1.0;
 // A corner of a triangle that has no place in a spot light's map that one could reckon with.
 const UNPLACED: vec3<f32> = vec3(0.0, 0.0, 1.0);
 // Up to so many texels apart n >= 0.51 is proven, see `inward_distance`.
-const FARTHEST_APART: f32 = 12000.0;
+const MAX_TEXEL_DISTANCE: f32 = 12000.0;
 
 // `corner` counts the corners of all primitives. Placed in a spot light's map are those before the
 // light, beyond what shadow rays leave out of their way to it, which rounding moves by at most half
@@ -45,8 +45,9 @@ fn light_corner(corner: u32) -> vec3<f32> {
         return UNPLACED;
     }
     let at = texel_of_clip(map_fit, vec3(seen.xy / seen.w, seen.z));
-    let apart = distance(at.xy, vec2(0.5 * map_fit.size)) + 0.7071068 * map_fit.size;
-    let is_placed = spot_texel_error(map_fit, position) <= 0.5 * SLACK && apart <= FARTHEST_APART;
+    let texel_distance = distance(at.xy, vec2(0.5 * map_fit.size)) + 0.7071068 * map_fit.size;
+    let is_placed = spot_texel_error(map_fit, position) <= 0.5 * SLACK
+        && texel_distance <= MAX_TEXEL_DISTANCE;
     return select(UNPLACED, vec3(at.xy, -1.0 / at.z), is_placed);
 }
 

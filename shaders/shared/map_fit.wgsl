@@ -13,7 +13,7 @@ struct MapFit {
     // Texels per unit of clip space, sizes alone: the larger of |x.x| + |x.y| and |y.x| + |y.y|.
     scale: f32,
     // The same with |x.z| and |y.z|.
-    reach: f32,
+    extent: f32,
     // Farthest distance from the eye, along its direction, among the receivers that ask this layer.
     end: f32,
     // Divisor of x and y in a projective map; 0, 0, 1 in an affine one.
@@ -87,7 +87,7 @@ fn spot_texel_error(fit: MapFit, position: vec3<f32>) -> f32 {
     let along = dot(abs(matrix[3].xyz), way) / seen.w;
     let projected_ratio = max(abs(seen.x), abs(seen.y)) / seen.w;
     let clip = 1.5 * (across + projected_ratio * (along + 1.0)) + projected_ratio;
-    return CLIP_ROUNDING * (fit.scale * clip + fit.reach);
+    return CLIP_ROUNDING * (fit.scale * clip + fit.extent);
 }
 
 // Bounds the rounding of a receiver and the corners of its casters together, in texels and in
@@ -102,9 +102,9 @@ fn texel_error_of_summands(fit: MapFit, summed: vec2<f32>) -> vec2<f32> {
     if light_kind != LIGHT_DIRECTIONAL {
         // Bound of the receiver alone, where |x| and |y| are at most w: its casters differ in
         // theirs.
-        let across = fit.scale * (2.0 + 4.0 * light_spread()) + fit.reach;
+        let across = fit.scale * (2.0 + 4.0 * light_spread()) + fit.extent;
         return CLIP_ROUNDING * vec2(across, 2.0 + 2.0 * light.max_distance / light.range);
     }
-    let across = fit.scale * summed.x + fit.reach;
+    let across = fit.scale * summed.x + fit.extent;
     return CLIP_ROUNDING * vec2(across, summed.y + 2.0);
 }

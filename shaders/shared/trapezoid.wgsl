@@ -48,13 +48,13 @@ fn trapezoid_map(corners: array<vec2<f32>, 8>, focus: f32) -> TrapezoidMap {
     // Where the side lines meet, before the top line: that the focus falls on its line.
     let height = base - top;
     let focused = focus * way - top;
-    let room = (1.0 - FOCUS_LINE) * height - 2.0 * focused;
+    let remaining_height = (1.0 - FOCUS_LINE) * height - 2.0 * focused;
     // As far off as a rectangle's where the focus asks for more than that.
     let farthest = 1e3 * height;
     let apex = select(
         farthest,
-        min(height * focused * (1.0 + FOCUS_LINE) / room, farthest),
-        room > 0.0,
+        min(height * focused * (1.0 + FOCUS_LINE) / remaining_height, farthest),
+        remaining_height > 0.0,
     );
     if !(apex > 0.0) {
         return none;

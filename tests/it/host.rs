@@ -60,7 +60,7 @@ fn an_indexed_mesh_has_the_shadows_of_a_scenes() {
             preset,
             &mut graphs::provider(&park, &park.views[0], VIEWPORT),
         );
-        let mut host = SceneProvider::of_mesh(welded.clone(), park.light_of(&park.views[0]));
+        let mut host = SceneProvider::from_mesh(welded.clone(), park.light_of(&park.views[0]));
         host.set_camera(&park.views[0].camera(VIEWPORT));
         assert!(answers(&gpu, preset, &mut host) == expected, "{preset}");
     }
@@ -118,11 +118,11 @@ fn instances_have_the_shadows_of_one_mesh() {
     let of = [&floor, &stone, &stone];
     let parts = Movable::joined(&of);
     let light = DirectionalLight::new(DVec3::new(0.4, -1.0, -0.3));
-    let mut host = SceneProvider::of_parts(parts, light);
+    let mut host = SceneProvider::from_parts(parts, light);
     for time in [0.0, 1.0, 2.0] {
         host.set_camera(&view(time).camera(VIEWPORT));
         host.set_transforms(&places(time)).unwrap();
-        let mut scene = SceneProvider::of_mesh(moved(&of, &places(time)), light);
+        let mut scene = SceneProvider::from_mesh(moved(&of, &places(time)), light);
         scene.set_camera(&view(time).camera(VIEWPORT));
         for preset in PRESETS {
             let expected = answers(&gpu, preset, &mut scene);
@@ -154,7 +154,7 @@ fn the_program_of_the_document_has_exact_shadows() {
             .unwrap();
         let seen = texels(&gpu, encoder, seen.texture());
         let light = DirectionalLight::new(light);
-        let mut scene = SceneProvider::of_mesh(moved(&of, &places(time)), light);
+        let mut scene = SceneProvider::from_mesh(moved(&of, &places(time)), light);
         scene.set_camera(&camera);
         let expected = answers(&gpu, "rt", &mut scene);
         assert!(expected.contains(&0) && expected.contains(&1));
@@ -180,7 +180,7 @@ fn a_light_and_a_camera_that_are_none_are_errors() {
         (nowhere, view(0.0), "the light's direction"),
         (down, blind, "the camera has numbers"),
     ] {
-        let mut host = SceneProvider::of_mesh(stone.clone(), light);
+        let mut host = SceneProvider::from_mesh(stone.clone(), light);
         host.set_camera(&view.camera(VIEWPORT));
         let plan = graphs::plan("pipelines/light_buffer.ron", &host, VIEWPORT, |_| {});
         let error = Executor::new(&gpu.device, &gpu.queue, plan, &mut host)

@@ -112,12 +112,12 @@ fn a_part_that_is_mirrored_is_shown_as_one_that_was_made_so() {
     let parts = meshes();
     let parts = Movable::joined(&parts.each_ref());
     for preset in PRESETS {
-        let mut host = SceneProvider::of_parts(parts.clone(), light());
+        let mut host = SceneProvider::from_parts(parts.clone(), light());
         host.set_camera(&view().camera(VIEWPORT));
         host.set_transforms(&places(0)).unwrap();
         let mut executor = start(&gpu, preset, &mut host);
         let made_so = [0, 1, 2].map(|time| {
-            let mut made_so = SceneProvider::of_mesh(applied(time), light());
+            let mut made_so = SceneProvider::from_mesh(applied(time), light());
             made_so.set_camera(&view().camera(VIEWPORT));
             shown(&gpu, &mut start(&gpu, preset, &mut made_so))
         });

@@ -40,7 +40,7 @@ fn provider(parts: Movable) -> SceneProvider {
         far: 60.0,
         light: None,
     };
-    let mut provider = SceneProvider::of_parts(parts, sun());
+    let mut provider = SceneProvider::from_parts(parts, sun());
     provider.set_camera(&view.camera(VIEWPORT));
     provider
 }
@@ -208,9 +208,9 @@ fn maps_by_which_nothing_can_be_moved_are_named() {
     assert!(places.map(|p| p.abs().max_element()).fold(0.0, f32::max) < 2.0);
     provider.set_transforms(&rows(count)).unwrap();
 
-    let mut whole = SceneProvider::of_mesh(meshes::potato(1, 0.2, 1), sun());
+    let mut whole = SceneProvider::from_mesh(meshes::potato(1, 0.2, 1), sun());
     let error = whole.set_transforms(&rows(1)).unwrap_err().to_string();
-    assert!(error.contains("`SceneProvider::of_parts`"), "{error}");
+    assert!(error.contains("`SceneProvider::from_parts`"), "{error}");
     let mesh = whole.scene().mesh.clone();
     let mut normals = mesh.normals.clone();
     normals[5] = Vec3::INFINITY;

@@ -63,7 +63,7 @@ fn mesh(parts: &Movable, time: f64) -> Mesh {
 
 /// The parts at time 0.
 fn provider(parts: &Movable) -> SceneProvider {
-    let mut provider = SceneProvider::of_parts(parts.clone(), sun());
+    let mut provider = SceneProvider::from_parts(parts.clone(), sun());
     provider.set_camera(&view(0.0).camera(VIEWPORT));
     provider.set_transforms(&places(0.0)).unwrap();
     provider
@@ -96,7 +96,7 @@ fn seen(executor: &mut Executor) -> Vec<u32> {
 
 /// Renders a mesh that never moved by an executor of its own.
 fn alone(gpu: &Gpu, preset: &str, mesh: Mesh, light: LightKind, camera: f64) -> Vec<u32> {
-    let mut provider = SceneProvider::of_mesh(mesh, light);
+    let mut provider = SceneProvider::from_mesh(mesh, light);
     provider.set_camera(&view(camera).camera(VIEWPORT));
     let mut executor = start(gpu, preset, &mut provider);
     let mut encoder = encoder(gpu);

@@ -88,7 +88,7 @@ pub enum Error {
     },
     /// Transforms for a mesh in one piece.
     #[error(
-        "the provider's mesh has no parts to be moved: make it with `SceneProvider::of_parts`, or \
+        "the provider's mesh has no parts to be moved: make it with `SceneProvider::from_parts`, or \
          give it parts with `set_parts`"
     )]
     NoParts,

@@ -11,7 +11,7 @@
 //! # let mesh = Mesh::indexed(&Indexed { positions, normals: &[], indices })?;
 //! # let sun = DirectionalLight::new(glam::DVec3::NEG_Y);
 //!
-//! let provider = SceneProvider::of_mesh(mesh, sun);
+//! let provider = SceneProvider::from_mesh(mesh, sun);
 //! let graph = Graph::load("pipelines/nsm.ron", &registry(), &EmbeddedSources)?;
 //! let plan = graph.plan(&PlanRequest::new([64, 64], &provider))?;
 //! assert!(plan.provided().contains(&LIGHT));

@@ -290,7 +290,7 @@ impl SceneProvider {
     }
 
     /// Provides a mesh under a light. Both can be changed, and a camera must be set.
-    pub fn of_mesh(mesh: Mesh, light: impl Into<LightKind>) -> Self {
+    pub fn from_mesh(mesh: Mesh, light: impl Into<LightKind>) -> Self {
         Self::new(Arc::new(Scene {
             name: String::new(),
             mesh,
@@ -302,8 +302,8 @@ impl SceneProvider {
     /// Provides a mesh of parts that [`set_transforms`](Self::set_transforms) moves, under a light.
     /// Both can be changed, and a camera must be set. Parts that were [joined](Movable::joined)
     /// have no places until they are given some, before or after executors are made.
-    pub fn of_parts(parts: impl Into<Arc<Movable>>, light: impl Into<LightKind>) -> Self {
-        let mut provider = Self::of_mesh(Mesh::default(), light);
+    pub fn from_parts(parts: impl Into<Arc<Movable>>, light: impl Into<LightKind>) -> Self {
+        let mut provider = Self::from_mesh(Mesh::default(), light);
         provider.set_parts(parts);
         provider
     }
@@ -435,7 +435,7 @@ impl SceneProvider {
     }
 
     /// Moves each part of what [`set_parts`](Self::set_parts) or
-    /// [`of_parts`](Self::of_parts) was given from where it rests by the map of the same index.
+    /// [`from_parts`](Self::from_parts) was given from where it rests by the map of the same index.
     /// Only parts whose maps are others than before are moved, and equal maps cost nothing. The
     /// triangles of a part that its map mirrors are wound the other way, as in glTF, so that its
     /// outside stays outside.

@@ -107,7 +107,7 @@ impl Running {
         prepass: &Prepass,
     ) -> Result<Self> {
         let light = DirectionalLight::new(glam::DVec3::NEG_Y);
-        let mut provider = SceneProvider::of_parts(Arc::clone(parts), light);
+        let mut provider = SceneProvider::from_parts(Arc::clone(parts), light);
         let sources = LayeredSources(vec![Box::new(Document), Box::new(EmbeddedSources)]);
         let graph = Graph::load("shadows.ron", &registry(), &sources)?;
         let size = prepass.depth.size();

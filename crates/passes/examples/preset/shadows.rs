@@ -16,7 +16,7 @@ impl Shadows {
     /// Creates the shadows of these meshes, for pictures of the given size in pixels.
     pub fn new(on: (&Device, &Queue), size: [u32; 2], of: &[&Mesh]) -> Result<Self, Failed> {
         let light = DirectionalLight::new(DVec3::NEG_Y);
-        let mut provider = SceneProvider::of_parts(Movable::joined(of), light);
+        let mut provider = SceneProvider::from_parts(Movable::joined(of), light);
         let graph = Graph::load("pipelines/light_buffer.ron", &registry(), &EmbeddedSources)?;
         let mut request = PlanRequest::new(size, &provider);
         request.limits = on.0.limits();

@@ -408,6 +408,11 @@ impl<'a> Reader<'a> {
             }
             document.params.push(param);
         }
+        self.set_defaults(document);
+    }
+
+    /// Gives params of included documents the defaults that a document sets.
+    fn set_defaults(&mut self, document: &mut Document) {
         for (name, value) in std::mem::take(&mut document.defaults) {
             let mut params = document.params.iter_mut();
             match params.find(|param| *param.name.value == *name) {

@@ -26,7 +26,7 @@ use skiagraph_gpu::device::Gpu;
 use skiagraph_graph::{Diagnostic, diagnostics};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Hears of work under way, from any thread. All but [`note`](Self::note) may be left out.
+/// Hears of work under way, from any thread. Only [`note`](Self::note) has to be implemented.
 pub trait Sink: Sync {
     /// A remark that is not an error, a line or several.
     fn note(&self, text: &str);

@@ -83,8 +83,9 @@ impl Graph {
         Self::load_over(path, registry, sources, &BTreeMap::new())
     }
 
-    /// The same with other documents in its open includes: `chosen` has the paths of these by the
-    /// names in `open` ([`Graph::openings`]).
+    /// Reads the document at `path` as [`Graph::load`] does, with other documents in its open
+    /// includes (`Include(open: "over", …)`). `chosen`: their paths, by the names of the includes
+    /// ([`Graph::openings`]).
     ///
     /// # Errors
     /// As [`Graph::load`]; a name that is no open include of the document at `path`.

@@ -88,8 +88,8 @@ pub enum Error {
     },
     /// Transforms for a mesh in one piece.
     #[error(
-        "the provider's mesh has no parts to be moved: make it with `SceneProvider::from_parts`, or \
-         give it parts with `set_parts`"
+        "the provider's mesh has no parts to be moved: make it with `SceneProvider::from_parts`, \
+         or give it parts with `set_parts`"
     )]
     NoParts,
     /// A part that cannot be moved so.

@@ -51,13 +51,16 @@ use std::{collections::BTreeMap, sync::Arc, time::Instant};
 /// Resources once built stay and are shared by all graphs that are executed with the same provider,
 /// which therefore belongs to the device that it was first used with. A new camera, light or mesh
 /// is seen by executors that are made from then on, and by others from their next
-/// [`refresh`](skiagraph_gpu::Executor::refresh) on, which makes its consequences anew as far as a
-/// live pass reads them. No buffer is written once it was handed out, so any number of executors
-/// may be refreshed and encoded for one submission, each with a light, a camera and a mesh of its
-/// own; and what is set as it was before is no change for those that have seen it. wgpu binds no
-/// buffer of size zero: an array of an empty scene holds one zero item, its hierarchy one leaf
-/// around a triangle without area, which no ray hits; [`Describe::describe`] still says 0 items, so
-/// that nothing is drawn.
+/// [`refresh`](skiagraph_gpu::Executor::refresh) on, which makes the resources anew that depend on
+/// it and that a live pass reads.
+///
+/// No buffer is written once it was handed out, so any number of executors may be refreshed and
+/// encoded for one submission, each with a light, a camera and a mesh of its own. Setting the same
+/// value again changes nothing for an executor that has seen it.
+///
+/// wgpu binds no buffer of size zero: an array of an empty scene holds one zero item, its hierarchy
+/// one leaf around a triangle without area, which no ray hits. [`Describe::describe`] still says 0
+/// items, so that nothing is drawn.
 pub struct SceneProvider {
     pub(crate) scene: Arc<Scene>,
     pub(crate) eye: Eye,

@@ -75,7 +75,8 @@ impl fmt::Display for OracleMode {
 /// The longest offset in extents of the mesh: far beyond it rays miss by rounding alone.
 const MOST_EXTENTS: f64 = 1e6;
 
-/// The f64 ray tracer over one mesh.
+/// The ground truth of a mesh: a ray tracer in f64 with error bounds, against which methods are
+/// judged.
 pub struct Oracle<'a> {
     pub(crate) mesh: &'a Mesh,
     pub(crate) tree: Tree<'a>,

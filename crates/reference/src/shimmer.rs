@@ -36,10 +36,9 @@ pub struct Seen<'a> {
     pub primitives: &'a [u32],
 }
 
-/// For each pixel of `now`, the pixel of the frame before that shows the same receiver: the one
-/// into which its place on its primitive fell, where that was then, if that shows the same
-/// primitive. [`BACKGROUND`]
-/// where none does.
+/// For each pixel of `now`, the pixel of the frame before that shows the same receiver;
+/// [`BACKGROUND`] where none does. The receiver keeps its place on its primitive, which may have
+/// moved: the pixel is the one where that place was seen, if it showed this primitive.
 ///
 /// # Errors
 /// [`Error::PixelCount`], [`Error::UnknownPrimitive`], [`Error::Interrupted`].

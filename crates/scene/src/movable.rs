@@ -248,9 +248,9 @@ impl Movable {
         })
     }
 
-    /// Puts a moved part into the mesh, which is [`rest`](Self::rest) with parts moved. Triangles
-    /// are turned of a part that was mirrored in the mesh (`was_mirrored`) and is not now, or the
-    /// other way round.
+    /// Puts a moved part into the mesh, which is [`rest`](Self::rest) with parts moved. If the part
+    /// was mirrored there (`was_mirrored`) and is not now, or the other way round, the corners of
+    /// its triangles change their order.
     ///
     /// # Panics
     /// If there is no such part, or the mesh is another one.

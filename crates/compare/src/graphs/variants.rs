@@ -42,8 +42,8 @@ pub struct Setting {
     pub set: Vec<(String, String)>,
 }
 
-/// The settings of a preset: what is set of it alone wins over what is set of all, and of each list
-/// of values every one, with every one of the other lists.
+/// The settings of a preset. Values of the argument itself win over those of `all`. Lists of values
+/// are combined: one setting for each combination.
 ///
 /// # Errors
 /// A param that the preset does not have, a range that is none.

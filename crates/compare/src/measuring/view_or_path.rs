@@ -42,7 +42,8 @@ impl ViewOrPath {
         }
     }
 
-    /// Its frames; of a path with `jitter`, each with that of as many that are blended.
+    /// The camera of each frame. `jitter`: how many frames are blended; each then looks through
+    /// another point of its pixels.
     pub fn poses(&self, jitter: Option<u32>) -> Vec<CameraPose> {
         let views = match self {
             Self::Still(view) => vec![view.clone()],

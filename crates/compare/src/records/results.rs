@@ -362,8 +362,8 @@ pub struct Measured {
     /// How a method that remembers came to its steady state; absent of one that does not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub steady: Option<Steady>,
-    /// The frames of a camera path, of which all else are the sums and the spread; absent of a
-    /// still view.
+    /// The frames of a camera path; all other fields are their sums and spreads. Absent of a still
+    /// view.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sequence: Option<Sequence>,
     /// The run's pictures, those of a path's worst frame, file names in the results' folder; absent

@@ -43,8 +43,8 @@ const CALLBACK: Duration = Duration::from_secs(10);
 ///
 /// A frame is [`encode`](Self::encode), the host's submission, and, for times and readbacks,
 /// [`poll`](Self::poll) in this frame or a later one, or [`finish`](Self::finish), which waits.
-/// Every encoder that a frame was encoded into must be submitted, in order: what a skipped pass or
-/// `.previous` finds was made there.
+/// Every encoder that a frame was encoded into must be submitted, in order: later frames use what a
+/// skipped pass kept there, and read it as `.previous`.
 pub struct Executor {
     device: wgpu::Device,
     presence: Presence,

@@ -69,9 +69,9 @@ impl Used {
     }
 }
 
-/// Drops the params, values, inputs and materials that a document, or one that it includes, has of
-/// an extended one and does not use. Warns of a default for one of these. `known`: the included
-/// documents that are done, by path.
+/// Drops params, values, inputs and materials that a document inherits from those that it extends
+/// and does not use; the same in all documents that it includes. Warns of another default that the
+/// document gives to a dropped param. `known`: the included documents that are done, by path.
 pub(crate) fn drop_unused(
     document: &mut Document,
     shaders: &Shaders,

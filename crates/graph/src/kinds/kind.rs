@@ -16,7 +16,7 @@ use crate::{
 use std::fmt;
 
 /// The body of a pass of some kind. Its fields are what the RON entry holds beside `name`,
-/// `shader`, `bind`, `set`, `if`, `repeat`, `run`, `clear` and `overwrites`.
+/// `shader`, `bind`, `set`, `if`, `repeat`, `run`, `clear`, `overwrites` and `reads`.
 pub trait PassKind: fmt::Debug + Send + Sync {
     /// Says which GPU work the pass is, in order. Called without a GPU, more than once; it must
     /// depend on nothing but the body and values that it asks for. A shader that it names only for

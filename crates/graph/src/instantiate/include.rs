@@ -55,6 +55,11 @@ pub(super) fn outer(
     }
 }
 
+fn has_input(document: &Document, name: &str) -> bool {
+    let mut inputs = document.inputs.iter();
+    inputs.any(|input| input.name.as_str() == name)
+}
+
 /// True if a document writes into one of its inputs.
 pub(super) fn is_output(document: &Document, input: &Input) -> bool {
     let mut outputs = document.outputs.iter();
@@ -167,11 +172,8 @@ pub(super) fn params(
 ) -> Params {
     let mut set: BTreeMap<String, SetParam> = BTreeMap::new();
     for (name, expr, place) in &said.set {
-        if !document
-            .params
-            .iter()
-            .any(|param| param.name.value == name.value)
-        {
+        let mut params = document.params.iter();
+        if !params.any(|param| param.name.value == name.value) {
             let known = document.params.iter().map(|param| param.name.value.clone());
             let known = at.reports().known(known);
             at.reports().report(InterfaceError::Unused {
@@ -256,27 +258,16 @@ pub(super) fn outside(
 ) {
     let (mut scene, mut overrides) = (BTreeMap::new(), BTreeMap::new());
     for (name, reference, place) in &said.bind {
-        if document
-            .inputs
-            .iter()
-            .any(|input| input.name.as_str() == name.as_str())
-        {
+        if has_input(document, name.as_str()) {
             continue;
         }
-        let output = document
-            .outputs
-            .iter()
-            .find(|output| output.name.as_str() == name.as_str());
+        let mut outputs = document.outputs.iter();
+        let output = outputs.find(|output| output.name.as_str() == name.as_str());
         if output.is_none() && at.find_scene(name).is_none() {
-            let known = document
-                .inputs
-                .iter()
-                .map(|input| input.name.value.to_string());
-            let outputs = document
-                .outputs
-                .iter()
-                .map(|output| output.name.value.to_string());
-            let known = at.reports().known(known.chain(outputs));
+            let inputs = document.inputs.iter().map(|input| &input.name.value);
+            let outputs = document.outputs.iter().map(|output| &output.name.value);
+            let known = inputs.chain(outputs).map(ToString::to_string);
+            let known = at.reports().known(known);
             at.reports().report(InterfaceError::Unused {
                 document: document.file.name.to_string(),
                 name: (*name).clone(),
@@ -458,10 +449,7 @@ pub(super) fn outputs(
             outputs.push((name.clone(), target.clone()));
         }
         // A bound output has its name here already.
-        let is_input = document
-            .inputs
-            .iter()
-            .any(|input| input.name.as_str() == path);
+        let is_input = has_input(document, &path);
         let is_bound = said
             .bind
             .iter()

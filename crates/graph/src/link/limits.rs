@@ -130,20 +130,17 @@ pub(super) fn stages(
     let vertex = of(ShaderStage::Vertex);
     if let Some(index) = vertex {
         let points = draw.primitive.topology == wgt::PrimitiveTopology::PointList;
-        check_vertex(
-            &entry(shader, index),
-            shader,
-            index,
-            points,
-            limits,
-            reports,
-        )?;
+        let at = entry(shader, index);
+        check_vertex(&at, shader, index, points, limits, reports)?;
     }
     let Some(fragment) = of(ShaderStage::Fragment) else {
         return Ok(());
     };
     let at = entry(shader, fragment);
-    check_fragment(&at, shader, fragment, limits, reports)?;
+    let inputs = Varyings::inputs(shader, fragment);
+    let most = limits.max_inter_stage_shader_variables;
+    check_locations(&at, "reads", &inputs, most, reports)?;
+    check_varyings(&at, "reads", &inputs, inputs.builtins, most, reports)?;
     let most = limits.max_color_attachments;
     // Too many targets were reported already.
     if draw.colors.len() <= most as usize {
@@ -157,7 +154,7 @@ pub(super) fn stages(
     }
     let given = vertex.map_or_else(Varyings::default, |index| Varyings::outputs(shader, index));
     let mut wrong = None;
-    for taken in &Varyings::inputs(shader, fragment).locations {
+    for taken in &inputs.locations {
         if let Some(why) = misfit(taken, &given.locations) {
             wrong = Some(reports.report(LimitError::NoVarying {
                 entry: at.clone(),
@@ -185,36 +182,11 @@ fn check_vertex(
         }));
     }
     let outputs = Varyings::outputs(shader, index);
-    let locations = limits
-        .max_inter_stage_shader_variables
-        .saturating_sub(outputs.builtins);
+    let most = limits.max_inter_stage_shader_variables;
+    let locations = most.saturating_sub(outputs.builtins);
     check_locations(at, "writes", &outputs, locations, reports)?;
-    check_varyings(
-        at,
-        "writes",
-        &outputs,
-        outputs.builtins + u32::from(points),
-        limits,
-        reports,
-    )
-}
-
-fn check_fragment(
-    at: &Entry,
-    shader: &Shader,
-    index: usize,
-    limits: &wgt::Limits,
-    reports: &mut Reports,
-) -> Result<(), ErrorGuaranteed> {
-    let inputs = Varyings::inputs(shader, index);
-    check_locations(
-        at,
-        "reads",
-        &inputs,
-        limits.max_inter_stage_shader_variables,
-        reports,
-    )?;
-    check_varyings(at, "reads", &inputs, inputs.builtins, limits, reports)
+    let builtins = outputs.builtins + u32::from(points);
+    check_varyings(at, "writes", &outputs, builtins, most, reports)
 }
 
 fn check_locations(
@@ -241,10 +213,9 @@ fn check_varyings(
     verb: &'static str,
     of: &Varyings,
     builtins: u32,
-    limits: &wgt::Limits,
+    most: u32,
     reports: &mut Reports,
 ) -> Result<(), ErrorGuaranteed> {
-    let most = limits.max_inter_stage_shader_variables;
     let number = of.locations.len() as u64 + u64::from(builtins);
     if number <= u64::from(most) {
         return Ok(());

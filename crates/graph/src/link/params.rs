@@ -266,7 +266,7 @@ fn set_member(
         Value::Bool(value) => vec![Scalar::Whole(i64::from(*value))],
         Value::Word(_) => {
             let program = Program {
-                shader: scope.own_shader().cloned(),
+                shader: scope.own_shader.clone(),
                 ..Program::default()
             };
             let shader = scope.shader(&program, reports)?;

@@ -79,7 +79,7 @@ fn bound_globals(
     reports: &mut Reports,
 ) -> Result<(), ErrorGuaranteed> {
     let mut wrong = None;
-    let own = scope.own_shader();
+    let own = scope.own_shader.as_ref();
     let is_own = program.shader.as_ref().map(|s| &s.value) == own.map(|s| &s.value);
     for (bound, _) in &program.bind {
         let exists = shader.global_names().any(|global| global == bound.as_str());

@@ -31,7 +31,7 @@ pub(super) struct PassScope<'a> {
     inherited_bind: Vec<Inherited<'a, Reference>>,
     inherited_set: Vec<Inherited<'a, Expr>>,
     /// The shader that has the pass's own bindings.
-    own_shader: Option<Located<String>>,
+    pub own_shader: Option<Located<String>>,
     /// The bindings and values that a shader of the pass has asked for.
     asked: BTreeSet<String>,
     /// Source and destination of a capture: the two operands of its step.
@@ -102,14 +102,7 @@ impl<'a> PassScope<'a> {
 
     /// Adds a resource that no document names.
     pub fn add(&mut self, name: String, kind: ResourceKind) -> Target {
-        let id = self.symbols.add(Resource {
-            name,
-            declared: None,
-            kind,
-            origin: Origin::Own,
-            growth: None,
-            keep: false,
-        });
+        let id = self.symbols.add(Resource::new(name, kind, Origin::Own));
         self.symbols.whole(id)
     }
 
@@ -195,11 +188,6 @@ impl<'a> PassScope<'a> {
                 .incomplete
                 .unwrap_or_else(|| reports.report(LinkError::ShaderNotLoaded(name.clone())))),
         }
-    }
-
-    /// Name of the shader that has the pass's own bindings.
-    pub fn own_shader(&self) -> Option<&Located<String>> {
-        self.own_shader.as_ref()
     }
 
     /// Finds the target of a global: bound by a group, else of that name.

@@ -610,7 +610,14 @@ impl<'a> At<'_, 'a, '_> {
             let resource = self.symbols.get(target.id);
             let have = parts::layers(&target, resource, reference, self.reports)?;
             let range = self.range(selection, have, reference, &target)?;
-            parts::select_layers(&mut target, range);
+            // Of a buffer without parts so far, the items count from 0.
+            let is_whole = target.part == SubresourceRange::WHOLE;
+            let start = if is_whole {
+                0
+            } else {
+                target.part.layers.start
+            };
+            target.part.layers = start + range.start..start + range.end;
         }
         if reference.previous {
             let kept = self.symbols.kept(target.id);

@@ -48,7 +48,6 @@ pub(super) fn link(
     }
     let globals = shader.globals(&entries);
     bound_globals(program, &shader, &globals, scope, reports)?;
-    groups_exist(&shader, limits, reports)?;
     device::binding_numbers(&shader, &globals, limits, reports)?;
     let mut linked = LinkedProgram {
         constants: params::constants(program, &shader, scope, reports)?,
@@ -93,27 +92,6 @@ fn bound_globals(
         }
     }
     wrong.map_or(Ok(()), Err)
-}
-
-/// Group numbers that the adapter does not have, be it of globals that nothing uses: a device
-/// refuses the whole module. (One number for two globals is found when the shader is
-/// validated.)
-fn groups_exist(
-    shader: &Shader,
-    limits: &wgt::Limits,
-    reports: &mut Reports,
-) -> Result<(), ErrorGuaranteed> {
-    let most = limits.max_bind_groups;
-    let groups = shader.groups();
-    for (global, group, span) in groups.filter(|(_, group, _)| *group >= most) {
-        reports.unsupported(LinkError::BindGroup {
-            global: global.to_owned(),
-            group,
-            most,
-            span,
-        })?;
-    }
-    Ok(())
 }
 
 /// The numbers of bindings that wgpu limits per stage.

@@ -92,10 +92,6 @@ impl<'a> PassScope<'a> {
         self.symbols.get(id)
     }
 
-    pub fn base(&self, id: ResourceId) -> ResourceId {
-        self.symbols.base(id)
-    }
-
     pub fn request(&self) -> &'a PlanRequest<'a> {
         self.symbols.request
     }

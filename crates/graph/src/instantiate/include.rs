@@ -362,7 +362,19 @@ pub(super) fn input(
         None => {
             let span = include.graph.span.clone();
             if at.symbols().scopes.find(at.scope(), name).is_none() {
-                return Err(no_input(input, document, include, at));
+                if let Some(reported) = at.instance().incomplete {
+                    return Err(reported);
+                }
+                let known = at.symbols().scopes.known(at.scope());
+                let known = at.reports().known(known);
+                return Err(at.reports().report(InterfaceError::NoInput {
+                    document: document.file.name.to_string(),
+                    name: input.name.value.to_string(),
+                    kind: input.kind.describe_with_format(),
+                    span: include.graph.span.clone(),
+                    declared: input.name.span.clone(),
+                    known,
+                }));
             }
             let reference = Reference::new(Located::new(name.clone(), span.clone()));
             let target = at.resolve(&reference)?;
@@ -396,27 +408,6 @@ pub(super) fn input(
         span,
         declared: input.name.span.clone(),
     }))
-}
-
-fn no_input(
-    input: &Input,
-    document: &Document,
-    include: &Include,
-    at: &mut At<'_, '_, '_>,
-) -> ErrorGuaranteed {
-    if let Some(reported) = at.instance().incomplete {
-        return reported;
-    }
-    let known = at.symbols().scopes.known(at.scope());
-    let known = at.reports().known(known);
-    at.reports().report(InterfaceError::NoInput {
-        document: document.file.name.to_string(),
-        name: input.name.value.to_string(),
-        kind: input.kind.describe_with_format(),
-        span: include.graph.span.clone(),
-        declared: input.name.span.clone(),
-        known,
-    })
 }
 
 /// Returns the names that a document gives, and every output with its target, to be compared

@@ -225,16 +225,18 @@ impl<'a> PassScope<'a> {
         }))
     }
 
-    /// The sampler that a global is, bound to an operand or found by its name.
+    /// The sampler that a global of a program is, bound to an operand or found by its name.
     pub fn sampler(
         &mut self,
-        bound: Option<&Operand>,
+        program: &Program,
         global: &str,
         reports: &mut Reports,
     ) -> Option<&Sampler> {
+        let mut bound = program.bind.iter();
+        let bound = bound.find(|(name, _)| name.value == global);
         let target = match bound {
-            Some(Operand::Named(reference)) => self.resolve(reference, reports),
-            Some(Operand::Scratch(_)) => return None,
+            Some((_, Operand::Named(reference))) => self.resolve(reference, reports),
+            Some((_, Operand::Scratch(_))) => return None,
             None => self
                 .symbols
                 .find_global(global, self.position.scope, reports)?,

@@ -610,7 +610,7 @@ impl<'a> At<'_, 'a, '_> {
             let resource = self.symbols.get(target.id);
             let have = parts::layers(&target, resource, reference, self.reports)?;
             let range = self.range(selection, have, reference, &target)?;
-            // Of a buffer without parts so far, the items count from 0.
+            // Items of a buffer without parts so far count from 0.
             let is_whole = target.part == SubresourceRange::WHOLE;
             let start = if is_whole {
                 0

@@ -36,6 +36,20 @@ pub struct Resource {
     pub keep: bool,
 }
 
+impl Resource {
+    /// One that no document declares.
+    pub(crate) fn new(name: String, kind: ResourceKind, origin: Origin) -> Self {
+        Self {
+            name,
+            declared: None,
+            kind,
+            origin,
+            growth: None,
+            keep: false,
+        }
+    }
+}
+
 /// Whose content a resource holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {

@@ -23,7 +23,7 @@ use crate::{
     param::ParamType,
     provider::Import,
     request::PlanRequest,
-    resource::{Buffer, Origin, Resource, ResourceKind, Sampler, Texture},
+    resource::{Buffer, Origin, Resource, ResourceId, ResourceKind, Sampler, Texture},
     shader::expand::Replaced,
     source::span::Located,
 };
@@ -118,12 +118,8 @@ impl<'a> Builder<'a, '_> {
             let symbol = match self.import(input) {
                 Ok(kind) => {
                     let id = self.symbols.add(Resource {
-                        name: name.value.to_string(),
                         declared: Some(name.span.clone()),
-                        kind,
-                        origin: Origin::Host,
-                        growth: None,
-                        keep: false,
+                        ..Resource::new(name.value.to_string(), kind, Origin::Host)
                     });
                     Symbol::Target(self.symbols.whole(id))
                 }
@@ -252,8 +248,7 @@ impl<'a> Builder<'a, '_> {
         let mut replaced = self.symbols.scopes.instance(instance).replaced.clone();
         for entry in &document.imports {
             // A condition without a value was reported.
-            let place = Position { scope, index: None };
-            let mut at = self.symbols.at(place, None, self.reports);
+            let mut at = self.symbols.at(scope.begin(), None, self.reports);
             if self.plan_inputs.is_there(entry.condition.as_ref(), &mut at) == Ok(true) {
                 let shaders = &self.symbols.graph.shaders;
                 shaders.replace(&mut replaced, &entry.of, &entry.is);
@@ -303,8 +298,7 @@ impl<'a> Builder<'a, '_> {
             return Err(reported);
         }
         let scope = context.scope;
-        let position = Position { scope, index: None };
-        let mut at = self.symbols.at(position, None, self.reports);
+        let mut at = self.symbols.at(scope.begin(), None, self.reports);
         if !self
             .plan_inputs
             .is_there(entry.condition.as_ref(), &mut at)?
@@ -507,8 +501,7 @@ impl<'a> Builder<'a, '_> {
         let read_only = include::declare_inputs(scope, document, inputs, scopes);
         let inner = context.inside(scope);
         self.document(document, &inner);
-        let inside = Position { scope, index: None };
-        let mut at = self.symbols.at(inside, None, self.reports);
+        let mut at = self.symbols.at(scope.begin(), None, self.reports);
         let plan_inputs = &mut self.plan_inputs;
         let (names, outputs) = include::outputs(document, &said, plan_inputs, &mut at);
         self.interfaces.push(Interface {
@@ -682,7 +675,7 @@ impl<'a> Builder<'a, '_> {
         let mut number = 0;
         // Finding one may add others.
         while number < self.symbols.resources.len() {
-            let id = self.symbols.id(number);
+            let id = ResourceId(number);
             // A broken one is stored as such, and its users find that.
             let _ = self.symbols.resolve_size(id, self.reports);
             number += 1;

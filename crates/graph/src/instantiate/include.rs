@@ -55,6 +55,11 @@ pub(super) fn outer(
     }
 }
 
+fn has_input(document: &Document, name: &str) -> bool {
+    let mut inputs = document.inputs.iter();
+    inputs.any(|input| input.name.as_str() == name)
+}
+
 /// True if a document writes into one of its inputs.
 pub(super) fn is_output(document: &Document, input: &Input) -> bool {
     let mut outputs = document.outputs.iter();
@@ -167,11 +172,8 @@ pub(super) fn params(
 ) -> Params {
     let mut set: BTreeMap<String, SetParam> = BTreeMap::new();
     for (name, expr, place) in &said.set {
-        if !document
-            .params
-            .iter()
-            .any(|param| param.name.value == name.value)
-        {
+        let mut params = document.params.iter();
+        if !params.any(|param| param.name.value == name.value) {
             let known = document.params.iter().map(|param| param.name.value.clone());
             let known = at.reports().known(known);
             at.reports().report(InterfaceError::Unused {
@@ -256,27 +258,16 @@ pub(super) fn outside(
 ) {
     let (mut scene, mut overrides) = (BTreeMap::new(), BTreeMap::new());
     for (name, reference, place) in &said.bind {
-        if document
-            .inputs
-            .iter()
-            .any(|input| input.name.as_str() == name.as_str())
-        {
+        if has_input(document, name.as_str()) {
             continue;
         }
-        let output = document
-            .outputs
-            .iter()
-            .find(|output| output.name.as_str() == name.as_str());
+        let mut outputs = document.outputs.iter();
+        let output = outputs.find(|output| output.name.as_str() == name.as_str());
         if output.is_none() && at.find_scene(name).is_none() {
-            let known = document
-                .inputs
-                .iter()
-                .map(|input| input.name.value.to_string());
-            let outputs = document
-                .outputs
-                .iter()
-                .map(|output| output.name.value.to_string());
-            let known = at.reports().known(known.chain(outputs));
+            let inputs = document.inputs.iter().map(|input| &input.name.value);
+            let outputs = document.outputs.iter().map(|output| &output.name.value);
+            let known = inputs.chain(outputs).map(ToString::to_string);
+            let known = at.reports().known(known);
             at.reports().report(InterfaceError::Unused {
                 document: document.file.name.to_string(),
                 name: (*name).clone(),
@@ -371,7 +362,19 @@ pub(super) fn input(
         None => {
             let span = include.graph.span.clone();
             if at.symbols().scopes.find(at.scope(), name).is_none() {
-                return Err(no_input(input, document, include, at));
+                if let Some(reported) = at.instance().incomplete {
+                    return Err(reported);
+                }
+                let known = at.symbols().scopes.known(at.scope());
+                let known = at.reports().known(known);
+                return Err(at.reports().report(InterfaceError::NoInput {
+                    document: document.file.name.to_string(),
+                    name: input.name.value.to_string(),
+                    kind: input.kind.describe_with_format(),
+                    span: include.graph.span.clone(),
+                    declared: input.name.span.clone(),
+                    known,
+                }));
             }
             let reference = Reference::new(Located::new(name.clone(), span.clone()));
             let target = at.resolve(&reference)?;
@@ -407,27 +410,6 @@ pub(super) fn input(
     }))
 }
 
-fn no_input(
-    input: &Input,
-    document: &Document,
-    include: &Include,
-    at: &mut At<'_, '_, '_>,
-) -> ErrorGuaranteed {
-    if let Some(reported) = at.instance().incomplete {
-        return reported;
-    }
-    let known = at.symbols().scopes.known(at.scope());
-    let known = at.reports().known(known);
-    at.reports().report(InterfaceError::NoInput {
-        document: document.file.name.to_string(),
-        name: input.name.value.to_string(),
-        kind: input.kind.describe_with_format(),
-        span: include.graph.span.clone(),
-        declared: input.name.span.clone(),
-        known,
-    })
-}
-
 /// Returns the names that a document gives, and every output with its target, to be compared
 /// with the writes.
 pub(super) fn outputs(
@@ -458,10 +440,7 @@ pub(super) fn outputs(
             outputs.push((name.clone(), target.clone()));
         }
         // A bound output has its name here already.
-        let is_input = document
-            .inputs
-            .iter()
-            .any(|input| input.name.as_str() == path);
+        let is_input = has_input(document, &path);
         let is_bound = said
             .bind
             .iter()

@@ -75,17 +75,12 @@ pub(crate) fn lower<'a>(flat: Flat<'a>, reports: &mut Reports) -> Lowered<'a> {
         let own = Located::new(entry.name.value.to_string(), entry.name.span.clone());
         // A slash stands in no name: nothing in a document can mean this buffer.
         let scratch = scratch.into_iter().map(|(name, bytes)| {
-            symbols.add(Resource {
-                name: format!("{}/{name}", flat.name.value),
-                declared: None,
-                kind: ResourceKind::Buffer(Buffer {
-                    count: Some(bytes / 4),
-                    ..Buffer::default()
-                }),
-                origin: Origin::Own,
-                growth: None,
-                keep: false,
-            })
+            let name = format!("{}/{name}", flat.name.value);
+            let kind = ResourceKind::Buffer(Buffer {
+                count: Some(bytes / 4),
+                ..Buffer::default()
+            });
+            symbols.add(Resource::new(name, kind, Origin::Own))
         });
         LoweredPass {
             scratch: scratch.collect(),

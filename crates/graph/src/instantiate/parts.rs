@@ -7,7 +7,7 @@ use crate::{
         syntax::{Attribute, Reference},
         value::{Scalar, Value},
     },
-    resource::{Resource, ResourceKind, SubresourceRange, Target},
+    resource::{Resource, ResourceKind, Target},
     source::span::{Located, Span},
 };
 use std::ops::Range;
@@ -36,16 +36,6 @@ pub(super) fn layers(
     let uncounted = || uncounted(resource, reference);
     let count = items(resource, target).ok_or_else(|| reports.report(uncounted()));
     Ok((what, count?))
-}
-
-/// Narrows a target to some of its layers, slices or items.
-pub(super) fn select_layers(target: &mut Target, range: Range<u32>) {
-    let start = if target.part == SubresourceRange::WHOLE {
-        0
-    } else {
-        target.part.layers.start
-    };
-    target.part.layers = start + range.start..start + range.end;
 }
 
 /// The items of a buffer are asked for, and not known.

@@ -19,6 +19,16 @@ use std::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ScopeId(usize);
 
+impl ScopeId {
+    /// The place of an expression that is no entry's.
+    pub fn begin(self) -> Position {
+        Position {
+            scope: self,
+            index: None,
+        }
+    }
+}
+
 /// Number of a value in [`SymbolTable`](super::symbols::SymbolTable).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct ValueId(pub(super) usize);

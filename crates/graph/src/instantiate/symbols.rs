@@ -98,11 +98,6 @@ impl<'a> SymbolTable<'a> {
         }
     }
 
-    /// The resource of a number.
-    pub fn id(&self, number: usize) -> ResourceId {
-        ResourceId(number)
-    }
-
     pub fn get(&self, id: ResourceId) -> &Resource {
         &self.resources[id.0]
     }
@@ -116,13 +111,11 @@ impl<'a> SymbolTable<'a> {
 
     /// Adds a material whose size is found when it is first asked for.
     pub(super) fn declare(&mut self, name: String, declared: Declared) -> ResourceId {
+        let kind = ResourceKind::Buffer(crate::resource::Buffer::default());
         self.resources.push(Resource {
-            name,
             declared: Some(declared.span.clone()),
-            kind: ResourceKind::Buffer(crate::resource::Buffer::default()),
-            origin: Origin::Own,
-            growth: None,
             keep: declared.material().keeps(),
+            ..Resource::new(name, kind, Origin::Own)
         });
         self.states.push(State::Declared(declared));
         ResourceId(self.resources.len() - 1)
@@ -151,10 +144,7 @@ impl<'a> SymbolTable<'a> {
             }));
         }
         declared.state = ValueState::Resolving;
-        let position = Position {
-            scope: declared.scope,
-            index: None,
-        };
+        let position = declared.scope.begin();
         let expr = declared.expr().clone();
         self.resolving.push(id);
         let value = eval::value(&expr, &mut self.at(position, None, reports));
@@ -285,14 +275,7 @@ impl<'a> SymbolTable<'a> {
                     None if name == FRAME => ResourceKind::Frame,
                     None => return None,
                 };
-                let id = self.add(Resource {
-                    name: name.to_owned(),
-                    declared: None,
-                    kind,
-                    origin: Origin::Host,
-                    growth: None,
-                    keep: false,
-                });
+                let id = self.add(Resource::new(name.to_owned(), kind, Origin::Host));
                 self.scene.insert(name.to_owned(), id);
                 id
             }
@@ -348,10 +331,7 @@ impl<'a> SymbolTable<'a> {
 
     /// The place of the root document's own expressions.
     pub fn root(&self) -> Position {
-        Position {
-            scope: self.scopes.root(),
-            index: None,
-        }
+        self.scopes.root().begin()
     }
 
     /// Finds the target of a name in a command: a resource by its full name, or a part of one that
@@ -536,10 +516,7 @@ impl<'a> SymbolTable<'a> {
         self.evaluating.push(id);
         let full_name = self.resources[id.0].name.clone();
         let (graph, request) = (self.graph, self.request);
-        let position = Position {
-            scope: declared.scope,
-            index: None,
-        };
+        let position = declared.scope.begin();
         let mut at = self.at(position, None, reports);
         let kind = materials::kind(&declared, &full_name, (graph, request), &mut at);
         self.evaluating.pop();
@@ -633,7 +610,14 @@ impl<'a> At<'_, 'a, '_> {
             let resource = self.symbols.get(target.id);
             let have = parts::layers(&target, resource, reference, self.reports)?;
             let range = self.range(selection, have, reference, &target)?;
-            parts::select_layers(&mut target, range);
+            // Items of a buffer without parts so far count from 0.
+            let is_whole = target.part == SubresourceRange::WHOLE;
+            let start = if is_whole {
+                0
+            } else {
+                target.part.layers.start
+            };
+            target.part.layers = start + range.start..start + range.end;
         }
         if reference.previous {
             let kept = self.symbols.kept(target.id);

@@ -19,7 +19,9 @@ use crate::{
     scalar_class::ScalarClass,
     source::span::{Located, Span},
 };
-use wgt::{TextureAspect, TextureFormat, TextureFormatFeatureFlags as Flags, TextureUsages};
+use wgt::{
+    Features, TextureAspect, TextureFormat, TextureFormatFeatureFlags as Flags, TextureUsages,
+};
 
 const ATTACHMENT: Usage = Usage::Texture(TextureUsages::RENDER_ATTACHMENT);
 
@@ -53,8 +55,18 @@ pub(super) fn link(
     let stencil = stencil.map(|stencil| link_stencil(stencil, pass, scope, reports));
     let canvas = canvas::texture(draw, program.as_ref().ok(), pass, limits, reports);
     let canvas = canvas.map(|texture| {
-        let span = &draw.canvas.as_ref()?.span;
-        Some(canvas_of(texture?, span, pass, scope))
+        let (texture, span) = (texture?, &draw.canvas.as_ref()?.span);
+        let (format, samples) = (texture.format, texture.samples);
+        // A slash stands in no name: nothing in a document can mean this texture.
+        let name = format!("{}/canvas", pass.name.value);
+        let target = scope.add(name, ResourceKind::Texture(texture));
+        // It is no content: nothing is written, and nothing of before is needed.
+        pass.access(&target, (false, false, true), ATTACHMENT, span);
+        Some(Attachment {
+            target,
+            format,
+            samples,
+        })
     });
     let call = match &draw.call {
         DrawCall::Direct {
@@ -84,56 +96,32 @@ pub(super) fn link(
     Ok(linked)
 }
 
-/// The attachment of a draw that has no other.
-fn canvas_of(
-    texture: Texture,
-    span: &Span,
-    pass: &mut LinkedPass,
-    scope: &mut PassScope<'_>,
-) -> Attachment {
-    let Texture {
-        format, samples, ..
-    } = texture;
-    // A slash stands in no name: nothing in a document can mean this texture.
-    let name = format!("{}/canvas", pass.name.value);
-    let target = scope.add(name, ResourceKind::Texture(texture));
-    // It is no content: nothing is written, and nothing of before is needed.
-    let used = (false, false, true);
-    pass.access(&target, used, ATTACHMENT, span);
-    Attachment {
-        target,
-        format,
-        samples,
-    }
-}
-
 /// Checks features of the rasteriser that not every device has.
 fn features(
     draw: &Draw<Names>,
     pass: &LinkedPass,
-    features: wgt::Features,
+    features: Features,
     reports: &mut Reports,
 ) -> Result<(), ErrorGuaranteed> {
+    let primitive = &draw.primitive;
     let asked = [
         (
-            draw.primitive.conservative,
+            primitive.conservative,
             "conservative: true",
-            wgt::Features::CONSERVATIVE_RASTERIZATION,
-            "CONSERVATIVE_RASTERIZATION",
+            Features::CONSERVATIVE_RASTERIZATION,
         ),
         (
-            draw.primitive.unclipped_depth,
+            primitive.unclipped_depth,
             "unclipped: true",
-            wgt::Features::DEPTH_CLIP_CONTROL,
-            "DEPTH_CLIP_CONTROL",
+            Features::DEPTH_CLIP_CONTROL,
         ),
     ];
-    for (is_asked, field, feature, name) in asked {
+    for (is_asked, field, feature) in asked {
         if is_asked && !features.contains(feature) {
             reports.unsupported(LinkError::DrawFeature {
                 pass: pass.name.clone(),
                 field,
-                feature: name,
+                feature: feature.iter_names().next().map_or("", |(name, _)| name),
             })?;
         }
     }

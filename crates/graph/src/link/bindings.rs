@@ -3,7 +3,7 @@
 use super::{
     layouts::Layouts,
     params,
-    pass::{BindTarget, Block, LinkedBinding, LinkedPass, LinkedProgram, Usage},
+    pass::{BindTarget, LinkedBinding, LinkedPass, LinkedProgram, Usage},
     scope::PassScope,
     textures,
 };
@@ -14,11 +14,7 @@ use crate::{
     kinds::step::Program,
     provider::ProvidedBinding,
     resource::{CLOCK_BYTES, FRAME_BYTES, ResourceKind, Sampler, SubresourceRange, Target},
-    shader::{
-        class::{Class, Member},
-        members::reads_below,
-        reflect::Global,
-    },
+    shader::{class::Class, members::reads_below, reflect::Global},
 };
 use std::num::NonZeroU64;
 
@@ -48,7 +44,7 @@ pub(super) fn bind(
             }));
         }
         (Class::Uniform { size, members, .. }, None) if global.name == "params" => {
-            let block = params_uniform(global, *size, members, scope, reports)?;
+            let block = params::block(global, *size, members, scope, reports)?;
             (BindTarget::Params(block), uniform(*size))
         }
         (_, bound) => {
@@ -95,29 +91,6 @@ pub(super) fn bind(
     })
 }
 
-/// The pass's params as the shader's struct wants them.
-fn params_uniform(
-    global: &Global,
-    size: u64,
-    members: &[Member],
-    scope: &mut PassScope<'_>,
-    reports: &mut Reports,
-) -> Result<Block, ErrorGuaranteed> {
-    let most = scope.request().limits.max_uniform_buffer_binding_size;
-    let what = if members.is_empty() {
-        "is not a struct"
-    } else if size > most {
-        "is too large for the adapter"
-    } else {
-        return params::params_block(global, size, members, scope, reports);
-    };
-    Err(reports.report(LinkError::ParamsUniform {
-        what,
-        size,
-        span: global.span.clone(),
-    }))
-}
-
 fn binding(
     global: &Global,
     target: &mut Target,
@@ -139,7 +112,7 @@ fn binding(
             return uniform_buffer(global, target, *size, provided.stride, scope, reports);
         }
         (Class::Uniform { size, .. }, ResourceKind::Buffer(_)) => {
-            let id = scope.base(target.id);
+            let id = scope.symbols().base(target.id);
             layouts.see(id, &target.part, global);
             return uniform_buffer(global, target, *size, u64::MAX, scope, reports);
         }
@@ -285,7 +258,7 @@ fn storage_buffer(
         }));
     }
     aligned(global, target, scope, reports)?;
-    let id = scope.base(target.id);
+    let id = scope.symbols().base(target.id);
     layouts.see(id, &target.part, global);
     Ok((
         BindTarget::Buffer(target.clone()),

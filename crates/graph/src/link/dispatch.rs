@@ -67,7 +67,7 @@ pub(super) fn indirect(
         let found = resource.kind.describe();
         return Err(reports.report(LinkError::NoArguments { name, found }));
     }
-    let id = scope.base(target.id);
+    let id = scope.symbols().base(target.id);
     layouts.at_least(id, &target.part, bytes, &name.span);
     let usage = Usage::Buffer(wgt::BufferUsages::INDIRECT);
     pass.access(&target, (true, false, false), usage, &name.span);

@@ -90,7 +90,7 @@ impl Layouts {
     ) -> BTreeMap<ResourceId, Buffer> {
         let (mut buffers, mut errors) = (BTreeMap::new(), Vec::new());
         for (index, resource) in symbols.resources.iter().enumerate() {
-            let id = symbols.id(index);
+            let id = ResourceId(index);
             let seen = self.seen.get(&id).map_or(&[][..], Vec::as_slice);
             if let ResourceKind::Buffer(buffer) = &resource.kind {
                 buffers.insert(id, buffer.clone());

@@ -4,7 +4,10 @@
 use super::pass::LinkedProgram;
 use crate::{
     diagnostics::reports::{ErrorGuaranteed, Reports},
-    errors::limits::{Entry, Excess, LimitError},
+    errors::{
+        limits::{Entry, Excess, LimitError},
+        link::LinkError,
+    },
     kinds::step::{Draw, Names},
     shader::{
         footprint::{Footprint, Memory},
@@ -95,13 +98,24 @@ fn check_footprint(
     Ok(())
 }
 
-/// Numbers of bindings that the adapter does not have.
+/// Numbers of groups and bindings that the adapter does not have.
 pub(super) fn binding_numbers(
     shader: &Shader,
     globals: &[Global],
     limits: &wgt::Limits,
     reports: &mut Reports,
 ) -> Result<(), ErrorGuaranteed> {
+    // Those of globals that nothing uses count, too: a device refuses the whole module. (One number
+    // for two globals is found when the shader is validated.)
+    let groups = shader.groups();
+    for (global, group, span) in groups.filter(|(_, group, _)| *group >= limits.max_bind_groups) {
+        reports.unsupported(LinkError::BindGroup {
+            global: global.to_owned(),
+            group,
+            most: limits.max_bind_groups,
+            span,
+        })?;
+    }
     let most = limits.max_bindings_per_bind_group;
     for global in globals.iter().filter(|global| global.binding >= most) {
         reports.unsupported(LimitError::BindingNumber {
@@ -127,23 +141,30 @@ pub(super) fn stages(
         let at = program.stages.iter().position(|known| *known == stage)?;
         program.entries.get(at).copied()
     };
+    let most = limits.max_inter_stage_shader_variables;
     let vertex = of(ShaderStage::Vertex);
     if let Some(index) = vertex {
-        let points = draw.primitive.topology == wgt::PrimitiveTopology::PointList;
-        check_vertex(
-            &entry(shader, index),
-            shader,
-            index,
-            points,
-            limits,
-            reports,
-        )?;
+        let is_points = draw.primitive.topology == wgt::PrimitiveTopology::PointList;
+        let at = entry(shader, index);
+        if let Some(attribute) = Varyings::inputs(shader, index).locations.first() {
+            return Err(reports.report(LimitError::Attribute {
+                entry: at,
+                location: attribute.location,
+            }));
+        }
+        let outputs = Varyings::outputs(shader, index);
+        let locations = most.saturating_sub(outputs.builtins);
+        check_locations(&at, "writes", &outputs, locations, reports)?;
+        let builtins = outputs.builtins + u32::from(is_points);
+        check_varyings(&at, "writes", &outputs, builtins, most, reports)?;
     }
     let Some(fragment) = of(ShaderStage::Fragment) else {
         return Ok(());
     };
     let at = entry(shader, fragment);
-    check_fragment(&at, shader, fragment, limits, reports)?;
+    let inputs = Varyings::inputs(shader, fragment);
+    check_locations(&at, "reads", &inputs, most, reports)?;
+    check_varyings(&at, "reads", &inputs, inputs.builtins, most, reports)?;
     let most = limits.max_color_attachments;
     // Too many targets were reported already.
     if draw.colors.len() <= most as usize {
@@ -157,7 +178,7 @@ pub(super) fn stages(
     }
     let given = vertex.map_or_else(Varyings::default, |index| Varyings::outputs(shader, index));
     let mut wrong = None;
-    for taken in &Varyings::inputs(shader, fragment).locations {
+    for taken in &inputs.locations {
         if let Some(why) = misfit(taken, &given.locations) {
             wrong = Some(reports.report(LimitError::NoVarying {
                 entry: at.clone(),
@@ -168,53 +189,6 @@ pub(super) fn stages(
         }
     }
     wrong.map_or(Ok(()), Err)
-}
-
-fn check_vertex(
-    at: &Entry,
-    shader: &Shader,
-    index: usize,
-    points: bool,
-    limits: &wgt::Limits,
-    reports: &mut Reports,
-) -> Result<(), ErrorGuaranteed> {
-    if let Some(attribute) = Varyings::inputs(shader, index).locations.first() {
-        return Err(reports.report(LimitError::Attribute {
-            entry: at.clone(),
-            location: attribute.location,
-        }));
-    }
-    let outputs = Varyings::outputs(shader, index);
-    let locations = limits
-        .max_inter_stage_shader_variables
-        .saturating_sub(outputs.builtins);
-    check_locations(at, "writes", &outputs, locations, reports)?;
-    check_varyings(
-        at,
-        "writes",
-        &outputs,
-        outputs.builtins + u32::from(points),
-        limits,
-        reports,
-    )
-}
-
-fn check_fragment(
-    at: &Entry,
-    shader: &Shader,
-    index: usize,
-    limits: &wgt::Limits,
-    reports: &mut Reports,
-) -> Result<(), ErrorGuaranteed> {
-    let inputs = Varyings::inputs(shader, index);
-    check_locations(
-        at,
-        "reads",
-        &inputs,
-        limits.max_inter_stage_shader_variables,
-        reports,
-    )?;
-    check_varyings(at, "reads", &inputs, inputs.builtins, limits, reports)
 }
 
 fn check_locations(
@@ -241,10 +215,9 @@ fn check_varyings(
     verb: &'static str,
     of: &Varyings,
     builtins: u32,
-    limits: &wgt::Limits,
+    most: u32,
     reports: &mut Reports,
 ) -> Result<(), ErrorGuaranteed> {
-    let most = limits.max_inter_stage_shader_variables;
     let number = of.locations.len() as u64 + u64::from(builtins);
     if number <= u64::from(most) {
         return Ok(());

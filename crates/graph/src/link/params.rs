@@ -176,13 +176,24 @@ fn wrong_value(name: &str, expected: &str, found: &Value, span: &Span) -> LinkEr
 }
 
 /// Fills the `params` uniform member by member by name.
-pub(super) fn params_block(
+pub(super) fn block(
     global: &Global,
     size: u64,
     members: &[Member],
     scope: &mut PassScope<'_>,
     reports: &mut Reports,
 ) -> Result<Block, ErrorGuaranteed> {
+    let most = scope.request().limits.max_uniform_buffer_binding_size;
+    if members.is_empty() || size > most {
+        return Err(reports.report(LinkError::ParamsUniform {
+            what: match members {
+                [] => "is not a struct",
+                _ => "is too large for the adapter",
+            },
+            size,
+            span: global.span.clone(),
+        }));
+    }
     let mut block = Block {
         // A size beyond the memory is no uniform's; it was refused before.
         bytes: vec![0u8; usize::try_from(size).unwrap_or(0)],
@@ -266,7 +277,7 @@ fn set_member(
         Value::Bool(value) => vec![Scalar::Whole(i64::from(*value))],
         Value::Word(_) => {
             let program = Program {
-                shader: scope.own_shader().cloned(),
+                shader: scope.own_shader.clone(),
                 ..Program::default()
             };
             let shader = scope.shader(&program, reports)?;

@@ -48,7 +48,6 @@ pub(super) fn link(
     }
     let globals = shader.globals(&entries);
     bound_globals(program, &shader, &globals, scope, reports)?;
-    groups_exist(&shader, limits, reports)?;
     device::binding_numbers(&shader, &globals, limits, reports)?;
     let mut linked = LinkedProgram {
         constants: params::constants(program, &shader, scope, reports)?,
@@ -79,7 +78,7 @@ fn bound_globals(
     reports: &mut Reports,
 ) -> Result<(), ErrorGuaranteed> {
     let mut wrong = None;
-    let own = scope.own_shader();
+    let own = scope.own_shader.as_ref();
     let is_own = program.shader.as_ref().map(|s| &s.value) == own.map(|s| &s.value);
     for (bound, _) in &program.bind {
         let exists = shader.global_names().any(|global| global == bound.as_str());
@@ -93,27 +92,6 @@ fn bound_globals(
         }
     }
     wrong.map_or(Ok(()), Err)
-}
-
-/// Group numbers that the adapter does not have, be it of globals that nothing uses: a device
-/// refuses the whole module. (One number for two globals is found when the shader is
-/// validated.)
-fn groups_exist(
-    shader: &Shader,
-    limits: &wgt::Limits,
-    reports: &mut Reports,
-) -> Result<(), ErrorGuaranteed> {
-    let most = limits.max_bind_groups;
-    let groups = shader.groups();
-    for (global, group, span) in groups.filter(|(_, group, _)| *group >= most) {
-        reports.unsupported(LinkError::BindGroup {
-            global: global.to_owned(),
-            group,
-            most,
-            span,
-        })?;
-    }
-    Ok(())
 }
 
 /// The numbers of bindings that wgpu limits per stage.

@@ -31,7 +31,7 @@ pub(super) struct PassScope<'a> {
     inherited_bind: Vec<Inherited<'a, Reference>>,
     inherited_set: Vec<Inherited<'a, Expr>>,
     /// The shader that has the pass's own bindings.
-    own_shader: Option<Located<String>>,
+    pub own_shader: Option<Located<String>>,
     /// The bindings and values that a shader of the pass has asked for.
     asked: BTreeSet<String>,
     /// Source and destination of a capture: the two operands of its step.
@@ -92,24 +92,13 @@ impl<'a> PassScope<'a> {
         self.symbols.get(id)
     }
 
-    pub fn base(&self, id: ResourceId) -> ResourceId {
-        self.symbols.base(id)
-    }
-
     pub fn request(&self) -> &'a PlanRequest<'a> {
         self.symbols.request
     }
 
     /// Adds a resource that no document names.
     pub fn add(&mut self, name: String, kind: ResourceKind) -> Target {
-        let id = self.symbols.add(Resource {
-            name,
-            declared: None,
-            kind,
-            origin: Origin::Own,
-            growth: None,
-            keep: false,
-        });
+        let id = self.symbols.add(Resource::new(name, kind, Origin::Own));
         self.symbols.whole(id)
     }
 
@@ -197,11 +186,6 @@ impl<'a> PassScope<'a> {
         }
     }
 
-    /// Name of the shader that has the pass's own bindings.
-    pub fn own_shader(&self) -> Option<&Located<String>> {
-        self.own_shader.as_ref()
-    }
-
     /// Finds the target of a global: bound by a group, else of that name.
     pub fn target(
         &mut self,
@@ -241,16 +225,18 @@ impl<'a> PassScope<'a> {
         }))
     }
 
-    /// The sampler that a global is, bound to an operand or found by its name.
+    /// The sampler that a global of a program is, bound to an operand or found by its name.
     pub fn sampler(
         &mut self,
-        bound: Option<&Operand>,
+        program: &Program,
         global: &str,
         reports: &mut Reports,
     ) -> Option<&Sampler> {
+        let mut bound = program.bind.iter();
+        let bound = bound.find(|(name, _)| name.value == global);
         let target = match bound {
-            Some(Operand::Named(reference)) => self.resolve(reference, reports),
-            Some(Operand::Scratch(_)) => return None,
+            Some((_, Operand::Named(reference))) => self.resolve(reference, reports),
+            Some((_, Operand::Scratch(_))) => return None,
             None => self
                 .symbols
                 .find_global(global, self.position.scope, reports)?,

@@ -113,9 +113,13 @@ fn sampled(
     let with_feature = format.guaranteed_format_features(able).flags;
     let by_feature = with_feature.contains(TextureFormatFeatureFlags::FILTERABLE);
     let asks = by_feature && scope.symbols().graph.features().contains(able);
-    if !(filterable || asks && reports.any_adapter)
-        && let Some(sampler) = linear_sampler(global, linked, program, scope, reports)
-    {
+    let suits = filterable || asks && reports.any_adapter;
+    let is_linear = |name: &String| {
+        let sampler = scope.sampler(program, name, reports);
+        sampler.is_some_and(|it| it.filter == Filter::Linear && it.compare.is_none())
+    };
+    let samplers = linked.shader.samplers_of(&linked.entries, global.handle);
+    if !suits && let Some(sampler) = samplers.into_iter().find(is_linear) {
         return Err(TextureMisfit::Filtered {
             sampler,
             by_feature,
@@ -135,25 +139,6 @@ fn sampled(
         multisampled,
     };
     Ok((ty, TextureUsages::TEXTURE_BINDING, aspect))
-}
-
-/// A linear sampler through which the shader samples a texture.
-fn linear_sampler(
-    global: &Global,
-    linked: &LinkedProgram,
-    program: &Program,
-    scope: &mut PassScope<'_>,
-    reports: &mut Reports,
-) -> Option<String> {
-    let samplers = linked.shader.samplers_of(&linked.entries, global.handle);
-    samplers.into_iter().find(|name| {
-        let bound = program
-            .bind
-            .iter()
-            .find(|(global, _)| global.value == *name);
-        let sampler = scope.sampler(bound.map(|(_, operand)| operand), name, reports);
-        sampler.is_some_and(|it| it.filter == Filter::Linear && it.compare.is_none())
-    })
 }
 
 fn storage(

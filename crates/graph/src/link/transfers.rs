@@ -51,7 +51,7 @@ pub(super) fn copy(
             ResourceKind::Buffer(_) | ResourceKind::Provided(_) | ResourceKind::Frame,
             ResourceKind::Buffer(_),
         ] => {
-            let sized = scope.base(source.id);
+            let sized = scope.symbols().base(source.id);
             let source = (sized, &source.part, &from);
             layouts.same(source, (target.id, &target.part, &to));
             [wgt::BufferUsages::COPY_SRC, wgt::BufferUsages::COPY_DST].map(Usage::Buffer)

@@ -56,6 +56,7 @@ use std::{collections::BTreeMap, sync::Arc, time::Instant};
 /// buffer of size zero: an array of an empty scene holds one zero item, its hierarchy one leaf
 /// around a triangle without area, which no ray hits; [`Describe::describe`] still says 0 items, so
 /// that nothing is drawn.
+#[derive(Clone)]
 pub struct SceneProvider {
     pub(crate) scene: Arc<Scene>,
     pub(crate) eye: Eye,
@@ -100,20 +101,7 @@ impl SceneProvider {
     /// `refresh` in its place, or to be set otherwise beside it. It is the scene as it is now: what
     /// is set in one of the two afterwards, the other one does not show.
     pub fn branch(&self) -> Self {
-        Self {
-            scene: Arc::clone(&self.scene),
-            eye: self.eye,
-            light: self.light,
-            lights: self.lights.clone(),
-            light_buffers: self.light_buffers.clone(),
-            versions: self.versions.clone(),
-            masks: self.masks.clone(),
-            buffers: self.buffers.clone(),
-            tlas: self.tlas.clone(),
-            hierarchies: self.hierarchies.clone(),
-            shape: self.shape.clone(),
-            built: self.built.clone(),
-        }
+        self.clone()
     }
 
     /// Makes what a plan's live passes read and what is not there as it is now, so that `refresh`

@@ -3,7 +3,7 @@
 use crate::{
     error::Error,
     ground_truth::{Answer, AreaVisibility, Class, GroundTruth, GroundTruthPixels},
-    oracle::{Oracle, OracleMode, base_colors},
+    oracle::{Oracle, OracleMode},
     pixels::{Progress, check_pixel_count, per_pixel},
     ray::Ray,
     receiver::Receiver,
@@ -159,11 +159,7 @@ impl<'a> Oracle<'a> {
             standard_errors: shares.iter().map(|[_, error]| *error as f32).collect(),
         };
         Ok((
-            GroundTruthPixels::new(
-                camera.viewport,
-                &answers,
-                base_colors(self.mesh, camera, primitives),
-            ),
+            GroundTruthPixels::new(self.mesh, camera, primitives, &answers),
             area,
         ))
     }

@@ -7,7 +7,7 @@ use crate::{
     ground_truth::{Answer, Class, GroundTruthPixels},
     pixels::{BACKGROUND, Progress, check_pixel_count, per_pixel},
     ray::Ray,
-    receiver::{self, Receiver},
+    receiver::Receiver,
     tree::Tree,
 };
 use glam::{DVec3, Vec3};
@@ -154,19 +154,19 @@ impl<'a> Oracle<'a> {
         mode: OracleMode,
         progress: Progress,
     ) -> Result<GroundTruthPixels, Error> {
-        let viewport = camera.viewport;
-        check_pixel_count("primitives", viewport, primitives.len())?;
+        check_pixel_count("primitives", camera.viewport, primitives.len())?;
         let light = light.into();
         self.check(&light, mode)?;
-        let answers = per_pixel(viewport, progress, |x, y, stack| {
+        let answers = per_pixel(camera.viewport, progress, |x, y, stack| {
             let receiver = Receiver::from_pixel(self.mesh, primitives, camera, [x, y], &light)?;
             Ok(match receiver {
                 Some(receiver) => self.answer(&receiver, mode, stack),
                 None => Answer::BACKGROUND,
             })
         })?;
-        let base_colors = base_colors(self.mesh, camera, primitives);
-        Ok(GroundTruthPixels::new(viewport, &answers, base_colors))
+        Ok(GroundTruthPixels::new(
+            self.mesh, camera, primitives, &answers,
+        ))
     }
 
     /// Checks that a light can be traced.
@@ -329,29 +329,5 @@ pub fn unshadowed(
         let receiver = Receiver::from_pixel(mesh, primitives, camera, [x, y], light)?;
         Ok(receiver.map_or(Answer::BACKGROUND, |receiver| Answer::facing(&receiver)))
     })?;
-    let base_colors = base_colors(mesh, camera, primitives);
-    Ok(GroundTruthPixels::new(
-        camera.viewport,
-        &answers,
-        base_colors,
-    ))
-}
-
-/// Returns the base colours of the pixels of a G-buffer; nothing where the mesh has no materials.
-pub(crate) fn base_colors(mesh: &Mesh, camera: &Camera, primitives: &[u32]) -> Vec<[f32; 3]> {
-    let surfaces = &mesh.surfaces;
-    if surfaces.materials.is_empty() {
-        return Vec::new();
-    }
-    let width = camera.viewport[0];
-    let colour = |(pixel, &primitive): (usize, &u32)| {
-        if primitive == BACKGROUND {
-            return [0.0; 3];
-        }
-        let pixel = pixel as u32;
-        let direction = camera.pixel_direction(pixel % width, pixel / width);
-        let weights = receiver::weights(mesh, primitive, camera.eye, direction);
-        surfaces.base_color(primitive, weights)
-    };
-    primitives.par_iter().enumerate().map(colour).collect()
+    Ok(GroundTruthPixels::new(mesh, camera, primitives, &answers))
 }

@@ -80,11 +80,7 @@ impl<'a> Tree<'a> {
             ));
         }
         let mut reached = vec![false; bvh.nodes.len()];
-        let mut open: Vec<usize> = if bvh.nodes.is_empty() {
-            Vec::new()
-        } else {
-            vec![0]
-        };
+        let mut open: Vec<usize> = bvh.nodes.first().map(|_| 0).into_iter().collect();
         while let Some(index) = open.pop() {
             // A node reached twice would count its triangles twice, or never let a traversal end.
             if index >= bvh.nodes.len() || std::mem::replace(&mut reached[index], true) {

@@ -4,7 +4,7 @@ use crate::{
     error::Error,
     error_bound::F32_ROUNDING,
     oracle::Oracle,
-    pixels::{BACKGROUND, Progress, check_pixel_count, per_pixel},
+    pixels::{BACKGROUND, Progress, check_pixel_count, per_pixel, shown},
     ray::{Corners, Ray},
     tree::Caster,
 };
@@ -45,15 +45,7 @@ impl Oracle<'_> {
         let count = self.mesh.triangles.len() as u64;
         let max_distance = self.tree.max_distance(camera.eye);
         let wrong = per_pixel(camera.viewport, progress, |x, y, stack| {
-            let shown = primitives[x as usize + y as usize * camera.viewport[0] as usize];
-            if shown != BACKGROUND && u64::from(shown) >= count {
-                return Err(Error::UnknownPrimitive {
-                    x,
-                    y,
-                    primitive: shown,
-                    count,
-                });
-            }
+            let shown = shown(primitives, camera.viewport, [x, y], count)?.unwrap_or(BACKGROUND);
             let direction = camera.pixel_direction(x, y);
             let ray = Ray::new(camera.eye, direction, max_distance, 0.0);
             if self.nearest(camera, &ray, stack) == shown {

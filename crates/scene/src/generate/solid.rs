@@ -49,6 +49,11 @@ impl Frame {
         }
     }
 
+    /// The same at another place.
+    pub fn moved_to(self, origin: DVec3) -> Self {
+        Self { origin, ..self }
+    }
+
     pub fn at(&self, x: f64, y: f64, z: f64) -> DVec3 {
         self.origin + self.x * x + self.y * y + self.z * z
     }
@@ -196,10 +201,7 @@ impl Builder {
         half_thickness: f64,
         sides: u32,
     ) {
-        let centre = Frame {
-            origin: frame.at(length * 0.5, 0.0, 0.0),
-            ..frame
-        };
+        let centre = frame.moved_to(frame.at(length * 0.5, 0.0, 0.0));
         let ring = centre.ring(0.0, length * 0.5, half_width, sides);
         self.loft(
             centre.at(0.0, -half_thickness, 0.0),

@@ -8,14 +8,15 @@
 //! is read twice, first all of its vertices, then its faces.
 
 use crate::{
-    error::{FACES_SHOWN, FaceFault, FaceProblem, FaceRef, beginning},
-    text::{line_text, next_line},
+    error::{FACES_SHOWN, FaceFault, FaceProblem, FaceRef, SceneError, beginning},
+    text::{line_text, next_line, without_comment},
 };
 use glam::Vec2;
 use std::{
     borrow::Cow,
     collections::HashSet,
     io::{self, BufRead, Read},
+    path::Path,
 };
 
 /// Where a face that was handed on stood, and whether the file gives it normals.
@@ -35,6 +36,7 @@ pub(super) struct FaceRecord {
 }
 
 /// The reader that `tobj` reads from.
+#[derive(Default)]
 pub(super) struct Guard<'a> {
     whole: &'a [u8],
     rest: &'a [u8],
@@ -56,10 +58,7 @@ pub(super) struct Guard<'a> {
     pub corner_uvs: Vec<Vec2>,
     /// Faces handed on, in order.
     pub faces: Vec<FaceRecord>,
-    /// The first faulty faces; those are not handed on.
-    pub faults: Vec<FaceFault>,
-    /// Number of faulty faces.
-    pub fault_count: usize,
+    pub faults: Faults,
     /// Faces of groups left out.
     pub faces_left_out: usize,
     /// Points met.
@@ -87,10 +86,43 @@ pub(super) struct Guard<'a> {
 }
 
 /// The part of the file that is handed on.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
 enum Turn {
+    #[default]
     Vertices,
     Faces,
+}
+
+/// Faces that cannot be used: the first of them, and how many there are.
+#[derive(Default)]
+pub(super) struct Faults {
+    first: Vec<FaceFault>,
+    total: usize,
+}
+
+impl Faults {
+    pub fn add(&mut self, face: impl FnOnce() -> FaceRef, problem: FaceProblem) {
+        self.total += 1;
+        if self.first.len() < FACES_SHOWN {
+            let face = face();
+            self.first.push(FaceFault { face, problem });
+        }
+    }
+
+    /// Refuses the file if there are any.
+    ///
+    /// # Errors
+    /// [`SceneError::ObjFaces`].
+    pub fn refuse(self, path: &Path) -> Result<(), SceneError> {
+        match self.total {
+            0 => Ok(()),
+            total => Err(SceneError::ObjFaces {
+                path: path.to_owned(),
+                faults: self.first,
+                total,
+            }),
+        }
+    }
 }
 
 /// Numbers of vertices, normals and texture coordinates.
@@ -125,33 +157,12 @@ impl<'a> Guard<'a> {
         Self {
             whole: bytes,
             rest: bytes,
-            turn: Turn::Vertices,
-            handed_on: Vec::new(),
-            consumed: 0,
-            line: 0,
-            fatal: None,
             groups: vec![UNNAMED.to_owned()],
             materials: vec![String::new()],
-            libraries: Vec::new(),
-            corner_uvs: Vec::new(),
             with_materials,
-            uvs: Vec::new(),
-            material: 0,
-            faces: Vec::new(),
-            faults: Vec::new(),
-            fault_count: 0,
-            faces_left_out: 0,
-            points: 0,
-            lines: 0,
-            curved: 0,
-            normals_unread: 0,
-            normals_absent: 0,
-            uvs_absent: Vec::new(),
             group_left_out: leave_out.contains(UNNAMED),
             leave_out,
-            number: 0,
-            above: Counts::default(),
-            total: Counts::default(),
+            ..Self::default()
         }
     }
 
@@ -421,28 +432,20 @@ impl<'a> Guard<'a> {
     }
 
     fn fault(&mut self, problem: FaceProblem) {
-        self.fault_count += 1;
-        if self.faults.len() < FACES_SHOWN {
-            let group = self.groups.last().cloned().unwrap_or_default();
-            self.faults.push(FaceFault {
-                face: FaceRef {
-                    group,
-                    number: self.number,
-                    line: self.line,
-                },
-                problem,
-            });
-        }
+        let (number, line) = (self.number, self.line);
+        let group = self.groups.last().cloned().unwrap_or_default();
+        let face = FaceRef {
+            group,
+            number,
+            line,
+        };
+        self.faults.add(|| face, problem);
     }
 }
 
 /// A statement's keyword, and what follows.
 fn split(line: &str) -> (&str, &str) {
     line.split_once(char::is_whitespace).unwrap_or((line, ""))
-}
-
-fn without_comment(rest: &str) -> &str {
-    rest.split('#').next().unwrap_or("")
 }
 
 /// The number, from 1, of what a corner names, or the text of one that names nothing and how many

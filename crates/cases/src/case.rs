@@ -117,6 +117,11 @@ impl HardCase {
         self
     }
 
+    /// Whose points are all lit that face the light.
+    pub(crate) const fn all_lit(self) -> Self {
+        self.with_answer(|_| Some(true)).showing(Shows::LitOnly)
+    }
+
     /// Whose picture does not show both light and shadow.
     pub(crate) const fn showing(mut self, shows: Shows) -> Self {
         self.shows = shows;

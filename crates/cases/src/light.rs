@@ -2,7 +2,7 @@
 
 use crate::{
     answer::{in_sheet, judge},
-    case::{HardCase, Shows},
+    case::HardCase,
     shape::{Block, Shape, seen},
 };
 use glam::DVec3;
@@ -65,8 +65,7 @@ pub(crate) const CASES: &[HardCase] = &[
             Shape::default().triangles(facets)
         },
     )
-    .with_answer(|_| Some(true))
-    .showing(Shows::LitOnly)
+    .all_lit()
     // The facet of one ulp, one of eleven that face the light, is indeterminate by what it is.
     .indeterminate_up_to(0.12),
     HardCase::boxes(
@@ -91,8 +90,7 @@ pub(crate) const CASES: &[HardCase] = &[
             Shape::default().moved_cuboid([[-1.0, -1.0, -0.5], [1.0, 1.0, 0.5]], lean)
         },
     )
-    .with_answer(|_| Some(true))
-    .showing(Shows::LitOnly)
+    .all_lit()
     // Along the diagonal the other half of the wall may stand before its neighbour, by f32: the
     // rounding over the slope is wide.
     .indeterminate_up_to(0.035),
@@ -108,8 +106,7 @@ pub(crate) const CASES: &[HardCase] = &[
         seen([0.7, 2.3, 1.1], [0.0, 0.3, 0.0], DVec3::NEG_Y),
         || Shape::default().floor(1.0, 0.3),
     )
-    .with_answer(|_| Some(true))
-    .showing(Shows::LitOnly),
+    .all_lit(),
     HardCase::open(
         "edge_on_triangles",
         "fins along the light: in the map they have no area, and they shade nothing",
@@ -130,8 +127,7 @@ pub(crate) const CASES: &[HardCase] = &[
             Shape::default().floor(2.0, 0.0).triangles(fins)
         },
     )
-    .with_answer(|_| Some(true))
-    .showing(Shows::LitOnly),
+    .all_lit(),
     HardCase::open(
         "light_along_a_seam",
         "eye, light and the inner edges of a roof in one plane: with an odd width, a column \

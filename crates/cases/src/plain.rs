@@ -44,8 +44,7 @@ pub(crate) const CASES: &[HardCase] = &[
         seen([0.3, 2.0, 1.0], [0.0; 3], DVec3::new(0.3, -1.0, 0.2)),
         || Shape::default().triangle([[-1.0, 0.1, 1.0], [1.2, -0.2, 0.8], [0.1, 0.3, -1.1]]),
     )
-    .with_answer(|_| Some(true))
-    .showing(Shows::LitOnly),
+    .all_lit(),
     HardCase::open(
         "one_quad",
         "two triangles in one plane, each beside the other's receivers",
@@ -59,8 +58,7 @@ pub(crate) const CASES: &[HardCase] = &[
             ])
         },
     )
-    .with_answer(|_| Some(true))
-    .showing(Shows::LitOnly),
+    .all_lit(),
     HardCase::closed(
         "everything_faces_away",
         "no pixel faces the light: no ray, and shares of nothing",

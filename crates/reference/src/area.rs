@@ -211,8 +211,7 @@ impl<'a> Oracle<'a> {
                 return !self.occluded(origin, way, excluded, stack);
             };
             let ray = Ray::new(origin, way.direction, max_distance, 0.0).ending(way.distance);
-            let blocks = |caster: &Caster| caster.hit(&ray).is_some_and(|hit| ray.reaches(hit.t));
-            let blocker = casters.iter().position(blocks);
+            let blocker = casters.iter().position(|caster| caster.blocks(&ray));
             // The blocker of one ray is likely to block the next.
             if let Some(blocker) = blocker {
                 casters.swap(0, blocker);

@@ -7,7 +7,6 @@
 use crate::{
     error::Error,
     oracle::{Oracle, OracleMode},
-    ray::Ray,
     receiver::Receiver,
 };
 use glam::DVec3;
@@ -92,12 +91,10 @@ impl Oracle<'_> {
         parts: &Parts,
         stack: &mut Vec<u32>,
     ) -> BlockerCounts {
-        let max_distance = self.tree.max_distance(origin);
-        let ray = Ray::new(origin, way.direction, max_distance, 0.0).ending(way.distance);
+        let ray = self.tree.ray(origin, &way, 0.0);
         let mut found = BlockerCounts::NONE;
         self.tree.walk(&ray, stack, |caster, _| {
-            let hit = caster.hit(&ray);
-            if caster.primitive == passed || !hit.is_some_and(|hit| ray.reaches(hit.t)) {
+            if caster.primitive == passed || !caster.blocks(&ray) {
                 return ControlFlow::Continue(());
             }
             if parts.is_open(caster.primitive) {

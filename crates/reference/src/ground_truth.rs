@@ -48,7 +48,7 @@ pub struct GroundTruthPixels {
 }
 
 impl GroundTruthPixels {
-    /// Of the answers of a G-buffer's pixels.
+    /// Takes apart the answers of a G-buffer's pixels.
     pub(crate) fn new(
         mesh: &Mesh,
         camera: &Camera,

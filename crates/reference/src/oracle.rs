@@ -239,18 +239,12 @@ impl<'a> Oracle<'a> {
         excluded: u32,
         stack: &mut Vec<u32>,
     ) -> (bool, bool) {
-        let max_distance = self.tree.max_distance(origin);
-        let ray = Ray::new(
-            origin,
-            way.direction,
-            max_distance,
-            uncertainty.extent(max_distance, &way),
-        )
-        .ending(way.distance);
+        let extent = uncertainty.extent(self.tree.max_distance(origin), &way);
+        let ray = self.tree.ray(origin, &way, extent);
         let fuzzy = FuzzyRay::new(&ray, origin, way, uncertainty);
-        let (mut touched, mut robust) = (false, false);
+        let mut touched = false;
         let mut blocked: Option<(f64, bool)> = None;
-        self.tree.walk(&ray, stack, |caster, _| {
+        let robust = self.tree.walk(&ray, stack, |caster, _| {
             if caster.primitive == excluded {
                 return ControlFlow::Continue(());
             }
@@ -264,10 +258,7 @@ impl<'a> Oracle<'a> {
                     let (largest, all_near_open_edges) = blocked.unwrap_or((0.0, true));
                     blocked = Some((largest.max(error), all_near_open_edges && near_open_edge));
                 }
-                Contact::Robust => {
-                    robust = true;
-                    return ControlFlow::Break(());
-                }
+                Contact::Robust => return ControlFlow::Break(()),
             }
             ControlFlow::Continue(())
         });
@@ -295,19 +286,13 @@ impl<'a> Oracle<'a> {
         excluded: u32,
         stack: &mut Vec<u32>,
     ) -> bool {
-        let max_distance = self.tree.max_distance(origin);
-        let ray = Ray::new(origin, way.direction, max_distance, 0.0).ending(way.distance);
-        let mut occluded = false;
+        let ray = self.tree.ray(origin, &way, 0.0);
         self.tree.walk(&ray, stack, |caster, _| {
-            if caster.primitive != excluded
-                && caster.hit(&ray).is_some_and(|hit| ray.reaches(hit.t))
-            {
-                occluded = true;
+            if caster.primitive != excluded && caster.blocks(&ray) {
                 return ControlFlow::Break(());
             }
             ControlFlow::Continue(())
-        });
-        occluded
+        })
     }
 }
 

@@ -92,16 +92,13 @@ impl Oracle<'_> {
                 sample.least_distance(&corners)
             }
         };
-        let mut is_hidden = false;
         self.tree.walk(&sample.rays[0], stack, |caster, t_max| {
             *t_max = t_max.min(end);
             if caster.primitive != shown && sample.surely_shows(caster, end) {
-                is_hidden = true;
                 return ControlFlow::Break(());
             }
             ControlFlow::Continue(())
-        });
-        is_hidden
+        })
     }
 }
 

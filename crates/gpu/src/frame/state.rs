@@ -63,7 +63,7 @@ impl State {
         Self::of(plan, memory, passes, contents, factory.device)
     }
 
-    /// Of what was made, with what only the plan decides.
+    /// Puts together what was made for a plan, and what the plan alone decides.
     pub fn of(
         plan: Plan,
         mut memory: Memory,

@@ -3,8 +3,6 @@
 mod build;
 mod light_space;
 mod median;
-mod merge;
-mod refit;
 mod tree;
 
 pub use light_space::{LightSpace, LightSpaceNode};

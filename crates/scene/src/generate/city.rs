@@ -7,8 +7,7 @@
 
 use super::{
     numbers::Random,
-    solid::{Builder, Frame, GAP},
-    stamp::{Stamp, turned},
+    solid::{Builder, Frame, GAP, Stamp, turned},
 };
 use crate::mesh::Mesh;
 use glam::DVec3;
@@ -55,13 +54,7 @@ impl House {
 pub(super) fn build(triangles: u32) -> Mesh {
     let mut random = Random::new(1986);
     let mut builder = Builder::default();
-    builder.group("ground");
-    let half = f64::from(BLOCKS) * PITCH / 2.0 + 40.0;
-    builder.slab(
-        DVec3::new(-half, -2.0, -half),
-        DVec3::new(half, 0.0, half),
-        24,
-    );
+    builder.ground(f64::from(BLOCKS) * PITCH / 2.0 + 40.0);
     builder.group("houses");
     let houses = houses(&mut random);
     for house in &houses {

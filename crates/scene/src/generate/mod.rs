@@ -11,7 +11,6 @@ mod level;
 pub mod numbers;
 mod park;
 mod solid;
-mod stamp;
 mod tree;
 
 pub use generator::{Generator, TRIANGLES};

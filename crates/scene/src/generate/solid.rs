@@ -5,7 +5,7 @@ use crate::{
     mesh::{Group, Mesh},
     weld::Welder,
 };
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 /// Faces around a vertex share a smooth normal where they meet at less than 50° (this is the
 /// cosine).
@@ -75,6 +75,23 @@ impl Frame {
     }
 }
 
+/// A part and its normals' places in the mesh, by quarter turn.
+pub(super) struct Stamp {
+    positions: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
+    normal_indices: [Vec<[u32; 3]>; 4],
+}
+
+/// A vector turned about the y axis: a quarter takes z to x.
+pub(super) fn turned(v: DVec3, quarters: usize) -> DVec3 {
+    match quarters % 4 {
+        0 => v,
+        1 => DVec3::new(v.z, v.y, -v.x),
+        2 => DVec3::new(-v.x, v.y, -v.z),
+        _ => DVec3::new(-v.z, v.y, v.x),
+    }
+}
+
 /// A mesh under construction. Parts do not share vertices: each is a closed surface of its own.
 #[derive(Default)]
 pub(super) struct Builder {
@@ -130,6 +147,13 @@ impl Builder {
             faces.extend([[side, next, next + 4], [side, next + 4, side + 4]]);
         }
         self.add(&points, &faces);
+    }
+
+    /// A square slab of ground around the origin.
+    pub fn ground(&mut self, half: f64) {
+        self.group("ground");
+        let corner = DVec3::new(half, 0.0, half);
+        self.slab(-corner - DVec3::Y * 2.0, corner, 24);
     }
 
     /// A slab over `low`..`high`, its upper side a grid of `cells` × `cells` equal cells: f32
@@ -256,5 +280,50 @@ impl Builder {
         if let Some(group) = self.mesh.groups.last_mut() {
             group.triangles.end = self.mesh.triangles.len() as u32;
         }
+    }
+
+    /// Returns the geometry that `draw` builds around the origin, to be copied into this mesh.
+    pub fn stamp(&mut self, draw: impl FnOnce(&mut Self)) -> Stamp {
+        let mut part = Self::default();
+        draw(&mut part);
+        let part: Mesh = part.finish();
+        let normal_indices = std::array::from_fn(|quarters| {
+            let mut place = |normal: Vec3| {
+                let normal = turned(normal.as_dvec3(), quarters).as_vec3();
+                self.normals.index(normal)
+            };
+            let places: Vec<u32> = part.normals.iter().map(|&normal| place(normal)).collect();
+            let indices = part.normal_indices.iter();
+            indices
+                .map(|corners| corners.map(|index| places[index as usize]))
+                .collect()
+        });
+        Stamp {
+            positions: part.positions.iter().map(|p| p.as_dvec3()).collect(),
+            triangles: part.triangles,
+            normal_indices,
+        }
+    }
+
+    /// Copies a part, turned by quarters about the y axis, to `origin`.
+    pub fn place(&mut self, stamp: &Stamp, quarters: usize, origin: DVec3) {
+        let mesh = &mut self.mesh;
+        let base = mesh.positions.len() as u32;
+        let positions = stamp.positions.iter();
+        mesh.positions
+            .extend(positions.map(|&p| (origin + turned(p, quarters)).as_vec3()));
+        let triangles = stamp.triangles.iter();
+        mesh.triangles
+            .extend(triangles.map(|corners| corners.map(|corner| base + corner)));
+        mesh.normal_indices
+            .extend(&stamp.normal_indices[quarters % 4]);
+        if let Some(group) = mesh.groups.last_mut() {
+            group.triangles.end = mesh.triangles.len() as u32;
+        }
+    }
+
+    /// Triangles so far.
+    pub fn triangles(&self) -> u32 {
+        self.mesh.triangles.len() as u32
     }
 }

@@ -133,13 +133,6 @@ struct Counts {
     uvs: usize,
 }
 
-/// How many of a kind a face can name.
-#[derive(Clone, Copy)]
-struct Available {
-    above: usize,
-    total: usize,
-}
-
 /// A corner: numbers from 1 of what it names, or why what it names is not there. Only its vertex
 /// must be.
 struct Named {
@@ -286,11 +279,8 @@ impl<'a> Guard<'a> {
             }
             "f" => self.take_face(without_comment(rest), ended)?,
             "g" | "o" => {
-                let name = if rest.trim().is_empty() {
-                    UNNAMED
-                } else {
-                    rest.trim()
-                };
+                let name = Some(rest.trim()).filter(|name| !name.is_empty());
+                let name = name.unwrap_or(UNNAMED);
                 self.group_left_out = self.leave_out.contains(name);
                 self.groups.push(name.to_owned());
                 self.number = 0;
@@ -394,50 +384,34 @@ impl<'a> Guard<'a> {
     }
 
     /// A corner whose vertex is known to exist.
-    fn corner(&self, text: &str) -> Result<Named, FaceProblem> {
+    fn corner<'t>(&self, text: &'t str) -> Result<Named, FaceProblem> {
         let mut words = text.split('/');
         let (vertex, uv, normal) = (words.next().unwrap_or(""), words.next(), words.next());
         let not_a_corner = || FaceProblem::NotACorner(text.to_owned());
         if words.next().is_some() {
             return Err(not_a_corner());
         }
-        let available = |of: fn(&Counts) -> usize| Available {
-            above: of(&self.above),
-            total: of(&self.total),
+        let find = |word: &str, of: fn(&Counts) -> usize| {
+            resolve(word, of(&self.above), of(&self.total)).ok_or_else(not_a_corner)
         };
-        let vertices = available(|of| of.vertices);
-        let vertex = resolve(vertex, vertices).ok_or_else(not_a_corner)?;
-        let vertex = vertex
+        let written = |word: Option<&'t str>| word.filter(|word| !word.is_empty());
+        let vertex = find(vertex, |of| of.vertices)?
             .map_err(|(written, available)| FaceProblem::NoSuchVertex { written, available })?;
-        let normal = match normal {
-            None | Some("") => None,
-            Some(normal) => {
-                let found = resolve(normal, available(|of| of.normals)).ok_or_else(not_a_corner)?;
-                Some(found.map_err(|_| ()))
-            }
-        };
-        let uv =
-            match uv {
-                // Without a file of materials nothing is looked up by them.
-                Some(uv) if !self.libraries.is_empty() && !uv.is_empty() => {
-                    let found = resolve(uv, available(|of| of.uvs)).ok_or_else(not_a_corner)?;
-                    Some(found.map_err(|(written, available)| FaceProblem::NoSuchUv {
-                        written,
-                        available,
-                    }))
-                }
-                _ => None,
-            };
+        let normal = written(normal).map(|word| find(word, |of| of.normals));
+        let normal = normal.transpose()?.map(|found| found.map_err(drop));
+        // Without a file of materials nothing is looked up by them.
+        let uv = written(uv).filter(|_| !self.libraries.is_empty());
+        let uv = uv.map(|word| find(word, |of| of.uvs)).transpose()?;
+        let absent = |(written, available)| FaceProblem::NoSuchUv { written, available };
+        let uv = uv.map(|found| found.map_err(absent));
         Ok(Named { vertex, normal, uv })
     }
 
     fn fault(&mut self, problem: FaceProblem) {
-        let (number, line) = (self.number, self.line);
-        let group = self.groups.last().cloned().unwrap_or_default();
         let face = FaceRef {
-            group,
-            number,
-            line,
+            group: self.groups.last().cloned().unwrap_or_default(),
+            number: self.number,
+            line: self.line,
         };
         self.faults.add(|| face, problem);
     }
@@ -451,17 +425,13 @@ fn split(line: &str) -> (&str, &str) {
 /// The number, from 1, of what a corner names, or the text of one that names nothing and how many
 /// there are. `None` where it is no number. A positive one counts from the beginning of the file,
 /// to its end; a negative one back from the line. One that overflows names nothing either.
-fn resolve(written: &str, available: Available) -> Option<Result<usize, (String, usize)>> {
+fn resolve(written: &str, above: usize, total: usize) -> Option<Result<usize, (String, usize)>> {
     let digits = written.strip_prefix(['-', '+']).unwrap_or(written);
     if digits.is_empty() || !digits.bytes().all(|byte| byte.is_ascii_digit()) {
         return None;
     }
     let counts_back = written.starts_with('-');
-    let most = if counts_back {
-        available.above
-    } else {
-        available.total
-    };
+    let most = if counts_back { above } else { total };
     let index = match digits.parse::<usize>() {
         Ok(back) if counts_back => (most + 1).checked_sub(back).filter(|_| back > 0),
         Ok(index) => Some(index),

@@ -1,7 +1,11 @@
 //! One hard case.
 
+use crate::{
+    answer::{among, among_at},
+    shape::{Block, Seen, Shape},
+};
 use glam::DVec3;
-use skiagraph_scene::Scene;
+use skiagraph_scene::{LightKind, Scene};
 
 /// One case of the catalogue.
 #[derive(Clone, Copy, Debug)]
@@ -16,8 +20,18 @@ pub struct HardCase {
     pub indeterminate_cap: f64,
     /// Answers that its picture shows.
     pub shows: Shows,
-    build: fn() -> Scene,
+    seen: Seen,
+    geometry: Geometry,
+    change: fn(&mut Scene),
     lit: Option<fn(DVec3) -> Option<bool>>,
+}
+
+/// Triangles of a case.
+#[derive(Clone, Copy, Debug)]
+enum Geometry {
+    Drawn(fn() -> Shape),
+    /// Boxes, which tell by themselves where light arrives, but for a margin.
+    Boxes(&'static [Block], f64),
 }
 
 /// Kinds of casters in a scene.
@@ -49,7 +63,8 @@ impl HardCase {
     pub(crate) const fn closed(
         name: &'static str,
         reason: &'static str,
-        build: fn() -> Scene,
+        seen: Seen,
+        shape: fn() -> Shape,
     ) -> Self {
         Self {
             name,
@@ -57,8 +72,23 @@ impl HardCase {
             casters: Casters::Closed,
             indeterminate_cap: 0.01,
             shows: Shows::Both,
-            build,
+            seen,
+            geometry: Geometry::Drawn(shape),
+            change: |_| {},
             lit: None,
+        }
+    }
+
+    /// A case of boxes, whose light is told to all points but those within a margin of an edge.
+    pub(crate) const fn boxes(
+        name: &'static str,
+        reason: &'static str,
+        seen: Seen,
+        (blocks, margin): (&'static [Block], f64),
+    ) -> Self {
+        Self {
+            geometry: Geometry::Boxes(blocks, margin),
+            ..Self::closed(name, reason, seen, Shape::default)
         }
     }
 
@@ -66,18 +96,30 @@ impl HardCase {
     pub(crate) const fn open(
         name: &'static str,
         reason: &'static str,
-        build: fn() -> Scene,
+        seen: Seen,
+        shape: fn() -> Shape,
     ) -> Self {
         Self {
             casters: Casters::Open,
-            ..Self::closed(name, reason, build)
+            ..Self::closed(name, reason, seen, shape)
         }
+    }
+
+    /// Changed once it is built.
+    pub(crate) const fn changed(mut self, change: fn(&mut Scene)) -> Self {
+        self.change = change;
+        self
     }
 
     /// Whose light is told from the geometry, too, as by [`HardCase::lit`].
     pub(crate) const fn with_answer(mut self, lit: fn(DVec3) -> Option<bool>) -> Self {
         self.lit = Some(lit);
         self
+    }
+
+    /// Whose points are all lit that face the light.
+    pub(crate) const fn all_lit(self) -> Self {
+        self.with_answer(|_| Some(true)).showing(Shows::LitOnly)
     }
 
     /// Whose picture does not show both light and shadow.
@@ -94,20 +136,33 @@ impl HardCase {
 
     /// Builds it.
     pub fn scene(&self) -> Scene {
-        Scene {
-            name: self.name.into(),
-            ..(self.build)()
-        }
+        let shape = match self.geometry {
+            Geometry::Drawn(draw) => draw(),
+            Geometry::Boxes(blocks, _) => Shape::default().cuboids(blocks),
+        };
+        let mut scene = shape.scene(self.seen);
+        scene.name = self.name.into();
+        (self.change)(&mut scene);
+        scene
     }
 
     /// Returns true if light reaches a point of a surface that faces the light, told from the
     /// geometry; `None` where it is too close to call or the case has no such answer.
     pub fn lit(&self, point: DVec3) -> Option<bool> {
-        self.lit.and_then(|lit| lit(point))
+        match (self.lit, self.geometry, self.seen.light) {
+            (Some(lit), ..) => lit(point),
+            (None, Geometry::Drawn(_), _) => None,
+            (None, Geometry::Boxes(blocks, margin), LightKind::Directional(light)) => {
+                among(point, light.direction, blocks, margin)
+            }
+            (None, Geometry::Boxes(blocks, margin), light) => {
+                among_at(point, light.position()?, blocks, margin)
+            }
+        }
     }
 
     /// Returns true if [`HardCase::lit`] has answers at all.
     pub fn is_analytic(&self) -> bool {
-        self.lit.is_some()
+        self.lit.is_some() || matches!(self.geometry, Geometry::Boxes(..))
     }
 }

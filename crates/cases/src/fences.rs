@@ -3,7 +3,7 @@
 use crate::{
     answer::{among, in_block, judge},
     case::HardCase,
-    shape::{Block, Shape},
+    shape::{Block, Shape, seen},
 };
 use glam::DVec3;
 
@@ -68,36 +68,22 @@ pub(crate) const CASES: &[HardCase] = &[
     HardCase::closed(
         "poles",
         "a fence of poles thinner than a tenth of a texel",
-        || {
-            Shape::default()
-                .graded_slab(0.05, 3, 0.5)
-                .cuboids(&poles())
-                .scene([0.012, 0.03, 0.05], [0.008, 0.0, 0.007], LIGHT)
-        },
+        seen([0.012, 0.03, 0.05], [0.008, 0.0, 0.007], LIGHT),
+        || Shape::default().graded_slab(0.05, 3, 0.5).cuboids(&poles()),
     )
     .with_answer(|p| among(p, LIGHT, &poles(), 2e-5)),
     HardCase::closed(
         "slats",
         "as much gap as slat, both near a texel's width",
-        || {
-            Shape::default().cuboid(FLOOR).cuboids(&slats()).scene(
-                [1.7, 0.7, 1.9],
-                [0.6, 0.0, 0.3],
-                LIGHT,
-            )
-        },
+        seen([1.7, 0.7, 1.9], [0.6, 0.0, 0.3], LIGHT),
+        || Shape::default().cuboid(FLOOR).cuboids(&slats()),
     )
     .with_answer(|p| among(p, LIGHT, &slats(), 1e-3)),
     HardCase::closed(
         "grid_of_holes",
         "a plate with a hole in every fourth cell: light spots of a few texels",
-        || {
-            Shape::default().cuboid(FLOOR).and(plate()).scene(
-                [1.5, 0.9, 1.6],
-                [0.8, 0.0, 0.4],
-                LIGHT,
-            )
-        },
+        seen([1.5, 0.9, 1.6], [0.8, 0.0, 0.4], LIGHT),
+        || Shape::default().cuboid(FLOOR).and(plate()),
     )
     .with_answer(|p| {
         if p.y > 0.5 {

@@ -3,7 +3,7 @@
 use crate::{
     answer::among_at,
     case::{HardCase, Shows},
-    shape::{Block, Shape},
+    shape::{Block, Seen, Shape, seen_under},
 };
 use glam::DVec3;
 use skiagraph_scene::{LightKind, PointLight, SpotLight};
@@ -39,145 +39,99 @@ const ACROSS_SEAMS: [Block; 5] = [
 const NEAR_FLOOR: DVec3 = DVec3::new(0.4, 0.002, 0.6);
 const STAR: DVec3 = DVec3::new(4.0e6, 6.0e6, -3.0e6);
 
-fn point(position: DVec3) -> LightKind {
-    PointLight {
-        position,
-        radius: 0.0,
-    }
-    .into()
+const fn point(position: DVec3) -> LightKind {
+    let radius = 0.0;
+    LightKind::Point(PointLight { position, radius })
 }
 
-fn spot(position: DVec3, target: DVec3, cone_degrees: f64) -> LightKind {
-    SpotLight {
+const fn spot(position: DVec3, to: DVec3, cone_degrees: f64) -> LightKind {
+    LightKind::Spot(SpotLight {
         position,
-        direction: target - position,
+        direction: DVec3::new(to.x - position.x, to.y - position.y, to.z - position.z),
         cone_degrees,
         radius: 0.0,
-    }
-    .into()
+    })
+}
+
+const fn in_the_yard(light: LightKind) -> Seen {
+    seen_under([2.7, 3.8, 3.5], [0.2, 0.1, 0.2], light)
+}
+
+const fn below_the_ceiling(light: LightKind) -> Seen {
+    seen_under([2.9, 2.2, 3.5], [0.2, 0.3, 0.2], light)
 }
 
 pub(crate) const CASES: &[HardCase] = &[
-    HardCase::closed(
+    HardCase::boxes(
         "bulb_in_a_yard",
         "a point light between boxes: shadows spread, and every side of it has some",
-        || {
-            Shape::default()
-                .cuboids(&YARD)
-                .lit_scene([2.7, 3.8, 3.5], [0.2, 0.1, 0.2], point(LAMP))
-        },
-    )
-    .with_answer(|p| among_at(p, LAMP, &YARD, 1e-3)),
-    HardCase::closed(
+        in_the_yard(point(LAMP)),
+        (&YARD, 1e-3),
+    ),
+    HardCase::boxes(
         "edge_of_the_cone",
         "a spot light whose cone ends in the picture: receivers on its edge, and casters",
-        || {
-            let light = spot(LAMP, DVec3::new(0.2, 0.0, 0.3), 80.0);
-            Shape::default()
-                .cuboids(&YARD)
-                .lit_scene([2.7, 3.8, 3.5], [0.2, 0.1, 0.2], light)
-        },
-    )
-    .with_answer(|p| among_at(p, LAMP, &YARD, 1e-3)),
+        in_the_yard(spot(LAMP, DVec3::new(0.2, 0.0, 0.3), 80.0)),
+        (&YARD, 1e-3),
+    ),
     HardCase::closed(
         "light_inside_a_mesh",
         "a light in the midst of a closed box: it lights nobody, whichever faces are culled",
-        || {
-            Shape::default().cuboids(&YARD).cuboid(LID).lit_scene(
-                [2.7, 3.8, 3.5],
-                [0.2, 0.1, 0.2],
-                point(WITHIN),
-            )
-        },
+        in_the_yard(point(WITHIN)),
+        || Shape::default().cuboids(&YARD).cuboid(LID),
     )
     .with_answer(|_| Some(false))
     .showing(Shows::ShadowOnly),
     HardCase::closed(
         "light_on_a_surface",
         "a light in the face of the ceiling that it hangs from: the face does not shade it",
-        || {
-            Shape::default().cuboids(&YARD).cuboid(CEILING).lit_scene(
-                [2.9, 2.2, 3.5],
-                [0.2, 0.3, 0.2],
-                point(LAMP),
-            )
-        },
+        below_the_ceiling(point(LAMP)),
+        || Shape::default().cuboids(&YARD).cuboid(CEILING),
     )
     .with_answer(|p| among_at(p, LAMP, &YARD, 1e-3)),
     HardCase::closed(
         "spot_inside_a_mesh",
         "a spot light in the midst of a closed box, whose faces are before it and behind it",
-        || {
-            let light = spot(WITHIN, DVec3::new(0.2, 0.0, 0.3), 100.0);
-            Shape::default().cuboids(&YARD).cuboid(LID).lit_scene(
-                [2.7, 3.8, 3.5],
-                [0.2, 0.1, 0.2],
-                light,
-            )
-        },
+        in_the_yard(spot(WITHIN, DVec3::new(0.2, 0.0, 0.3), 100.0)),
+        || Shape::default().cuboids(&YARD).cuboid(LID),
     )
     .with_answer(|_| Some(false))
     .showing(Shows::ShadowOnly),
     HardCase::closed(
         "spot_on_a_surface",
         "a spot light in the face of the ceiling that it hangs from, across its own plane",
-        || {
-            let light = spot(LAMP, DVec3::new(0.8, 0.0, 0.1), 140.0);
-            Shape::default().cuboids(&YARD).cuboid(CEILING).lit_scene(
-                [2.9, 2.2, 3.5],
-                [0.2, 0.3, 0.2],
-                light,
-            )
-        },
+        below_the_ceiling(spot(LAMP, DVec3::new(0.8, 0.0, 0.1), 140.0)),
+        || Shape::default().cuboids(&YARD).cuboid(CEILING),
     )
     .with_answer(|p| among_at(p, LAMP, &YARD, 1e-3)),
-    HardCase::closed(
+    HardCase::boxes(
         "seam_of_faces",
         "casters and receivers where the faces of a point light's cube meet, three at a corner",
-        || {
-            Shape::default().cuboids(&ACROSS_SEAMS).lit_scene(
-                [0.3, 3.4, 2.4],
-                [0.0, 0.0, 0.1],
-                point(SEAM),
-            )
-        },
-    )
-    .with_answer(|p| among_at(p, SEAM, &ACROSS_SEAMS, 1e-3)),
-    HardCase::closed(
+        seen_under([0.3, 3.4, 2.4], [0.0, 0.0, 0.1], point(SEAM)),
+        (&ACROSS_SEAMS, 1e-3),
+    ),
+    HardCase::boxes(
         "across_the_lights_plane",
         "a beam from behind a spot light to before it: what is behind has no place in its map",
-        || {
-            let light = spot(BEHIND, DVec3::new(1.0, 0.0, 0.0), 120.0);
-            Shape::default()
-                .cuboids(&BEAM)
-                .lit_scene([1.5, 3.2, 4.0], [0.0, 0.1, 0.0], light)
-        },
-    )
-    .with_answer(|p| among_at(p, BEHIND, &BEAM, 1e-3)),
-    HardCase::closed(
+        seen_under(
+            [1.5, 3.2, 4.0],
+            [0.0, 0.1, 0.0],
+            spot(BEHIND, DVec3::new(1.0, 0.0, 0.0), 120.0),
+        ),
+        (&BEAM, 1e-3),
+    ),
+    HardCase::boxes(
         "light_at_the_floor",
         "a light a hair above the floor: every ray grazes it",
-        || {
-            Shape::default().cuboids(&YARD).lit_scene(
-                [2.7, 3.8, 3.5],
-                [0.2, 0.1, 0.2],
-                point(NEAR_FLOOR),
-            )
-        },
+        in_the_yard(point(NEAR_FLOOR)),
+        (&YARD, 1e-2),
     )
-    .with_answer(|p| among_at(p, NEAR_FLOOR, &YARD, 1e-2))
     // The floor's own share of the light is a thousandth of what rounding leaves of it there.
     .indeterminate_up_to(0.05),
-    HardCase::closed(
+    HardCase::boxes(
         "light_a_million_away",
         "a spot light a million times the scene away, as good as directional",
-        || {
-            Shape::default().cuboids(&YARD).lit_scene(
-                [2.7, 3.8, 3.5],
-                [0.2, 0.1, 0.2],
-                spot(STAR, DVec3::ZERO, 30.0),
-            )
-        },
-    )
-    .with_answer(|p| among_at(p, STAR, &YARD, 1e-2)),
+        in_the_yard(spot(STAR, DVec3::ZERO, 30.0)),
+        (&YARD, 1e-2),
+    ),
 ];

@@ -1,9 +1,9 @@
 //! Directions of light at which surfaces stand along it.
 
 use crate::{
-    answer::{among, in_sheet, judge},
-    case::{HardCase, Shows},
-    shape::{Block, Shape},
+    answer::{in_sheet, judge},
+    case::HardCase,
+    shape::{Block, Shape, seen},
 };
 use glam::DVec3;
 
@@ -43,19 +43,16 @@ const TURNS: [f32; 16] = [
 ];
 
 pub(crate) const CASES: &[HardCase] = &[
-    HardCase::closed(
+    HardCase::boxes(
         "grazing_light",
         "light a degree above the floor: a hair of depth is a long shadow",
-        || {
-            Shape::default()
-                .cuboids(&LOW)
-                .scene([1.0, 2.6, 4.0], [-1.0, 0.0, 0.0], GRAZING)
-        },
-    )
-    .with_answer(|p| among(p, GRAZING, &LOW, 1e-2)),
+        seen([1.0, 2.6, 4.0], [-1.0, 0.0, 0.0], GRAZING),
+        (&LOW, 1e-2),
+    ),
     HardCase::open(
         "facing_by_an_ulp",
         "facets whose N·L is 0, an ulp, and powers of ten above and below",
+        seen([0.0, 0.1, 4.0], [0.0; 3], DVec3::NEG_Y),
         || {
             let facets = TURNS.iter().enumerate().map(|(i, turn)| {
                 let x = i as f32 * 0.25 - 2.0;
@@ -65,75 +62,55 @@ pub(crate) const CASES: &[HardCase] = &[
                     [x + 0.12, 1.0, -turn],
                 ]
             });
-            Shape::default()
-                .triangles(facets)
-                .scene([0.0, 0.1, 4.0], [0.0; 3], DVec3::NEG_Y)
+            Shape::default().triangles(facets)
         },
     )
-    .with_answer(|_| Some(true))
-    .showing(Shows::LitOnly)
+    .all_lit()
     // The facet of one ulp, one of eleven that face the light, is indeterminate by what it is.
     .indeterminate_up_to(0.12),
-    HardCase::closed(
+    HardCase::boxes(
         "light_along_an_axis",
         "light along -y: every upright face is a line in the map",
-        || {
-            Shape::default()
-                .cuboids(&TABLE)
-                .scene([1.6, 2.1, 2.6], [0.1, 0.2, 0.1], DVec3::NEG_Y)
-        },
-    )
-    .with_answer(|p| among(p, DVec3::NEG_Y, &TABLE, 1e-3)),
-    HardCase::closed(
+        seen([1.6, 2.1, 2.6], [0.1, 0.2, 0.1], DVec3::NEG_Y),
+        (&TABLE, 1e-3),
+    ),
+    HardCase::boxes(
         "light_along_a_wall",
         "light in the plane of a wall, which ends in its own shadow's edge",
-        || {
-            Shape::default()
-                .cuboids(&WALL)
-                .scene([1.6, 2.0, 3.2], [0.3, 0.2, 0.0], WALL_LIGHT)
-        },
-    )
-    .with_answer(|p| among(p, WALL_LIGHT, &WALL, 1e-3)),
+        seen([1.6, 2.0, 3.2], [0.3, 0.2, 0.0], WALL_LIGHT),
+        (&WALL, 1e-3),
+    ),
     HardCase::closed(
         "light_nearly_along_a_wall",
         "N·L of a ten-thousandth all over the picture",
+        seen([0.4, 0.3, 3.0], [0.0, 0.0, 0.5], WALL_LIGHT),
         || {
             // Its face towards +z leans to the light by a ten-thousandth.
             let lean = |[x, y, z]: [f32; 3]| [x, y, if z > 0.0 { 0.5 + 1e-4 * (x - y) } else { z }];
-            Shape::default()
-                .moved_cuboid([[-1.0, -1.0, -0.5], [1.0, 1.0, 0.5]], lean)
-                .scene([0.4, 0.3, 3.0], [0.0, 0.0, 0.5], WALL_LIGHT)
+            Shape::default().moved_cuboid([[-1.0, -1.0, -0.5], [1.0, 1.0, 0.5]], lean)
         },
     )
-    .with_answer(|_| Some(true))
-    .showing(Shows::LitOnly)
+    .all_lit()
     // Along the diagonal the other half of the wall may stand before its neighbour, by f32: the
     // rounding over the slope is wide.
     .indeterminate_up_to(0.035),
-    HardCase::closed(
+    HardCase::boxes(
         "light_travels_upwards",
         "a ceiling lit from below: nothing may take down for away from the light",
-        || {
-            Shape::default()
-                .cuboids(&CEILING)
-                .scene([1.5, -3.0, 3.0], [0.1, 0.0, 0.0], UP)
-        },
-    )
-    .with_answer(|p| among(p, UP, &CEILING, 1e-3)),
+        seen([1.5, -3.0, 3.0], [0.1, 0.0, 0.0], UP),
+        (&CEILING, 1e-3),
+    ),
     HardCase::open(
         "no_depth_at_all",
         "a flat scene across the light: the map's depths span nothing",
-        || {
-            Shape::default()
-                .floor(1.0, 0.3)
-                .scene([0.7, 2.3, 1.1], [0.0, 0.3, 0.0], DVec3::NEG_Y)
-        },
+        seen([0.7, 2.3, 1.1], [0.0, 0.3, 0.0], DVec3::NEG_Y),
+        || Shape::default().floor(1.0, 0.3),
     )
-    .with_answer(|_| Some(true))
-    .showing(Shows::LitOnly),
+    .all_lit(),
     HardCase::open(
         "edge_on_triangles",
         "fins along the light: in the map they have no area, and they shade nothing",
+        seen([0.9, 3.2, 2.2], [0.0; 3], DVec3::NEG_Y),
         || {
             let fins = (0..24u8).map(|i| {
                 let (x, z) = (
@@ -147,19 +124,15 @@ pub(crate) const CASES: &[HardCase] = &[
                     [x + 0.25, 1.0, z + 0.5 * lean],
                 ]
             });
-            Shape::default().floor(2.0, 0.0).triangles(fins).scene(
-                [0.9, 3.2, 2.2],
-                [0.0; 3],
-                DVec3::NEG_Y,
-            )
+            Shape::default().floor(2.0, 0.0).triangles(fins)
         },
     )
-    .with_answer(|_| Some(true))
-    .showing(Shows::LitOnly),
+    .all_lit(),
     HardCase::open(
         "light_along_a_seam",
         "eye, light and the inner edges of a roof in one plane: with an odd width, a column \
              of rays meets nothing but edges",
+        seen([0.0, 0.9, 1.8], [0.0, 0.0, 0.1], SEAM_LIGHT),
         || {
             // The floor is one triangle, its own mirror image: receivers of the middle column are
             // at x = 0 exactly.
@@ -172,7 +145,6 @@ pub(crate) const CASES: &[HardCase] = &[
             Shape::default()
                 .triangle([[0.0, 0.0, -6.0], [-5.0, 0.0, 2.0], [5.0, 0.0, 2.0]])
                 .and(roof.reversed())
-                .scene([0.0, 0.9, 1.8], [0.0, 0.0, 0.1], SEAM_LIGHT)
         },
     )
     .with_answer(|p| {

@@ -3,10 +3,10 @@
 use crate::{
     answer::{among, in_triangle, judge},
     case::HardCase,
-    shape::{Block, Shape},
+    shape::{Block, Shape, seen},
 };
 use glam::DVec3;
-use skiagraph_scene::{Scene, generate::numbers::Random};
+use skiagraph_scene::generate::numbers::Random;
 
 const STEEP: DVec3 = DVec3::new(0.07, -1.0, 0.05);
 const LIGHT: DVec3 = DVec3::new(0.8, -1.0, 0.43);
@@ -15,17 +15,14 @@ type Corners = [[f32; 3]; 3];
 
 /// Specks over one spot of a floor of 64 units, beside its middle, where four texels meet in every
 /// map of even size.
-fn crowded_texel() -> Scene {
+fn crowded_texel() -> Shape {
     let mut random = Random::new(11);
     let specks = (0..100_000).map(|_| {
         let centre = DVec3::new(0.24, 0.2, 0.24) + random.in_ball() * DVec3::new(0.18, 0.12, 0.18);
         [(); 3].map(|()| (centre + random.in_ball() * 2e-3).as_vec3().to_array())
     });
     let specks: Vec<_> = specks.collect();
-    Shape::default()
-        .graded_slab(0.5, 3, 0.5)
-        .triangles(specks)
-        .scene([0.33, 0.62, 0.55], [0.24, 0.1, 0.24], STEEP)
+    Shape::default().graded_slab(0.5, 3, 0.5).triangles(specks)
 }
 
 /// Shelves above one another, none right above the next: casters are at all depths between the
@@ -86,41 +83,33 @@ pub(crate) const CASES: &[HardCase] = &[
     HardCase::open(
         "crowded_texel",
         "a hundred thousand specks in one texel, receivers among them",
+        seen([0.33, 0.62, 0.55], [0.24, 0.1, 0.24], STEEP),
         crowded_texel,
     ),
     HardCase::closed(
         "shelves_in_two_texels",
         "every pixel in the same two texels, with casters at all depths between the receivers'",
+        seen([0.25, 0.23, 0.08], [0.29, 0.03, 0.02], LIGHT),
         || {
             Shape::default()
                 .graded_slab(0.5, 4, 0.5)
                 .cuboids(&shelves())
-                .scene([0.25, 0.23, 0.08], [0.29, 0.03, 0.02], LIGHT)
         },
     )
     .with_answer(|p| among(p, LIGHT, &shelves(), 1e-5)),
     HardCase::open(
         "sheets_cut_the_floor",
         "casters through the receivers' own depth, and a hair above and below it",
-        || {
-            Shape::default().floor(2.0, 0.0).triangles(cutting()).scene(
-                [1.1, 2.9, 1.9],
-                [0.3, 0.0, 0.1],
-                LIGHT,
-            )
-        },
+        seen([1.1, 2.9, 1.9], [0.3, 0.0, 0.1], LIGHT),
+        || Shape::default().floor(2.0, 0.0).triangles(cutting()),
     )
     .with_answer(|p| lit_among(p, cutting())),
     HardCase::open(
         "one_triangle_over_the_map",
         "a slanted triangle over the whole map and all depths, small ones close over and under \
              it",
-        || {
-            Shape::default()
-                .floor(4.0, 0.0)
-                .triangles(over_the_map())
-                .scene([-4.0, 7.5, -6.5], [-0.9, 1.6, -1.3], LIGHT)
-        },
+        seen([-4.0, 7.5, -6.5], [-0.9, 1.6, -1.3], LIGHT),
+        || Shape::default().floor(4.0, 0.0).triangles(over_the_map()),
     )
     .with_answer(|p| lit_among(p, over_the_map())),
 ];
@@ -140,7 +129,7 @@ mod tests {
 
     #[test]
     fn the_crowd_is_over_one_texel() {
-        let scene = crowded_texel();
+        let scene = CASES[0].scene();
         let mesh = &scene.mesh;
         let fit = scene.sun().unwrap().fit(mesh.corner_positions());
         let small = |&i: &u32| (mesh.corners(i)[0] - mesh.corners(i)[1]).length() < 0.01;

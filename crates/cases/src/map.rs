@@ -1,12 +1,11 @@
 //! Where things lie in the map.
 
 use crate::{
-    answer::{among, in_sheet, judge},
+    answer::{in_sheet, judge},
     case::HardCase,
-    shape::{Block, Shape},
+    shape::{Block, Shape, seen},
 };
 use glam::DVec3;
-use skiagraph_scene::Scene;
 
 /// The light is fitted to 500 units and a margin of 1.002, 501 in all: a texel of a map of 64 is
 /// 501 / 64, which f32 holds, and so it does every corner of texels of 64, 128 and 256. The
@@ -65,6 +64,10 @@ fn in_texels(p: DVec3) -> DVec3 {
 /// In texels, too: corners of texels at even heights shade corners of texels of the floor.
 const TILT: DVec3 = DVec3::new(-0.5, -1.0, 0.0);
 
+/// Where the eye is over the board.
+const X: f64 = (-4.0 * FIFTH) as f64;
+const Z: f64 = (3.0 * FIFTH) as f64;
+
 /// A sheet of tiles, in texels.
 struct Tiling {
     /// Its borders.
@@ -105,7 +108,7 @@ fn tilings() -> impl Iterator<Item = Tiling> {
 /// The board is above the eye, which looks straight down at a third of the map. With as many pixels
 /// as the map has texels, every third column of pixels is on a line between texels, and so is every
 /// third row.
-fn receivers_on_texel_corners() -> Scene {
+fn receivers_on_texel_corners() -> Shape {
     let quad = |shape: Shape, u: &[f32], v: &[f32], y: f32, fifth: f32| {
         let corners = [[u[0], v[1]], [u[1], v[1]], [u[1], v[0]], [u[0], v[0]]];
         shape.quad(corners.map(|[u, v]| turned([u, y, v], fifth)))
@@ -118,34 +121,30 @@ fn receivers_on_texel_corners() -> Scene {
             tiles.fold(shape, |shape, u| quad(shape, u, v, tiling.y, FIFTH))
         })
     });
-    let [x, _, z] = turned([0.0, 0.0, 1.0], FIFTH).map(f64::from);
-    let light = DVec3::new(3.0 * TILT.x, 5.0 * TILT.y, 4.0 * TILT.x);
-    let mut scene = floor
-        .and(board.reversed())
-        .scene([x, 835.0, z], [x, 0.0, z], light);
-    scene.views[0].up = DVec3::new(4.0, 0.0, -3.0);
-    scene.views[0].fov_y_degrees = 90.0;
-    scene
+    floor.and(board.reversed())
 }
 
 pub(crate) const CASES: &[HardCase] = &[
-    HardCase::closed(
+    HardCase::boxes(
         "on_texel_corners",
         "vertices exactly on corners, edges and centres of texels of maps of 64, 128 and 256",
-        || {
-            Shape::default().cuboids(&TEXELS).scene(
-                [60.0, 52.0, 85.0],
-                [8.0, 0.0, 6.0],
-                DVec3::NEG_Y,
-            )
-        },
-    )
-    .with_answer(|p| among(p, DVec3::NEG_Y, &TEXELS, 1e-2)),
+        seen([60.0, 52.0, 85.0], [8.0, 0.0, 6.0], DVec3::NEG_Y),
+        (&TEXELS, 1e-2),
+    ),
     HardCase::open(
         "receivers_on_texel_corners",
         "receivers and casters' edges on the lines between texels: rounding picks their sides",
+        seen(
+            [X, 835.0, Z],
+            [X, 0.0, Z],
+            DVec3::new(3.0 * TILT.x, 5.0 * TILT.y, 4.0 * TILT.x),
+        ),
         receivers_on_texel_corners,
     )
+    .changed(|scene| {
+        scene.views[0].up = DVec3::new(4.0, 0.0, -3.0);
+        scene.views[0].fov_y_degrees = 90.0;
+    })
     .with_answer(|p| {
         let p = in_texels(p);
         let depths = tilings().map(|tiling| in_sheet(p, TILT, tiling.sheet, tiling.y));
@@ -153,16 +152,12 @@ pub(crate) const CASES: &[HardCase] = &[
     })
     // Some of the sheets end on lines of receivers.
     .indeterminate_up_to(0.02),
-    HardCase::closed(
+    HardCase::boxes(
         "at_the_maps_border",
         "boxes flush with the scene's border: casters and receivers in the map's last texels",
-        || {
-            Shape::default()
-                .cuboids(&CORNER)
-                .scene([2.9, 1.7, 3.2], [1.4, 0.1, 1.5], CORNER_LIGHT)
-        },
-    )
-    .with_answer(|p| among(p, CORNER_LIGHT, &CORNER, 1e-3)),
+        seen([2.9, 1.7, 3.2], [1.4, 0.1, 1.5], CORNER_LIGHT),
+        (&CORNER, 1e-3),
+    ),
 ];
 
 #[cfg(test)]

@@ -1,6 +1,10 @@
 //! Triangles that are cut out by masks.
 
-use crate::{answer::at_height, case::HardCase, shape::Shape};
+use crate::{
+    answer::at_height,
+    case::HardCase,
+    shape::{Seen, Shape, seen},
+};
 use glam::{DVec2, DVec3, Vec2, Vec3};
 use skiagraph_scene::{Mask, Material, Scene, Wrap};
 use std::sync::Arc;
@@ -15,7 +19,7 @@ const HALF: f32 = 0.7;
 const CHECKERS: u32 = 8;
 
 /// Gives all triangles above `y` a mask, its texture coordinates by their place.
-fn masked(mut scene: Scene, y: f32, mask: Mask, uv: impl Fn(Vec3) -> Vec2) -> Scene {
+fn put_mask(scene: &mut Scene, y: f32, mask: Mask, uv: impl Fn(Vec3) -> Vec2) {
     let mesh = &mut scene.mesh;
     mesh.surfaces.uvs = mesh.positions.iter().map(|&place| uv(place)).collect();
     mesh.surfaces.uv_indices.clone_from(&mesh.triangles);
@@ -38,7 +42,6 @@ fn masked(mut scene: Scene, y: f32, mask: Mask, uv: impl Fn(Vec3) -> Vec2) -> Sc
         .iter()
         .map(|of| u32::from(above(of)))
         .collect();
-    scene
 }
 
 /// From 0 to 1 over a sheet.
@@ -56,19 +59,19 @@ fn sheet(y: f32) -> Shape {
         .sheet([[-HALF; 2], [HALF; 2]], y)
 }
 
-fn seen(shape: Shape, light: DVec3) -> Scene {
-    shape.scene([0.5, 1.6, 2.2], [0.0, 0.2, 0.0], light)
-}
+const SEEN: Seen = seen([0.5, 1.6, 2.2], [0.0, 0.2, 0.0], SLANTED);
 
 pub(crate) const CASES: &[HardCase] = &[
     HardCase::open(
         "mask_edges",
         "a sheet of opaque and open texels like a chessboard: every edge of a shadow is a texel's",
-        || {
-            let mask = checkers(CHECKERS, [Wrap::Clamp; 2]);
-            masked(seen(sheet(1.0), DOWN), 0.5, mask, across)
-        },
+        seen([0.5, 1.6, 2.2], [0.0, 0.2, 0.0], DOWN),
+        || sheet(1.0),
     )
+    .changed(|scene| {
+        let mask = checkers(CHECKERS, [Wrap::Clamp; 2]);
+        put_mask(scene, 0.5, mask, across)
+    })
     .with_answer(|p| {
         let met = at_height(p, DOWN, 1.0)?;
         let half = f64::from(HALF);
@@ -84,62 +87,66 @@ pub(crate) const CASES: &[HardCase] = &[
     HardCase::open(
         "mask_wraps",
         "a mask that repeats, is mirrored and ends within its sheet, turned against it",
-        || {
-            let mask = Mask::new([5, 7], [Wrap::Mirror, Wrap::Clamp], |x, y| (x * y) % 3 != 1);
-            let turn = Vec2::from_angle(0.3);
-            masked(seen(sheet(0.8), SLANTED), 0.5, mask, |place| {
-                turn.rotate(across(place)) * 4.0 - 1.7
-            })
-        },
-    ),
+        SEEN,
+        || sheet(0.8),
+    )
+    .changed(|scene| {
+        let mask = Mask::new([5, 7], [Wrap::Mirror, Wrap::Clamp], |x, y| (x * y) % 3 != 1);
+        let turn = Vec2::from_angle(0.3);
+        put_mask(scene, 0.5, mask, |place| {
+            turn.rotate(across(place)) * 4.0 - 1.7
+        })
+    }),
     HardCase::open(
         "mask_fine",
         "texels of a mask that are smaller than the pixels of its shadow",
-        || {
-            let mask = checkers(256, [Wrap::Repeat; 2]);
-            masked(seen(sheet(1.0), SLANTED), 0.5, mask, |place| {
-                across(place) * 1.37
-            })
-        },
-    ),
+        SEEN,
+        || sheet(1.0),
+    )
+    .changed(|scene| {
+        let mask = checkers(256, [Wrap::Repeat; 2]);
+        put_mask(scene, 0.5, mask, |place| across(place) * 1.37)
+    }),
     HardCase::open(
         "mask_far_uvs",
         "texture coordinates far from the origin, where f32 has few steps within a texel",
-        || {
-            let mask = checkers(16, [Wrap::Repeat; 2]);
-            masked(seen(sheet(0.6), SLANTED), 0.5, mask, |place| {
-                across(place) + 1000.0
-            })
-        },
+        SEEN,
+        || sheet(0.6),
     )
+    .changed(|scene| {
+        let mask = checkers(16, [Wrap::Repeat; 2]);
+        put_mask(scene, 0.5, mask, |place| across(place) + 1000.0)
+    })
     // A sixteenth of a unit is a texel, and f32 has 16,384 steps between 1,000 and 1,001.
     .indeterminate_up_to(0.04),
     HardCase::open(
         "mask_behind_mask",
         "masked sheets close above each other: behind an open texel there is the next sheet",
+        SEEN,
         || {
-            let shape = (0..4).fold(sheet(1.0), |shape, i| {
+            (0..4).fold(sheet(1.0), |shape, i| {
                 shape.sheet([[-HALF; 2], [HALF; 2]], 0.98 - 0.01 * i as f32)
-            });
-            let mask = checkers(9, [Wrap::Repeat; 2]);
-            masked(seen(shape, SLANTED), 0.5, mask, |place| {
-                across(place) + place.y * 7.0
             })
         },
-    ),
+    )
+    .changed(|scene| {
+        let mask = checkers(9, [Wrap::Repeat; 2]);
+        put_mask(scene, 0.5, mask, |place| across(place) + place.y * 7.0)
+    }),
     HardCase::open(
         "mask_through_floor",
         "masked leaves that stand in the floor: their shadows begin at open and at opaque texels",
+        SEEN,
         || {
             let leaves = (0..7).map(|i| {
                 let x = 0.2 * i as f32 - 0.6;
                 [[x, -0.2, -0.5], [x + 0.05, -0.2, 0.5], [x + 0.3, 0.7, 0.0]]
             });
-            let shape = Shape::default().floor(2.0, 0.0).triangles(leaves);
-            let mask = checkers(12, [Wrap::Repeat; 2]);
-            masked(seen(shape, SLANTED), 0.01, mask, |place| {
-                Vec2::new(place.z, place.y)
-            })
+            Shape::default().floor(2.0, 0.0).triangles(leaves)
         },
-    ),
+    )
+    .changed(|scene| {
+        let mask = checkers(12, [Wrap::Repeat; 2]);
+        put_mask(scene, 0.01, mask, |place| Vec2::new(place.z, place.y))
+    }),
 ];

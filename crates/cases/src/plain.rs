@@ -1,9 +1,8 @@
 //! Simple scenes, and scenes of next to nothing.
 
 use crate::{
-    answer::among,
     case::{HardCase, Shows},
-    shape::{Block, Shape},
+    shape::{Block, Shape, seen},
 };
 use glam::DVec3;
 
@@ -26,86 +25,59 @@ const NEAR: [Block; 4] = [
 const NEAR_LIGHT: DVec3 = DVec3::new(-1.0, -1.6, -1.2);
 
 pub(crate) const CASES: &[HardCase] = &[
-    HardCase::closed(
+    HardCase::boxes(
         "box_on_floor",
         "contact: a closed box stands on the floor that it shades",
-        || {
-            Shape::default().cuboids(&BOX).scene(
-                [2.7, 1.8, 1.5],
-                [0.9, 0.1, 0.0],
-                DVec3::new(1.0, -1.0, 0.0),
-            )
-        },
-    )
-    .with_answer(|p| among(p, DVec3::new(1.0, -1.0, 0.0), &BOX, 1e-3)),
+        seen([2.7, 1.8, 1.5], [0.9, 0.1, 0.0], DVec3::new(1.0, -1.0, 0.0)),
+        (&BOX, 1e-3),
+    ),
     HardCase::closed(
         "empty_scene",
         "no triangle: no fit, no hierarchy, empty buffers",
-        || Shape::default().scene([0.0, 1.0, 3.0], [0.0; 3], DVec3::new(0.3, -1.0, 0.2)),
+        seen([0.0, 1.0, 3.0], [0.0; 3], DVec3::new(0.3, -1.0, 0.2)),
+        || Shape::default(),
     )
     .showing(Shows::Nothing),
     HardCase::open(
         "one_triangle",
         "its own receiver, its own caster, the whole map",
-        || {
-            Shape::default()
-                .triangle([[-1.0, 0.1, 1.0], [1.2, -0.2, 0.8], [0.1, 0.3, -1.1]])
-                .scene([0.3, 2.0, 1.0], [0.0; 3], DVec3::new(0.3, -1.0, 0.2))
-        },
+        seen([0.3, 2.0, 1.0], [0.0; 3], DVec3::new(0.3, -1.0, 0.2)),
+        || Shape::default().triangle([[-1.0, 0.1, 1.0], [1.2, -0.2, 0.8], [0.1, 0.3, -1.1]]),
     )
-    .with_answer(|_| Some(true))
-    .showing(Shows::LitOnly),
+    .all_lit(),
     HardCase::open(
         "one_quad",
         "two triangles in one plane, each beside the other's receivers",
+        seen([0.4, 2.2, 1.9], [0.0, 0.5, 0.0], DVec3::new(0.3, -1.0, 0.2)),
         || {
-            Shape::default()
-                .quad([
-                    [-1.0, 0.0, 1.0],
-                    [1.0, 0.0, 1.0],
-                    [1.0, 1.0, -1.0],
-                    [-1.0, 1.0, -1.0],
-                ])
-                .scene([0.4, 2.2, 1.9], [0.0, 0.5, 0.0], DVec3::new(0.3, -1.0, 0.2))
+            Shape::default().quad([
+                [-1.0, 0.0, 1.0],
+                [1.0, 0.0, 1.0],
+                [1.0, 1.0, -1.0],
+                [-1.0, 1.0, -1.0],
+            ])
         },
     )
-    .with_answer(|_| Some(true))
-    .showing(Shows::LitOnly),
+    .all_lit(),
     HardCase::closed(
         "everything_faces_away",
         "no pixel faces the light: no ray, and shares of nothing",
-        || {
-            Shape::default().cuboids(&BOX).scene(
-                [1.0, 4.0, 2.0],
-                [0.0; 3],
-                DVec3::new(0.1, 1.0, 0.05),
-            )
-        },
+        seen([1.0, 4.0, 2.0], [0.0; 3], DVec3::new(0.1, 1.0, 0.05)),
+        || Shape::default().cuboids(&BOX),
     )
     .showing(Shows::Nothing),
-    HardCase::closed(
+    HardCase::boxes(
         "camera_inside",
         "the eye is inside a closed box, whose faces it does not see and whose shadow it does",
-        || {
-            Shape::default()
-                .cuboids(&ROOM)
-                .scene([2.5, 1.9, 2.4], [-0.9, 0.0, -0.6], ROOM_LIGHT)
-        },
-    )
-    .with_answer(|p| among(p, ROOM_LIGHT, &ROOM, 1e-3)),
-    HardCase::closed(
+        seen([2.5, 1.9, 2.4], [-0.9, 0.0, -0.6], ROOM_LIGHT),
+        (&ROOM, 1e-3),
+    ),
+    HardCase::boxes(
         "before_the_near_plane",
         "casters between the eye and the near plane, and around the eye: not drawn, and still \
              in the light",
-        || {
-            let mut scene = Shape::default().cuboids(&NEAR).scene(
-                [3.5, 4.5, 3.6],
-                [-0.4, 0.0, -0.4],
-                NEAR_LIGHT,
-            );
-            scene.views[0].near = 5.0;
-            scene
-        },
+        seen([3.5, 4.5, 3.6], [-0.4, 0.0, -0.4], NEAR_LIGHT),
+        (&NEAR, 1e-3),
     )
-    .with_answer(|p| among(p, NEAR_LIGHT, &NEAR, 1e-3)),
+    .changed(|scene| scene.views[0].near = 5.0),
 ];

@@ -3,10 +3,9 @@
 use crate::{
     answer::{among, in_sheet, judge},
     case::HardCase,
-    shape::{Block, Shape},
+    shape::{Block, Seen, Shape, seen},
 };
 use glam::DVec3;
-use skiagraph_scene::Scene;
 
 const LIGHT: DVec3 = DVec3::new(0.8, -1.0, 0.43);
 
@@ -20,10 +19,13 @@ fn stack(gap: f32) -> [Block; 4] {
     })
 }
 
-fn stack_scene(gap: f32) -> Scene {
-    Shape::default()
-        .cuboids(&stack(gap))
-        .scene([2.5, 4.1, 2.9], [0.5, 1.1, 0.3], LIGHT)
+const fn stacked(name: &'static str, reason: &'static str, shape: fn() -> Shape) -> HardCase {
+    HardCase::closed(
+        name,
+        reason,
+        seen([2.5, 4.1, 2.9], [0.5, 1.1, 0.3], LIGHT),
+        shape,
+    )
 }
 
 /// Unit in the last place of numbers from 1 to 2.
@@ -32,11 +34,15 @@ const ULP: f32 = f32::EPSILON;
 const LID: [[f32; 2]; 2] = [[-1.0, -0.8], [0.9, 1.1]];
 
 /// A floor under a lid that the camera sees through, because it is wound downward.
-fn lid_scene(scale: f32, gap: f32) -> Scene {
-    let by = f64::from(scale);
+fn lid(scale: f32, gap: f32) -> Shape {
     let lid = LID.map(|corner| corner.map(|c| c * scale));
     let lid = Shape::default().sheet(lid, gap).reversed();
-    Shape::default().floor(2.0 * scale, 0.0).and(lid).scene(
+    Shape::default().floor(2.0 * scale, 0.0).and(lid)
+}
+
+const fn lid_seen(scale: f32) -> Seen {
+    let by = scale as f64;
+    seen(
         [1.1 * by, 3.3 * by, 1.7 * by],
         [0.2 * by, 0.0, 0.1 * by],
         LIGHT,
@@ -78,102 +84,89 @@ const CRUMBS: [Block; 3] = [
 ];
 
 pub(crate) const CASES: &[HardCase] = &[
-    HardCase::closed(
+    stacked(
         "stack_gap_one_ulp",
         "closed slabs an ulp above one another: no bias fits in between",
-        || stack_scene(ULP),
+        || Shape::default().cuboids(&stack(ULP)),
     )
     .with_answer(|p| among(p, LIGHT, &stack(ULP), 1e-3)),
-    HardCase::closed(
+    stacked(
         "stack_gap_1e_6",
         "closed slabs a millionth above one another",
-        || stack_scene(1e-6),
+        || Shape::default().cuboids(&stack(1e-6)),
     )
     .with_answer(|p| among(p, LIGHT, &stack(1e-6), 1e-3)),
-    HardCase::closed(
+    stacked(
         "stack_gap_1e_3",
         "closed slabs a thousandth above one another",
-        || stack_scene(1e-3),
+        || Shape::default().cuboids(&stack(1e-3)),
     )
     .with_answer(|p| among(p, LIGHT, &stack(1e-3), 1e-3)),
     HardCase::open(
         "lid_gap_1e_3",
         "receivers close below a sheet, seen through its back: every bias lights them",
-        || lid_scene(1.0, 1e-3),
+        lid_seen(1.0),
+        || lid(1.0, 1e-3),
     )
     .with_answer(|p| lid_lit(p, 1.0, 1e-3)),
     HardCase::open(
         "lid_gap_2e_5",
         "the same at ten times what f32 loses",
-        || lid_scene(1.0, 2e-5),
+        lid_seen(1.0),
+        || lid(1.0, 2e-5),
     )
     .with_answer(|p| lid_lit(p, 1.0, 2e-5)),
     HardCase::open(
         "lid_gap_1e_6",
         "the same in a scene of a twentieth: the gap counts in extents",
-        || lid_scene(0.05, 1e-6),
+        lid_seen(0.05),
+        || lid(0.05, 1e-6),
     )
     .with_answer(|p| lid_lit(p, 0.05, 1e-6)),
     HardCase::open(
         "sheets_an_ulp_apart",
         "casters of both windings, coplanar or an ulp apart, fight for the map",
+        seen([1.9, 0.9, 2.8], [0.6, 0.0, 0.3], LIGHT),
         || {
             let sheets = (0..5u8).fold(Shape::default(), |shape, i| {
                 let sheet = Shape::default().sheet(SHEETS, 1.0 + f32::from(i / 2) * ULP);
                 shape.and(if i % 2 == 0 { sheet } else { sheet.reversed() })
             });
-            Shape::default().floor(2.5, 0.0).and(sheets).scene(
-                [1.9, 0.9, 2.8],
-                [0.6, 0.0, 0.3],
-                LIGHT,
-            )
+            Shape::default().floor(2.5, 0.0).and(sheets)
         },
     )
     .with_answer(|p| judge([in_sheet(p, LIGHT, SHEETS, 1.0)], 1e-3)),
-    HardCase::closed(
+    HardCase::boxes(
         "scale_1e_4",
         "the unit is a ten-thousandth: constants in scene units are too large",
-        || {
-            Shape::default().cuboids(&SMALL).scene(
-                [2.2e-4, 2.6e-4, 3e-4],
-                [4e-5, 2e-5, 2e-5],
-                LIGHT,
-            )
-        },
-    )
-    .with_answer(|p| among(p, LIGHT, &SMALL, 1e-7)),
-    HardCase::closed(
+        seen([2.2e-4, 2.6e-4, 3e-4], [4e-5, 2e-5, 2e-5], LIGHT),
+        (&SMALL, 1e-7),
+    ),
+    HardCase::boxes(
         "origin_offset_1e7",
         "ten million units from the origin, where f32 counts in ones",
-        || {
-            let at = |x, y, z| [x, y, z].map(|c: f64| f64::from(FAR_OFF) + c);
-            Shape::default().cuboids(&FAR).scene(
-                at(3000.0, 4000.0, 5000.0),
-                at(300.0, 200.0, 100.0),
-                LIGHT,
-            )
-        },
-    )
-    .with_answer(|p| among(p, LIGHT, &FAR, 20.0)),
+        seen(
+            [10_003_000.0, 10_004_000.0, 10_005_000.0],
+            [10_000_300.0, 10_000_200.0, 10_000_100.0],
+            LIGHT,
+        ),
+        (&FAR, 20.0),
+    ),
     HardCase::closed(
         "extent_1e6_detail_1e_2",
         "boxes of a hundredth on a plain of a million: all of them in one texel",
-        || {
-            Shape::default()
-                .graded_slab(0.05, 12, 1e5)
-                .cuboids(&DETAIL)
-                .scene([0.03, 0.04, 0.05], [0.004, 0.002, 0.003], LIGHT)
-        },
+        seen([0.03, 0.04, 0.05], [0.004, 0.002, 0.003], LIGHT),
+        || Shape::default().graded_slab(0.05, 12, 1e5).cuboids(&DETAIL),
     )
     .with_answer(|p| among(p, LIGHT, &DETAIL, 1e-5)),
     HardCase::closed(
         "huge_beside_tiny",
         "crumbs on a floor of two triangles four hundred times their size",
+        seen([0.13, 0.2, 0.21], [0.03, 0.01, 0.02], LIGHT),
         || {
             Shape::default()
                 .cuboid([[-10.0, -1.0, -10.0], [10.0, 0.0, 10.0]])
                 .cuboids(&CRUMBS)
-                .scene([0.13, 0.2, 0.21], [0.03, 0.01, 0.02], LIGHT)
         },
     )
     .with_answer(|p| among(p, LIGHT, &CRUMBS, 1e-3)),

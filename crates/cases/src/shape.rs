@@ -178,12 +178,7 @@ impl Shape {
 
     /// The scene, still without a name, seen by a camera at `eye` that looks at `target`, up being
     /// y unless that is where it looks.
-    pub fn scene(self, eye: [f64; 3], target: [f64; 3], light: DVec3) -> Scene {
-        self.lit_scene(eye, target, DirectionalLight::new(light))
-    }
-
-    /// The same under any light.
-    pub fn lit_scene(self, eye: [f64; 3], target: [f64; 3], light: impl Into<LightKind>) -> Scene {
+    pub fn scene(self, Seen { eye, target, light }: Seen) -> Scene {
         let eye = DVec3::from(eye);
         let direction = DVec3::from(target) - eye;
         let upright = direction.normalize().y.abs() < 0.99;
@@ -203,4 +198,26 @@ impl Shape {
             lights: vec![Light::only(light)],
         }
     }
+}
+
+/// From where a case is seen, and under which light.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Seen {
+    pub eye: [f64; 3],
+    pub target: [f64; 3],
+    pub light: LightKind,
+}
+
+/// Under a light that travels in this direction.
+pub(crate) const fn seen(eye: [f64; 3], target: [f64; 3], light: DVec3) -> Seen {
+    seen_under(
+        eye,
+        target,
+        LightKind::Directional(DirectionalLight::new(light)),
+    )
+}
+
+/// Under any light.
+pub(crate) const fn seen_under(eye: [f64; 3], target: [f64; 3], light: LightKind) -> Seen {
+    Seen { eye, target, light }
 }

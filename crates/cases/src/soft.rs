@@ -1,9 +1,8 @@
 //! Cases that filtered maps get wrong, each map by its own means.
 
 use crate::{
-    answer::among,
     case::HardCase,
-    shape::{Block, Shape},
+    shape::{Block, seen},
 };
 use glam::DVec3;
 
@@ -31,36 +30,22 @@ const NEAR_AND_FAR: [Block; 3] = [
 ];
 
 pub(crate) const CASES: &[HardCase] = &[
-    HardCase::closed(
+    HardCase::boxes(
         "two_occluders",
         "a silhouette within another's shadow: the variance of depths lets light through",
-        || {
-            Shape::default().cuboids(&TWO_OCCLUDERS).scene(
-                [3.6, 2.2, 2.4],
-                [0.1, 0.0, 0.0],
-                OBLIQUE,
-            )
-        },
-    )
-    .with_answer(|p| among(p, OBLIQUE, &TWO_OCCLUDERS, 1e-4)),
-    HardCase::closed(
+        seen([3.6, 2.2, 2.4], [0.1, 0.0, 0.0], OBLIQUE),
+        (&TWO_OCCLUDERS, 1e-4),
+    ),
+    HardCase::boxes(
         "contact",
         "a thin wall on its own shadow: receivers near it are as deep as their caster, almost",
-        || {
-            Shape::default()
-                .cuboids(&CONTACT)
-                .scene([0.5, 1.2, 2.0], [0.0, 0.0, 0.3], ACROSS)
-        },
-    )
-    .with_answer(|p| among(p, ACROSS, &CONTACT, 1e-4)),
-    HardCase::closed(
+        seen([0.5, 1.2, 2.0], [0.0, 0.0, 0.3], ACROSS),
+        (&CONTACT, 1e-4),
+    ),
+    HardCase::boxes(
         "near_and_far",
         "plates near the floor and far above: a lamp would blur the shadow of one alone",
-        || {
-            Shape::default()
-                .cuboids(&NEAR_AND_FAR)
-                .scene([0.0, 2.4, 3.0], [0.0, 0.0, 0.0], STEEP)
-        },
-    )
-    .with_answer(|p| among(p, STEEP, &NEAR_AND_FAR, 1e-4)),
+        seen([0.0, 2.4, 3.0], [0.0, 0.0, 0.0], STEEP),
+        (&NEAR_AND_FAR, 1e-4),
+    ),
 ];

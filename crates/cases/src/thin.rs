@@ -3,7 +3,7 @@
 use crate::{
     answer::{among, at_height, in_block, in_sheet, judge},
     case::HardCase,
-    shape::{Block, Shape},
+    shape::{Block, Shape, seen},
 };
 use glam::{DVec3, Vec3};
 use skiagraph_scene::generate::numbers::Random;
@@ -45,6 +45,7 @@ pub(crate) const CASES: &[HardCase] = &[
     HardCase::open(
         "thin_neighbours",
         "beyond a kept edge a sliver that ends at once: what deceives crsma",
+        seen([0.4, 0.95, 1.2], [0.0, 0.0, 0.0], DVec3::NEG_Y),
         || {
             let sheets = kept_edges().map(|[x, z, width]| {
                 let [far, near] = [[x, 1.0, z - 0.2], [x, 1.0, z + 0.2]];
@@ -53,10 +54,7 @@ pub(crate) const CASES: &[HardCase] = &[
                     [near, far, [x + width, 1.0, z]],
                 ]
             });
-            Shape::default()
-                .floor(2.0, 0.0)
-                .triangles(sheets.concat())
-                .scene([0.4, 0.95, 1.2], [0.0, 0.0, 0.0], DVec3::NEG_Y)
+            Shape::default().floor(2.0, 0.0).triangles(sheets.concat())
         },
     )
     .with_answer(|p| {
@@ -71,22 +69,21 @@ pub(crate) const CASES: &[HardCase] = &[
     HardCase::closed(
         "thin_chamfers",
         "closed bars whose lower edges are cut by less than a texel: the same on solids",
+        seen([1.5, 0.9, 1.9], [0.5, 0.0, 0.4], LIGHT),
         || {
-            (0..CHAMFER.len())
-                .fold(Shape::default().cuboid(FLOOR), |shape, i| {
-                    let [[x0, y0, z0], [x1, y1, z1]] = chamfered(i);
-                    let cut = CHAMFER[i];
-                    let outline = [
-                        [x0 + cut, y0],
-                        [x1 - cut, y0],
-                        [x1, y0 + 0.5 * cut],
-                        [x1, y1],
-                        [x0, y1],
-                        [x0, y0 + 0.5 * cut],
-                    ];
-                    shape.prism(&outline, [z0, z1])
-                })
-                .scene([1.5, 0.9, 1.9], [0.5, 0.0, 0.4], LIGHT)
+            (0..CHAMFER.len()).fold(Shape::default().cuboid(FLOOR), |shape, i| {
+                let [[x0, y0, z0], [x1, y1, z1]] = chamfered(i);
+                let cut = CHAMFER[i];
+                let outline = [
+                    [x0 + cut, y0],
+                    [x1 - cut, y0],
+                    [x1, y0 + 0.5 * cut],
+                    [x1, y1],
+                    [x0, y1],
+                    [x0, y0 + 0.5 * cut],
+                ];
+                shape.prism(&outline, [z0, z1])
+            })
         },
     )
     .with_answer(|p| {
@@ -98,6 +95,7 @@ pub(crate) const CASES: &[HardCase] = &[
     HardCase::closed(
         "long_thin_diagonals",
         "triangles a thousand times as long as wide, across the map's diagonal",
+        seen([1.6, 0.7, 1.6], [0.6, 0.0, 0.4], LIGHT),
         || {
             // A turn by an eighth, and larger by √2.
             let place = |[x, y, z]: [f32; 3]| [x + z, y, z - x];
@@ -106,7 +104,6 @@ pub(crate) const CASES: &[HardCase] = &[
                 .fold(Shape::default().cuboid(FLOOR), |shape, &block| {
                     shape.moved_cuboid(block, place)
                 })
-                .scene([1.6, 0.7, 1.6], [0.6, 0.0, 0.4], LIGHT)
         },
     )
     .with_answer(|p| {
@@ -116,6 +113,7 @@ pub(crate) const CASES: &[HardCase] = &[
     HardCase::open(
         "needles",
         "four hundred slivers down to a millionth of their length",
+        seen([1.7, 2.2, 2.6], [0.3, 0.2, 0.2], LIGHT),
         || {
             let mut random = Random::new(3);
             let needles = (0..400).map(|i| {
@@ -126,16 +124,13 @@ pub(crate) const CASES: &[HardCase] = &[
                     .map(|p| p.as_vec3().to_array())
             });
             let needles: Vec<_> = needles.collect();
-            Shape::default().floor(2.5, 0.0).triangles(needles).scene(
-                [1.7, 2.2, 2.6],
-                [0.3, 0.2, 0.2],
-                LIGHT,
-            )
+            Shape::default().floor(2.5, 0.0).triangles(needles)
         },
     ),
     HardCase::open(
         "zero_area_triangles",
         "points and lines among the triangles: nothing to divide by, nothing to shade with",
+        seen([1.8, 1.4, 2.6], [0.4, 0.0, 0.2], LIGHT),
         || {
             let mut random = Random::new(4);
             let mut grid = || (random.in_ball() * 64.0).round() / 64.0 + DVec3::Y * 1.2;
@@ -146,11 +141,7 @@ pub(crate) const CASES: &[HardCase] = &[
             });
             let flat: Vec<_> = flat.collect();
             let sheet = Shape::default().sheet(SHEET, 1.0).reversed();
-            Shape::default()
-                .floor(2.5, 0.0)
-                .triangles(flat)
-                .and(sheet)
-                .scene([1.8, 1.4, 2.6], [0.4, 0.0, 0.2], LIGHT)
+            Shape::default().floor(2.5, 0.0).triangles(flat).and(sheet)
         },
     )
     .with_answer(|p| judge([in_sheet(p, LIGHT, SHEET, 1.0)], 1e-3)),
@@ -158,13 +149,13 @@ pub(crate) const CASES: &[HardCase] = &[
         "depths_span_the_map",
         "a beam towards the light: each of its triangles reaches from the first depth to the \
              last",
+        seen([1.0, 1.0, 1.2], [0.2, 0.1, 0.1], LIGHT),
         || {
             Shape::default()
                 .cuboid(FLOOR)
                 .moved_cuboid([[-0.15, 0.0, -0.15], [0.15, 4.0, 0.15]], |corner| {
                     lean(Vec3::from(corner)).to_array()
                 })
-                .scene([1.0, 1.0, 1.2], [0.2, 0.1, 0.1], LIGHT)
         },
     )
     // Upright again, it is a box; the floor stays where it is.

@@ -3,21 +3,20 @@
 use crate::{
     answer::{at_height, in_disc, in_sheet, judge},
     case::HardCase,
-    shape::Shape,
+    shape::{Seen, Shape, seen},
 };
 use glam::DVec3;
-use skiagraph_scene::{Scene, generate::numbers::turn};
+use skiagraph_scene::generate::numbers::turn;
 
 const LIGHT: DVec3 = DVec3::new(0.31, -1.0, 0.17);
 
 const ROOF: [[f32; 2]; 2] = [[-0.75, -0.75], [0.75, 0.75]];
 
 /// The camera is below the roof: it sees the shadow and not the top.
-fn under_a_roof(roof: Shape) -> Scene {
-    Shape::default()
-        .floor(2.0, 0.0)
-        .and(roof)
-        .scene([1.3, 0.95, 2.3], [0.2, 0.0, 0.1], LIGHT)
+const UNDER: Seen = seen([1.3, 0.95, 2.3], [0.2, 0.0, 0.1], LIGHT);
+
+fn under_a_roof(roof: Shape) -> Shape {
+    Shape::default().floor(2.0, 0.0).and(roof)
 }
 
 fn roof_lit(p: DVec3) -> Option<bool> {
@@ -55,6 +54,7 @@ pub(crate) const CASES: &[HardCase] = &[
     HardCase::open(
         "t_junctions",
         "vertices on the middle of an edge: no adjacency across it, and no gap",
+        UNDER,
         || {
             let right = [-0.75, -0.25, 0.125, 0.375, 0.75];
             let roof = right.windows(2).fold(Shape::default(), |shape, z| {
@@ -67,6 +67,7 @@ pub(crate) const CASES: &[HardCase] = &[
     HardCase::open(
         "cracks",
         "two sheets that meet at the ends of a seam and not in its middle",
+        seen([0.8, 0.7, 1.2], [0.3, 0.0, 0.17], LIGHT),
         || {
             let [near, far, deep] = [[0.0, 1.0, 0.75], [0.0, 1.0, -0.75], [CRACK, 1.0, 0.0]];
             let [right_near, right_far] = [[0.75, 1.0, 0.75], [0.75, 1.0, -0.75]];
@@ -78,11 +79,7 @@ pub(crate) const CASES: &[HardCase] = &[
                     [right_far, far, deep],
                 ])
                 .reversed();
-            Shape::default().floor(2.0, 0.0).and(roof).scene(
-                [0.8, 0.7, 1.2],
-                [0.3, 0.0, 0.17],
-                LIGHT,
-            )
+            Shape::default().floor(2.0, 0.0).and(roof)
         },
     )
     .with_answer(|p| {
@@ -96,6 +93,7 @@ pub(crate) const CASES: &[HardCase] = &[
     HardCase::open(
         "fan_of_pages",
         "five sheets around one edge: no neighbour can be named",
+        seen([2.1, 1.1, 2.2], [0.3, 0.0, 0.2], LIGHT),
         || {
             let page = |k: u8| {
                 let (z, y) = turn(f64::from(k) / 5.0 + 0.07);
@@ -103,16 +101,13 @@ pub(crate) const CASES: &[HardCase] = &[
                 [[-0.8, 0.9, 0.0], [0.8, 0.9, 0.0], [0.8, y, z], [-0.8, y, z]]
             };
             let pages = (0..5).fold(Shape::default(), |shape, k| shape.quad(page(k)));
-            Shape::default().floor(2.0, 0.0).and(pages).scene(
-                [2.1, 1.1, 2.2],
-                [0.3, 0.0, 0.2],
-                LIGHT,
-            )
+            Shape::default().floor(2.0, 0.0).and(pages)
         },
     ),
     HardCase::open(
         "fan_winds_twice",
         "a closed fan of two turns: every edge is kept, and every point is covered twice",
+        seen([1.1, 0.85, 1.8], [0.0; 3], DVec3::NEG_Y),
         || {
             let fan = |row: u32, step: u32| {
                 // Up for a turn and down again, so that the rim closes.
@@ -124,11 +119,7 @@ pub(crate) const CASES: &[HardCase] = &[
                 }
             };
             let fan = Shape::default().lattice(1, 2 * SIDES, fan);
-            Shape::default().floor(2.0, 0.0).and(fan).scene(
-                [1.1, 0.85, 1.8],
-                [0.0; 3],
-                DVec3::NEG_Y,
-            )
+            Shape::default().floor(2.0, 0.0).and(fan)
         },
     )
     .with_answer(|p| {
@@ -141,6 +132,7 @@ pub(crate) const CASES: &[HardCase] = &[
     HardCase::open(
         "helicoid_in_a_texel",
         "two turns of a spiral stair around the light's direction, all of it in one texel",
+        seen([0.005, 0.0105, 0.012], [0.0; 3], DVec3::NEG_Y),
         || {
             let helicoid = |row: u32, step: u32| {
                 let y = 0.012 + 0.0003 * f64::from(step);
@@ -151,10 +143,7 @@ pub(crate) const CASES: &[HardCase] = &[
                 }
             };
             let helicoid = Shape::default().lattice(1, 2 * SIDES, helicoid);
-            Shape::default()
-                .graded_slab(0.05, 3, 0.5)
-                .and(helicoid)
-                .scene([0.005, 0.0105, 0.012], [0.0; 3], DVec3::NEG_Y)
+            Shape::default().graded_slab(0.05, 3, 0.5).and(helicoid)
         },
     )
     .with_answer(|p| {
@@ -167,6 +156,7 @@ pub(crate) const CASES: &[HardCase] = &[
     HardCase::open(
         "moebius_strip",
         "one side only: windings cannot agree across every edge",
+        seen([1.8, 2.0, 2.4], [0.2, 0.2, 0.1], LIGHT),
         || {
             let strip = |step: u32, column: u32| {
                 let ((x, z), (cos, sin)) =
@@ -176,27 +166,21 @@ pub(crate) const CASES: &[HardCase] = &[
                 DVec3::new(x * out, 0.8 + side * sin, -z * out)
             };
             let strip = Shape::default().lattice(48, 4, strip);
-            Shape::default().floor(2.5, 0.0).and(strip).scene(
-                [1.8, 2.0, 2.4],
-                [0.2, 0.2, 0.1],
-                LIGHT,
-            )
+            Shape::default().floor(2.5, 0.0).and(strip)
         },
     ),
     HardCase::open(
         "open_sheets",
         "sheets that face the light and sheets that do not: culling loses half of them",
+        seen([1.2, 1.9, 2.6], [0.0, 0.1, 0.0], LIGHT),
         || {
-            SHEETS
-                .iter()
-                .fold(
-                    Shape::default().floor(2.0, 0.0),
-                    |shape, &(sheet, y, up)| {
-                        let sheet = Shape::default().sheet(sheet, y);
-                        shape.and(if up { sheet } else { sheet.reversed() })
-                    },
-                )
-                .scene([1.2, 1.9, 2.6], [0.0, 0.1, 0.0], LIGHT)
+            SHEETS.iter().fold(
+                Shape::default().floor(2.0, 0.0),
+                |shape, &(sheet, y, up)| {
+                    let sheet = Shape::default().sheet(sheet, y);
+                    shape.and(if up { sheet } else { sheet.reversed() })
+                },
+            )
         },
     )
     .with_answer(|p| {
@@ -210,6 +194,7 @@ pub(crate) const CASES: &[HardCase] = &[
     HardCase::open(
         "duplicated_triangles",
         "every triangle of a roof three times: six triangles to an inner edge",
+        UNDER,
         || {
             let roof = Shape::default().sheet(ROOF, 1.0).reversed();
             under_a_roof(roof.clone().and(roof.clone()).and(roof))
@@ -219,6 +204,7 @@ pub(crate) const CASES: &[HardCase] = &[
     HardCase::open(
         "opposite_wound",
         "a roof of two sheets, back to back in the same place",
+        UNDER,
         || under_a_roof(Shape::default().sheet(ROOF, 1.0).and_reversed()),
     )
     .with_answer(roof_lit),

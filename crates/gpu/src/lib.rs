@@ -23,6 +23,7 @@
 //! [`Executor`] is a plan on a device: what the live passes touch is made, frames are encoded,
 //! timed and read back. [`Provider`] makes what the graph does not make itself.
 
+mod buffer;
 pub mod device;
 mod error;
 mod experimental;

@@ -1,6 +1,7 @@
 //! Checks before each frame that a device is still there, without making anything.
 
 use crate::{
+    buffer,
     error::{ExecuteError, scoped},
     signal::{Progress, Signal},
 };
@@ -25,13 +26,7 @@ impl Presence {
     pub fn new(device: &wgpu::Device) -> Result<Self, ExecuteError> {
         let presence = Self {
             buffer: scoped(device, NAME, || {
-                device.create_buffer(&wgpu::BufferDescriptor {
-                    label: Some(NAME),
-                    size: wgpu::MAP_ALIGNMENT,
-                    // A buffer that is only mapped has no usage in the driver's eyes.
-                    usage: wgpu::BufferUsages::MAP_WRITE | wgpu::BufferUsages::COPY_SRC,
-                    mapped_at_creation: false,
-                })
+                buffer::make(device, NAME, wgpu::MAP_ALIGNMENT, USAGE)
             })?,
             device: device.clone(),
             asked: Signal::default(),
@@ -71,10 +66,13 @@ fn maps_another(device: &wgpu::Device) -> bool {
     let buffer = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(NAME),
         size: wgpu::MAP_ALIGNMENT,
-        usage: wgpu::BufferUsages::MAP_WRITE | wgpu::BufferUsages::COPY_SRC,
+        usage: USAGE,
         mapped_at_creation: true,
     });
     buffer.get_mapped_range(..).is_ok()
 }
 
 const NAME: &str = "is the device there";
+
+/// A buffer that is only mapped has no usage in the driver's eyes.
+const USAGE: wgpu::BufferUsages = wgpu::BufferUsages::MAP_WRITE.union(wgpu::BufferUsages::COPY_SRC);

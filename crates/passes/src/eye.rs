@@ -81,7 +81,8 @@ impl Eye {
         let origin = view.inverse().project_point3(DVec3::ZERO);
         let view = view * DMat4::from_translation(origin);
         let relative_from_clip = (projection * view).inverse();
-        let frustum = Frustum::new(&relative_from_clip, depth)?;
+        let mut camera = frustum(&relative_from_clip, depth)?;
+        camera.eye += origin;
         let rounded = origin.as_vec3();
         let unprojection = UnprojectionUniform {
             relative_from_clip: relative_from_clip.as_mat4(),
@@ -91,7 +92,7 @@ impl Eye {
             padding: 0.0,
         };
         Ok(Self {
-            camera: CameraUniform::from(&frustum.camera(origin)),
+            camera: CameraUniform::from(&camera),
             unprojection,
         })
     }
@@ -130,90 +131,68 @@ impl From<&Camera> for Eye {
     }
 }
 
-/// Relative to the eye.
-struct Frustum {
-    apex: DVec3,
-    axes: [DVec3; 3],
-    half: [f64; 2],
-    near: f64,
-    far: f64,
-}
-
-impl Frustum {
-    fn new(relative_from_clip: &DMat4, depth: Depth) -> Result<Self, EyeError> {
-        let near_depth = f64::from(u8::from(depth == Depth::Reversed));
-        let at =
-            |x: f64, y: f64, depth: f64| relative_from_clip * DVec3::new(x, y, depth).extend(1.0);
-        let point = |x, y, depth| {
-            let at = at(x, y, depth);
-            at.truncate() / at.w
-        };
-        let corners = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)];
-        let near_corners = corners.map(|(x, y)| point(x, y, near_depth));
-        let [low, right, up, _] = near_corners;
-        let (right, up) = ((right - low).normalize_or_zero(), up - low);
-        let up = up.reject_from_normalized(right).normalize_or_zero();
-        let middle = point(0.0, 0.0, 0.5);
-        let centre = point(0.0, 0.0, near_depth);
-        let across = right.cross(up);
-        let forward = across * across.dot(middle - centre).signum();
-        let end = at(0.0, 0.0, 1.0 - near_depth);
-        let along = |point: DVec3| forward.dot(point);
-        let (mut near, mut far) = (along(centre), f64::INFINITY);
-        if end.w.abs() > 1e-12 * end.truncate().length() {
-            far = along(end.truncate() / end.w);
-        }
-        let begin = at(0.0, 0.0, near_depth).w;
-        let is_parallel = (begin - end.w).abs() <= 1e-9 * begin.abs();
-        let mut apex = DVec3::ZERO;
-        if is_parallel {
-            // A pyramid that has the box in it: its apex is as far before the box as that is deep.
-            let length = far - near;
-            apex = forward * (near - length);
-            (near, far) = (length, 2.0 * length);
-        } else if far.is_infinite() {
-            far = FARTHEST * near;
-        }
-        // `near` is NaN if an infinite far plane is taken for the near one.
-        if !is_parallel && (near <= 0.0 || near.is_nan() || far < near) {
-            return Err(EyeError::Depth(depth));
-        }
-        let half = [right, up].map(|axis| {
-            let reach = near_corners.map(|corner| axis.dot(corner - apex).abs());
-            reach.into_iter().fold(0.0, f64::max) / near
-        });
-        let numbers = [near, far, half[0], half[1], 1.0 / near];
-        let is_held = numbers
-            .iter()
-            .all(|&it| it > 0.0 && (it as f32).is_finite())
-            && near >= LEAST_DEPTH * far;
-        if !(near < far && is_held && forward.is_finite()) {
-            return Err(EyeError::Frustum { near, far });
-        }
-        Ok(Self {
-            apex,
-            axes: [right, up, forward],
-            half,
-            near,
-            far,
-        })
+/// The camera of a projection, relative to the eye.
+fn frustum(relative_from_clip: &DMat4, depth: Depth) -> Result<Camera, EyeError> {
+    let near_depth = f64::from(u8::from(depth == Depth::Reversed));
+    let at = |x: f64, y: f64, depth: f64| relative_from_clip * DVec3::new(x, y, depth).extend(1.0);
+    let point = |x, y, depth| {
+        let at = at(x, y, depth);
+        at.truncate() / at.w
+    };
+    let corners = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)];
+    let near_corners = corners.map(|(x, y)| point(x, y, near_depth));
+    let [low, right, up, _] = near_corners;
+    let (right, up) = ((right - low).normalize_or_zero(), up - low);
+    let up = up.reject_from_normalized(right).normalize_or_zero();
+    let middle = point(0.0, 0.0, 0.5);
+    let centre = point(0.0, 0.0, near_depth);
+    let across = right.cross(up);
+    let forward = across * across.dot(middle - centre).signum();
+    let end = at(0.0, 0.0, 1.0 - near_depth);
+    let along = |point: DVec3| forward.dot(point);
+    let (mut near, mut far) = (along(centre), f64::INFINITY);
+    if end.w.abs() > 1e-12 * end.truncate().length() {
+        far = along(end.truncate() / end.w);
     }
-
-    fn camera(&self, origin: DVec3) -> Camera {
-        let [right, up, forward] = self.axes;
-        Camera {
-            eye: origin + self.apex,
-            right,
-            up,
-            forward,
-            half_width: self.half[0],
-            half_height: self.half[1],
-            near: self.near,
-            far: self.far,
-            viewport: [1, 1],
-            jitter: DVec2::ZERO,
-        }
+    let begin = at(0.0, 0.0, near_depth).w;
+    let is_parallel = (begin - end.w).abs() <= 1e-9 * begin.abs();
+    let mut apex = DVec3::ZERO;
+    if is_parallel {
+        // A pyramid that has the box in it: its apex is as far before the box as that is deep.
+        let length = far - near;
+        apex = forward * (near - length);
+        (near, far) = (length, 2.0 * length);
+    } else if far.is_infinite() {
+        far = FARTHEST * near;
     }
+    // `near` is NaN if an infinite far plane is taken for the near one.
+    if !is_parallel && (near <= 0.0 || near.is_nan() || far < near) {
+        return Err(EyeError::Depth(depth));
+    }
+    let half = [right, up].map(|axis| {
+        let reach = near_corners.map(|corner| axis.dot(corner - apex).abs());
+        reach.into_iter().fold(0.0, f64::max) / near
+    });
+    let numbers = [near, far, half[0], half[1], 1.0 / near];
+    let is_held = numbers
+        .iter()
+        .all(|&it| it > 0.0 && (it as f32).is_finite())
+        && near >= LEAST_DEPTH * far;
+    if !(near < far && is_held && forward.is_finite()) {
+        return Err(EyeError::Frustum { near, far });
+    }
+    Ok(Camera {
+        eye: apex,
+        right,
+        up,
+        forward,
+        half_width: half[0],
+        half_height: half[1],
+        near,
+        far,
+        viewport: [1, 1],
+        jitter: DVec2::ZERO,
+    })
 }
 
 #[cfg(test)]

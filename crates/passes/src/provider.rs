@@ -61,6 +61,7 @@ use std::{collections::BTreeMap, sync::Arc, time::Instant};
 /// wgpu binds no buffer of size zero: an array of an empty scene holds one zero item, its hierarchy
 /// one leaf around a triangle without area, which no ray hits. [`Describe::describe`] still says 0
 /// items, so that nothing is drawn.
+#[derive(Clone)]
 pub struct SceneProvider {
     pub(crate) scene: Arc<Scene>,
     pub(crate) eye: Eye,

@@ -19,7 +19,7 @@
 //! ```
 
 use glam::{DMat4, DVec3, Mat3, Mat4, Vec2, Vec3};
-use skiagraph_scene::{Camera, DirectionalLight, LightKind, Mesh, SpotLight};
+use skiagraph_scene::{Camera, DirectionalLight, LightKind, Mesh, SpotLight, light::across};
 
 /// WGSL's `Camera`: a perspective camera, 96 bytes.
 #[repr(C)]
@@ -205,17 +205,6 @@ impl LightUniform {
             ..Self::default()
         }
     }
-}
-
-/// Two unit vectors across a direction, to the right and up.
-fn across(forward: DVec3) -> (DVec3, DVec3) {
-    let helper = if forward.y.abs() < 0.9 {
-        DVec3::Y
-    } else {
-        DVec3::Z
-    };
-    let right = forward.cross(helper).normalize();
-    (right, right.cross(forward))
 }
 
 /// WGSL's `LightArea`: how far the light reaches around its centre, 32 bytes.

@@ -3,7 +3,7 @@
 use crate::{
     error::Error,
     ground_truth::{Answer, AreaVisibility, Class, GroundTruth, GroundTruthPixels},
-    oracle::{Oracle, OracleMode, base_colors},
+    oracle::{Oracle, OracleMode},
     pixels::{Progress, check_pixel_count, per_pixel},
     ray::Ray,
     receiver::Receiver,
@@ -158,11 +158,7 @@ pub fn shade_area(
         standard_errors: shares.iter().map(|[_, error]| *error as f32).collect(),
     };
     Ok((
-        GroundTruthPixels::new(
-            camera.viewport,
-            &answers,
-            base_colors(oracle.mesh, camera, primitives),
-        ),
+        GroundTruthPixels::new(oracle.mesh, camera, primitives, &answers),
         area,
     ))
 }
@@ -214,8 +210,7 @@ fn share(
             return !oracle.occluded(origin, way, excluded, stack);
         };
         let ray = Ray::new(origin, way.direction, max_distance, 0.0).ending(way.distance);
-        let blocks = |caster: &Caster| caster.hit(&ray).is_some_and(|hit| ray.reaches(hit.t));
-        let blocker = casters.iter().position(blocks);
+        let blocker = casters.iter().position(|caster| caster.blocks(&ray));
         // The blocker of one ray is likely to block the next.
         if let Some(blocker) = blocker {
             casters.swap(0, blocker);

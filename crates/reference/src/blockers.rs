@@ -7,7 +7,6 @@
 use crate::{
     error::Error,
     oracle::{Oracle, OracleMode},
-    ray::Ray,
     receiver::Receiver,
 };
 use glam::DVec3;
@@ -27,26 +26,24 @@ pub struct BlockerCounts {
     pub none: u64,
 }
 
-/// Blocker of one pixel.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Blocker {
-    OpenPart,
-    ClosedPart,
-    None,
-}
-
-impl FromIterator<Blocker> for BlockerCounts {
-    fn from_iter<I: IntoIterator<Item = Blocker>>(blockers: I) -> Self {
-        let mut counts = Self::default();
-        for blocker in blockers {
-            *match blocker {
-                Blocker::OpenPart => &mut counts.open_part,
-                Blocker::ClosedPart => &mut counts.closed_part,
-                Blocker::None => &mut counts.none,
-            } += 1;
-        }
-        counts
-    }
+impl BlockerCounts {
+    const OPEN_PART: Self = Self {
+        open_part: 1,
+        ..Self::ZERO
+    };
+    const CLOSED_PART: Self = Self {
+        closed_part: 1,
+        ..Self::ZERO
+    };
+    const NONE: Self = Self {
+        none: 1,
+        ..Self::ZERO
+    };
+    const ZERO: Self = Self {
+        open_part: 0,
+        closed_part: 0,
+        none: 0,
+    };
 }
 
 /// Finds the blockers of each of `pixels`, places in the buffer `primitives`; the other
@@ -76,13 +73,13 @@ pub fn blockers(
                 let (origin, way, passed) = mode.ray(&receiver);
                 blocker(oracle, origin, way, passed, parts, stack)
             }
-            _ => Blocker::None,
+            _ => BlockerCounts::NONE,
         })
     });
-    Ok(blockers
-        .collect::<Result<Vec<_>, Error>>()?
-        .into_iter()
-        .collect())
+    blockers.try_reduce(BlockerCounts::default, |mut counts, other| {
+        counts += other;
+        Ok(counts)
+    })
 }
 
 fn blocker(
@@ -92,20 +89,18 @@ fn blocker(
     passed: u32,
     parts: &Parts,
     stack: &mut Vec<u32>,
-) -> Blocker {
-    let max_distance = oracle.tree.max_distance(origin);
-    let ray = Ray::new(origin, way.direction, max_distance, 0.0).ending(way.distance);
-    let mut found = Blocker::None;
+) -> BlockerCounts {
+    let ray = oracle.tree.ray(origin, &way, 0.0);
+    let mut found = BlockerCounts::NONE;
     oracle.tree.walk(&ray, stack, |caster, _| {
-        let hit = caster.hit(&ray);
-        if caster.primitive == passed || !hit.is_some_and(|hit| ray.reaches(hit.t)) {
+        if caster.primitive == passed || !caster.blocks(&ray) {
             return ControlFlow::Continue(());
         }
         if parts.is_open(caster.primitive) {
-            found = Blocker::OpenPart;
+            found = BlockerCounts::OPEN_PART;
             return ControlFlow::Continue(());
         }
-        found = Blocker::ClosedPart;
+        found = BlockerCounts::CLOSED_PART;
         ControlFlow::Break(())
     });
     found

@@ -1,6 +1,12 @@
 //! The ground truth of a view: the oracle's answer at each pixel.
 
-use crate::{receiver::Receiver, status};
+use crate::{
+    pixels::BACKGROUND,
+    receiver::{self, Receiver},
+    status,
+};
+use rayon::prelude::*;
+use skiagraph_scene::{Camera, Mesh};
 use std::borrow::Cow;
 
 /// Oracle's answer for a pixel.
@@ -43,10 +49,16 @@ pub struct GroundTruthPixels {
 }
 
 impl GroundTruthPixels {
-    pub(crate) fn new(viewport: [u32; 2], answers: &[Answer], base_colors: Vec<[f32; 3]>) -> Self {
+    /// Takes apart the answers of a G-buffer's pixels.
+    pub(crate) fn new(
+        mesh: &Mesh,
+        camera: &Camera,
+        primitives: &[u32],
+        answers: &[Answer],
+    ) -> Self {
         Self {
-            viewport,
-            base_colors,
+            viewport: camera.viewport,
+            base_colors: base_colors(mesh, camera, primitives),
             classes: answers.iter().map(|answer| answer.class).collect(),
             indeterminate: answers.iter().map(|answer| answer.indeterminate).collect(),
             n_dot_l: answers.iter().map(|answer| answer.n_dot_l).collect(),
@@ -80,6 +92,25 @@ impl GroundTruthPixels {
             .map(|class| status(class) as u8)
             .collect()
     }
+}
+
+/// Returns the base colours of the pixels of a G-buffer; nothing where the mesh has no materials.
+fn base_colors(mesh: &Mesh, camera: &Camera, primitives: &[u32]) -> Vec<[f32; 3]> {
+    let surfaces = &mesh.surfaces;
+    if surfaces.materials.is_empty() {
+        return Vec::new();
+    }
+    let width = camera.viewport[0];
+    let colour = |(pixel, &primitive): (usize, &u32)| {
+        if primitive == BACKGROUND {
+            return [0.0; 3];
+        }
+        let pixel = pixel as u32;
+        let direction = camera.pixel_direction(pixel % width, pixel / width);
+        let weights = receiver::weights(mesh, primitive, camera.eye, direction);
+        surfaces.base_color(primitive, weights)
+    };
+    primitives.par_iter().enumerate().map(colour).collect()
 }
 
 /// The share of an area light that each pixel sees, row by row from the top left.

@@ -106,28 +106,22 @@ impl Image {
     ) -> Result<Self, Error> {
         let mut rgb = Vec::with_capacity(truth.classes.len() * 3);
         let mut wrong = Vec::new();
-        for_each_verdict(
-            visibility,
-            status,
-            truth,
-            |class, _, indeterminate, verdict| {
-                let pixel = rgb.len() / 3;
-                let backdrop = |grey| tinted(grey, truth, pixel);
-                if verdict != Verdict::Right && !indeterminate {
-                    wrong.push(pixel);
-                }
-                rgb.extend(match (verdict, indeterminate, class) {
-                    (Verdict::WronglyLit, false, _) => WRONGLY_LIT,
-                    (Verdict::WronglyLit, true, _) => WRONGLY_LIT_INDETERMINATE,
-                    (Verdict::WronglyShadowed, false, _) => WRONGLY_SHADOWED,
-                    (Verdict::WronglyShadowed, true, _) => WRONGLY_SHADOWED_INDETERMINATE,
-                    (Verdict::Right, _, Class::Background) => DIM_BACKGROUND,
-                    (Verdict::Right, _, Class::FacingAway) => backdrop(DIM_FACING_AWAY),
-                    (Verdict::Right, _, Class::Lit) => backdrop(DIM_LIGHT),
-                    (Verdict::Right, _, Class::Shadow) => backdrop(DIM_SHADOW),
-                });
-            },
-        )?;
+        for_each_verdict(visibility, status, truth, |pixel| {
+            let backdrop = |grey| tinted(grey, truth, pixel.place);
+            if pixel.verdict != Verdict::Right && !pixel.indeterminate {
+                wrong.push(pixel.place);
+            }
+            rgb.extend(match (pixel.verdict, pixel.indeterminate, pixel.class) {
+                (Verdict::WronglyLit, false, _) => WRONGLY_LIT,
+                (Verdict::WronglyLit, true, _) => WRONGLY_LIT_INDETERMINATE,
+                (Verdict::WronglyShadowed, false, _) => WRONGLY_SHADOWED,
+                (Verdict::WronglyShadowed, true, _) => WRONGLY_SHADOWED_INDETERMINATE,
+                (Verdict::Right, _, Class::Background) => DIM_BACKGROUND,
+                (Verdict::Right, _, Class::FacingAway) => backdrop(DIM_FACING_AWAY),
+                (Verdict::Right, _, Class::Lit) => backdrop(DIM_LIGHT),
+                (Verdict::Right, _, Class::Shadow) => backdrop(DIM_SHADOW),
+            });
+        })?;
         let mut image = Self {
             size: truth.viewport,
             rgb,

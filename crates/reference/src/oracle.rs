@@ -7,7 +7,7 @@ use crate::{
     ground_truth::{Answer, Class, GroundTruthPixels},
     pixels::{BACKGROUND, Progress, check_pixel_count, per_pixel},
     ray::Ray,
-    receiver::{self, Receiver},
+    receiver::Receiver,
     tree::Tree,
 };
 use glam::{DVec3, Vec3};
@@ -175,19 +175,19 @@ impl<'a> Oracle<'a> {
         mode: OracleMode,
         progress: Progress,
     ) -> Result<GroundTruthPixels, Error> {
-        let viewport = camera.viewport;
-        check_pixel_count("primitives", viewport, primitives.len())?;
+        check_pixel_count("primitives", camera.viewport, primitives.len())?;
         let light = light.into();
         self.check(&light, mode)?;
-        let answers = per_pixel(viewport, progress, |x, y, stack| {
+        let answers = per_pixel(camera.viewport, progress, |x, y, stack| {
             let receiver = Receiver::from_pixel(self.mesh, primitives, camera, [x, y], &light)?;
             Ok(match receiver {
                 Some(receiver) => self.answer(&receiver, mode, stack),
                 None => Answer::BACKGROUND,
             })
         })?;
-        let base_colors = base_colors(self.mesh, camera, primitives);
-        Ok(GroundTruthPixels::new(viewport, &answers, base_colors))
+        Ok(GroundTruthPixels::new(
+            self.mesh, camera, primitives, &answers,
+        ))
     }
 
     /// Checks that a light can be traced.
@@ -260,18 +260,12 @@ impl<'a> Oracle<'a> {
         excluded: u32,
         stack: &mut Vec<u32>,
     ) -> (bool, bool) {
-        let max_distance = self.tree.max_distance(origin);
-        let ray = Ray::new(
-            origin,
-            way.direction,
-            max_distance,
-            uncertainty.extent(max_distance, &way),
-        )
-        .ending(way.distance);
+        let extent = uncertainty.extent(self.tree.max_distance(origin), &way);
+        let ray = self.tree.ray(origin, &way, extent);
         let fuzzy = FuzzyRay::new(&ray, origin, way, uncertainty);
-        let (mut touched, mut robust) = (false, false);
+        let mut touched = false;
         let mut blocked: Option<(f64, bool)> = None;
-        self.tree.walk(&ray, stack, |caster, _| {
+        let robust = self.tree.walk(&ray, stack, |caster, _| {
             if caster.primitive == excluded {
                 return ControlFlow::Continue(());
             }
@@ -285,10 +279,7 @@ impl<'a> Oracle<'a> {
                     let (largest, all_near_open_edges) = blocked.unwrap_or((0.0, true));
                     blocked = Some((largest.max(error), all_near_open_edges && near_open_edge));
                 }
-                Contact::Robust => {
-                    robust = true;
-                    return ControlFlow::Break(());
-                }
+                Contact::Robust => return ControlFlow::Break(()),
             }
             ControlFlow::Continue(())
         });
@@ -316,19 +307,13 @@ impl<'a> Oracle<'a> {
         excluded: u32,
         stack: &mut Vec<u32>,
     ) -> bool {
-        let max_distance = self.tree.max_distance(origin);
-        let ray = Ray::new(origin, way.direction, max_distance, 0.0).ending(way.distance);
-        let mut occluded = false;
+        let ray = self.tree.ray(origin, &way, 0.0);
         self.tree.walk(&ray, stack, |caster, _| {
-            if caster.primitive != excluded
-                && caster.hit(&ray).is_some_and(|hit| ray.reaches(hit.t))
-            {
-                occluded = true;
+            if caster.primitive != excluded && caster.blocks(&ray) {
                 return ControlFlow::Break(());
             }
             ControlFlow::Continue(())
-        });
-        occluded
+        })
     }
 }
 
@@ -350,29 +335,5 @@ pub fn unshadowed(
         let receiver = Receiver::from_pixel(mesh, primitives, camera, [x, y], light)?;
         Ok(receiver.map_or(Answer::BACKGROUND, |receiver| Answer::facing(&receiver)))
     })?;
-    let base_colors = base_colors(mesh, camera, primitives);
-    Ok(GroundTruthPixels::new(
-        camera.viewport,
-        &answers,
-        base_colors,
-    ))
-}
-
-/// Returns the base colours of the pixels of a G-buffer; nothing where the mesh has no materials.
-pub(crate) fn base_colors(mesh: &Mesh, camera: &Camera, primitives: &[u32]) -> Vec<[f32; 3]> {
-    let surfaces = &mesh.surfaces;
-    if surfaces.materials.is_empty() {
-        return Vec::new();
-    }
-    let width = camera.viewport[0];
-    let colour = |(pixel, &primitive): (usize, &u32)| {
-        if primitive == BACKGROUND {
-            return [0.0; 3];
-        }
-        let pixel = pixel as u32;
-        let direction = camera.pixel_direction(pixel % width, pixel / width);
-        let weights = receiver::weights(mesh, primitive, camera.eye, direction);
-        surfaces.base_color(primitive, weights)
-    };
-    primitives.par_iter().enumerate().map(colour).collect()
+    Ok(GroundTruthPixels::new(mesh, camera, primitives, &answers))
 }

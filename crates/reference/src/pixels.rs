@@ -58,6 +58,28 @@ pub fn per_pixel<T: Send>(
     Ok(rows.into_iter().flatten().collect())
 }
 
+/// The primitive that a pixel shows, of so many; `None` for the background.
+///
+/// # Errors
+/// [`Error::UnknownPrimitive`].
+pub(crate) fn shown(
+    primitives: &[u32],
+    viewport: [u32; 2],
+    [x, y]: [u32; 2],
+    count: u64,
+) -> Result<Option<u32>, Error> {
+    match primitives[x as usize + y as usize * viewport[0] as usize] {
+        BACKGROUND => Ok(None),
+        primitive if u64::from(primitive) < count => Ok(Some(primitive)),
+        primitive => Err(Error::UnknownPrimitive {
+            x,
+            y,
+            primitive,
+            count,
+        }),
+    }
+}
+
 /// Checks that the buffer `name` holds one value per pixel.
 ///
 /// # Errors

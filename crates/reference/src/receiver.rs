@@ -4,7 +4,7 @@
 use crate::{
     error::Error,
     error_bound::{F32_ROUNDING, Uncertainty},
-    pixels::BACKGROUND,
+    pixels::shown,
 };
 use glam::DVec3;
 use skiagraph_scene::{Camera, LightKind, Mesh, Towards};
@@ -71,23 +71,12 @@ impl Receiver {
         mesh: &Mesh,
         primitives: &[u32],
         camera: &Camera,
-        [x, y]: [u32; 2],
+        pixel: [u32; 2],
         light: &LightKind,
     ) -> Result<Option<Self>, Error> {
-        let primitive = primitives[x as usize + y as usize * camera.viewport[0] as usize];
         let count = mesh.triangles.len() as u64;
-        if primitive == BACKGROUND {
-            return Ok(None);
-        }
-        if u64::from(primitive) >= count {
-            return Err(Error::UnknownPrimitive {
-                x,
-                y,
-                primitive,
-                count,
-            });
-        }
-        Ok(Some(Self::new(mesh, primitive, camera, [x, y], light)))
+        let primitive = shown(primitives, camera.viewport, pixel, count)?;
+        Ok(primitive.map(|primitive| Self::new(mesh, primitive, camera, pixel, light)))
     }
 
     /// The point where the ray through a pixel's centre meets `primitive`.

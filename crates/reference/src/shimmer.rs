@@ -3,7 +3,7 @@
 use crate::{
     error::Error,
     ground_truth::GroundTruth,
-    pixels::{BACKGROUND, Progress, check_pixel_count, per_pixel},
+    pixels::{BACKGROUND, Progress, check_pixel_count, per_pixel, shown},
 };
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -46,23 +46,15 @@ pub fn same_receivers(before: Seen, now: Seen, progress: Progress) -> Result<Vec
     for seen in [before, now] {
         check_pixel_count("primitives", seen.camera.viewport, seen.primitives.len())?;
     }
-    let [width, _] = now.camera.viewport;
+
     let [width_before, _] = before.camera.viewport;
     let triangles = [before, now].map(|seen| seen.mesh.triangles.len());
     let count = triangles[0].min(triangles[1]) as u64;
     per_pixel(now.camera.viewport, progress, |x, y, _| {
-        let primitive = now.primitives[(x + y * width) as usize];
-        if primitive == BACKGROUND {
+        let shown = shown(now.primitives, now.camera.viewport, [x, y], count)?;
+        let Some(primitive) = shown else {
             return Ok(BACKGROUND);
-        }
-        if u64::from(primitive) >= count {
-            return Err(Error::UnknownPrimitive {
-                x,
-                y,
-                primitive,
-                count,
-            });
-        }
+        };
         let place = hit(now.mesh, primitive, now.camera, [x, y])
             .map(|receiver| earlier(receiver, primitive, before.mesh, now.mesh))
             .and_then(|receiver| before.camera.pixel_of(receiver))

@@ -80,13 +80,13 @@ pub struct Split {
 }
 
 impl ClassSplit {
-    fn add(&mut self, status: u32, indeterminate: bool, verdict: Verdict) {
-        let wrong = verdict != Verdict::Right;
-        match (status, wrong) {
+    fn add(&mut self, pixel: &Judged) {
+        let wrong = pixel.verdict != Verdict::Right;
+        match (pixel.status, wrong) {
             (status::CERTAIN_LIGHT | status::CERTAIN_SHADOW, false) => self.certain_right += 1,
             (status::CERTAIN_LIGHT | status::CERTAIN_SHADOW, true) => {
                 self.certain_wrong += 1;
-                self.certain_wrong_outside_band += u64::from(!indeterminate);
+                self.certain_wrong_outside_band += u64::from(!pixel.indeterminate);
             }
             (status::UNCERTAIN, _) => {
                 self.uncertain += 1;
@@ -157,29 +157,23 @@ impl Statistics {
         truth: &GroundTruthPixels,
     ) -> Result<Self, Error> {
         let mut counts = Self::default();
-        for_each_verdict(
-            visibility,
-            status,
-            truth,
-            |class, status, indeterminate, verdict| {
-                counts.add(class, status, indeterminate, verdict);
-            },
-        )?;
+        for_each_verdict(visibility, status, truth, |pixel| counts.add(pixel))?;
         Ok(counts)
     }
 
-    fn add(&mut self, class: Class, status: u32, indeterminate: bool, verdict: Verdict) {
-        let faces_light = class.faces_light();
-        match class {
+    fn add(&mut self, pixel: &Judged) {
+        let (status, indeterminate) = (pixel.status, pixel.indeterminate);
+        let faces_light = pixel.class.faces_light();
+        match pixel.class {
             Class::Background => self.pixels.background += 1,
             Class::FacingAway => self.pixels.facing_away += 1,
             Class::Lit => {
                 self.pixels.lit += 1;
-                self.split.lit.add(status, indeterminate, verdict);
+                self.split.lit.add(pixel);
             }
             Class::Shadow => {
                 self.pixels.shadow += 1;
-                self.split.shadow.add(status, indeterminate, verdict);
+                self.split.shadow.add(pixel);
             }
         }
         if faces_light {
@@ -193,14 +187,14 @@ impl Statistics {
             }
         }
         self.facing_mismatch += u64::from(faces_light != (status >= status::CERTAIN_LIGHT));
-        match verdict {
+        match pixel.verdict {
             Verdict::Right => return,
             Verdict::WronglyLit => self.wrong.lit += 1,
             Verdict::WronglyShadowed => self.wrong.shadow += 1,
         }
         self.wrong.total += 1;
         self.wrong.in_band += u64::from(indeterminate);
-        self.wrong.certain += u64::from(is_certain_wrong(status, indeterminate, verdict));
+        self.wrong.certain += u64::from(pixel.is_certain_wrong());
     }
 
     /// The pixels that [`WrongCounts::certain`] counts, by their places in the buffers.
@@ -213,18 +207,11 @@ impl Statistics {
         truth: &GroundTruthPixels,
     ) -> Result<Vec<usize>, Error> {
         let mut pixels = Vec::new();
-        let mut place = 0;
-        for_each_verdict(
-            visibility,
-            status,
-            truth,
-            |_, status, indeterminate, verdict| {
-                if is_certain_wrong(status, indeterminate, verdict) {
-                    pixels.push(place);
-                }
-                place += 1;
-            },
-        )?;
+        for_each_verdict(visibility, status, truth, |pixel| {
+            if pixel.is_certain_wrong() {
+                pixels.push(pixel.place);
+            }
+        })?;
         Ok(pixels)
     }
 
@@ -261,42 +248,51 @@ pub(crate) enum Verdict {
     WronglyShadowed,
 }
 
-/// Returns true if the method called the pixel certain and is wrong of it outside the band.
-fn is_certain_wrong(status: u32, indeterminate: bool, verdict: Verdict) -> bool {
-    let certain = matches!(status, status::CERTAIN_LIGHT | status::CERTAIN_SHADOW);
-    certain && !indeterminate && verdict != Verdict::Right
+/// A pixel of a method beside the reference's.
+pub(crate) struct Judged {
+    /// In the buffers.
+    pub place: usize,
+    pub class: Class,
+    pub status: u32,
+    pub indeterminate: bool,
+    pub verdict: Verdict,
 }
 
-/// Calls `pixel` with class, status, whether it is indeterminate, and verdict of every pixel.
+impl Judged {
+    /// Returns true if the method called it certain and is wrong of it outside the band.
+    fn is_certain_wrong(&self) -> bool {
+        let certain = matches!(self.status, status::CERTAIN_LIGHT | status::CERTAIN_SHADOW);
+        certain && !self.indeterminate && self.verdict != Verdict::Right
+    }
+}
+
+/// Calls `pixel` with every pixel.
 pub(crate) fn for_each_verdict(
     visibility: &[impl Copy + Into<u32>],
     status: &[impl Copy + Into<u32>],
     truth: &GroundTruthPixels,
-    mut pixel: impl FnMut(Class, u32, bool, Verdict),
+    mut pixel: impl FnMut(&Judged),
 ) -> Result<(), Error> {
     check_pixel_count("visibility", truth.viewport, visibility.len())?;
     check_pixel_count("status", truth.viewport, status.len())?;
     check_answers(visibility, truth.viewport)?;
-    for (index, (&class, &indeterminate)) in
+    for (place, (&class, &indeterminate)) in
         truth.classes.iter().zip(&truth.indeterminate).enumerate()
     {
-        let (visibility, status) = (visibility[index].into(), status[index].into());
+        let (visibility, status) = (visibility[place].into(), status[place].into());
         let value = |name, value, expected| {
             let width = truth.viewport[0] as usize;
             Error::Value {
                 name,
-                x: (index % width) as u32,
-                y: (index / width) as u32,
+                x: (place % width) as u32,
+                y: (place / width) as u32,
                 value,
                 expected,
             }
         };
         if visibility > 1 {
-            return Err(value(
-                "visibility",
-                visibility,
-                "expected 0 in shadow, 1 in light",
-            ));
+            let expected = "expected 0 in shadow, 1 in light";
+            return Err(value("visibility", visibility, expected));
         }
         if status > status::UNCERTAIN {
             let expected = "expected 0 background, 1 facing away, 2 certain light, 3 certain \
@@ -309,7 +305,13 @@ pub(crate) fn for_each_verdict(
             (Class::Lit, 0) => Verdict::WronglyShadowed,
             _ => Verdict::Right,
         };
-        pixel(class, status, indeterminate, verdict);
+        pixel(&Judged {
+            place,
+            class,
+            status,
+            indeterminate,
+            verdict,
+        });
     }
     Ok(())
 }

@@ -7,7 +7,7 @@ use crate::{
 };
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
-use skiagraph_scene::{Bvh, Mesh};
+use skiagraph_scene::{Bvh, Mesh, Towards};
 use std::{borrow::Cow, ops::ControlFlow};
 
 /// A triangle as a shadow ray meets it.
@@ -32,6 +32,11 @@ impl Caster<'_> {
         let hit = ray.hit(&self.corners)?;
         let is_there = |masked: &Masked<'_>| masked.is_opaque(hit.weights);
         self.masked.as_ref().is_none_or(is_there).then_some(hit)
+    }
+
+    /// Returns true if the ray meets it before its end.
+    pub(crate) fn blocks(&self, ray: &Ray) -> bool {
+        self.hit(ray).is_some_and(|hit| ray.reaches(hit.t))
     }
 }
 
@@ -80,11 +85,7 @@ impl<'a> Tree<'a> {
             ));
         }
         let mut reached = vec![false; bvh.nodes.len()];
-        let mut open: Vec<usize> = if bvh.nodes.is_empty() {
-            Vec::new()
-        } else {
-            vec![0]
-        };
+        let mut open: Vec<usize> = bvh.nodes.first().map(|_| 0).into_iter().collect();
         while let Some(index) = open.pop() {
             // A node reached twice would count its triangles twice, or never let a traversal end.
             if index >= bvh.nodes.len() || std::mem::replace(&mut reached[index], true) {
@@ -135,6 +136,12 @@ impl<'a> Tree<'a> {
         self.bounds.map(|(min, max)| (max - min).length())
     }
 
+    /// The ray of a way, in boxes larger by so much.
+    pub(crate) fn ray(&self, origin: DVec3, way: &Towards, grow: f64) -> Ray {
+        let max_distance = self.max_distance(origin);
+        Ray::new(origin, way.direction, max_distance, grow).ending(way.distance)
+    }
+
     /// Calls `visit` with every triangle that could meet a cone from `origin`, until it breaks.
     /// `stack` is scratch memory.
     pub(crate) fn within(
@@ -168,14 +175,14 @@ impl<'a> Tree<'a> {
     }
 
     /// Calls `visit` with the current end of the ray and every triangle whose box the ray enters,
-    /// nearer boxes first. `visit` may shorten the ray, or end the walk by `Break`. `stack` is
-    /// scratch memory.
+    /// nearer boxes first. `visit` may shorten the ray, or end the walk by `Break`; returns true if
+    /// it did. `stack` is scratch memory.
     pub(crate) fn walk(
         &self,
         ray: &Ray,
         stack: &mut Vec<u32>,
         mut visit: impl FnMut(&Caster<'a>, &mut f64) -> ControlFlow<()>,
-    ) {
+    ) -> bool {
         let nodes = &self.bvh.nodes;
         let mut t_max = ray.far_side();
         stack.clear();
@@ -191,7 +198,7 @@ impl<'a> Tree<'a> {
             if node.count > 0 {
                 for caster in &self.casters[first..first + node.count as usize] {
                     if visit(caster, &mut t_max).is_break() {
-                        return;
+                        return true;
                     }
                 }
                 continue;
@@ -209,6 +216,7 @@ impl<'a> Tree<'a> {
                 (None, None) => {}
             }
         }
+        false
     }
 }
 

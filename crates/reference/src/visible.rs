@@ -4,7 +4,7 @@ use crate::{
     error::Error,
     error_bound::F32_ROUNDING,
     oracle::Oracle,
-    pixels::{BACKGROUND, Progress, check_pixel_count, per_pixel},
+    pixels::{BACKGROUND, Progress, check_pixel_count, per_pixel, shown},
     ray::{Corners, Ray},
     tree::Caster,
 };
@@ -44,15 +44,7 @@ pub fn wrong_surfaces(
     let count = oracle.mesh.triangles.len() as u64;
     let max_distance = oracle.tree.max_distance(camera.eye);
     let wrong = per_pixel(camera.viewport, progress, |x, y, stack| {
-        let shown = primitives[x as usize + y as usize * camera.viewport[0] as usize];
-        if shown != BACKGROUND && u64::from(shown) >= count {
-            return Err(Error::UnknownPrimitive {
-                x,
-                y,
-                primitive: shown,
-                count,
-            });
-        }
+        let shown = shown(primitives, camera.viewport, [x, y], count)?.unwrap_or(BACKGROUND);
         let direction = camera.pixel_direction(x, y);
         let ray = Ray::new(camera.eye, direction, max_distance, 0.0);
         if oracle.nearest(camera, &ray, stack) == shown {
@@ -79,16 +71,13 @@ fn is_wrong(oracle: &Oracle<'_>, sample: &Sample, shown: u32, stack: &mut Vec<u3
             sample.least_distance(&corners)
         }
     };
-    let mut is_hidden = false;
     oracle.tree.walk(&sample.rays[0], stack, |caster, t_max| {
         *t_max = t_max.min(end);
         if caster.primitive != shown && sample.surely_shows(caster, end) {
-            is_hidden = true;
             return ControlFlow::Break(());
         }
         ControlFlow::Continue(())
-    });
-    is_hidden
+    })
 }
 
 /// A pixel's centre, and the corners of the square that its sample may be anywhere in.

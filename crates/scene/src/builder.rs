@@ -4,7 +4,7 @@ use crate::{
     error::FaceRef,
     indexed::geometric_normal,
     material::Material,
-    mesh::{Group, Mesh},
+    mesh::{Group, Mesh, names_one_twice},
     report::ImportReport,
     weld::{UvWelder, Welder},
 };
@@ -39,7 +39,7 @@ impl MeshBuilder {
         face: impl Fn() -> FaceRef,
     ) {
         let indices = corners.map(|corner| corner.position);
-        if indices[0] == indices[1] || indices[1] == indices[2] || indices[2] == indices[0] {
+        if names_one_twice(&indices) {
             self.report.dropped.add(face);
             return;
         }

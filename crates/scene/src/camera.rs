@@ -1,6 +1,6 @@
 //! Views and the cameras they make on a given viewport.
 
-use crate::light_kind::Light;
+use crate::{light::onto_axes, light_kind::Light};
 use glam::{DMat4, DVec2, DVec3};
 
 /// A named view of a scene: a perspective camera without a viewport.
@@ -80,40 +80,45 @@ impl View {
     /// # Errors
     /// The first mistake, naming the view.
     pub fn check(&self) -> Result<(), String> {
-        let name = &self.name;
+        let named = |reason| format!("view {:?}: {reason}", self.name);
+        self.check_parts().map_err(named)
+    }
+
+    /// The same, without its name.
+    pub(crate) fn check_parts(&self) -> Result<(), String> {
         if !self.eye.is_finite() {
-            return Err(format!("view {name:?}: the eye {} is not finite", self.eye));
+            return Err(format!("the eye {} is not finite", self.eye));
         }
         let (Some(direction), Some(up)) = (self.direction.try_normalize(), self.up.try_normalize())
         else {
             return Err(format!(
-                "view {name:?}: direction {} and up {} must be finite and longer than 0",
+                "direction {} and up {} must be finite and longer than 0",
                 self.direction, self.up
             ));
         };
         // Below this sine the right vector would be mostly rounding error.
         if direction.cross(up).length() < 1e-9 {
             return Err(format!(
-                "view {name:?}: up {} is parallel to the direction {}",
+                "up {} is parallel to the direction {}",
                 self.up, self.direction
             ));
         }
         if !(self.fov_y_degrees > 0.0 && self.fov_y_degrees < 180.0) {
             return Err(format!(
-                "view {name:?}: fov_y_degrees is {}, expected more than 0 and less than 180",
+                "fov_y_degrees is {}, expected more than 0 and less than 180",
                 self.fov_y_degrees
             ));
         }
         if !(self.near > 0.0 && self.near < self.far && self.far.is_finite()) {
             return Err(format!(
-                "view {name:?}: near is {} and far is {}, expected 0 < near < far",
+                "near is {} and far is {}, expected 0 < near < far",
                 self.near, self.far
             ));
         }
         // Depths just before the far plane are this small, and f32 must still tell them apart.
         if self.near < LEAST_DEPTH * self.far {
             return Err(format!(
-                "view {name:?}: near is {} and far is {}, more than {:e} times as much; f32 holds \
+                "near is {} and far is {}, more than {:e} times as much; f32 holds \
                  no depths of both: bring them nearer to each other",
                 self.near,
                 self.far,
@@ -124,16 +129,13 @@ impl View {
         let camera = self.camera([1, 1]).view_projection();
         if !camera.as_mat4().is_finite() {
             return Err(format!(
-                "view {name:?}: its camera overflows 32-bit numbers with eye {}, fov_y_degrees \
+                "its camera overflows 32-bit numbers with eye {}, fov_y_degrees \
                  {}, near {} and far {}; \
                  bring them nearer to 1",
                 self.eye, self.fov_y_degrees, self.near, self.far
             ));
         }
-        self.light.as_ref().map_or(Ok(()), |light| {
-            let named = |reason| format!("view {name:?}: {reason}");
-            light.check().map_err(named)
-        })
+        self.light.as_ref().map_or(Ok(()), Light::check)
     }
 }
 
@@ -183,31 +185,13 @@ impl Camera {
     /// World to wgpu clip space (x right, y up, z from 1 at the near plane to 0 at the far plane:
     /// reversed, so that f32 tells far surfaces apart however near the near plane is).
     pub fn view_projection(&self) -> DMat4 {
-        let rotation = DMat4::from_cols(
-            self.right.extend(0.0),
-            self.up.extend(0.0),
-            (-self.forward).extend(0.0),
-            glam::DVec4::W,
-        )
-        .transpose();
+        let rotation = onto_axes([self.right, self.up, -self.forward]);
         let range = self.near / (self.far - self.near);
-        let projection = DMat4::from_cols_array(&[
-            1.0 / self.half_width,
-            0.0,
-            0.0,
-            0.0,
-            0.0,
-            1.0 / self.half_height,
-            0.0,
-            0.0,
-            0.0,
-            0.0,
-            range,
-            -1.0,
-            0.0,
-            0.0,
-            self.far * range,
-            0.0,
+        let projection = DMat4::from_cols_array_2d(&[
+            [1.0 / self.half_width, 0.0, 0.0, 0.0],
+            [0.0, 1.0 / self.half_height, 0.0, 0.0],
+            [0.0, 0.0, range, -1.0],
+            [0.0, 0.0, self.far * range, 0.0],
         ]);
         let camera = projection * rotation * DMat4::from_translation(-self.eye);
         if self.jitter == DVec2::ZERO {

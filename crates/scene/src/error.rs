@@ -1,6 +1,6 @@
 //! Everything that can go wrong between a scene's name and its triangles.
 
-use std::{borrow::Cow, fmt, io, path::PathBuf};
+use std::{borrow::Cow, io, path::PathBuf};
 use thiserror::Error;
 
 /// How many faces an error or a warning spells out before it only counts.
@@ -192,7 +192,8 @@ pub enum SceneError {
 }
 
 /// Where a face stands in an OBJ file.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("face {number} of group {:?}{}", beginning(group), in_line(*line))]
 pub struct FaceRef {
     /// Name of its group.
     pub group: String,
@@ -202,18 +203,11 @@ pub struct FaceRef {
     pub line: u32,
 }
 
-impl fmt::Display for FaceRef {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "face {} of group {:?}",
-            self.number,
-            beginning(&self.group)
-        )?;
-        match self.line {
-            0 => Ok(()),
-            line => write!(f, " (line {line})"),
-        }
+/// Its line, if it has one.
+fn in_line(line: u32) -> String {
+    match line {
+        0 => String::new(),
+        line => format!(" (line {line})"),
     }
 }
 
@@ -227,10 +221,14 @@ pub struct FaceFault {
 }
 
 /// Problems of a face.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum FaceProblem {
     /// A vertex number that names nothing.
+    #[error(
+        "names vertex {}, but {}",
+        beginning(written), counted(written, *available, ["vertex", "vertices"])
+    )]
     NoSuchVertex {
         /// The number as written.
         written: String,
@@ -238,6 +236,10 @@ pub enum FaceProblem {
         available: usize,
     },
     /// A number of texture coordinates that names nothing, at a face whose material has a mask.
+    #[error(
+        "names texture coordinates {}, but {}",
+        beginning(written), counted(written, *available, ["pair", "pairs"])
+    )]
     NoSuchUv {
         /// The number as written.
         written: String,
@@ -245,53 +247,26 @@ pub enum FaceProblem {
         available: usize,
     },
     /// A polygon that intersects itself, or a concave one of too many corners.
+    #[error(
+        "cannot be cut into triangles, for its outline crosses itself or has more than 10,000 \
+         corners: triangulate it where it was made, give --concave fan, or have a scene file say \
+         `concave: Fan`"
+    )]
     CannotBeCut,
     /// A corner that is not `v`, `v/vt`, `v//vn` or `v/vt/vn`.
+    #[error("has the corner {:?}; expected v, v/vt, v//vn or v/vt/vn", beginning(.0))]
     NotACorner(
         /// The corner as written.
         String,
     ),
     /// A corner at NaN or infinity.
+    #[error("has its corner {corner} at {position}, which is not finite")]
     NotFinite {
         /// Corner within the face, from 1.
         corner: usize,
         /// The coordinates read, as text (NaN equals nothing, not even itself).
         position: String,
     },
-}
-
-impl fmt::Display for FaceProblem {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NoSuchVertex { written, available } => {
-                let vertices = counted(written, *available, ["vertex", "vertices"]);
-                write!(f, "names vertex {}, but {vertices}", beginning(written))
-            }
-            Self::NoSuchUv { written, available } => {
-                let pairs = counted(written, *available, ["pair", "pairs"]);
-                let written = beginning(written);
-                write!(f, "names texture coordinates {written}, but {pairs}")
-            }
-            Self::CannotBeCut => f.write_str(
-                "cannot be cut into triangles, for its outline crosses itself or has more than \
-                 10,000 corners: triangulate it where it was made, give --concave fan, or have a \
-                 scene file say `concave: Fan`",
-            ),
-            Self::NotACorner(text) => {
-                write!(
-                    f,
-                    "has the corner {:?}; expected v, v/vt, v//vn or v/vt/vn",
-                    beginning(text)
-                )
-            }
-            Self::NotFinite { corner, position } => {
-                write!(
-                    f,
-                    "has its corner {corner} at {position}, which is not finite"
-                )
-            }
-        }
-    }
 }
 
 /// How many there are of what a number names, which may count back from its face.

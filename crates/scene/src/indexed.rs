@@ -1,7 +1,7 @@
 //! Meshes that a program has in memory.
 
 use crate::{
-    mesh::{Group, Mesh},
+    mesh::{Group, Mesh, names_one_twice},
     weld::Welder,
 };
 use glam::{DVec3, Vec3};
@@ -74,10 +74,7 @@ impl Indexed<'_> {
         let mut mesh = Mesh::default();
         for corners in self.indices.as_chunks::<3>().0 {
             let triangle = corners.map(|corner| at[corner as usize]);
-            if triangle[0] == triangle[1]
-                || triangle[1] == triangle[2]
-                || triangle[2] == triangle[0]
-            {
+            if names_one_twice(&triangle) {
                 continue;
             }
             let points = triangle.map(|index| positions.values[index as usize].as_dvec3());

@@ -80,13 +80,7 @@ impl DirectionalLight {
     /// (Freeman and Shapira, CACM 18(7), 1975). No points count as one at the origin.
     pub fn fit(&self, points: impl IntoIterator<Item = Vec3>) -> LightFit {
         let forward = self.direction.normalize();
-        let helper = if forward.y.abs() < 0.9 {
-            DVec3::Y
-        } else {
-            DVec3::Z
-        };
-        let right = forward.cross(helper).normalize();
-        let up = right.cross(forward);
+        let (right, up) = across(forward);
         let (mut places, mut nearest, mut farthest) =
             (Vec::new(), f64::INFINITY, f64::NEG_INFINITY);
         for point in points {
@@ -112,13 +106,7 @@ impl DirectionalLight {
         let size = (high - low).max(DVec3::splat(1e-6 * largest)) * 1.002;
         let extent = DVec3::new(size.x * 0.5, size.y * 0.5, size.z);
         let nearest = centre.z - size.z * 0.5;
-        let rotation = DMat4::from_cols(
-            right.extend(0.0),
-            up.extend(0.0),
-            forward.extend(0.0),
-            glam::DVec4::W,
-        )
-        .transpose();
+        let rotation = onto_axes([right, up, forward]);
         let to_clip = DMat4::from_scale(DVec3::new(1.0 / extent.x, 1.0 / extent.y, 1.0 / extent.z))
             * DMat4::from_translation(-DVec3::new(centre.x, centre.y, nearest));
         LightFit {
@@ -126,6 +114,23 @@ impl DirectionalLight {
             extent,
         }
     }
+}
+
+/// Two axes across a unit vector, to its right and upwards.
+pub fn across(forward: DVec3) -> (DVec3, DVec3) {
+    let helper = if forward.y.abs() < 0.9 {
+        DVec3::Y
+    } else {
+        DVec3::Z
+    };
+    let right = forward.cross(helper).normalize();
+    (right, right.cross(forward))
+}
+
+/// Takes places to their coordinates along three axes.
+pub(crate) fn onto_axes(axes: [DVec3; 3]) -> DMat4 {
+    let [x, y, z] = axes.map(|axis| axis.extend(0.0));
+    DMat4::from_cols(x, y, z, glam::DVec4::W).transpose()
 }
 
 /// The corners of the convex hull, counter-clockwise (Andrew's monotone chain).

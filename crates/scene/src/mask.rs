@@ -86,14 +86,11 @@ impl Mask {
             (low, high - low + 1.0)
         });
         let index = |axis: usize, texel: f64| {
-            let size = f64::from(self.size[axis]);
-            let at = self.wrap[axis].apply((texel + 0.5) / size) * size;
-            (at as u32).min(self.size[axis] - 1)
+            let at = (texel + 0.5) / f64::from(self.size[axis]);
+            self.wrap[axis].texel(at, self.size[axis])
         };
-        let own: [u32; 2] = std::array::from_fn(|axis| {
-            let at = self.wrap[axis].apply(uv[axis]) * f64::from(self.size[axis]);
-            (at as u32).min(self.size[axis] - 1)
-        });
+        let own: [u32; 2] =
+            std::array::from_fn(|axis| self.wrap[axis].texel(uv[axis], self.size[axis]));
         let opaque = self.texel(own[0], own[1]);
         let [(left, width), (top, height)] = spans;
         let few = width * height <= MOST_LOOKED_AT;

@@ -102,11 +102,9 @@ impl Surfaces {
         let Some(material) = self.material(primitive) else {
             return [1.0; 3];
         };
-        let texels = material.texture.as_ref().map(|texture| {
-            let texels = texture.texels().ok()?;
-            Some((texels, texture.wrap))
-        });
-        let Some(Some((texels, wrap))) = texels else {
+        let texture = material.texture.as_ref();
+        let texels = texture.and_then(|of| Some((of.texels().ok()?, of.wrap)));
+        let Some((texels, wrap)) = texels else {
             return material.base_color;
         };
         let at: DVec2 = self
@@ -116,11 +114,8 @@ impl Surfaces {
             .map(|(uv, weight)| uv.as_dvec2() * weight)
             .sum();
         let [width, height] = texels.size;
-        let edge = |at: f64, wrap: crate::texture::Wrap, size: u32| {
-            ((wrap.apply(at) * f64::from(size)) as u32).min(size - 1) as usize
-        };
-        let (x, y) = (edge(at.x, wrap[0], width), edge(at.y, wrap[1], height));
-        let [red, green, blue, _] = texels.rgba[y * width as usize + x];
+        let [x, y] = [wrap[0].texel(at.x, width), wrap[1].texel(at.y, height)];
+        let [red, green, blue, _] = texels.rgba[y as usize * width as usize + x as usize];
         let [r, g, b] = material.base_color;
         [r * linear(red), g * linear(green), b * linear(blue)]
     }

@@ -86,3 +86,7 @@ impl Mesh {
         Some(used.fold((first, first), |(min, max), p| (min.min(p), max.max(p))))
     }
 }
+
+pub(crate) fn names_one_twice([a, b, c]: &[u32; 3]) -> bool {
+    a == b || b == c || c == a
+}

@@ -1,6 +1,6 @@
 //! Which triangles hang together, and whether they close.
 
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, names_one_twice};
 
 /// The parts of a mesh: triangles that share edges over its welded positions.
 ///
@@ -60,10 +60,6 @@ impl Parts {
     pub fn is_open(&self, primitive: u32) -> bool {
         self.open[self.of[primitive as usize] as usize]
     }
-}
-
-fn names_one_twice([a, b, c]: &[u32; 3]) -> bool {
-    a == b || b == c || c == a
 }
 
 fn sides(mesh: &Mesh) -> Vec<Side> {

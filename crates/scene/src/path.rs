@@ -140,9 +140,8 @@ impl CameraPath {
 
     /// Checks that the keys of the light are of the kind that the view's own light is.
     fn check_light(&self) -> Result<(), String> {
-        let name = &self.view.name;
         if let Some(late) = not_later(&self.light_keys, |key| key.at) {
-            return Err(format!("path {name:?}: light_keys: {late}"));
+            return Err(format!("light_keys: {late}"));
         }
         let (Some(light), Some(_)) = (&self.view.light, self.light_keys.first()) else {
             return Ok(());
@@ -158,7 +157,7 @@ impl CameraPath {
         match self.light_keys.iter().find(|key| !fits(key)) {
             None => Ok(()),
             Some(key) => Err(format!(
-                "path {name:?}: the key of a {} light at {} s needs {needs}",
+                "the key of a {} light at {} s needs {needs}",
                 light.kind.word(),
                 key.at
             )),
@@ -166,17 +165,15 @@ impl CameraPath {
     }
 
     fn check_moves(&self) -> Result<(), String> {
-        let name = &self.view.name;
         for (index, it) in self.moves.iter().enumerate() {
             if self.moves[..index]
                 .iter()
                 .any(|other| other.part == it.part)
             {
                 let part = &it.part;
-                return Err(format!("path {name:?}: moves: {part:?} is there twice"));
+                return Err(format!("moves: {part:?} is there twice"));
             }
-            it.check()
-                .map_err(|reason| format!("path {name:?}: {reason}"))?;
+            it.check()?;
         }
         Ok(())
     }
@@ -192,37 +189,37 @@ impl CameraPath {
     /// The first mistake, naming the path.
     pub fn check(&self) -> Result<(), String> {
         let name = &self.view.name;
-        let keys = &self.keys;
-        if keys.len() < 2 {
+        if self.keys.len() < 2 {
             return Err(format!(
                 "path {name:?} has {} of the two keys that it needs at least",
-                keys.len()
+                self.keys.len()
             ));
         }
+        let named = |reason| format!("path {name:?}: {reason}");
+        self.check_parts().map_err(named)
+    }
+
+    /// Checks all but the number of keys, and leaves out its name.
+    fn check_parts(&self) -> Result<(), String> {
         let rate = self.frames_per_second;
         if !(rate > 0.0 && rate.is_finite()) {
-            return Err(format!(
-                "path {name:?}: frames_per_second is {rate}, expected more than 0"
-            ));
+            return Err(format!("frames_per_second is {rate}, expected more than 0"));
         }
-        if let Some(late) = not_later(keys, |key| key.at) {
-            return Err(format!("path {name:?}: {late}"));
+        if let Some(late) = not_later(&self.keys, |key| key.at) {
+            return Err(late);
         }
         self.check_light()?;
         self.check_moves()?;
         let frames = self.seconds() * rate;
         if frames.is_nan() || frames >= MOST_FRAMES {
             return Err(format!(
-                "path {name:?}: {} s of {rate} frames are more than {MOST_FRAMES} frames",
+                "{} s of {rate} frames are more than {MOST_FRAMES} frames",
                 self.seconds()
             ));
         }
         for (frame, view) in self.views().enumerate() {
-            view.check()
-                .map_err(|reason| match reason.strip_prefix("view") {
-                    Some(reason) => format!("path{reason} (frame {frame})"),
-                    None => reason,
-                })?;
+            view.check_parts()
+                .map_err(|reason| format!("{reason} (frame {frame})"))?;
         }
         Ok(())
     }

@@ -60,17 +60,16 @@ impl Degenerate {
             return Ok(());
         }
         let faces: Vec<String> = self.first.iter().map(FaceRef::to_string).collect();
-        writeln!(
-            f,
-            "{} {what}: {}{}",
+        let more = if self.triangles > faces.len() {
+            ", …"
+        } else {
+            ""
+        };
+        let (triangles, faces) = (
             plural(self.triangles, "triangle", "triangles"),
             faces.join(", "),
-            if self.triangles > faces.len() {
-                ", …"
-            } else {
-                ""
-            }
-        )
+        );
+        writeln!(f, "{triangles} {what}: {faces}{more}")
     }
 }
 
@@ -107,27 +106,23 @@ impl fmt::Display for ImportReport {
             .describe("dropped, two corners being the same point", f)?;
         self.zero_area.describe("without area kept", f)?;
         if self.normals_replaced > 0 {
+            let normals = plural(self.normals_replaced, "corner normal", "corner normals");
             writeln!(
                 f,
-                "{} without a direction replaced by the triangle's own",
-                plural(self.normals_replaced, "corner normal", "corner normals")
+                "{normals} without a direction replaced by the triangle's own"
             )?;
         }
         if self.points + self.lines > 0 {
+            let points = plural(self.points, "point", "points");
             writeln!(
                 f,
-                "{} and {} left out",
-                plural(self.points, "point", "points"),
+                "{points} and {} left out",
                 plural(self.lines, "line", "lines")
             )?;
         }
         if let Some(first) = self.colours_missing.first() {
-            let count = self.colours_missing.len();
-            writeln!(
-                f,
-                "{} without colours: {first}",
-                plural(count, "material", "materials")
-            )?;
+            let materials = plural(self.colours_missing.len(), "material", "materials");
+            writeln!(f, "{materials} without colours: {first}")?;
         }
         for remark in self.remarks.iter().take(REMARKS_SHOWN) {
             writeln!(f, "{remark}")?;

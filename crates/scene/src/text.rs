@@ -67,6 +67,11 @@ pub(crate) fn line_text(line: &[u8]) -> Cow<'_, str> {
     }
 }
 
+/// The part of a statement before a comment.
+pub(crate) fn without_comment(rest: &str) -> &str {
+    rest.split('#').next().unwrap_or("")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

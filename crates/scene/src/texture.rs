@@ -30,6 +30,11 @@ impl Wrap {
             Self::Clamp => at.clamp(0.0, 1.0),
         }
     }
+
+    /// The texel at a coordinate, of so many.
+    pub(crate) fn texel(self, at: f64, size: u32) -> u32 {
+        ((self.apply(at) * f64::from(size)) as u32).min(size - 1)
+    }
 }
 
 /// Where the texels of a texture are.

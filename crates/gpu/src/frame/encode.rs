@@ -175,15 +175,13 @@ pub(super) fn clear_view(
 ) {
     let is_depth = format.is_depth_stencil_format();
     let color = (!is_depth).then(|| color_attachment(target, None, Some(value)));
-    let depth = format.has_depth_aspect().then_some(Ops {
-        clear: Some(value[0] as f32),
-        write: true,
+    let depth = format.has_depth_aspect().then_some(value[0] as f32);
+    let stencil = format.has_stencil_aspect().then_some(value[1] as u32);
+    let depth_stencil = is_depth.then(|| wgpu::RenderPassDepthStencilAttachment {
+        view: &target.view,
+        depth_ops: operations(depth, false),
+        stencil_ops: operations(stencil, false),
     });
-    let stencil = format.has_stencil_aspect().then_some(Ops {
-        clear: Some(value[1] as u32),
-        write: true,
-    });
-    let depth_stencil = is_depth.then(|| depth_stencil_attachment(target, depth, stencil));
     render_pass(name, encoder, color.as_slice(), depth_stencil, query);
 }
 
@@ -224,34 +222,14 @@ fn color_attachment<'v>(
     })
 }
 
-/// Effects of a draw on depths or stencils.
-#[derive(Clone, Copy)]
-struct Ops<V> {
-    clear: Option<V>,
-    write: bool,
-}
-
-impl<V: Default> Ops<V> {
-    /// Without operations the attachment is read-only, and the pass may sample it too.
-    fn operations(self) -> Option<wgpu::Operations<V>> {
-        let is_written = self.write || self.clear.is_some();
-        is_written.then_some(wgpu::Operations {
-            load: self.clear.map_or(wgpu::LoadOp::Load, wgpu::LoadOp::Clear),
-            store: wgpu::StoreOp::Store,
-        })
-    }
-}
-
-fn depth_stencil_attachment(
-    target: &GpuAttachment,
-    depth: Option<Ops<f32>>,
-    stencil: Option<Ops<u32>>,
-) -> wgpu::RenderPassDepthStencilAttachment<'_> {
-    wgpu::RenderPassDepthStencilAttachment {
-        view: &target.view,
-        depth_ops: depth.and_then(Ops::operations),
-        stencil_ops: stencil.and_then(Ops::operations),
-    }
+/// Effects of a draw on depths or stencils. Without operations the attachment is read-only, and the
+/// pass may sample it too.
+fn operations<V: Default>(clear: Option<V>, write: bool) -> Option<wgpu::Operations<V>> {
+    let is_written = write || clear.is_some();
+    is_written.then(|| wgpu::Operations {
+        load: clear.map_or(wgpu::LoadOp::Load, wgpu::LoadOp::Clear),
+        store: wgpu::StoreOp::Store,
+    })
 }
 
 fn render_pass<'e>(
@@ -297,15 +275,14 @@ fn encode_draw(
     let target = depth
         .map(|depth| &depth.target)
         .or(stencil.map(|stencil| &stencil.target));
-    let depth_ops = depth.map(|depth| Ops {
-        clear: depth.clear,
-        write: depth.write,
+    let target = target.map(|target| wgpu::RenderPassDepthStencilAttachment {
+        view: &target.view,
+        depth_ops: depth.and_then(|depth| operations(depth.clear, depth.write)),
+        stencil_ops: stencil.and_then(|stencil| {
+            let is_read_only = stencil.state.is_read_only(draw.primitive.cull_mode);
+            operations(stencil.clear, !is_read_only)
+        }),
     });
-    let stencil_ops = stencil.map(|stencil| Ops {
-        clear: stencil.clear,
-        write: !stencil.state.is_read_only(draw.primitive.cull_mode),
-    });
-    let target = target.map(|target| depth_stencil_attachment(target, depth_ops, stencil_ops));
     {
         let mut pass = render_pass(name, encoder, &colors, target, query.as_ref());
         pass.set_pipeline(pipeline);

@@ -1,17 +1,16 @@
 //! A plan on a device, and its frames.
 
 use super::{
-    fetch::{Fetch, Readable},
+    fetch::Fetch,
     growth::Unchanged,
     growth_readback::GrowthReadback,
     host_changes::HostChanges,
     in_flight::{FrameInFlight, FramesInFlight, names},
     pass::GpuPass,
-    poison::Poison,
     prepare::{Prepared, Preparer},
     replan::{ReplanReport, Reused, has_same_params},
     report::{Frame, FrameReport},
-    state::{FrameDecision, State, frame_uniform},
+    state::{FrameDecision, State},
     statistics::Counters,
     timer::Timer,
     uniform::FrameUniform,
@@ -585,7 +584,7 @@ impl Executor {
             Some((&self.state.plan, &self.state.memory)),
             &mut factory,
         );
-        let mut memory = memory.map_err(|error| with_table(error, &plan))?;
+        let memory = memory.map_err(|error| with_table(error, &plan))?;
         let reused = Reused::new(&self.state, &plan, &memory);
         let made = reused.passes(&mut self.pipelines, &self.device);
         let passes = made.map_err(|error| with_table(error, &plan))?;
@@ -598,19 +597,7 @@ impl Executor {
         let has_new_memory = reused.has_new_memory();
         let bound: Vec<Option<usize>> = (0..passes.len()).map(|at| reused.bound(at)).collect();
         let positions = reused.positions;
-        let poison = Poison::new(&plan, &memory, &self.device);
-        let growth_readbacks = GrowthReadback::all(&plan, &self.device);
-        let mut state = State {
-            growth_readbacks: growth_readbacks.map_err(|error| with_table(error, &plan))?,
-            poison: poison.map_err(|error| with_table(error, &plan))?,
-            readables: Readable::all(&plan),
-            uniform: frame_uniform(&plan),
-            grown: memory.take_grown(),
-            plan,
-            memory,
-            passes,
-            contents,
-        };
+        let mut state = State::of(plan, memory, passes, contents, &self.device)?;
         // A pass whose resources are all the same is bound already.
         let rebind = |from: &mut State, to: &mut State, back: bool| {
             for (new, old) in bound.iter().enumerate() {

@@ -2,6 +2,7 @@
 //! host submits it.
 
 use crate::{
+    buffer,
     error::{ExecuteError, scoped},
     memory::{
         allocation::extent,
@@ -11,7 +12,7 @@ use crate::{
     readback::{Content, Readback},
     signal::{Progress, Signal},
 };
-use skiagraph_graph::{Plan, Resource, ResourceKind, Target, Texture};
+use skiagraph_graph::{Plan, Resource, ResourceKind, SubresourceRange, Target, Texture};
 use std::{ops::Range, sync::Arc};
 
 /// An output or capture of a plan, and how it is copied.
@@ -25,10 +26,10 @@ pub(super) struct Readable {
 
 /// A mip of what is copied, with all layers of it that are read back.
 #[derive(Debug)]
-struct MipCopy {
+pub(super) struct MipCopy {
     mip: u32,
     layer: u32,
-    size: wgpu::Extent3d,
+    pub size: wgpu::Extent3d,
     /// Bytes of a row in the staging buffer.
     row: u32,
     /// Where it stands in the staging buffer.
@@ -36,9 +37,28 @@ struct MipCopy {
 }
 
 impl MipCopy {
-    fn bytes(&self) -> u64 {
+    pub fn bytes(&self) -> u64 {
         let [height, layers] = [self.size.height, self.size.depth_or_array_layers].map(u64::from);
         u64::from(self.row) * height * layers
+    }
+
+    pub fn in_texture<'t>(&self, texture: &'t wgpu::Texture) -> wgpu::TexelCopyTextureInfo<'t> {
+        let mut place = texture.as_image_copy();
+        (place.mip_level, place.origin.z) = (self.mip, self.layer);
+        place
+    }
+
+    pub fn in_buffer<'b>(
+        &self,
+        buffer: &'b wgpu::Buffer,
+        offset: u64,
+    ) -> wgpu::TexelCopyBufferInfo<'b> {
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset,
+            bytes_per_row: Some(self.row),
+            rows_per_image: Some(self.size.height),
+        };
+        wgpu::TexelCopyBufferInfo { buffer, layout }
     }
 }
 
@@ -47,7 +67,7 @@ impl Readable {
     pub fn all(plan: &Plan) -> Vec<Arc<Self>> {
         let readable = |(name, target): &(String, Target)| {
             let mips = match &plan.resource(target.id).kind {
-                ResourceKind::Texture(texture) => mips(texture, target),
+                ResourceKind::Texture(texture) => mips(texture, &target.part),
                 _ => Vec::new(),
             };
             Arc::new(Self {
@@ -147,14 +167,8 @@ impl Fetch {
             Source::Texture(_) => readable.mips.iter().map(MipCopy::bytes).sum(),
             Source::Buffer(_, bytes) => copied(bytes).end - copied(bytes).start,
         };
-        let make = || {
-            device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("readback"),
-                size,
-                usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            })
-        };
+        let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
+        let make = || buffer::make(device, "readback", size, usage);
         let staging = match pool.take(size) {
             Some(spare) => spare,
             None => Staging {
@@ -175,7 +189,11 @@ impl Fetch {
         match &self.source {
             Source::Texture(texture) => {
                 for copy in &self.readable.mips {
-                    copy_mip(copy, texture, buffer, encoder);
+                    let (from, to) = (
+                        copy.in_texture(texture),
+                        copy.in_buffer(buffer, copy.offset),
+                    );
+                    encoder.copy_texture_to_buffer(from, to, copy.size);
                 }
             }
             Source::Buffer(source, bytes) => {
@@ -223,27 +241,6 @@ impl Fetch {
     }
 }
 
-fn copy_mip(
-    copy: &MipCopy,
-    texture: &wgpu::Texture,
-    staging: &wgpu::Buffer,
-    encoder: &mut wgpu::CommandEncoder,
-) {
-    let mut source = texture.as_image_copy();
-    source.mip_level = copy.mip;
-    source.origin.z = copy.layer;
-    let layout = wgpu::TexelCopyBufferLayout {
-        offset: copy.offset,
-        bytes_per_row: Some(copy.row),
-        rows_per_image: Some(copy.size.height),
-    };
-    let target = wgpu::TexelCopyBufferInfo {
-        buffer: staging,
-        layout,
-    };
-    encoder.copy_texture_to_buffer(source, target, copy.size);
-}
-
 /// The bytes that are copied for those that are asked for: items may be smaller than what can be
 /// copied.
 fn copied(bytes: &Range<u64>) -> Range<u64> {
@@ -252,9 +249,9 @@ fn copied(bytes: &Range<u64>) -> Range<u64> {
 }
 
 /// The mips of a part of a texture in a staging buffer.
-fn mips(texture: &Texture, target: &Target) -> Vec<MipCopy> {
+pub(super) fn mips(texture: &Texture, part: &SubresourceRange) -> Vec<MipCopy> {
     let texel = texture.format.block_copy_size(None).unwrap_or(4);
-    let layers = &target.part.layers;
+    let layers = &part.layers;
     let mut offset = 0;
     let mip = |mip: u32| {
         let until = layers.end.min(texture.mip_layers(mip));
@@ -270,7 +267,7 @@ fn mips(texture: &Texture, target: &Target) -> Vec<MipCopy> {
         offset += copy.bytes();
         copy
     };
-    target.part.mips.clone().map(mip).collect()
+    part.mips.clone().map(mip).collect()
 }
 
 /// Returns the content of a staging buffer, without the padding between rows.

@@ -3,6 +3,7 @@
 //! meanwhile, the next one that is counted needs too, or it is no longer needed.
 
 use crate::{
+    buffer,
     error::{ExecuteError, scoped},
     memory::{
         memory::{Memory, bytes},
@@ -42,12 +43,8 @@ impl GrowthReadback {
                 return None;
             }
             let staging = scoped(device, &resource.name, || {
-                device.create_buffer(&wgpu::BufferDescriptor {
-                    label: Some("counter"),
-                    size: COUNTER,
-                    usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-                    mapped_at_creation: false,
-                })
+                let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
+                buffer::make(device, "counter", COUNTER, usage)
             });
             Some(staging.map(|staging| Self {
                 name: resource.name.clone(),

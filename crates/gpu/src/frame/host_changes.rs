@@ -5,7 +5,7 @@ use crate::provider::Provider;
 use std::collections::BTreeMap;
 
 /// True for each in which something has changed.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Changed {
     pub scene: bool,
     pub light: bool,
@@ -18,11 +18,6 @@ impl Changed {
         scene: true,
         light: true,
         memory: true,
-    };
-    const NONE: Self = Self {
-        scene: false,
-        light: false,
-        memory: false,
     };
 
     /// Notes a change of what stands behind a name.
@@ -60,7 +55,7 @@ impl HostChanges {
 
     /// Notes that a frame was encoded.
     pub fn clear(&mut self) {
-        self.changed = Changed::NONE;
+        self.changed = Changed::default();
     }
 
     /// Notes what the host says of a name.

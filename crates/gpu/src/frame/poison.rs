@@ -1,11 +1,14 @@
 //! Memory filled with a pattern before a resource is first used in a frame. A pass that then reads
 //! something unwritten reads the pattern, and outputs differ between two patterns.
 
-use super::encode::clear_view;
+use super::{
+    encode::clear_view,
+    fetch::{MipCopy, mips},
+};
 use crate::{
+    buffer,
     error::{ExecuteError, scoped},
     memory::{
-        allocation::extent,
         memory::Memory,
         physical::{PingPong, Versions},
     },
@@ -22,8 +25,8 @@ pub(super) struct Poison {
 /// How a resource is filled.
 enum Fill {
     Buffer(wgpu::Buffer),
-    /// A texture with bytes of a row and size of each mip, all layers.
-    Texture(wgpu::Texture, Vec<(u32, wgpu::Extent3d)>),
+    /// A texture with all layers of each mip.
+    Texture(wgpu::Texture, Vec<MipCopy>),
     /// Attachments that nothing can be copied to are cleared: depths, and texels of several
     /// samples.
     Views(Vec<GpuAttachment>, wgpu::TextureFormat, [f64; 4]),
@@ -34,12 +37,7 @@ impl Fill {
     fn bytes(&self) -> u64 {
         match self {
             Self::Buffer(buffer) => buffer.size(),
-            Self::Texture(_, mips) => {
-                let bytes = |(row, size): &(u32, wgpu::Extent3d)| {
-                    u64::from(*row) * u64::from(size.height) * u64::from(size.depth_or_array_layers)
-                };
-                mips.iter().map(bytes).max().unwrap_or(0)
-            }
+            Self::Texture(_, mips) => mips.iter().map(MipCopy::bytes).max().unwrap_or(0),
             Self::Views(..) => 0,
         }
     }
@@ -50,19 +48,9 @@ impl Fill {
                 encoder.copy_buffer_to_buffer(pattern, 0, buffer, 0, buffer.size());
             }
             Self::Texture(texture, mips) => {
-                for (mip_level, (row, size)) in (0u32..).zip(mips) {
-                    let layout = wgpu::TexelCopyBufferLayout {
-                        offset: 0,
-                        bytes_per_row: Some(*row),
-                        rows_per_image: Some(size.height),
-                    };
-                    let source = wgpu::TexelCopyBufferInfo {
-                        buffer: pattern,
-                        layout,
-                    };
-                    let mut target = texture.as_image_copy();
-                    target.mip_level = mip_level;
-                    encoder.copy_buffer_to_texture(source, target, *size);
+                for copy in mips {
+                    let (from, to) = (copy.in_buffer(pattern, 0), copy.in_texture(texture));
+                    encoder.copy_buffer_to_texture(from, to, copy.size);
                 }
             }
             Self::Views(views, format, value) => {
@@ -112,18 +100,10 @@ impl Poison {
             .flat_map(|(_, _, fills): &(_, _, Vec<Fill>)| fills);
         let most = all.map(Fill::bytes).fold(4, u64::max);
         let pattern = scoped(device, "pattern", || {
-            device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("pattern"),
-                size: most,
-                usage: wgpu::BufferUsages::COPY_SRC,
-                mapped_at_creation: true,
-            })
-        })?;
-        match pattern.get_mapped_range_mut(..) {
-            Ok(mut mapped) => mapped.copy_from_slice(&vec![byte; most as usize]),
-            Err(_) => return Err(ExecuteError::Internal("the pattern could not be uploaded")),
-        }
-        pattern.unmap();
+            let (bytes, usage) = (vec![byte; most as usize], wgpu::BufferUsages::COPY_SRC);
+            let failed = "the pattern could not be uploaded";
+            buffer::filled(device, "pattern", &bytes, usage, failed)
+        })??;
         Ok(Some(Self { pattern, fills }))
     }
 
@@ -144,29 +124,22 @@ fn fill(binder: &Binder<'_>, id: ResourceId, byte: u8) -> Result<Option<Fill>, E
         ResourceKind::Buffer(_) => {
             Fill::Buffer(binder.memory.buffer(id, binder.ping_pong)?.clone())
         }
-        ResourceKind::Texture(texture)
-            if texture.format.is_depth_stencil_format() || texture.samples > 1 =>
-        {
+        ResourceKind::Texture(texture) => {
             let part = SubresourceRange {
                 mips: 0..texture.mips,
                 layers: 0..texture.layers,
                 aspect: wgpu::TextureAspect::All,
             };
-            let views = binder.single_views(&Target { id, part })?;
-            Fill::Views(views, texture.format, cleared_to(texture, byte))
-        }
-        ResourceKind::Texture(texture) => {
-            let texel = texture.format.block_copy_size(None).unwrap_or(4);
-            let mip = |mip: u32| {
-                let size = extent(texture, mip, texture.mip_layers(mip));
-                let row = size.width * texel;
-                (
-                    row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT),
-                    size,
-                )
-            };
+            if texture.format.is_depth_stencil_format() || texture.samples > 1 {
+                let views = binder.single_views(&Target { id, part })?;
+                return Ok(Some(Fill::Views(
+                    views,
+                    texture.format,
+                    cleared_to(texture, byte),
+                )));
+            }
             let made = binder.memory.texture(id, binder.ping_pong)?.clone();
-            Fill::Texture(made, (0..texture.mips).map(mip).collect())
+            Fill::Texture(made, mips(texture, &part))
         }
         _ => return Ok(None),
     }))

@@ -59,13 +59,26 @@ impl State {
             .map(|at| GpuPass::new(&plan, at, None, pipelines, factory.device))
             .collect::<Result<Vec<_>, _>>()
             .map_err(refused)?;
+        let contents = Contents::new(&plan, 0);
+        Self::of(plan, memory, passes, contents, factory.device)
+    }
+
+    /// Puts together what was made for a plan, and what the plan alone decides.
+    pub fn of(
+        plan: Plan,
+        mut memory: Memory,
+        passes: Vec<GpuPass>,
+        contents: Contents,
+        device: &wgpu::Device,
+    ) -> Result<Self, ExecuteError> {
+        let refused = |error| with_table(error, &plan);
         Ok(Self {
-            poison: Poison::new(&plan, &memory, factory.device).map_err(refused)?,
-            growth_readbacks: GrowthReadback::all(&plan, factory.device).map_err(refused)?,
+            poison: Poison::new(&plan, &memory, device).map_err(refused)?,
+            growth_readbacks: GrowthReadback::all(&plan, device).map_err(refused)?,
             readables: Readable::all(&plan),
             uniform: frame_uniform(&plan),
-            grown: Vec::new(),
-            contents: Contents::new(&plan, 0),
+            grown: memory.take_grown(),
+            contents,
             memory,
             passes,
             plan,
@@ -218,7 +231,7 @@ impl State {
 }
 
 /// The uniform `frame`, if a live pass reads it.
-pub(super) fn frame_uniform(plan: &Plan) -> Option<ResourceId> {
+fn frame_uniform(plan: &Plan) -> Option<ResourceId> {
     let mut live = plan.schedule().lifetimes.keys();
     let is_frame = |id: &&ResourceId| matches!(plan.resource(**id).kind, ResourceKind::Frame);
     live.find(is_frame).copied()

@@ -1,6 +1,7 @@
 //! Pipeline statistics of frames: how much work the shaders of each pass did.
 
 use crate::{
+    buffer,
     error::{ExecuteError, scoped},
     signal::{Progress, Signal},
 };
@@ -55,14 +56,7 @@ impl Counters {
             return Ok(None);
         }
         let name = "pipeline statistics";
-        let buffer = |usage| {
-            device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(name),
-                size: u64::from(count) * BYTES,
-                usage,
-                mapped_at_creation: false,
-            })
-        };
+        let buffer = |usage| buffer::make(device, name, u64::from(count) * BYTES, usage);
         let make = || Self {
             set: device.create_query_set(&wgpu::QuerySetDescriptor {
                 label: Some(name),

@@ -4,6 +4,7 @@
 
 use super::host_changes::Changed;
 use crate::{
+    buffer,
     error::{ExecuteError, scoped},
     signal::{Progress, Signal},
 };
@@ -49,10 +50,8 @@ impl FrameUniform {
         for (bytes, word) in bytes.chunks_exact_mut(4).zip(words) {
             bytes.copy_from_slice(&word.to_ne_bytes());
         }
-        match uniform.staging.get_mapped_range_mut(..) {
-            Ok(mut mapped) => mapped.copy_from_slice(&bytes),
-            Err(_) => return Err(ExecuteError::Internal("the uniform `frame` was not mapped")),
-        }
+        let failed = "the uniform `frame` was not mapped";
+        buffer::write(&uniform.staging, &bytes, failed)?;
         *used = Some(uniform);
         Ok(())
     }

@@ -1,7 +1,10 @@
 //! Textures and buffers that resources of a plan take turns in.
 
 use super::physical::Physical;
-use crate::error::{ExecuteError, scoped};
+use crate::{
+    buffer,
+    error::{ExecuteError, scoped},
+};
 use skiagraph_graph::{Origin, Plan, Resource, ResourceId, ResourceKind, Texture};
 use std::collections::HashMap;
 
@@ -47,27 +50,25 @@ impl GpuAllocation {
             versions.all(|version| is_made(version, resource))
                 && (resource.origin != Origin::Constant || holds_the_same(of, resource))
         });
-        if let Some((_, allocation)) = reused {
-            let versions = allocation.versions.clone();
-            return Ok(Self {
-                label,
-                usage,
-                versions,
-                grown_from: None,
-            });
-        }
         let make = || make(resource, &label, usage, device);
-        let versions = (0..count)
-            .map(|_| scoped(device, &label, make)?)
-            .collect::<Result<Vec<_>, ExecuteError>>()?;
-        for version in &versions {
-            fill(version, resource, queue);
-        }
+        let (versions, grown_from) = match reused {
+            Some((_, allocation)) => (allocation.versions.clone(), None),
+            None => {
+                let versions = (0..count)
+                    .map(|_| scoped(device, &label, make)?)
+                    .collect::<Result<Vec<_>, ExecuteError>>()?;
+                for version in &versions {
+                    fill(version, resource, queue);
+                }
+                let grown = known.and_then(|(of, it)| grown(of, it, resource));
+                (versions, grown)
+            }
+        };
         Ok(Self {
             label,
             usage,
             versions,
-            grown_from: known.and_then(|(of, allocation)| grown(of, allocation, resource)),
+            grown_from,
         })
     }
 }
@@ -85,11 +86,7 @@ fn make(
                 size: extent(texture, 0, texture.layers),
                 mip_level_count: texture.mips,
                 sample_count: texture.samples,
-                dimension: if texture.is_3d {
-                    wgpu::TextureDimension::D3
-                } else {
-                    wgpu::TextureDimension::D2
-                },
+                dimension: dimension(texture.is_3d),
                 format: texture.format,
                 usage: textures,
                 view_formats: &[],
@@ -97,17 +94,20 @@ fn make(
             Ok(Physical::Texture(device.create_texture(&descriptor)))
         }
         ResourceKind::Buffer(buffer) => {
-            let descriptor = wgpu::BufferDescriptor {
-                label: Some(label),
-                size: buffer.bytes,
-                usage: buffers,
-                mapped_at_creation: false,
-            };
-            Ok(Physical::Buffer(device.create_buffer(&descriptor)))
+            let made = buffer::make(device, label, buffer.bytes, buffers);
+            Ok(Physical::Buffer(made))
         }
         _ => Err(ExecuteError::Internal(
             "only textures and buffers have allocations",
         )),
+    }
+}
+
+pub(super) fn dimension(is_3d: bool) -> wgpu::TextureDimension {
+    if is_3d {
+        wgpu::TextureDimension::D3
+    } else {
+        wgpu::TextureDimension::D2
     }
 }
 

@@ -1,6 +1,6 @@
 //! Checks the host's imports against their declarations.
 
-use super::physical::Physical;
+use super::{allocation::dimension, physical::Physical};
 use skiagraph_graph::Import;
 
 /// Why a texture or buffer is not what the host said that it would import. Its usages may be more
@@ -22,11 +22,6 @@ pub(crate) fn differs(physical: &Physical, described: &Import) -> Option<String>
                 usage,
             },
         ) => {
-            let dimension = if is_3d {
-                wgpu::TextureDimension::D3
-            } else {
-                wgpu::TextureDimension::D2
-            };
             vec![
                 unless("its format", format, texture.format()),
                 unless("its size", size, [texture.width(), texture.height()]),
@@ -36,7 +31,7 @@ pub(crate) fn differs(physical: &Physical, described: &Import) -> Option<String>
                     layers,
                     texture.depth_or_array_layers(),
                 ),
-                unless("its dimension", dimension, texture.dimension()),
+                unless("its dimension", dimension(is_3d), texture.dimension()),
                 unless("its number of samples", samples, texture.sample_count()),
                 unless("its usage", usage, texture.usage() & usage),
             ]

@@ -5,6 +5,7 @@ use super::{
     physical::{Physical, PingPong},
 };
 use crate::{
+    buffer,
     error::{ExecuteError, scoped},
     provider::Provider,
 };
@@ -151,14 +152,7 @@ impl Memory {
             {
                 known.clone()
             }
-            _ => scoped(device, name, || {
-                device.create_buffer(&wgpu::BufferDescriptor {
-                    label: Some(name),
-                    size,
-                    usage,
-                    mapped_at_creation: false,
-                })
-            })?,
+            _ => scoped(device, name, || buffer::make(device, name, size, usage))?,
         };
         self.host.insert(id, Physical::Buffer(buffer));
         Ok(())

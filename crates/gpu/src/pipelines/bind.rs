@@ -5,6 +5,7 @@ use super::{
     pipelines::Pipeline,
 };
 use crate::{
+    buffer,
     error::ExecuteError,
     memory::{
         allocation::extent,
@@ -26,22 +27,12 @@ pub(crate) fn upload(
     let Some(bytes) = step.program().and_then(LinkedProgram::params) else {
         return Ok(None);
     };
-    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some(&format!("{label} params")),
-        size: bytes.len() as u64,
-        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: true,
-    });
-    match buffer.get_mapped_range_mut(..) {
-        Ok(mut mapped) => mapped.copy_from_slice(bytes),
-        Err(_) => {
-            return Err(ExecuteError::Internal(
-                "the params of a pass could not be uploaded",
-            ));
-        }
-    }
-    buffer.unmap();
-    Ok(Some(buffer))
+    let (label, failed) = (
+        format!("{label} params"),
+        "the params of a pass could not be uploaded",
+    );
+    let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+    buffer::filled(device, &label, bytes, usage, failed).map(Some)
 }
 
 /// Binds steps to the memory of one state of the ping-pong.

@@ -55,13 +55,7 @@ impl House {
 pub(super) fn build(triangles: u32) -> Mesh {
     let mut random = Random::new(1986);
     let mut builder = Builder::default();
-    builder.group("ground");
-    let half = f64::from(BLOCKS) * PITCH / 2.0 + 40.0;
-    builder.slab(
-        DVec3::new(-half, -2.0, -half),
-        DVec3::new(half, 0.0, half),
-        24,
-    );
+    builder.ground(f64::from(BLOCKS) * PITCH / 2.0 + 40.0);
     builder.group("houses");
     let houses = houses(&mut random);
     for house in &houses {

@@ -31,13 +31,7 @@ const KINDS: u64 = 4;
 /// Builds a forest of about that many triangles.
 pub(super) fn build(triangles: u32) -> Mesh {
     let mut builder = Builder::default();
-    builder.group("ground");
-    let half = HALF + 5.0;
-    builder.slab(
-        DVec3::new(-half, -2.0, -half),
-        DVec3::new(half, 0.0, half),
-        24,
-    );
+    builder.ground(HALF + 5.0);
     builder.group("trees");
     // As many on the right as on the left of the ride.
     let beside = (0.08 * f64::from(triangles).sqrt()).round() as u32;

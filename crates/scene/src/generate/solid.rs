@@ -49,6 +49,11 @@ impl Frame {
         }
     }
 
+    /// The same at another place.
+    pub fn moved_to(self, origin: DVec3) -> Self {
+        Self { origin, ..self }
+    }
+
     pub fn at(&self, x: f64, y: f64, z: f64) -> DVec3 {
         self.origin + self.x * x + self.y * y + self.z * z
     }
@@ -127,6 +132,13 @@ impl Builder {
         self.add(&points, &faces);
     }
 
+    /// A square slab of ground around the origin.
+    pub fn ground(&mut self, half: f64) {
+        self.group("ground");
+        let corner = DVec3::new(half, 0.0, half);
+        self.slab(-corner - DVec3::Y * 2.0, corner, 24);
+    }
+
     /// A slab over `low`..`high`, its upper side a grid of `cells` × `cells` equal cells: f32
     /// places a point on a triangle the better the nearer its corners are.
     pub fn slab(&mut self, low: DVec3, high: DVec3, cells: u32) {
@@ -196,10 +208,7 @@ impl Builder {
         half_thickness: f64,
         sides: u32,
     ) {
-        let centre = Frame {
-            origin: frame.at(length * 0.5, 0.0, 0.0),
-            ..frame
-        };
+        let centre = frame.moved_to(frame.at(length * 0.5, 0.0, 0.0));
         let ring = centre.ring(0.0, length * 0.5, half_width, sides);
         self.loft(
             centre.at(0.0, -half_thickness, 0.0),

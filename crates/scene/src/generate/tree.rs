@@ -71,10 +71,7 @@ impl Tree {
                 .unwrap_or(DVec3::Y);
             let along = random.direction();
             let frame = Frame::along(position, up, along);
-            let frame = Frame {
-                origin: frame.at(-radius, 0.0, 0.0),
-                ..frame
-            };
+            let frame = frame.moved_to(frame.at(-radius, 0.0, 0.0));
             builder.leaf(frame, 2.0 * radius, 0.8 * radius, 0.08 * radius, 6);
         }
     }

@@ -11,6 +11,18 @@ pub(super) fn floats<const N: usize>(
     accessor: &Accessor<'_>,
     buffers: &Buffers,
 ) -> Result<Vec<[f32; N]>, String> {
+    unnamed_floats(accessor, buffers).map_err(|why| named(accessor, why))
+}
+
+/// Says which accessor it is.
+pub(super) fn named(accessor: &Accessor<'_>, why: String) -> String {
+    format!("accessor {}: {why}", accessor.index())
+}
+
+fn unnamed_floats<const N: usize>(
+    accessor: &Accessor<'_>,
+    buffers: &Buffers,
+) -> Result<Vec<[f32; N]>, String> {
     let width = accessor.dimensions().multiplicity();
     if width < N {
         return Err(format!("its items have {width} numbers, expected {N}"));
@@ -95,12 +107,7 @@ fn raw<'b>(
     count: usize,
     buffers: &'b Buffers,
 ) -> Result<impl Iterator<Item = &'b [u8]> + use<'b>, String> {
-    let buffer = buffers.bytes.get(view.buffer().index());
-    let end = view.offset().checked_add(view.length());
-    let bytes = buffer
-        .zip(end)
-        .and_then(|(bytes, end)| bytes.get(view.offset()..end));
-    let bytes = bytes.ok_or_else(|| {
+    let bytes = buffers.view(view).ok_or_else(|| {
         format!(
             "buffer view {} reaches beyond buffer {}",
             view.index(),

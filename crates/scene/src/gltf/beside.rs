@@ -42,6 +42,11 @@ pub(super) fn each(root: &mut Value, list: &str, mut with: impl FnMut(usize, &mu
     }
 }
 
+/// The items of a list, if it is there.
+pub(super) fn items<'v>(of: &'v Value, list: &str) -> impl Iterator<Item = &'v Value> + use<'v> {
+    of.get(list).and_then(Value::as_array).into_iter().flatten()
+}
+
 pub(super) fn index(value: Option<&Value>) -> Option<usize> {
     usize::try_from(value?.as_u64()?).ok()
 }

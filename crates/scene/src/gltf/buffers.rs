@@ -54,6 +54,16 @@ pub(super) struct Buffers {
     pub strides: HashMap<usize, usize>,
 }
 
+impl Buffers {
+    /// The bytes of a view; `None` if it reaches beyond its buffer.
+    pub fn view(&self, view: &gltf::buffer::View<'_>) -> Option<&[u8]> {
+        let end = view.offset().checked_add(view.length())?;
+        self.bytes
+            .get(view.buffer().index())?
+            .get(view.offset()..end)
+    }
+}
+
 /// The bytes of all buffers that are needed of a document.
 ///
 /// # Errors

@@ -110,10 +110,9 @@ fn check(root: &Root) -> Result<(), Fault> {
 fn refusal(error: &Error) -> Fault {
     match error {
         Error::Validation(mistakes) => {
-            let (place, what) = match mistakes.first() {
-                Some((place, what)) => (place.to_string(), what.to_string()),
-                None => (String::new(), String::new()),
-            };
+            let first = mistakes.first();
+            let first = first.map(|(place, what)| (place.to_string(), what.to_string()));
+            let (place, what) = first.unwrap_or_default();
             let more = match mistakes.len() {
                 0 | 1 => String::new(),
                 count => format!(" (and {} more)", count - 1),

@@ -354,7 +354,6 @@ impl<'a> Import<'a> {
 
     /// Contents of a primitive's accessors.
     fn arrays(&self, primitive: &gltf::Primitive<'_>, material: usize) -> Result<Arrays, String> {
-        let named = |(index, why): (usize, String)| format!("accessor {index}: {why}");
         let material = &self.materials.all[material];
         let positions = primitive
             .get(&Semantic::Positions)
@@ -362,28 +361,24 @@ impl<'a> Import<'a> {
         let positions = vectors(&positions, self.buffers)?;
         let normals = primitive.get(&Semantic::Normals);
         let normals = normals.map(|of| vectors(&of, self.buffers)).transpose()?;
-        let uvs = match primitive.get(&Semantic::TexCoords(material.uv_set)) {
-            Some(accessor) => Some(
-                accessor::floats::<2>(&accessor, self.buffers)
-                    .map_err(|why| named((accessor.index(), why)))?,
-            ),
-            None => None,
-        };
+        let uvs = primitive.get(&Semantic::TexCoords(material.uv_set));
+        let uvs = uvs
+            .map(|of| accessor::floats::<2>(&of, self.buffers))
+            .transpose()?;
         let colours = primitive
             .get(&Semantic::Colors(0))
             .filter(|_| material.cut.is_some());
         let colours = colours.filter(|of| of.dimensions().multiplicity() == 4);
         let alphas = match colours {
             Some(accessor) => {
-                let colours = accessor::floats::<4>(&accessor, self.buffers);
-                let colours = colours.map_err(|why| named((accessor.index(), why)))?;
+                let colours = accessor::floats::<4>(&accessor, self.buffers)?;
                 Some(colours.into_iter().map(|[.., alpha]| alpha).collect())
             }
             None => None,
         };
         let indices = match primitive.indices() {
             Some(accessor) => accessor::indices(&accessor, self.buffers)
-                .map_err(|why| named((accessor.index(), why)))?,
+                .map_err(|why| accessor::named(&accessor, why))?,
             None => (0..positions.len() as u32).collect(),
         };
         let restart = match primitive.indices().map(|of| of.data_type()) {

@@ -147,13 +147,9 @@ impl Reader<'_> {
         let place = format!("image {}", image.index());
         let (name, source) = match image.source() {
             gltf::image::Source::View { view, .. } => {
-                let end = view.offset().checked_add(view.length());
                 let bytes = self
                     .buffers
-                    .bytes
-                    .get(view.buffer().index())
-                    .zip(end)
-                    .and_then(|(bytes, end)| bytes.get(view.offset()..end))
+                    .view(&view)
                     .ok_or_else(|| format!("{place} reaches beyond its buffer"))?;
                 (place, Source::Bytes(bytes.into()))
             }

@@ -13,13 +13,9 @@ pub(super) struct Vertices {
     pub turned: Vec<bool>,
 }
 
-fn named(accessor: &Accessor<'_>, why: String) -> String {
-    format!("accessor {}: {why}", accessor.index())
-}
-
 /// Three numbers for each item.
 pub(super) fn vectors(accessor: &Accessor<'_>, buffers: &Buffers) -> Result<Vec<DVec3>, String> {
-    let read = accessor::floats::<3>(accessor, buffers).map_err(|why| named(accessor, why))?;
+    let read = accessor::floats::<3>(accessor, buffers)?;
     Ok(read
         .into_iter()
         .map(|of| Vec3::from(of).as_dvec3())
@@ -46,7 +42,7 @@ impl Vertices {
                 if moved.len() < vertices.len() {
                     let (has, needs) = (moved.len(), vertices.len());
                     let why = format!("a morph target of {has} vertices for {needs}");
-                    return Err(named(&accessor, why));
+                    return Err(accessor::named(&accessor, why));
                 }
                 for (vertex, by) in vertices.iter_mut().zip(moved) {
                     *vertex += f64::from(weight) * by;
@@ -72,10 +68,8 @@ impl Vertices {
                 Some((names, primitive.get(&Semantic::Weights(set))?))
             })
             .map(|(names, weights)| {
-                let read = |of: &Accessor<'_>| {
-                    accessor::floats::<4>(of, buffers).map_err(|why| named(of, why))
-                };
-                Ok((read(&names)?, read(&weights)?))
+                let names = accessor::floats::<4>(&names, buffers)?;
+                Ok((names, accessor::floats::<4>(&weights, buffers)?))
             })
             .collect::<Result<_, String>>()?;
         if sets.is_empty() {
@@ -147,8 +141,7 @@ pub(super) fn joints(
     buffers: &Buffers,
 ) -> Result<Vec<DMat4>, String> {
     let bound = match skin.inverse_bind_matrices() {
-        Some(accessor) => accessor::floats::<16>(&accessor, buffers)
-            .map_err(|why| named(&accessor, why))?
+        Some(accessor) => accessor::floats::<16>(&accessor, buffers)?
             .iter()
             .map(|columns| DMat4::from_cols_array(&columns.map(f64::from)))
             .collect(),
@@ -179,25 +172,18 @@ pub(super) fn instances(
     document: &Document,
     buffers: &Buffers,
 ) -> Result<Vec<DMat4>, String> {
-    let accessor = |number: Option<usize>| match number {
-        Some(number) => match document.accessors().nth(number) {
-            Some(accessor) => Ok(Some(accessor)),
-            None => Err(format!(
-                "its instances name accessor {number}, which is not there"
-            )),
-        },
-        None => Ok(None),
+    let there = |number: usize| {
+        let missing = || format!("its instances name accessor {number}, which is not there");
+        document.accessors().nth(number).ok_or_else(missing)
     };
+    let accessor = |number: Option<usize>| number.map(there).transpose();
     let translation = accessor(of.translation)?;
     let translation = translation.map(|of| vectors(&of, buffers)).transpose()?;
     let scale = accessor(of.scale)?;
     let scale = scale.map(|of| vectors(&of, buffers)).transpose()?;
-    let rotation = match accessor(of.rotation)? {
-        Some(accessor) => {
-            Some(accessor::floats::<4>(&accessor, buffers).map_err(|why| named(&accessor, why))?)
-        }
-        None => None,
-    };
+    let rotation = accessor(of.rotation)?;
+    let rotation = rotation.map(|of| accessor::floats::<4>(&of, buffers));
+    let rotation = rotation.transpose()?;
     let counts = [
         translation.as_ref().map(Vec::len),
         rotation.as_ref().map(Vec::len),

@@ -3,7 +3,7 @@
 //! unknown to the crate are read here.
 
 use super::{
-    beside::{Beside, Instances, each, index, taken},
+    beside::{Beside, Instances, each, index, items, taken},
     extensions::{self, Kind},
     fault::Fault,
     prepare_looks, prepare_storage,
@@ -49,9 +49,8 @@ pub(super) fn prepare(root: &mut Value, materials: MaterialUse) -> Result<Beside
 
 /// Refuses what the file cannot be read without; says what is passed over of it.
 fn required(root: &Value, beside: &mut Beside) -> Result<(), Fault> {
-    let names = root.get("extensionsRequired").and_then(Value::as_array);
     let mut looks = Vec::new();
-    for (index, name) in names.into_iter().flatten().enumerate() {
+    for (index, name) in items(root, "extensionsRequired").enumerate() {
         let name = name.as_str().unwrap_or_default();
         match extensions::kind(name) {
             Kind::Followed | Kind::Packed => {}
@@ -127,11 +126,7 @@ fn is_known(attribute: &str) -> bool {
 }
 
 fn meshes(root: &mut Value, beside: &mut Beside, materials: MaterialUse) -> Result<(), Fault> {
-    let packed_away: Vec<bool> = root
-        .get("accessors")
-        .and_then(Value::as_array)
-        .into_iter()
-        .flatten()
+    let packed_away: Vec<bool> = items(root, "accessors")
         .map(|accessor| accessor.get("bufferView").is_none() && accessor.get("sparse").is_none())
         .collect();
     let is_away = |accessor: &Value| {

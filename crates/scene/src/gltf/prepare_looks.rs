@@ -1,6 +1,6 @@
 //! Reduces materials, textures, pictures and samplers to what colours a triangle or cuts it out.
 
-use super::beside::{Beside, Fields, each, index, taken};
+use super::beside::{Beside, Fields, each, index, items, taken};
 use crate::error::beginning;
 use serde_json::{Value, json};
 use std::collections::{HashMap, HashSet};
@@ -43,10 +43,8 @@ pub(super) fn materials(root: &mut Value, beside: &mut Beside) {
 
 /// Numbers of the textures that materials take.
 fn used_textures(root: &Value) -> HashSet<usize> {
-    let materials = root.get("materials").and_then(Value::as_array);
     let texture = "/pbrMetallicRoughness/baseColorTexture/index";
-    let textures = materials.into_iter().flatten();
-    textures
+    items(root, "materials")
         .filter_map(|of| index(of.pointer(texture)))
         .collect()
 }

@@ -1,7 +1,7 @@
 //! Reduces accessors, buffer views and buffers to those in use.
 
 use super::{
-    beside::{Beside, each, index, taken},
+    beside::{Beside, each, index, items, taken},
     extensions::{self, Kind},
     fault::Fault,
 };
@@ -21,37 +21,26 @@ pub(super) fn storage(root: &mut Value, beside: &mut Beside) -> Result<(), Fault
 
 /// The buffer views of pictures that are read.
 fn used_images(root: &Value) -> Vec<usize> {
-    let images = root.get("images").and_then(Value::as_array);
-    let views = images.into_iter().flatten();
-    views
+    items(root, "images")
         .filter_map(|image| index(image.get("bufferView")))
         .collect()
 }
 
 fn used_accessors(root: &Value, beside: &Beside) -> HashSet<usize> {
     let mut used = HashSet::new();
-    let list = |name| {
-        root.get(name)
-            .and_then(Value::as_array)
-            .into_iter()
-            .flatten()
-    };
-    for primitive in list("meshes").flat_map(|mesh| {
-        let primitives = mesh.get("primitives").and_then(Value::as_array);
-        primitives.into_iter().flatten()
-    }) {
+
+    for primitive in items(root, "meshes").flat_map(|mesh| items(mesh, "primitives")) {
         let fields = |of: Option<&Value>| -> Vec<usize> {
             let fields = of.and_then(Value::as_object).into_iter().flatten();
             fields.filter_map(|(_, value)| index(Some(value))).collect()
         };
         used.extend(index(primitive.get("indices")));
         used.extend(fields(primitive.get("attributes")));
-        let targets = primitive.get("targets").and_then(Value::as_array);
-        for target in targets.into_iter().flatten() {
+        for target in items(primitive, "targets") {
             used.extend(fields(Some(target)));
         }
     }
-    used.extend(list("skins").filter_map(|skin| index(skin.get("inverseBindMatrices"))));
+    used.extend(items(root, "skins").filter_map(|skin| index(skin.get("inverseBindMatrices"))));
     for of in beside.instances.values() {
         used.extend(
             [of.translation, of.rotation, of.scale]
@@ -66,10 +55,7 @@ fn used_accessors(root: &Value, beside: &Beside) -> HashSet<usize> {
 /// view are zeros that the `gltf` crate accepts. Returns the buffer views in use.
 fn accessor_list(root: &mut Value, beside: &mut Beside, used: &HashSet<usize>) -> HashSet<usize> {
     let mut views = HashSet::new();
-    let nothing = root
-        .get("bufferViews")
-        .and_then(Value::as_array)
-        .map_or(0, Vec::len);
+    let nothing = items(root, "bufferViews").count();
     let mut needs_nothing = false;
     each(root, "accessors", |number, accessor| {
         taken(accessor, "accessors", beside);
@@ -97,10 +83,7 @@ fn accessor_list(root: &mut Value, beside: &mut Beside, used: &HashSet<usize>) -
         }
     });
     if needs_nothing {
-        let buffer = root
-            .get("buffers")
-            .and_then(Value::as_array)
-            .map_or(0, Vec::len);
+        let buffer = items(root, "buffers").count();
         for (list, item) in [
             ("bufferViews", json!({"buffer": buffer, "byteLength": 0})),
             ("buffers", json!({"byteLength": 0})),

@@ -8,14 +8,15 @@
 //! is read twice, first all of its vertices, then its faces.
 
 use crate::{
-    error::{FACES_SHOWN, FaceFault, FaceProblem, FaceRef, beginning},
-    text::{line_text, next_line},
+    error::{FACES_SHOWN, FaceFault, FaceProblem, FaceRef, SceneError, beginning},
+    text::{line_text, next_line, without_comment},
 };
 use glam::Vec2;
 use std::{
     borrow::Cow,
     collections::HashSet,
     io::{self, BufRead, Read},
+    path::Path,
 };
 
 /// Where a face that was handed on stood, and whether the file gives it normals.
@@ -35,6 +36,7 @@ pub(super) struct FaceRecord {
 }
 
 /// The reader that `tobj` reads from.
+#[derive(Default)]
 pub(super) struct Guard<'a> {
     whole: &'a [u8],
     rest: &'a [u8],
@@ -56,10 +58,7 @@ pub(super) struct Guard<'a> {
     pub corner_uvs: Vec<Vec2>,
     /// Faces handed on, in order.
     pub faces: Vec<FaceRecord>,
-    /// The first faulty faces; those are not handed on.
-    pub faults: Vec<FaceFault>,
-    /// Number of faulty faces.
-    pub fault_count: usize,
+    pub faults: Faults,
     /// Faces of groups left out.
     pub faces_left_out: usize,
     /// Points met.
@@ -87,10 +86,43 @@ pub(super) struct Guard<'a> {
 }
 
 /// The part of the file that is handed on.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
 enum Turn {
+    #[default]
     Vertices,
     Faces,
+}
+
+/// Faces that cannot be used: the first of them, and how many there are.
+#[derive(Default)]
+pub(super) struct Faults {
+    first: Vec<FaceFault>,
+    total: usize,
+}
+
+impl Faults {
+    pub fn add(&mut self, face: impl FnOnce() -> FaceRef, problem: FaceProblem) {
+        self.total += 1;
+        if self.first.len() < FACES_SHOWN {
+            let face = face();
+            self.first.push(FaceFault { face, problem });
+        }
+    }
+
+    /// Refuses the file if there are any.
+    ///
+    /// # Errors
+    /// [`SceneError::ObjFaces`].
+    pub fn refuse(self, path: &Path) -> Result<(), SceneError> {
+        match self.total {
+            0 => Ok(()),
+            total => Err(SceneError::ObjFaces {
+                path: path.to_owned(),
+                faults: self.first,
+                total,
+            }),
+        }
+    }
 }
 
 /// Numbers of vertices, normals and texture coordinates.
@@ -99,13 +131,6 @@ struct Counts {
     vertices: usize,
     normals: usize,
     uvs: usize,
-}
-
-/// How many of a kind a face can name.
-#[derive(Clone, Copy)]
-struct Available {
-    above: usize,
-    total: usize,
 }
 
 /// A corner: numbers from 1 of what it names, or why what it names is not there. Only its vertex
@@ -125,33 +150,12 @@ impl<'a> Guard<'a> {
         Self {
             whole: bytes,
             rest: bytes,
-            turn: Turn::Vertices,
-            handed_on: Vec::new(),
-            consumed: 0,
-            line: 0,
-            fatal: None,
             groups: vec![UNNAMED.to_owned()],
             materials: vec![String::new()],
-            libraries: Vec::new(),
-            corner_uvs: Vec::new(),
             with_materials,
-            uvs: Vec::new(),
-            material: 0,
-            faces: Vec::new(),
-            faults: Vec::new(),
-            fault_count: 0,
-            faces_left_out: 0,
-            points: 0,
-            lines: 0,
-            curved: 0,
-            normals_unread: 0,
-            normals_absent: 0,
-            uvs_absent: Vec::new(),
             group_left_out: leave_out.contains(UNNAMED),
             leave_out,
-            number: 0,
-            above: Counts::default(),
-            total: Counts::default(),
+            ..Self::default()
         }
     }
 
@@ -275,11 +279,8 @@ impl<'a> Guard<'a> {
             }
             "f" => self.take_face(without_comment(rest), ended)?,
             "g" | "o" => {
-                let name = if rest.trim().is_empty() {
-                    UNNAMED
-                } else {
-                    rest.trim()
-                };
+                let name = Some(rest.trim()).filter(|name| !name.is_empty());
+                let name = name.unwrap_or(UNNAMED);
                 self.group_left_out = self.leave_out.contains(name);
                 self.groups.push(name.to_owned());
                 self.number = 0;
@@ -383,56 +384,36 @@ impl<'a> Guard<'a> {
     }
 
     /// A corner whose vertex is known to exist.
-    fn corner(&self, text: &str) -> Result<Named, FaceProblem> {
+    fn corner<'t>(&self, text: &'t str) -> Result<Named, FaceProblem> {
         let mut words = text.split('/');
         let (vertex, uv, normal) = (words.next().unwrap_or(""), words.next(), words.next());
         let not_a_corner = || FaceProblem::NotACorner(text.to_owned());
         if words.next().is_some() {
             return Err(not_a_corner());
         }
-        let available = |of: fn(&Counts) -> usize| Available {
-            above: of(&self.above),
-            total: of(&self.total),
+        let find = |word: &str, of: fn(&Counts) -> usize| {
+            resolve(word, of(&self.above), of(&self.total)).ok_or_else(not_a_corner)
         };
-        let vertices = available(|of| of.vertices);
-        let vertex = resolve(vertex, vertices).ok_or_else(not_a_corner)?;
-        let vertex = vertex
+        let written = |word: Option<&'t str>| word.filter(|word| !word.is_empty());
+        let vertex = find(vertex, |of| of.vertices)?
             .map_err(|(written, available)| FaceProblem::NoSuchVertex { written, available })?;
-        let normal = match normal {
-            None | Some("") => None,
-            Some(normal) => {
-                let found = resolve(normal, available(|of| of.normals)).ok_or_else(not_a_corner)?;
-                Some(found.map_err(|_| ()))
-            }
-        };
-        let uv =
-            match uv {
-                // Without a file of materials nothing is looked up by them.
-                Some(uv) if !self.libraries.is_empty() && !uv.is_empty() => {
-                    let found = resolve(uv, available(|of| of.uvs)).ok_or_else(not_a_corner)?;
-                    Some(found.map_err(|(written, available)| FaceProblem::NoSuchUv {
-                        written,
-                        available,
-                    }))
-                }
-                _ => None,
-            };
+        let normal = written(normal).map(|word| find(word, |of| of.normals));
+        let normal = normal.transpose()?.map(|found| found.map_err(drop));
+        // Without a file of materials nothing is looked up by them.
+        let uv = written(uv).filter(|_| !self.libraries.is_empty());
+        let uv = uv.map(|word| find(word, |of| of.uvs)).transpose()?;
+        let absent = |(written, available)| FaceProblem::NoSuchUv { written, available };
+        let uv = uv.map(|found| found.map_err(absent));
         Ok(Named { vertex, normal, uv })
     }
 
     fn fault(&mut self, problem: FaceProblem) {
-        self.fault_count += 1;
-        if self.faults.len() < FACES_SHOWN {
-            let group = self.groups.last().cloned().unwrap_or_default();
-            self.faults.push(FaceFault {
-                face: FaceRef {
-                    group,
-                    number: self.number,
-                    line: self.line,
-                },
-                problem,
-            });
-        }
+        let face = FaceRef {
+            group: self.groups.last().cloned().unwrap_or_default(),
+            number: self.number,
+            line: self.line,
+        };
+        self.faults.add(|| face, problem);
     }
 }
 
@@ -441,24 +422,16 @@ fn split(line: &str) -> (&str, &str) {
     line.split_once(char::is_whitespace).unwrap_or((line, ""))
 }
 
-fn without_comment(rest: &str) -> &str {
-    rest.split('#').next().unwrap_or("")
-}
-
 /// The number, from 1, of what a corner names, or the text of one that names nothing and how many
 /// there are. `None` where it is no number. A positive one counts from the beginning of the file,
 /// to its end; a negative one back from the line. One that overflows names nothing either.
-fn resolve(written: &str, available: Available) -> Option<Result<usize, (String, usize)>> {
+fn resolve(written: &str, above: usize, total: usize) -> Option<Result<usize, (String, usize)>> {
     let digits = written.strip_prefix(['-', '+']).unwrap_or(written);
     if digits.is_empty() || !digits.bytes().all(|byte| byte.is_ascii_digit()) {
         return None;
     }
     let counts_back = written.starts_with('-');
-    let most = if counts_back {
-        available.above
-    } else {
-        available.total
-    };
+    let most = if counts_back { above } else { total };
     let index = match digits.parse::<usize>() {
         Ok(back) if counts_back => (most + 1).checked_sub(back).filter(|_| back > 0),
         Ok(index) => Some(index),

@@ -1,14 +1,14 @@
 //! Welds what `tobj` read into a [`Mesh`].
 
 use super::{
-    guard::{FaceRecord, Guard},
+    guard::{FaceRecord, Faults, Guard},
     mtl::{self, Found},
     options::ObjOptions,
     polygon,
 };
 use crate::{
     builder::{Corner, MeshBuilder},
-    error::{FACES_SHOWN, FaceFault, FaceProblem, SceneError, plural},
+    error::{FaceProblem, SceneError, plural},
     mesh::Mesh,
     report::ImportReport,
 };
@@ -33,8 +33,7 @@ pub(super) fn import(
         path,
         found,
         builder: MeshBuilder::default(),
-        uncut: Vec::new(),
-        uncut_count: 0,
+        uncut: Faults::default(),
     };
     import.builder.report = ImportReport {
         file: Some(path.to_owned()),
@@ -47,13 +46,7 @@ pub(super) fn import(
     };
     import.remark_and_check()?;
     import.run(models)?;
-    if import.uncut_count > 0 {
-        return Err(SceneError::ObjFaces {
-            path: path.to_owned(),
-            faults: import.uncut,
-            total: import.uncut_count,
-        });
-    }
+    import.uncut.refuse(path)?;
     Ok(import.builder.finish(import.found.materials))
 }
 
@@ -63,9 +56,8 @@ struct Import<'a> {
     path: &'a Path,
     found: Found,
     builder: MeshBuilder,
-    /// The first faces that cannot be cut, and how many there are.
-    uncut: Vec<FaceFault>,
-    uncut_count: usize,
+    /// Faces that cannot be cut.
+    uncut: Faults,
 }
 
 impl Import<'_> {
@@ -90,7 +82,7 @@ impl Import<'_> {
                 "{curved} (curv, surf) passed over: only faces are drawn"
             ));
         }
-        let (mut faults, mut total, mut harmless) = (Vec::new(), 0, 0);
+        let (mut faults, mut harmless) = (Faults::default(), 0);
         for (face, problem) in &guard.uvs_absent {
             let record = &guard.faces[*face];
             let material = self.found.materials.get(record.material as usize);
@@ -98,26 +90,13 @@ impl Import<'_> {
                 harmless += 1;
                 continue;
             }
-            total += 1;
-            if faults.len() < FACES_SHOWN {
-                faults.push(FaceFault {
-                    face: guard.face_ref(record),
-                    problem: problem.clone(),
-                });
-            }
+            faults.add(|| guard.face_ref(record), problem.clone());
         }
         if harmless > 0 {
             let faces = plural(harmless, "face names", "faces name");
             report.remark(format!("{faces} texture coordinates that are not there"));
         }
-        match total {
-            0 => Ok(()),
-            _ => Err(SceneError::ObjFaces {
-                path: self.path.to_owned(),
-                faults,
-                total,
-            }),
-        }
+        faults.refuse(self.path)
     }
 
     fn run(&mut self, models: &[tobj::Model]) -> Result<(), SceneError> {
@@ -168,8 +147,7 @@ impl Import<'_> {
     }
 
     fn check_finite(&self, models: &[tobj::Model]) -> Result<(), SceneError> {
-        let mut faults = Vec::new();
-        let mut total = 0;
+        let mut faults = Faults::default();
         let mut records = self.guard.faces.iter();
         for model in models {
             let mesh = &model.mesh;
@@ -182,29 +160,14 @@ impl Import<'_> {
                 let broken =
                     range.find(|&slot| !vec3(&mesh.positions, mesh.indices[slot]).is_finite());
                 let Some(slot) = broken else { continue };
-                total += 1;
-                if faults.len() < FACES_SHOWN {
-                    let position = vec3(&mesh.positions, mesh.indices[slot]).to_string();
-                    let problem = FaceProblem::NotFinite {
-                        corner: slot - first + 1,
-                        position,
-                    };
-                    faults.push(FaceFault {
-                        face: self.guard.face_ref(record),
-                        problem,
-                    });
-                }
+                let problem = FaceProblem::NotFinite {
+                    corner: slot - first + 1,
+                    position: vec3(&mesh.positions, mesh.indices[slot]).to_string(),
+                };
+                faults.add(|| self.guard.face_ref(record), problem);
             }
         }
-        if total == 0 {
-            Ok(())
-        } else {
-            Err(SceneError::ObjFaces {
-                path: self.path.to_owned(),
-                faults,
-                total,
-            })
-        }
+        faults.refuse(self.path)
     }
 
     fn add_face(&mut self, record: &FaceRecord, polygon: &[Corner]) {
@@ -219,13 +182,8 @@ impl Import<'_> {
         let Some(triangles) =
             polygon::cut(&points, self.options.quads.apex(), self.options.concave)
         else {
-            self.uncut_count += 1;
-            if self.uncut.len() < FACES_SHOWN {
-                self.uncut.push(FaceFault {
-                    face: guard.face_ref(record),
-                    problem: FaceProblem::CannotBeCut,
-                });
-            }
+            let face = || guard.face_ref(record);
+            self.uncut.add(face, FaceProblem::CannotBeCut);
             return;
         };
         let of_all = |_: &MeshBuilder| polygon::normal(&points).try_normalize();

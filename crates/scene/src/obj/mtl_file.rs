@@ -6,7 +6,7 @@
 
 use crate::{
     error::beginning,
-    text::{line_text, next_line, without_mark},
+    text::{line_text, next_line, without_comment, without_mark},
 };
 
 /// A material, as far as it matters here.
@@ -101,10 +101,6 @@ impl MtlMaterial {
             self.remarks.push(text);
         }
     }
-}
-
-fn without_comment(rest: &str) -> &str {
-    rest.split('#').next().unwrap_or("")
 }
 
 /// Red, green, blue. Green and blue that are left out equal red; colours of spectra and in XYZ are

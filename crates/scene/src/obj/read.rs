@@ -74,13 +74,7 @@ pub fn parse_obj(
                 .to_owned(),
         });
     }
-    if guard.fault_count > 0 {
-        return Err(SceneError::ObjFaces {
-            path: path.to_owned(),
-            faults: guard.faults,
-            total: guard.fault_count,
-        });
-    }
+    std::mem::take(&mut guard.faults).refuse(path)?;
     let groups: HashSet<&String> = guard.groups.iter().collect();
     let missing = options.leave_out.iter().find(|name| !groups.contains(name));
     if let Some(name) = missing {

@@ -12,10 +12,7 @@ pub(super) fn bench(builder: &mut Builder) {
     builder.group("bench");
     let bench = Frame::upright(DVec3::new(4.0, 0.0, 15.0), ACROSS_THE_LIGHT);
     let part = |builder: &mut Builder, centre: [f64; 3], half: [f64; 3]| {
-        let frame = Frame {
-            origin: bench.at(centre[0], centre[1], centre[2]),
-            ..bench
-        };
+        let frame = bench.moved_to(bench.at(centre[0], centre[1], centre[2]));
         builder.cuboid(frame, DVec3::from(half));
     };
     const SEAT: f64 = 5.5;
@@ -38,17 +35,12 @@ pub(super) fn bench(builder: &mut Builder) {
         bench.x,
     );
     for x in [-POST, POST] {
-        let frame = Frame {
-            origin: lean.at(x, 2.75, 0.0),
-            ..lean
-        };
+        let frame = lean.moved_to(lean.at(x, 2.75, 0.0));
         builder.cuboid(frame, DVec3::new(0.4, 2.75, 0.15));
     }
     for slat in 0..3 {
-        let frame = Frame {
-            origin: lean.at(0.0, 1.7 + 1.6 * f64::from(slat), 0.15 + GAP + 0.15),
-            ..lean
-        };
+        let y = 1.7 + 1.6 * f64::from(slat);
+        let frame = lean.moved_to(lean.at(0.0, y, 0.15 + GAP + 0.15));
         builder.cuboid(frame, DVec3::new(POST + 2.0, 0.6, 0.15));
     }
 }

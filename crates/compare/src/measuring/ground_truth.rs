@@ -146,12 +146,11 @@ impl<'a> GroundTruthView<'a> {
         tracing: Tracing,
         (what, sink): (&str, &dyn Sink),
     ) -> Result<Self, CompareError> {
-        let step = Step::begin(
-            sink,
-            &format!("reference, {what}"),
-            camera.viewport[1].into(),
-            "rows",
-        );
+        let begin = |of: &str| {
+            let (name, rows) = (format!("{of}, {what}"), camera.viewport[1]);
+            Step::begin(sink, &name, rows.into(), "rows")
+        };
+        let step = begin("reference");
         let rows_done = |rows| step.set_done(rows);
         let ground_truth = ground_truth(
             &oracle,
@@ -163,12 +162,7 @@ impl<'a> GroundTruthView<'a> {
             what,
         )?;
         step.end();
-        let step = Step::begin(
-            sink,
-            &format!("what is visible, {what}"),
-            camera.viewport[1].into(),
-            "rows",
-        );
+        let step = begin("what is visible");
         let rows_done = |rows| step.set_done(rows);
         let wrong_surfaces =
             wrong_surfaces(&oracle, &camera, &primitives, heard(sink, &rows_done), what)?;

@@ -197,9 +197,7 @@ impl HardCaseContext<'_> {
         };
         for run in self.methods.iter().filter(can_run) {
             for variant in run.variants(case.casters) {
-                if self.session.is_stopped() {
-                    return Err(CompareError::interrupted());
-                }
+                self.session.check_stopped()?;
                 let mut cell = Cell {
                     preset: variant.method.name.clone(),
                     map_size: variant.method.map_size,

@@ -1,7 +1,7 @@
 //! A panel of bars: linear from 0, grouped, each under the mark of its series.
 
 use crate::{
-    canvas::{Root, failed, style, words},
+    canvas::{Root, style, words},
     colours::{AXIS, GRID},
     data::{Panel, Series},
     error::Error,
@@ -33,8 +33,7 @@ pub(crate) fn draw(
         .x_label_area_size(LABELS.1)
         .y_label_area_size(LABELS.0)
         // The last segment's own index: the library's range holds its end.
-        .build_cartesian_2d((0..last).into_segmented(), 0.0..top(fitted))
-        .map_err(failed)?;
+        .build_cartesian_2d((0..last).into_segmented(), 0.0..top(fitted))?;
     let (across, _) = axes.plotting_area().get_pixel_range();
     let wide = f64::from(across.end - across.start) / groups.len().max(1) as f64;
     let title = (across.start, corner.1 + ABOVE / 2);
@@ -60,8 +59,7 @@ pub(crate) fn draw(
         .axis_desc_style(style(HEAD))
         .x_desc(clean(&panel.x))
         .y_desc(clean(&panel.y))
-        .draw()
-        .map_err(failed)?;
+        .draw()?;
     let bar = FILL * wide / panel.series.len().max(1) as f64;
     for (index, series) in panel.series.iter().enumerate() {
         let look = look(&series.name);
@@ -73,8 +71,7 @@ pub(crate) fn draw(
                 f64::from(across.start) + (mark.x + (1.0 - FILL) / 2.0) * wide + index as f64 * bar;
             let [left, middle, right] = [0.0, 0.5, 0.94].map(|at| (left + at * bar).round() as i32);
             let fill = look.colour.mix(0.45).filled();
-            root.draw(&Rectangle::new([(left, head), (right, foot)], fill))
-                .map_err(failed)?;
+            root.draw(&Rectangle::new([(left, head), (right, foot)], fill))?;
             look.draw(root, (middle, head), 0, true)?;
         }
     }

@@ -1,7 +1,7 @@
 //! One panel: axes, strip for zero, lines, front, marks.
 
 use crate::{
-    canvas::{Canvas, Root, failed, style, words},
+    canvas::{Canvas, Root, style, words},
     colours::{AXIS, FRONT, GRID, GUIDE, STRIP},
     data::{Kind, Mark, Panel, Series},
     error::Error,
@@ -72,8 +72,7 @@ pub(crate) fn draw(
         words(root, title, HEAD, &panel.title)?;
         if panel.kind == Kind::Growth {
             let ends = guide(&x, &y).map(|end| axes.backend_coord(&end));
-            root.draw(&DashedPathElement::new(ends, 4, 4, GUIDE))
-                .map_err(failed)?;
+            root.draw(&DashedPathElement::new(ends, 4, 4, GUIDE))?;
         }
         Ok((places(panel, &axes), (across, down)))
     })?;
@@ -81,10 +80,8 @@ pub(crate) fn draw(
         let opacity = if panel.kind == Kind::Growth { 1.0 } else { 0.4 };
         let line = look(&series.name).colour.mix(opacity).stroke_width(2);
         let of = format!("data-series=\"{}\"", xml(&series.name));
-        canvas.group(&of, "", |root| {
-            root.draw(&PathElement::new(places.clone(), line))
-                .map_err(failed)
-        })?;
+        let line = PathElement::new(places.clone(), line);
+        canvas.group(&of, "", |root| Ok(root.draw(&line)?))?;
     }
     let marks: Vec<(&Series, &Mark)> = panel
         .series
@@ -98,10 +95,8 @@ pub(crate) fn draw(
         best = front(&points);
         let steps: Vec<(i32, i32)> = best.iter().map(|&index| places[index]).collect();
         let way = staircase(&steps, frame.0.end, frame.1.start);
-        canvas.draw(|root| {
-            root.draw(&PathElement::new(way, FRONT.stroke_width(2)))
-                .map_err(failed)
-        })?;
+        let way = PathElement::new(way, FRONT.stroke_width(2));
+        canvas.draw(|root| Ok(root.draw(&way)?))?;
     }
     let is_full = |index: &usize| panel.kind == Kind::Growth || best.contains(index);
     let names = match panel.kind {
@@ -186,14 +181,12 @@ fn axes<'a>(
         .margin_left(BESIDE)
         .x_label_area_size(LABELS.1)
         .y_label_area_size(LABELS.0)
-        .build_cartesian_2d(x.clone(), y.clone())
-        .map_err(failed)?;
+        .build_cartesian_2d(x.clone(), y.clone())?;
     let (across, down) = axes.plotting_area().get_pixel_range();
     let strip = y.strip().round() as i32;
     if strip > 0 {
         let strip = [(across.start, down.end - strip), (across.end, down.end)];
-        root.draw(&Rectangle::new(strip, STRIP.filled()))
-            .map_err(failed)?;
+        root.draw(&Rectangle::new(strip, STRIP.filled()))?;
     }
     axes.configure_mesh()
         .x_labels(12)
@@ -205,8 +198,7 @@ fn axes<'a>(
         .axis_desc_style(style(HEAD))
         .x_desc(clean(&panel.x))
         .y_desc(clean(&panel.y))
-        .draw()
-        .map_err(failed)?;
+        .draw()?;
     Ok(axes)
 }
 

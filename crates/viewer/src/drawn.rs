@@ -15,9 +15,10 @@ use skiagraph_reference::{Class, Image, statistics::UNANSWERED};
 use std::collections::BTreeMap;
 
 /// Kinds of pictures of a pane.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub enum Show {
     /// The scene in the method's light.
+    #[default]
     Shaded,
     /// The output `visibility`, with the status' background and what faces away.
     Visibility,
@@ -30,7 +31,7 @@ pub enum Show {
 }
 
 /// How a material is shown.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reading {
     /// Which of its mips and layers, in their order.
     pub part: usize,

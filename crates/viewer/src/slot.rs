@@ -26,6 +26,7 @@ struct PlannedFor {
 }
 
 /// One method.
+#[derive(Default)]
 pub struct Slot {
     name: String,
     preset: Option<Preset>,
@@ -48,15 +49,7 @@ impl Slot {
     pub fn new(name: &str) -> Self {
         Self {
             name: name.to_owned(),
-            preset: None,
-            executor: None,
-            planned: None,
-            refused: None,
-            faults: None,
-            error: None,
-            texts: None,
-            reads: 0,
-            last: MethodSnapshot::default(),
+            ..Self::default()
         }
     }
 

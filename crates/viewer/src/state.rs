@@ -30,6 +30,7 @@ pub enum Drag {
 }
 
 /// One of the pictures.
+#[derive(Default)]
 pub struct Pane {
     /// Kind of picture that it shows.
     pub show: Show,
@@ -42,23 +43,6 @@ pub struct Pane {
     /// GPU times of the last frames, or wall times where there are none, milliseconds.
     pub history: VecDeque<f64>,
     is_stale: bool,
-}
-
-impl Pane {
-    fn new() -> Self {
-        Self {
-            show: Show::Shaded,
-            reading: Reading {
-                part: 0,
-                heat: None,
-                channel: 0,
-            },
-            drawn: Drawn::default(),
-            version: 0,
-            history: VecDeque::new(),
-            is_stale: true,
-        }
-    }
 }
 
 /// Channels to and from the other threads.
@@ -120,7 +104,7 @@ impl Viewer {
             loaded: None,
             snapshot: None,
             answer: None,
-            panes: [Pane::new(), Pane::new()],
+            panes: Default::default(),
             drag: Drag::Look,
             keep_running: false,
             is_judged: false,
@@ -276,13 +260,13 @@ impl Viewer {
 
     /// Another method in a pane, with its defaults.
     pub fn choose_method(&mut self, index: usize, name: &str) {
+        let name = name.to_owned();
         let method = DesiredMethod {
-            name: name.to_owned(),
-            params: Default::default(),
-            material: None,
+            name,
+            ..DesiredMethod::default()
         };
         match self.desired.methods.get_mut(index) {
-            Some(place) if place.name == name => return,
+            Some(place) if place.name == method.name => return,
             Some(place) => *place = method,
             None => self.desired.methods.push(method),
         }

@@ -281,12 +281,9 @@ fn choose(scene: &Scene, name: Option<&str>) -> Result<Vec<View>, CliError> {
             Some(view) => Ok(vec![view.clone()]),
             None => {
                 let names: Vec<&str> = scene.views.iter().map(|view| view.name.as_str()).collect();
-                let hint = did_you_mean(name, names.iter().copied());
-                Err(CliError::Input(format!(
-                    "the scene `{}` has no view `{name}`{hint}\n  views: {}, or all of them: all",
-                    scene.name,
-                    names.join(", ")
-                )))
+                let what = format!("the scene `{}` has no view `{name}`", scene.name);
+                let text = unknown(&what, name, "views", &names) + ", or all of them: all";
+                Err(CliError::Input(text))
             }
         },
     }

@@ -3,15 +3,15 @@
 //! ```
 //! use skiagraph_compare::lists::unique;
 //!
-//! assert_eq!(unique(&["rt", "nsm", "rt"]), ["rt", "nsm"]);
+//! assert_eq!(unique(["rt", "nsm", "rt"]), ["rt", "nsm"]);
 //! ```
 
 /// A list without repeats, in its own order.
-pub fn unique<T: Clone + PartialEq>(list: &[T]) -> Vec<T> {
+pub fn unique<T: PartialEq>(list: impl IntoIterator<Item = T>) -> Vec<T> {
     let mut kept = Vec::new();
     for item in list {
-        if !kept.contains(item) {
-            kept.push(item.clone());
+        if !kept.contains(&item) {
+            kept.push(item);
         }
     }
     kept

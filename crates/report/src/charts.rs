@@ -195,7 +195,7 @@ fn is_drawn(run: &Run, viewport: Option<[u32; 2]>) -> bool {
 /// Viewports with something to draw, in the order of the file.
 fn viewports(results: &Results, wanted: Option<[u32; 2]>) -> Vec<[u32; 2]> {
     let drawn = results.runs.iter().filter(|run| is_drawn(run, wanted));
-    unique(&drawn.map(|run| run.viewport).collect::<Vec<_>>())
+    unique(drawn.map(|run| run.viewport))
 }
 
 fn drawn(results: &Results, viewport: [u32; 2]) -> impl Iterator<Item = (&Run, &Measured)> {

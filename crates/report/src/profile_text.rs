@@ -51,7 +51,7 @@ pub fn matrices(profiles: &[Profile]) -> String {
     let methods = profiles
         .iter()
         .map(|profile| profile.conditions.preset.as_str());
-    for method in unique(&methods.collect::<Vec<_>>()) {
+    for method in unique(methods) {
         let columns = profiles.iter();
         let columns = columns.filter(|profile| profile.conditions.preset == method);
         text += &format!("\n{}\n", matrix(method, &columns.collect::<Vec<_>>()));
@@ -69,7 +69,7 @@ fn matrix(method: &str, profiles: &[&Profile]) -> String {
     let heads: Vec<String> = profiles.iter().map(head).collect();
     let heads = [method].into_iter().chain(heads.iter().map(String::as_str));
     let passes = profiles.iter().flat_map(|profile| &profile.passes);
-    let passes = unique(&passes.map(|pass| pass.name.as_str()).collect::<Vec<_>>());
+    let passes = unique(passes.map(|pass| pass.name.as_str()));
     let cell = |series: Option<&Series>| series.map_or("–".into(), |of| ms(of.median));
     let rows = passes.into_iter().map(|name| {
         let of = |profile: &&Profile| {

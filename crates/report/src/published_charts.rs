@@ -41,8 +41,7 @@ pub fn draw(
         .collect();
     let theirs = published_rows.iter().filter(|row| is_in(row.key().2));
     let mut left_out = without_counterpart(&cells, theirs, label);
-    let methods: Vec<String> = cells.iter().map(|cell| cell.run.preset.clone()).collect();
-    let methods = unique(&methods);
+    let methods = unique(cells.iter().map(|cell| cell.run.preset.clone()));
     let mut charts = Vec::new();
     let mut add = |name: String, [title, note]: [String; 2], drawn: &[PanelRow], panels| {
         let whose = format!("Left: {label}, as published. Right: ours, measured as follows.");

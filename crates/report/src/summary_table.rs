@@ -7,6 +7,7 @@ use crate::notes::{
 use crate::summary::{Row, by_wall, rows};
 use crate::verdict::{Verdict, verdict};
 use crate::{graded, results_table::timed_frames, table::terminal};
+use itertools::Itertools;
 use skiagraph_compare::lists::unique;
 use skiagraph_compare::records::columns::are_paths;
 use skiagraph_compare::records::results::{Promise, Results, Run};
@@ -35,8 +36,7 @@ pub struct Group<'a> {
 
 /// One summary per viewport, in the order of the results.
 pub fn summaries(results: &Results) -> Vec<Summary<'_>> {
-    let viewports: Vec<[u32; 2]> = results.runs.iter().map(|run| run.viewport).collect();
-    let all = unique(&viewports).into_iter();
+    let all = unique(results.runs.iter().map(|run| run.viewport)).into_iter();
     all.map(|viewport| Summary::new(results, viewport))
         .collect()
 }
@@ -363,12 +363,12 @@ fn or_dash<T>(value: Option<T>, text: impl Fn(T) -> String) -> String {
 /// means where there are several views.
 pub fn passes(results: &Results) -> String {
     let measured = results.runs.iter().filter(|run| run.measured.is_some());
-    let methods: Vec<&String> = measured.map(|run| &run.preset).collect();
-    let tables = unique(&methods).into_iter().map(|method| {
+    let methods = unique(measured.map(|run| &run.preset));
+    let mut tables = methods.into_iter().map(|method| {
         let runs = results.runs.iter().filter(|run| run.preset == *method);
         matrix(method, &runs.collect::<Vec<_>>())
     });
-    tables.collect::<Vec<_>>().join("\n")
+    tables.join("\n")
 }
 
 fn matrix(method: &str, runs: &[&Run]) -> String {

@@ -64,7 +64,7 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     )?;
     let comparison = Comparison {
         views,
-        viewports: unique(&args.size).iter().map(|Size(size)| *size).collect(),
+        viewports: unique(args.size.iter().map(|Size(size)| *size)),
         methods,
         protocol: Protocol {
             frames: args.frames,

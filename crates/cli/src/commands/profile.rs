@@ -42,7 +42,7 @@ pub fn profile(args: &ProfileArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let gpu = device::open(&gpu.request(), graphs)?;
     let session = Session::new(&gpu, &Terminal);
     let SceneSelection { scene, views } = SceneSelection::load(&args.scene)?;
-    let viewports = unique(&args.size);
+    let viewports = unique(args.size.iter().map(|Size(size)| *size));
     let planned = methods.len() * views.len() * viewports.len();
     check_single(args, planned)?;
     interrupt::install()?;
@@ -52,7 +52,7 @@ pub fn profile(args: &ProfileArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     for method in methods {
         let method = method.settled(gpu.device.features());
         for view in &views {
-            for &Size(viewport) in &viewports {
+            for &viewport in &viewports {
                 let method = method.at(viewport);
                 let mut profile;
                 let count = [args.warmup, args.frames];

@@ -19,7 +19,8 @@ use crate::graphs::argument::MethodArgument;
 use crate::graphs::faults::{GraphFaults, warn};
 use crate::graphs::planning;
 use crate::sink::Sink;
-use crate::wording::did_you_mean;
+use crate::wording::unknown;
+use itertools::Itertools;
 use skiagraph_graph::{
     Diagnostics, FolderSources, Graph, LayeredSources, Param, Plan, PlanRequest, Sources,
 };
@@ -97,14 +98,8 @@ fn stand_ins(folder: &dyn Sources) -> Option<String> {
 /// Names of the presets: `pipelines/*.ron` on disk and built in, sorted.
 pub fn names(sources: &dyn Sources) -> Vec<String> {
     let files = sources.list("pipelines");
-    let mut names: Vec<String> = files
-        .iter()
-        .filter_map(|file| file.strip_suffix(".ron"))
-        .map(Into::into)
-        .collect();
-    names.sort();
-    names.dedup();
-    names
+    let names = files.iter().filter_map(|file| file.strip_suffix(".ron"));
+    names.sorted().dedup().map(Into::into).collect()
 }
 
 /// The presets that a command is to take: those that its arguments name, else all.
@@ -242,12 +237,14 @@ pub fn locate(argument: &str, sources: &dyn Sources) -> Result<String, CompareEr
         }
         Ok(None) => {
             let known = names(sources);
-            format!(
-                "unknown preset `{argument}`{}\n  presets: {}\n  a graph of your own is \
-                 given as a path that ends in .ron",
-                did_you_mean(argument, known.iter().map(String::as_str)),
-                known.join(", ")
-            )
+            let known: Vec<&str> = known.iter().map(String::as_str).collect();
+            let text = unknown(
+                &format!("unknown preset `{argument}`"),
+                argument,
+                "presets",
+                &known,
+            );
+            text + "\n  a graph of your own is given as a path that ends in .ron"
         }
     };
     Err(CompareError::Input(missing))

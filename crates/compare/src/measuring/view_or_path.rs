@@ -21,7 +21,7 @@ use crate::error::CompareError;
 use crate::files::fingerprint::Fingerprint;
 use crate::measuring::camera_pose::CameraPose;
 use crate::measuring::mesh_frames::MeshFrames;
-use crate::wording::did_you_mean;
+use crate::wording::unknown;
 use skiagraph_scene::{CameraPath, LightKind, Scene, View};
 
 /// One still view or camera path of a comparison.
@@ -109,12 +109,9 @@ impl ViewOrPath {
             )));
         }
         if name != "all" && !names.contains(&name) {
-            let hint = did_you_mean(name, names.iter().copied());
-            return Err(CompareError::Input(format!(
-                "the scene `{}` has no path `{name}`{hint}\n  paths: {}, or all of them: all",
-                scene.name,
-                names.join(", ")
-            )));
+            let what = format!("the scene `{}` has no path `{name}`", scene.name);
+            let text = unknown(&what, name, "paths", &names) + ", or all of them: all";
+            return Err(CompareError::Input(text));
         }
         let mut views_or_paths = Vec::new();
         for path in paths {
@@ -168,14 +165,10 @@ pub fn under_lights(
             .collect();
         if chosen.is_empty() {
             let names: Vec<&str> = lights.iter().map(|light| light.name.as_str()).collect();
-            let hint = did_you_mean(name, names.iter().copied());
-            return Err(CompareError::Input(format!(
-                "view `{}` of the scene `{}` has no light `{name}`{hint}\n  lights: {}, or all of \
-                 them: all",
-                view.name,
-                scene.name,
-                names.join(", ")
-            )));
+            let (view, scene) = (&view.name, &scene.name);
+            let what = format!("view `{view}` of the scene `{scene}` has no light `{name}`");
+            let text = unknown(&what, name, "lights", &names) + ", or all of them: all";
+            return Err(CompareError::Input(text));
         }
         lit.extend(chosen.into_iter().map(|light| View {
             name: if several {

@@ -3,9 +3,13 @@
 use skiagraph_chart::{Figure, Kind, Mark, Panel, Series};
 use skiagraph_compare::error::CompareError;
 use skiagraph_compare::lists::unique;
+use skiagraph_compare::records::read_back;
 use skiagraph_compare::records::results::{Measured, Results, Run};
 use skiagraph_compare::wording::{frames, size};
-use std::{collections::BTreeSet, path::PathBuf};
+use std::{
+    collections::BTreeSet,
+    path::{Path, PathBuf},
+};
 
 /// Results that `compare` kept in a folder.
 #[derive(Debug)]
@@ -14,6 +18,19 @@ pub struct Kept {
     pub folder: PathBuf,
     /// Its results.json.
     pub results: Results,
+}
+
+impl Kept {
+    /// Reads those of a folder.
+    ///
+    /// # Errors
+    /// No such folder, no results.json in it, or one that cannot be read; with the place.
+    pub fn read(folder: &Path) -> Result<Self, CompareError> {
+        Ok(Self {
+            results: read_back::kept(folder)?,
+            folder: folder.to_path_buf(),
+        })
+    }
 }
 
 const TIME: &str = "GPU ms of a frame less its G-buffer";
@@ -165,6 +182,15 @@ pub fn growth(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, Compa
         columns: 2,
         ..Figure::default()
     })
+}
+
+/// A figure as a file.
+///
+/// # Errors
+/// Those of [`Figure::to_svg`].
+pub fn svg(figure: &Figure) -> Result<String, CompareError> {
+    let svg = figure.to_svg();
+    svg.map_err(|error| CompareError::Input(error.to_string()))
 }
 
 /// Methods that could not run, with the reason; each once.

@@ -23,7 +23,7 @@ use skiagraph_compare::records::stress::{Column, Report, Verdict};
 use skiagraph_compare::records::table::Table;
 use skiagraph_compare::sink::Session;
 use skiagraph_compare::sink::Sink;
-use skiagraph_compare::wording::{command_line, did_you_mean, plural};
+use skiagraph_compare::wording::{command_line, did_you_mean, plural, unknown};
 use skiagraph_gpu::{device::Gpu, timing::Trust};
 use skiagraph_passes::SceneProvider;
 use skiagraph_report::stress_matrix;

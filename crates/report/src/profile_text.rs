@@ -136,14 +136,9 @@ fn conditions(profile: &Profile) -> String {
         ..
     } = &profile.conditions;
     let params = profile.conditions.params();
-    let params: Vec<String> = params
-        .map(|(name, value)| format!("{name} = {value}"))
-        .collect();
-    let params = if params.is_empty() {
-        "none".to_owned()
-    } else {
-        params.join(", ")
-    };
+    let params = params.map(|(name, value)| format!("{name} = {value}"));
+    let params = params.reduce(|all, param| format!("{all}, {param}"));
+    let params = params.unwrap_or("none".into());
     let timed = profile.timed() as u32;
     let stopped = if timed < *asked {
         format!(", stopped before the {asked} asked for")
@@ -213,19 +208,17 @@ fn comparison(baseline: &Comparison, new: &Profile) -> String {
             text += &format!("  {what}: then {old}, now {new}\n");
         }
     }
-    let mut rows = Vec::new();
-    let mut add = |clock: &str, name: &str, ratio: Option<&Ratio>| {
-        rows.push(ratio_row(clock, name, ratio));
-    };
-    for pass in &baseline.passes {
-        add("GPU", &pass.name, pass.gpu.as_ref());
-    }
-    add("GPU", "whole frame", baseline.frame.gpu.as_ref());
-    for pass in &baseline.passes {
-        add("CPU", &pass.name, Some(&pass.cpu));
-    }
-    add("CPU", "whole frame", Some(&baseline.frame.cpu));
-    add("wall", "whole frame", Some(&baseline.frame.wall));
+    let (passes, frame) = (&baseline.passes, &baseline.frame);
+    let gpu = passes
+        .iter()
+        .map(|pass| ratio_row("GPU", &pass.name, pass.gpu.as_ref()));
+    let cpu = passes
+        .iter()
+        .map(|pass| ratio_row("CPU", &pass.name, Some(&pass.cpu)));
+    let whole = |clock, ratio| [ratio_row(clock, "whole frame", ratio)];
+    let gpu = gpu.chain(whole("GPU", frame.gpu.as_ref()));
+    let cpu = cpu.chain(whole("CPU", Some(&frame.cpu)));
+    let rows = gpu.chain(cpu).chain(whole("wall", Some(&frame.wall)));
     let heads = "pass|clock|then|now|now / then|its spread|".split('|');
     text += &format!("{}\n", terminal(&Table::new(heads, 2, rows)));
     if baseline.frame.gpu.is_none() {

@@ -1,6 +1,7 @@
 //! Gaps in charts of published figures and ours, because only one side has a figure.
 
 use crate::published_panels::{Cell, Groups, PanelRow};
+use skiagraph_compare::lists::entry;
 use skiagraph_compare::records::published_row::Row;
 use skiagraph_compare::wording::size;
 use std::collections::BTreeSet;
@@ -40,7 +41,7 @@ pub fn without_counterpart<'a>(
     let mut theirs: Vec<(&str, Sides)> = Vec::new();
     for cell in cells {
         let run = cell.run;
-        let sides = of_scene(&mut ours, cell.scene());
+        let sides = entry(&mut ours, cell.scene());
         sides.add(&run.view, run.viewport, run.map_size, &run.preset);
     }
     for row in rows {
@@ -56,7 +57,7 @@ pub fn without_counterpart<'a>(
             row.named.first() == Some(&row.preset)
         };
         if !preset.is_empty() && known {
-            of_scene(&mut theirs, scene).add(view, viewport, map, preset);
+            entry(&mut theirs, scene).add(view, viewport, map, preset);
         }
     }
     let find = |all: &[(&str, Sides)], scene: &str| {
@@ -81,15 +82,6 @@ pub fn without_counterpart<'a>(
         });
     }
     lines
-}
-
-fn of_scene<'a, 's>(all: &'s mut Vec<(&'a str, Sides)>, scene: &'a str) -> &'s mut Sides {
-    let place = all.iter().position(|(known, _)| *known == scene);
-    let place = place.unwrap_or_else(|| {
-        all.push((scene, Sides::default()));
-        all.len() - 1
-    });
-    &mut all[place].1
 }
 
 /// Figures that one side has of a scene.

@@ -5,6 +5,7 @@ use crate::args::values::LightArgument;
 use crate::error::CliError;
 use crate::terminal::console::note;
 use glam::DVec3;
+use itertools::Itertools;
 use skiagraph_compare::error::CompareError;
 use skiagraph_compare::measuring::view_or_path::{ViewOrPath, under_lights};
 use skiagraph_compare::wording::{did_you_mean, unknown};
@@ -178,9 +179,7 @@ fn look_at_all(scene: &mut Scene, args: &SceneArgs) {
         ("--light", three(FALLBACK_LIGHT)),
     ];
     let chosen = chosen.iter().zip(given).filter(|(_, given)| !given);
-    let chosen: Vec<String> = chosen
-        .map(|((flag, value), _)| format!("{flag} {value}"))
-        .collect();
+    let mut chosen = chosen.map(|((flag, value), _)| format!("{flag} {value}"));
     note(&format!(
         "{}: a mesh file holds no view and no light; chosen: {}",
         args.scene,

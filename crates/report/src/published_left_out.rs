@@ -1,6 +1,7 @@
 //! Gaps in charts of published figures and ours, because only one side has a figure.
 
 use crate::published_panels::{Cell, Groups, PanelRow};
+use itertools::Itertools;
 use skiagraph_compare::lists::entry;
 use skiagraph_compare::records::published_row::Row;
 use skiagraph_compare::wording::size;
@@ -103,25 +104,18 @@ impl Sides {
 
     /// Says what the other side lacks, in words.
     fn lacking(&self, other: &Self) -> Option<String> {
-        let viewports = &self.viewports - &other.viewports;
-        let maps = &self.maps - &other.maps;
+        let viewports = self.viewports.difference(&other.viewports);
+        let maps = self.maps.difference(&other.maps);
         let kinds = [
-            ("view", (&self.views - &other.views).into_iter().collect()),
-            ("viewport", viewports.into_iter().map(size).collect()),
-            (
-                "map",
-                maps.into_iter().map(|map| format!("{map}²")).collect(),
-            ),
-            (
-                "preset",
-                (&self.presets - &other.presets).into_iter().collect(),
-            ),
+            ("view", self.views.difference(&other.views).join(", ")),
+            ("viewport", viewports.map(|it| size(*it)).join(", ")),
+            ("map", maps.map(|map| format!("{map}²")).join(", ")),
+            ("preset", self.presets.difference(&other.presets).join(", ")),
         ];
-        let kinds = kinds
-            .into_iter()
-            .filter(|(_, lacking): &(_, Vec<String>)| !lacking.is_empty());
-        let words = kinds.map(|(kind, lacking)| format!("{kind} {}", lacking.join(", ")));
-        let words: Vec<String> = words.collect();
-        (!words.is_empty()).then(|| words.join("; "))
+        let kinds = kinds.iter().filter(|(_, lacking)| !lacking.is_empty());
+        let words = kinds
+            .map(|(kind, lacking)| format!("{kind} {lacking}"))
+            .join("; ");
+        (!words.is_empty()).then_some(words)
     }
 }

@@ -407,6 +407,7 @@ fn matrix(method: &str, runs: &[&Run]) -> String {
 mod tests {
     use super::*;
     use crate::samples::results as sample;
+    use skiagraph_compare::records::results::Promise;
     use skiagraph_compare::records::steady::{Cycle, Steady};
 
     /// `sample()` with a second view, and with a promise that ends at open parts.

@@ -9,6 +9,7 @@ use crate::terminal::{
     console::{note, print},
     interrupt,
 };
+use itertools::Itertools;
 use skiagraph_compare::comparison::{Comparison, Protocol};
 use skiagraph_compare::error::CompareError;
 use skiagraph_compare::files::{
@@ -191,18 +192,13 @@ fn print_summary(args: &CompareArgs, results: &Results) -> Result<(), CliError> 
     let summaries = summary_table::summaries(results);
     match args.format {
         Format::Table => {
-            let texts: Vec<String> = summaries.iter().map(Summary::text).collect();
-            print(&texts.join("\n"))?;
+            print(&summaries.iter().map(Summary::text).join("\n"))?;
             if args.passes {
-                print(&format!("\n{}\n", summary_table::passes(results)))
-            } else {
-                Ok(())
+                print(&format!("\n{}\n", summary_table::passes(results)))?;
             }
+            Ok(())
         }
-        Format::Markdown => {
-            let texts: Vec<String> = summaries.iter().map(Summary::markdown).collect();
-            print(&texts.concat())
-        }
+        Format::Markdown => print(&summaries.iter().map(Summary::markdown).collect::<String>()),
         Format::Json => print(&json::to_text(results)),
     }
 }

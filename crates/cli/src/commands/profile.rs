@@ -7,6 +7,7 @@ use crate::error::CliError;
 use crate::scene_selection::SceneSelection;
 use crate::terminal::console::{note, print};
 use crate::terminal::{Terminal, interrupt};
+use itertools::Itertools;
 use skiagraph_compare::error::CompareError;
 use skiagraph_compare::files::json;
 use skiagraph_compare::files::write::{check_writable, write_whole};
@@ -152,13 +153,11 @@ fn write(
     if let Some((path, profile)) = args.trace.as_ref().zip(single) {
         write_whole(path, trace(&profile.conditions, timed).as_bytes())?;
     }
-    let names: Vec<String> = files(args)
-        .iter()
-        .map(|(_, path)| path.display().to_string())
-        .collect();
-    if names.is_empty() {
-        return Ok(String::new());
+    let files = files(args);
+    let names = files.iter().map(|(_, path)| path.display()).join(", ");
+    if files.is_empty() {
+        return Ok(names);
     }
-    note(&format!("wrote {}", names.join(", ")));
-    Ok(format!("; so are {}", names.join(", ")))
+    note(&format!("wrote {names}"));
+    Ok(format!("; so are {names}"))
 }

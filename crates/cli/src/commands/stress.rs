@@ -5,6 +5,7 @@ use crate::args::shared::GpuArgs;
 use crate::error::CliError;
 use crate::terminal::console::print;
 use crate::terminal::{Terminal, interrupt, progress};
+use itertools::Itertools;
 use skiagraph_cases::{Casters, HardCase};
 use skiagraph_compare::files::json::to_text;
 use skiagraph_compare::files::lock::{self, Locked, Shared};
@@ -155,10 +156,12 @@ fn finish(
         (report.failed_cases(), "case"),
     ];
     let failed = failed.into_iter().filter(|(count, _)| *count > 0);
-    let failed: Vec<String> = failed.map(|(count, noun)| plural(count, noun)).collect();
-    match &failed[..] {
-        [] => Ok(()),
-        _ => Err(CliError::Judged(format!("{} failed", failed.join(" and ")))),
+    let failed = failed
+        .map(|(count, noun)| plural(count, noun))
+        .join(" and ");
+    match failed.as_str() {
+        "" => Ok(()),
+        failed => Err(CliError::Judged(format!("{failed} failed"))),
     }
 }
 

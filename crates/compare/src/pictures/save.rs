@@ -239,8 +239,8 @@ pub fn write(save: &Save, content: &Content, reading: &Decoding) -> Result<Strin
             write_whole(&save.file, raw)?;
             let what = match content {
                 Content::Texture { format, parts, .. } => {
-                    let sizes: Vec<String> = parts.iter().map(|part| size(*part)).collect();
-                    format!("{} texels of {format:?}", sizes.join(", "))
+                    let sizes = parts.iter().map(|part| size(*part)).join(", ");
+                    format!("{sizes} texels of {format:?}")
                 }
                 Content::Buffer(_) => "a buffer".into(),
             };

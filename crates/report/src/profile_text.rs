@@ -66,25 +66,22 @@ fn matrix(method: &str, profiles: &[&Profile]) -> String {
         let map = map.map_or(String::new(), |map| format!("\nmap {map}"));
         format!("{view}\n{}{map}", size(*viewport))
     };
-    let heads: Vec<String> = profiles.iter().map(head).collect();
-    let heads = [method].into_iter().chain(heads.iter().map(String::as_str));
+    let heads = [method.to_owned()].into_iter();
+    let heads = heads.chain(profiles.iter().map(head));
     let passes = profiles.iter().flat_map(|profile| &profile.passes);
     let passes = unique(passes.map(|pass| pass.name.as_str()));
     let cell = |series: Option<&Series>| series.map_or("–".into(), |of| ms(of.median));
-    let rows = passes.into_iter().map(|name| {
-        let of = |profile: &&Profile| {
-            let pass = profile.passes.iter().find(|pass| pass.name == name);
-            cell(pass.and_then(|pass| pass.gpu_ms.as_ref()))
-        };
-        let cells = profiles.iter().map(of);
+    let row = |name: &str, of: &dyn Fn(&Profile) -> Option<&Series>| -> Vec<String> {
+        let cells = profiles.iter().map(|profile| cell(of(profile)));
         [name.to_owned()].into_iter().chain(cells).collect()
+    };
+    let rows = passes.into_iter().map(|name| {
+        row(name, &|profile| {
+            let pass = profile.passes.iter().find(|pass| pass.name == name);
+            pass.and_then(|pass| pass.gpu_ms.as_ref())
+        })
     });
-    let wholes = profiles.iter();
-    let wholes = wholes.map(|profile| cell(profile.frame.gpu_ms.as_ref()));
-    let whole: Vec<String> = ["whole frame".to_owned()]
-        .into_iter()
-        .chain(wholes)
-        .collect();
+    let whole = row("whole frame", &|profile| profile.frame.gpu_ms.as_ref());
     terminal(&Table::new(heads, 1, rows.chain([whole])))
 }
 

@@ -39,20 +39,13 @@ pub fn group(results: &Results, runs: &[Run]) -> String {
 }
 
 fn heading(results: &Results, run: &Run, runs: &[Run]) -> String {
-    let Run {
-        view,
-        viewport,
-        pixels,
-        band,
-        area,
-        ..
-    } = run;
+    let (view, pixels) = (&run.view, &run.pixels);
     let what = if are_paths(runs) {
         format!("path {view}, counts of all its frames together")
     } else {
         format!("view {view}")
     };
-    let title = format!("{} · {what} · {}", results.scene, size(*viewport));
+    let title = format!("{} · {what} · {}", results.scene, size(run.viewport));
     let mut lines = vec![
         results.adapter.to_string(),
         format!(
@@ -70,12 +63,12 @@ fn heading(results: &Results, run: &Run, runs: &[Run]) -> String {
             thousands(pixels.background)
         ),
     ];
-    lines.push(match area {
-        Some(area) => area_reference(area, *band),
+    lines.push(match &run.area {
+        Some(area) => area_reference(area, run.band),
         None => format!(
             "in the band, where the answer hangs on rounding: {} ({} of PFL)",
-            thousands(*band),
-            percent(*band, pixels.facing_light)
+            thousands(run.band),
+            percent(run.band, pixels.facing_light)
         ),
     });
     lines.extend(band_warning(run));

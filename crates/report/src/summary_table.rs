@@ -249,7 +249,7 @@ impl<'a> Summary<'a> {
         runs.unique_by(|run| &run.view).collect()
     }
 
-    /// What is said of runs, with their views where there are several.
+    /// Lines on runs, with their views where there are several.
     fn told<L: IntoIterator<Item = String>>(
         &self,
         runs: &[&Run],
@@ -381,17 +381,12 @@ fn matrix(method: &str, runs: &[&Run]) -> String {
             }
         }
     }
-    let heads: Vec<String> = columns
-        .iter()
-        .map(|(viewport, map)| match map {
-            Some(map) => format!("{}\nmap {map}", size(*viewport)),
-            None => size(*viewport),
-        })
-        .collect();
-    let first = format!("{method}, GPU ms");
-    let heads = [first.as_str()]
-        .into_iter()
-        .chain(heads.iter().map(String::as_str));
+    let head = |(viewport, map): &([u32; 2], Option<u32>)| match map {
+        Some(map) => format!("{}\nmap {map}", size(*viewport)),
+        None => size(*viewport),
+    };
+    let heads = [format!("{method}, GPU ms")].into_iter();
+    let heads = heads.chain(columns.iter().map(head));
     let rows = passes.iter().enumerate().map(|(row, name)| {
         let cell = |column| {
             let time = times.get(&(row, column));

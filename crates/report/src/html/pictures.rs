@@ -24,7 +24,7 @@ pub struct Pictures {
 }
 
 /// The pictures of a run, or of the reference.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Default, Serialize)]
 pub struct Set {
     source: usize,
     view: String,
@@ -158,11 +158,8 @@ impl Pictures {
                 viewport: run.viewport,
                 label,
                 frame: of.frame,
-                shaded: None,
-                visibility: None,
-                error: None,
-                uncertain: None,
                 graded: !run.is_hard(),
+                ..Set::default()
             });
             self.sets.len() - 1
         });

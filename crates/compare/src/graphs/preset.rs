@@ -57,7 +57,7 @@ pub fn sources(sink: &dyn Sink) -> LayeredSources {
 }
 
 /// Folders of presets and of what they are made of.
-const FOLDERS: [&str; 4] = ["pipelines", "pipelines/shared", "shaders", "shaders/shared"];
+pub const FOLDERS: [&str; 4] = ["pipelines", "pipelines/shared", "shaders", "shaders/shared"];
 
 /// Which files of a folder stand in for built-in ones that differ: a line for the presets, one for
 /// each folder of what they are made of.

@@ -164,8 +164,8 @@ impl<'a> GroundTruthView<'a> {
         step.end();
         let step = begin("what is visible");
         let rows_done = |rows| step.set_done(rows);
-        let wrong_surfaces =
-            wrong_surfaces(&oracle, &camera, &primitives, heard(sink, &rows_done), what)?;
+        let wrong_surfaces = oracle.wrong_surfaces(&camera, &primitives, heard(sink, &rows_done));
+        let wrong_surfaces = wrong_surfaces.map_err(|error| named(error, what))?;
         step.end();
         Ok(Self {
             oracle,
@@ -230,23 +230,8 @@ pub fn ground_truth(
     ground_truth.map_err(|error| named(error, what))
 }
 
-/// Counts the pixels that show a surface which is not seen there.
-///
-/// # Errors
-/// An early end, ids of another mesh.
-pub fn wrong_surfaces(
-    oracle: &Oracle,
-    camera: &Camera,
-    primitives: &[u32],
-    progress: Progress,
-    what: &str,
-) -> Result<u64, CompareError> {
-    let wrong = oracle.wrong_surfaces(camera, primitives, progress);
-    wrong.map_err(|error| named(error, what))
-}
-
 /// Why there is no reference of a view.
-fn named(error: Error, what: &str) -> CompareError {
+pub(crate) fn named(error: Error, what: &str) -> CompareError {
     match error {
         Error::Interrupted => CompareError::interrupted(),
         error => CompareError::Input(format!("no reference for {what}: {error}")),

@@ -410,7 +410,11 @@ impl<'a> Series<'a> {
     }
 
     fn done(&mut self, place: usize, mut run: Run) {
-        attach(&self.comparison.published, &self.results, &mut run);
+        attach(
+            &self.comparison.published,
+            &self.results.scene.name,
+            &mut run,
+        );
         let index = self.done_before(place);
         self.results.runs.insert(index, run);
         self.states[place] = RunState::Done;
@@ -474,14 +478,12 @@ fn measured(
     frames: &sequence::Path,
     provider: &mut SceneProvider,
 ) -> Result<Run, CompareError> {
-    match view {
-        ViewOrPath::Still(_) => {
-            context.measure(method, provider, |method, plan, provider, step| {
-                context.still(method, plan, provider, step)
-            })
-        }
-        ViewOrPath::Path(_) => context.measure(method, provider, |method, plan, provider, step| {
-            context.follow(method, plan, frames, provider, step)
-        }),
-    }
+    context.measure(
+        method,
+        provider,
+        |method, plan, provider, step| match view {
+            ViewOrPath::Still(_) => context.still(method, plan, provider, step),
+            ViewOrPath::Path(_) => context.follow(method, plan, frames, provider, step),
+        },
+    )
 }

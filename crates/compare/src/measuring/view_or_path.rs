@@ -36,10 +36,12 @@ pub enum ViewOrPath {
 impl ViewOrPath {
     /// Its name in results.
     pub fn name(&self) -> &str {
-        match self {
-            Self::Still(view) => &view.name,
-            Self::Path(path) => &path.view.name,
-        }
+        &self.view().name
+    }
+
+    fn view(&self) -> &View {
+        let (Self::Still(view) | Self::Path(CameraPath { view, .. })) = self;
+        view
     }
 
     /// Its frames; of a path with `jitter`, each with that of as many that are blended.
@@ -76,8 +78,7 @@ impl ViewOrPath {
 
     /// Its light.
     pub fn light(&self, scene: &Scene) -> LightKind {
-        let (Self::Still(view) | Self::Path(CameraPath { view, .. })) = self;
-        scene.light_of(view)
+        scene.light_of(self.view())
     }
 
     /// With what it depends on.
@@ -116,13 +117,9 @@ impl ViewOrPath {
         let mut views_or_paths = Vec::new();
         for path in paths {
             if name == "all" || path.view.name == name {
-                let views = under_lights(scene, vec![path.view.clone()], light)?;
-                let lit = views.into_iter().map(|view| lit(scene, &path, view));
-                views_or_paths.extend(
-                    lit.collect::<Result<Vec<_>, _>>()?
-                        .into_iter()
-                        .map(Self::Path),
-                );
+                for view in under_lights(scene, vec![path.view.clone()], light)? {
+                    views_or_paths.push(Self::Path(lit(scene, &path, view)?));
+                }
             }
         }
         Ok(views_or_paths)

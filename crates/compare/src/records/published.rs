@@ -57,19 +57,16 @@ pub fn read(files: &[PublishedFile]) -> Result<Vec<Row>, CompareError> {
 }
 
 /// Puts the figures beside the runs that they belong to.
-pub fn attach(rows: &[Row], results: &Results, run: &mut Run) {
-    let scene = &results.scene.name;
+pub fn attach(rows: &[Row], scene: &str, run: &mut Run) {
     let figures = rows.iter().filter(|row| row.applies_to(scene, run));
     run.published = figures.map(|row| row.figure.clone()).collect();
 }
 
 /// Puts the figures beside all runs of some results, instead of those that are there.
 pub fn attach_all(rows: &[Row], results: &mut Results) {
-    let mut runs = std::mem::take(&mut results.runs);
-    for run in &mut runs {
-        attach(rows, results, run);
+    for run in &mut results.runs {
+        attach(rows, &results.scene.name, run);
     }
-    results.runs = runs;
 }
 
 /// The rows of a file, and what is wrong with the others.

@@ -121,11 +121,7 @@ impl Viewer {
             is_new = true;
         }
         while let Ok(answer) = self.channels.answers.try_recv() {
-            let fits = self
-                .snapshot
-                .as_ref()
-                .is_some_and(|snapshot| answer.question.is_about(snapshot));
-            if fits {
+            if self.fits(&answer) {
                 self.answer = Some(answer);
                 self.redraw();
                 is_new = true;
@@ -143,6 +139,12 @@ impl Viewer {
             }
         }
         is_new
+    }
+
+    /// True if an answer is about what is shown.
+    fn fits(&self, answer: &Answer) -> bool {
+        let mut shown = self.snapshot.iter();
+        shown.any(|snapshot| answer.question.is_about(snapshot))
     }
 
     fn on_event(&mut self, event: Event) {
@@ -168,13 +170,8 @@ impl Viewer {
                 // A scene is chosen by its first frame, which says where it is seen from.
                 let is_newest = self.sent.as_ref() == Some(&snapshot.desired);
                 self.snapshot = Some(*snapshot);
-                let about = |answer: &Answer| {
-                    let snapshot = self.snapshot.as_ref();
-                    snapshot.is_some_and(|snapshot| answer.question.is_about(snapshot))
-                };
-                if !self.answer.as_ref().is_some_and(about) {
-                    self.answer = None;
-                }
+                let answer = self.answer.take();
+                self.answer = answer.filter(|answer| self.fits(answer));
                 self.redraw();
                 if self.keep_running && is_newest {
                     self.desired.frame += 1;

@@ -13,8 +13,6 @@ use skiagraph_passes::registry;
 use skiagraph_scene::SceneLibrary;
 use std::collections::BTreeSet;
 
-/// Where documents and shaders stand.
-
 /// Prints a file of the working directory, else one that is built in; behind a document, as a
 /// comment, what its passes read and write; or a scene file.
 ///

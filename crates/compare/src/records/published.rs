@@ -142,7 +142,7 @@ mod tests {
         let mut results = sample();
         let mut runs = std::mem::take(&mut results.runs);
         let mut beside = |run: usize| {
-            attach(&rows, &results, &mut runs[run]);
+            attach(&rows, &results.scene.name, &mut runs[run]);
             let figures = runs[run].published.iter();
             let figures = figures.map(|figure| (figure.quantity.clone(), figure.value));
             figures.collect::<Vec<_>>()
@@ -152,7 +152,7 @@ mod tests {
         assert_eq!(beside(1), [lit(), ("ms.frame".into(), 1.5)]);
         assert_eq!(beside(2), [lit()]);
         (runs[2].preset, runs[2].map_size) = ("nsm_d".into(), Some(2048));
-        attach(&rows, &results, &mut runs[2]);
+        attach(&rows, &results.scene.name, &mut runs[2]);
         let figure = &runs[2].published[1];
         assert_eq!((figure.value, figure.source.as_str()), (3.82, "table 12"));
         let note = runs[0].published[1].note.as_deref();

@@ -10,7 +10,9 @@ use crate::{
     scale::Scale,
     text::{BODY, HEAD, clean, width, xml},
 };
-use plotters::{coord::cartesian::Cartesian2d, element::DashedPathElement, prelude::*};
+use plotters::{
+    chart::MeshStyle, coord::cartesian::Cartesian2d, element::DashedPathElement, prelude::*,
+};
 use std::{cmp::Reverse, ops::Range};
 
 /// Height of the axes without strip, and of those of bars, pixels.
@@ -18,11 +20,11 @@ const AXES: i32 = 300;
 const BARS: i32 = 240;
 /// Above the axes: the title. Right of them: half a label.
 pub(crate) const ABOVE: i32 = 30;
-pub(crate) const RIGHT: i32 = 22;
+const RIGHT: i32 = 22;
 /// Left of and below the axes: labels and what they count.
-pub(crate) const LABELS: (i32, i32) = (58, 50);
+const LABELS: (i32, i32) = (58, 50);
 /// Left of the labels.
-pub(crate) const BESIDE: i32 = 8;
+const BESIDE: i32 = 8;
 
 /// Series that have a lane in the strip for zero.
 fn lanes(panel: &Panel) -> Vec<usize> {
@@ -50,6 +52,31 @@ pub(crate) fn height(fitted: &[Panel]) -> i32 {
         Some(Kind::Bars(_)) => ABOVE + BARS + LABELS.1,
         _ => ABOVE + AXES + scales(fitted).1.strip().ceil() as i32 + LABELS.1,
     }
+}
+
+/// A chart in the making, with the room that its labels take.
+pub(crate) fn builder<'a, 'c>(area: &'a Root<'c>) -> ChartBuilder<'a, 'static, SVGBackend<'c>> {
+    let mut chart = ChartBuilder::on(area);
+    chart
+        .margin_top(ABOVE)
+        .margin_right(RIGHT)
+        .margin_left(BESIDE);
+    chart
+        .x_label_area_size(LABELS.1)
+        .y_label_area_size(LABELS.0);
+    chart
+}
+
+/// Gives a mesh its lines, its text and the names of its axes.
+pub(crate) fn label<'m, 'a, 'b, X: Ranged, Y: Ranged, B: DrawingBackend>(
+    mesh: &'m mut MeshStyle<'a, 'b, X, Y, B>,
+    panel: &Panel,
+) -> &'m mut MeshStyle<'a, 'b, X, Y, B> {
+    mesh.bold_line_style(GRID[0]).light_line_style(GRID[1]);
+    mesh.label_style(style(BODY)).axis_desc_style(style(HEAD));
+    mesh.x_desc(clean(&panel.x))
+        .y_desc(clean(&panel.y))
+        .axis_style(AXIS)
 }
 
 type Axes<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<Scale, Scale>>;
@@ -175,30 +202,15 @@ fn axes<'a>(
     area: &Root<'a>,
     (x, y): (&Scale, &Scale),
 ) -> Result<Axes<'a>, Error> {
-    let mut axes = ChartBuilder::on(area)
-        .margin_top(ABOVE)
-        .margin_right(RIGHT)
-        .margin_left(BESIDE)
-        .x_label_area_size(LABELS.1)
-        .y_label_area_size(LABELS.0)
-        .build_cartesian_2d(x.clone(), y.clone())?;
+    let mut axes = builder(area).build_cartesian_2d(x.clone(), y.clone())?;
     let (across, down) = axes.plotting_area().get_pixel_range();
     let strip = y.strip().round() as i32;
     if strip > 0 {
         let strip = [(across.start, down.end - strip), (across.end, down.end)];
         root.draw(&Rectangle::new(strip, STRIP.filled()))?;
     }
-    axes.configure_mesh()
-        .x_labels(12)
-        .y_labels(12)
-        .bold_line_style(GRID[0])
-        .light_line_style(GRID[1])
-        .axis_style(AXIS)
-        .label_style(style(BODY))
-        .axis_desc_style(style(HEAD))
-        .x_desc(clean(&panel.x))
-        .y_desc(clean(&panel.y))
-        .draw()?;
+    let mut mesh = axes.configure_mesh();
+    label(mesh.x_labels(12).y_labels(12), panel).draw()?;
     Ok(axes)
 }
 

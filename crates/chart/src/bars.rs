@@ -1,12 +1,11 @@
 //! A panel of bars: linear from 0, grouped, each under the mark of its series.
 
 use crate::{
-    canvas::{Root, failed, style, words},
-    colours::{AXIS, GRID},
+    canvas::{Root, words},
     data::{Panel, Series},
     error::Error,
     marker::Look,
-    panel::{ABOVE, BESIDE, LABELS, RIGHT},
+    panel::{ABOVE, builder, label},
     text::{BODY, HEAD, clean, width},
 };
 use plotters::prelude::*;
@@ -26,15 +25,9 @@ pub(crate) fn draw(
     look: impl Fn(&str) -> Look,
 ) -> Result<(), Error> {
     let last = groups.len().saturating_sub(1);
-    let mut axes = ChartBuilder::on(&root.clone().shrink(corner, size))
-        .margin_top(ABOVE)
-        .margin_right(RIGHT)
-        .margin_left(BESIDE)
-        .x_label_area_size(LABELS.1)
-        .y_label_area_size(LABELS.0)
+    let mut axes = builder(&root.clone().shrink(corner, size))
         // The last segment's own index: the library's range holds its end.
-        .build_cartesian_2d((0..last).into_segmented(), 0.0..top(fitted))
-        .map_err(failed)?;
+        .build_cartesian_2d((0..last).into_segmented(), 0.0..top(fitted))?;
     let (across, _) = axes.plotting_area().get_pixel_range();
     let wide = f64::from(across.end - across.start) / groups.len().max(1) as f64;
     let title = (across.start, corner.1 + ABOVE / 2);
@@ -46,22 +39,14 @@ pub(crate) fn draw(
             .map_or_else(String::new, |name| clean(name)),
         _ => String::new(),
     };
-    axes.configure_mesh()
-        .disable_x_mesh()
+    let mut mesh = axes.configure_mesh();
+    mesh.disable_x_mesh()
         .x_labels(groups.len())
         .y_labels(7)
         .max_light_lines(2)
         .x_label_formatter(&name)
-        .y_label_formatter(&tick)
-        .bold_line_style(GRID[0])
-        .light_line_style(GRID[1])
-        .axis_style(AXIS)
-        .label_style(style(BODY))
-        .axis_desc_style(style(HEAD))
-        .x_desc(clean(&panel.x))
-        .y_desc(clean(&panel.y))
-        .draw()
-        .map_err(failed)?;
+        .y_label_formatter(&tick);
+    label(&mut mesh, panel).draw()?;
     let bar = FILL * wide / panel.series.len().max(1) as f64;
     for (index, series) in panel.series.iter().enumerate() {
         let look = look(&series.name);
@@ -73,8 +58,7 @@ pub(crate) fn draw(
                 f64::from(across.start) + (mark.x + (1.0 - FILL) / 2.0) * wide + index as f64 * bar;
             let [left, middle, right] = [0.0, 0.5, 0.94].map(|at| (left + at * bar).round() as i32);
             let fill = look.colour.mix(0.45).filled();
-            root.draw(&Rectangle::new([(left, head), (right, foot)], fill))
-                .map_err(failed)?;
+            root.draw(&Rectangle::new([(left, head), (right, foot)], fill))?;
             look.draw(root, (middle, head), 0, true)?;
         }
     }

@@ -7,10 +7,11 @@ use crate::{
 };
 use plotters::{
     coord::Shift,
+    drawing::DrawingAreaErrorKind,
     prelude::*,
     style::text_anchor::{HPos, Pos, VPos},
 };
-use std::fmt;
+use std::io;
 
 /// Drawing area, in pixels.
 pub(crate) type Root<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -44,7 +45,7 @@ impl Canvas {
         let root = SVGBackend::with_string(&mut svg, (self.size.0 as u32, self.size.1 as u32));
         let root = root.into_drawing_area();
         let drawn = draw(&root)?;
-        root.present().map_err(failed)?;
+        root.present()?;
         drop(root);
         // The library writes a picture of its own around it.
         let lines = svg.split_once('\n').map_or("", |(_, lines)| lines);
@@ -85,9 +86,10 @@ impl Canvas {
     }
 }
 
-/// Turns an error of the drawing library into ours.
-pub(crate) fn failed(error: impl fmt::Display) -> Error {
-    Error::Drawing(error.to_string())
+impl From<DrawingAreaErrorKind<io::Error>> for Error {
+    fn from(error: DrawingAreaErrorKind<io::Error>) -> Self {
+        Self::Drawing(error.to_string())
+    }
 }
 
 /// Text that begins at `at`, its middle at that height.
@@ -95,8 +97,8 @@ pub(crate) fn words(root: &Root, at: (i32, i32), size: f64, text: &str) -> Resul
     let style = style(size).pos(Pos::new(HPos::Left, VPos::Center));
     // The library centres at half the height of an x, which is less than that of most words.
     let at = (at.0, at.1 + 1);
-    root.draw(&Text::new(clean(text), at, style))
-        .map_err(failed)
+    root.draw(&Text::new(clean(text), at, style))?;
+    Ok(())
 }
 
 /// Black words of a size; titles are bold.

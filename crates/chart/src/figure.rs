@@ -2,7 +2,7 @@
 
 use crate::{
     bars,
-    canvas::{Canvas, WIDTH, failed, words},
+    canvas::{Canvas, WIDTH, words},
     data::{Kind, Panel},
     error::Error,
     legend::{Entry, Legend, Sign},
@@ -72,7 +72,7 @@ impl Figure {
         let head = LINES[0] + LINES[1] * notes.len() as i32 + legend.height + LINES[2];
         let mut canvas = Canvas::new((WIDTH, head + self.height()), false);
         canvas.draw(|root| {
-            root.fill(&WHITE).map_err(failed)?;
+            root.fill(&WHITE)?;
             words(root, (LEFT, LINES[0] / 2 + 2), TITLE, &self.title)?;
             let mut top = LINES[0];
             for note in &notes {

@@ -1,7 +1,7 @@
 //! The legend: rows of entries above the panels, where they cover nothing.
 
 use crate::{
-    canvas::{Root, WIDTH, failed, words},
+    canvas::{Root, WIDTH, words},
     colours::{FRONT, GUIDE},
     error::Error,
     marker::Look,
@@ -71,12 +71,8 @@ impl Legend {
             match entry.sign {
                 Sign::Series(look) => look.draw(root, middle, 1, true)?,
                 Sign::Size(size) => Look::neutral().draw(root, middle, size, false)?,
-                Sign::Front => root
-                    .draw(&PathElement::new(line, FRONT.stroke_width(2)))
-                    .map_err(failed)?,
-                Sign::Guide => root
-                    .draw(&DashedPathElement::new(line, 4, 4, GUIDE))
-                    .map_err(failed)?,
+                Sign::Front => root.draw(&PathElement::new(line, FRONT.stroke_width(2)))?,
+                Sign::Guide => root.draw(&DashedPathElement::new(line, 4, 4, GUIDE))?,
                 Sign::None => {}
             }
             words(root, (text, middle.1), BODY, &entry.words)?;

@@ -1,7 +1,7 @@
 //! Colours and shapes: 7 × 6 of them before a pair returns.
 
 use crate::{
-    canvas::{Root, failed},
+    canvas::Root,
     colours::{AXIS, LOOKS},
     error::Error,
 };
@@ -64,21 +64,18 @@ impl Look {
         let rim = self.colour.stroke_width(2);
         let corners = SHAPES[self.shape];
         if corners.is_empty() {
-            root.draw(&Circle::new(at, radius.round() as i32, inside.filled()))
-                .map_err(failed)?;
-            return root
-                .draw(&Circle::new(at, radius.round() as i32, rim))
-                .map_err(failed);
+            let radius = radius.round() as i32;
+            root.draw(&Circle::new(at, radius, inside.filled()))?;
+            return Ok(root.draw(&Circle::new(at, radius, rim))?);
         }
         let place = |&(x, y): &(i32, i32)| {
             let by = |tenths: i32| (f64::from(tenths) / 10.0 * radius).round() as i32;
             (at.0 + by(x), at.1 + by(y))
         };
         let mut outline: Vec<(i32, i32)> = corners.iter().map(place).collect();
-        root.draw(&Polygon::new(outline.clone(), inside.filled()))
-            .map_err(failed)?;
+        root.draw(&Polygon::new(outline.clone(), inside.filled()))?;
         outline.extend_from_within(..1);
-        root.draw(&PathElement::new(outline, rim)).map_err(failed)
+        Ok(root.draw(&PathElement::new(outline, rim))?)
     }
 }
 

@@ -1,7 +1,7 @@
 //! One panel: axes, strip for zero, lines, front, marks.
 
 use crate::{
-    canvas::{Canvas, Root, failed, style, words},
+    canvas::{Canvas, Root, style, words},
     colours::{AXIS, FRONT, GRID, GUIDE, STRIP},
     data::{Kind, Mark, Panel, Series},
     error::Error,
@@ -10,7 +10,9 @@ use crate::{
     scale::Scale,
     text::{BODY, HEAD, clean, width, xml},
 };
-use plotters::{coord::cartesian::Cartesian2d, element::DashedPathElement, prelude::*};
+use plotters::{
+    chart::MeshStyle, coord::cartesian::Cartesian2d, element::DashedPathElement, prelude::*,
+};
 use std::{cmp::Reverse, ops::Range};
 
 /// Height of the axes without strip, and of those of bars, pixels.
@@ -18,11 +20,11 @@ const AXES: i32 = 300;
 const BARS: i32 = 240;
 /// Above the axes: the title. Right of them: half a label.
 pub(crate) const ABOVE: i32 = 30;
-pub(crate) const RIGHT: i32 = 22;
+const RIGHT: i32 = 22;
 /// Left of and below the axes: labels and what they count.
-pub(crate) const LABELS: (i32, i32) = (58, 50);
+const LABELS: (i32, i32) = (58, 50);
 /// Left of the labels.
-pub(crate) const BESIDE: i32 = 8;
+const BESIDE: i32 = 8;
 
 /// Series that have a lane in the strip for zero.
 fn lanes(panel: &Panel) -> Vec<usize> {
@@ -52,6 +54,31 @@ pub(crate) fn height(fitted: &[Panel]) -> i32 {
     }
 }
 
+/// A chart in the making, with the room that its labels take.
+pub(crate) fn builder<'a, 'c>(area: &'a Root<'c>) -> ChartBuilder<'a, 'static, SVGBackend<'c>> {
+    let mut chart = ChartBuilder::on(area);
+    chart
+        .margin_top(ABOVE)
+        .margin_right(RIGHT)
+        .margin_left(BESIDE);
+    chart
+        .x_label_area_size(LABELS.1)
+        .y_label_area_size(LABELS.0);
+    chart
+}
+
+/// Gives a mesh its lines, its text and the names of its axes.
+pub(crate) fn label<'m, 'a, 'b, X: Ranged, Y: Ranged, B: DrawingBackend>(
+    mesh: &'m mut MeshStyle<'a, 'b, X, Y, B>,
+    panel: &Panel,
+) -> &'m mut MeshStyle<'a, 'b, X, Y, B> {
+    mesh.bold_line_style(GRID[0]).light_line_style(GRID[1]);
+    mesh.label_style(style(BODY)).axis_desc_style(style(HEAD));
+    mesh.x_desc(clean(&panel.x))
+        .y_desc(clean(&panel.y))
+        .axis_style(AXIS)
+}
+
 type Axes<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<Scale, Scale>>;
 
 /// Draws a panel, its axes fitted to several, into a rectangle of the canvas: corner and size.
@@ -72,8 +99,7 @@ pub(crate) fn draw(
         words(root, title, HEAD, &panel.title)?;
         if panel.kind == Kind::Growth {
             let ends = guide(&x, &y).map(|end| axes.backend_coord(&end));
-            root.draw(&DashedPathElement::new(ends, 4, 4, GUIDE))
-                .map_err(failed)?;
+            root.draw(&DashedPathElement::new(ends, 4, 4, GUIDE))?;
         }
         Ok((places(panel, &axes), (across, down)))
     })?;
@@ -81,10 +107,8 @@ pub(crate) fn draw(
         let opacity = if panel.kind == Kind::Growth { 1.0 } else { 0.4 };
         let line = look(&series.name).colour.mix(opacity).stroke_width(2);
         let of = format!("data-series=\"{}\"", xml(&series.name));
-        canvas.group(&of, "", |root| {
-            root.draw(&PathElement::new(places.clone(), line))
-                .map_err(failed)
-        })?;
+        let line = PathElement::new(places.clone(), line);
+        canvas.group(&of, "", |root| Ok(root.draw(&line)?))?;
     }
     let marks: Vec<(&Series, &Mark)> = panel
         .series
@@ -98,10 +122,8 @@ pub(crate) fn draw(
         best = front(&points);
         let steps: Vec<(i32, i32)> = best.iter().map(|&index| places[index]).collect();
         let way = staircase(&steps, frame.0.end, frame.1.start);
-        canvas.draw(|root| {
-            root.draw(&PathElement::new(way, FRONT.stroke_width(2)))
-                .map_err(failed)
-        })?;
+        let way = PathElement::new(way, FRONT.stroke_width(2));
+        canvas.draw(|root| Ok(root.draw(&way)?))?;
     }
     let is_full = |index: &usize| panel.kind == Kind::Growth || best.contains(index);
     let names = match panel.kind {
@@ -180,33 +202,15 @@ fn axes<'a>(
     area: &Root<'a>,
     (x, y): (&Scale, &Scale),
 ) -> Result<Axes<'a>, Error> {
-    let mut axes = ChartBuilder::on(area)
-        .margin_top(ABOVE)
-        .margin_right(RIGHT)
-        .margin_left(BESIDE)
-        .x_label_area_size(LABELS.1)
-        .y_label_area_size(LABELS.0)
-        .build_cartesian_2d(x.clone(), y.clone())
-        .map_err(failed)?;
+    let mut axes = builder(area).build_cartesian_2d(x.clone(), y.clone())?;
     let (across, down) = axes.plotting_area().get_pixel_range();
     let strip = y.strip().round() as i32;
     if strip > 0 {
         let strip = [(across.start, down.end - strip), (across.end, down.end)];
-        root.draw(&Rectangle::new(strip, STRIP.filled()))
-            .map_err(failed)?;
+        root.draw(&Rectangle::new(strip, STRIP.filled()))?;
     }
-    axes.configure_mesh()
-        .x_labels(12)
-        .y_labels(12)
-        .bold_line_style(GRID[0])
-        .light_line_style(GRID[1])
-        .axis_style(AXIS)
-        .label_style(style(BODY))
-        .axis_desc_style(style(HEAD))
-        .x_desc(clean(&panel.x))
-        .y_desc(clean(&panel.y))
-        .draw()
-        .map_err(failed)?;
+    let mut mesh = axes.configure_mesh();
+    label(mesh.x_labels(12).y_labels(12), panel).draw()?;
     Ok(axes)
 }
 

@@ -5,9 +5,10 @@ use crate::args::values::LightArgument;
 use crate::error::CliError;
 use crate::terminal::console::note;
 use glam::DVec3;
+use itertools::Itertools;
 use skiagraph_compare::error::CompareError;
-use skiagraph_compare::measuring::view_or_path::under_lights;
-use skiagraph_compare::wording::did_you_mean;
+use skiagraph_compare::measuring::view_or_path::{ViewOrPath, under_lights};
+use skiagraph_compare::wording::{did_you_mean, unknown};
 use skiagraph_scene::{
     Concave, DirectionalLight, Light, MaterialUse, ObjSetup, QuadDiagonal, Scene, SceneError,
     SceneLibrary, SceneRequest, View,
@@ -178,9 +179,7 @@ fn look_at_all(scene: &mut Scene, args: &SceneArgs) {
         ("--light", three(FALLBACK_LIGHT)),
     ];
     let chosen = chosen.iter().zip(given).filter(|(_, given)| !given);
-    let chosen: Vec<String> = chosen
-        .map(|((flag, value), _)| format!("{flag} {value}"))
-        .collect();
+    let mut chosen = chosen.map(|((flag, value), _)| format!("{flag} {value}"));
     note(&format!(
         "{}: a mesh file holds no view and no light; chosen: {}",
         args.scene,
@@ -188,19 +187,25 @@ fn look_at_all(scene: &mut Scene, args: &SceneArgs) {
     ));
 }
 
-/// Refuses a camera or a light of one's own along a path, which has both.
+/// The camera paths of a scene that `--path` names, under the lights that `light` does.
 ///
 /// # Errors
-/// One is given.
-pub fn check_path(args: &SceneArgs, path: &str) -> Result<(), CliError> {
+/// A view or a light of one's own beside it, no such path or light.
+pub fn paths(
+    args: &SceneArgs,
+    scene: &Scene,
+    name: &str,
+    light: Option<&str>,
+) -> Result<Vec<ViewOrPath>, CliError> {
     if has_own_view(args) {
-        Err(CliError::Usage(format!(
-            "--path {path} brings its camera and its light: leave out --eye, --look, --up, --fov, \
+        return Err(CliError::Usage(format!(
+            "--path {name} brings its camera and its light: leave out --eye, --look, --up, --fov, \
              --near, --far and --light x,y,z"
-        )))
-    } else {
-        Ok(())
+        )));
     }
+    let paths = SceneLibrary::from_environment().paths(&args.scene);
+    let paths = paths.map_err(|error| CliError::Input(error.to_string()))?;
+    Ok(ViewOrPath::paths(scene, paths, name, light)?)
 }
 
 fn has_own_view(args: &SceneArgs) -> bool {
@@ -281,12 +286,9 @@ fn choose(scene: &Scene, name: Option<&str>) -> Result<Vec<View>, CliError> {
             Some(view) => Ok(vec![view.clone()]),
             None => {
                 let names: Vec<&str> = scene.views.iter().map(|view| view.name.as_str()).collect();
-                let hint = did_you_mean(name, names.iter().copied());
-                Err(CliError::Input(format!(
-                    "the scene `{}` has no view `{name}`{hint}\n  views: {}, or all of them: all",
-                    scene.name,
-                    names.join(", ")
-                )))
+                let what = format!("the scene `{}` has no view `{name}`", scene.name);
+                let text = unknown(&what, name, "views", &names) + ", or all of them: all";
+                Err(CliError::Input(text))
             }
         },
     }

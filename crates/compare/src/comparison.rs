@@ -28,6 +28,7 @@ use crate::measuring::view_or_path::ViewOrPath;
 use crate::pictures::run_pictures::{check_stems, reference_stem, stem};
 use crate::records::published_row::Row;
 use crate::sink::Session;
+use itertools::Itertools;
 use skiagraph_passes::{EmbeddedSources, SceneProvider};
 use skiagraph_reference::OracleMode;
 use skiagraph_scene::{LightKind, Scene};
@@ -140,13 +141,8 @@ impl Comparison {
 
     /// One light of each kind that the views are under, in their order.
     pub fn kinds_of_light(&self) -> Vec<LightKind> {
-        let mut lights: Vec<LightKind> = Vec::new();
-        for light in self.views.iter().map(|view| view.light(&self.scene)) {
-            if lights.iter().all(|known| known.word() != light.word()) {
-                lights.push(light);
-            }
-        }
-        lights
+        let lights = self.views.iter().map(|view| view.light(&self.scene));
+        lights.unique_by(|light| light.word()).collect()
     }
 
     /// Hashes everything that all runs depend on.

@@ -22,6 +22,7 @@
 //! }
 //! ```
 
+use crate::error::CompareError;
 use skiagraph_gpu::device::Gpu;
 use skiagraph_graph::{Diagnostic, diagnostics};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -88,6 +89,17 @@ impl<'a> Session<'a> {
     /// True once the work is asked to end early.
     pub fn is_stopped(&self) -> bool {
         self.sink.stop().load(Ordering::Relaxed)
+    }
+
+    /// Ends work that is asked to end early.
+    ///
+    /// # Errors
+    /// It is asked to.
+    pub fn check_stopped(&self) -> Result<(), CompareError> {
+        if self.is_stopped() {
+            return Err(CompareError::interrupted());
+        }
+        Ok(())
     }
 }
 

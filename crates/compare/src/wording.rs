@@ -9,6 +9,7 @@
 //! assert_eq!(did_you_mean("nsn", ["nsm", "rt"].into_iter()), "; did you mean `nsm`?");
 //! ```
 
+use itertools::Itertools;
 use skiagraph_graph::diagnostics::closest;
 pub use skiagraph_graph::text::bytes;
 use std::ffi::OsString;
@@ -80,6 +81,12 @@ pub fn did_you_mean<'a>(wanted: &str, names: impl Iterator<Item = &'a str>) -> S
     closest(wanted, names).map_or(String::new(), hint)
 }
 
+/// Says of a name that it is not there: `what`, the nearest known name, and all of them.
+pub fn unknown(what: &str, wanted: &str, nouns: &str, known: &[&str]) -> String {
+    let hint = did_you_mean(wanted, known.iter().copied());
+    format!("{what}{hint}\n  {nouns}: {}", known.join(", "))
+}
+
 /// The command line as it was typed, but for the program's path.
 pub fn command_line(arguments: impl Iterator<Item = OsString>) -> String {
     let quoted = |argument: OsString| {
@@ -91,9 +98,10 @@ pub fn command_line(arguments: impl Iterator<Item = OsString>) -> String {
             format!("'{}'", text.replace('\'', r"'\''"))
         }
     };
-    let words = arguments.skip(1).map(quoted);
-    let words: Vec<String> = ["skiagraph".into()].into_iter().chain(words).collect();
-    words.join(" ")
+    ["skiagraph".into()]
+        .into_iter()
+        .chain(arguments.skip(1).map(quoted))
+        .join(" ")
 }
 
 #[cfg(test)]

@@ -1,11 +1,16 @@
 //! Kept results as charts: what is drawn of which runs. How is `skiagraph-chart`'s affair.
 
+use itertools::Itertools;
 use skiagraph_chart::{Figure, Kind, Mark, Panel, Series};
 use skiagraph_compare::error::CompareError;
-use skiagraph_compare::lists::unique;
+use skiagraph_compare::lists::{entry, place, unique};
+use skiagraph_compare::records::read_back;
 use skiagraph_compare::records::results::{Measured, Results, Run};
 use skiagraph_compare::wording::{frames, size};
-use std::{collections::BTreeSet, path::PathBuf};
+use std::{
+    collections::BTreeSet,
+    path::{Path, PathBuf},
+};
 
 /// Results that `compare` kept in a folder.
 #[derive(Debug)]
@@ -14,6 +19,19 @@ pub struct Kept {
     pub folder: PathBuf,
     /// Its results.json.
     pub results: Results,
+}
+
+impl Kept {
+    /// Reads those of a folder.
+    ///
+    /// # Errors
+    /// No such folder, no results.json in it, or one that cannot be read; with the place.
+    pub fn read(folder: &Path) -> Result<Self, CompareError> {
+        Ok(Self {
+            results: read_back::kept(folder)?,
+            folder: folder.to_path_buf(),
+        })
+    }
 }
 
 const TIME: &str = "GPU ms of a frame less its G-buffer";
@@ -25,21 +43,19 @@ const TIME: &str = "GPU ms of a frame less its G-buffer";
 /// Results without GPU times.
 pub fn front(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, CompareError> {
     let results = || kept.iter().map(|kept| &kept.results);
-    let maps: BTreeSet<u32> = results()
-        .flat_map(|results| &results.runs)
-        .filter(|run| is_drawn(run, viewport))
-        .filter_map(|run| run.map_size)
-        .collect();
-    let maps: Vec<u32> = maps.into_iter().collect();
+    let runs = results().flat_map(|results| &results.runs);
+    let maps = runs.filter(|run| is_drawn(run, viewport));
+    let maps = maps.filter_map(|run| run.map_size).sorted().dedup();
+    let maps: Vec<u32> = maps.collect();
     let mut panels = Vec::new();
     for kept in kept {
         for viewport in viewports(&kept.results, viewport) {
             panels.push(front_panel(kept, viewport, &maps)?);
         }
     }
-    let scenes: BTreeSet<String> = results().map(|results| results.scene.to_string()).collect();
+    let scenes = results().map(|results| results.scene.to_string());
     let mut notes = conditions(kept);
-    notes.push(scenes.into_iter().collect::<Vec<_>>().join("; "));
+    notes.push(scenes.sorted().dedup().join("; "));
     notes.push(
         "Left is faster, down is more right; where there are several views, the means of all."
             .into(),
@@ -59,16 +75,11 @@ fn front_panel(kept: &Kept, viewport: [u32; 2], maps: &[u32]) -> Result<Panel, C
     let runs = drawn(&kept.results, viewport).filter(|(run, _)| run.is_hard());
     let runs: Vec<(&Run, &Measured)> = runs.collect();
     let mut series: Vec<Series> = Vec::new();
-    let mut seen: Vec<(&str, Option<u32>)> = Vec::new();
-    for (run, _) in &runs {
-        let cell = (run.preset.as_str(), run.map_size);
-        if seen.contains(&cell) {
-            continue;
-        }
-        seen.push(cell);
-        let of_cell = runs
-            .iter()
-            .filter(|(run, _)| (run.preset.as_str(), run.map_size) == cell);
+    let mut cells: Vec<((&str, Option<u32>), Vec<_>)> = Vec::new();
+    for (run, measured) in &runs {
+        entry(&mut cells, (&run.preset, run.map_size)).push((run, measured));
+    }
+    for ((preset, map), of_cell) in cells {
         let (mut ms, mut wrong, mut pixels, mut views) = (0.0, 0, 0, 0.0);
         for (run, measured) in of_cell {
             ms += time(kept, measured)?;
@@ -76,14 +87,12 @@ fn front_panel(kept: &Kept, viewport: [u32; 2], maps: &[u32]) -> Result<Panel, C
             pixels += u64::from(run.viewport[0]) * u64::from(run.viewport[1]);
             views += 1.0;
         }
-        let map = run
-            .map_size
-            .and_then(|size| maps.iter().position(|map| *map == size));
+        let map = map.and_then(|size| maps.iter().position(|map| *map == size));
         let mark = Mark {
             size: map.unwrap_or(0),
             ..Mark::new(ms / views, 100.0 * wrong as f64 / pixels as f64)
         };
-        push(&mut series, &run.preset, mark);
+        push(&mut series, preset, mark);
     }
     let views: BTreeSet<&str> = runs.iter().map(|(run, _)| run.view.as_str()).collect();
     let views = match views.first() {
@@ -121,22 +130,18 @@ pub fn growth(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, Compa
     for (kept, run, measured) in runs() {
         let scene = &kept.results.scene;
         let cell = (scene.name.as_str(), run.view.as_str(), run.viewport);
-        let index = cells
-            .iter()
-            .position(|known| *known == cell)
-            .unwrap_or_else(|| {
-                cells.push(cell);
-                let title = format!("{}, view {}, {}", scene.name, run.view, size(run.viewport));
-                let panel = |y: &str| Panel {
-                    title: title.clone(),
-                    kind: Kind::Growth,
-                    x: "triangles".into(),
-                    y: y.into(),
-                    series: Vec::new(),
-                };
-                panels.push([panel(TIME), panel("MB of buffers and textures")]);
-                cells.len() - 1
-            });
+        let index = place(&mut cells, cell);
+        if index == panels.len() {
+            let title = format!("{}, view {}, {}", scene.name, run.view, size(run.viewport));
+            let panel = |y: &str| Panel {
+                title: title.clone(),
+                kind: Kind::Growth,
+                x: "triangles".into(),
+                y: y.into(),
+                series: Vec::new(),
+            };
+            panels.push([panel(TIME), panel("MB of buffers and textures")]);
+        }
         let name = if has_maps {
             run.method_label()
         } else {
@@ -167,6 +172,15 @@ pub fn growth(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, Compa
     })
 }
 
+/// A figure as a file.
+///
+/// # Errors
+/// Those of [`Figure::to_svg`].
+pub fn svg(figure: &Figure) -> Result<String, CompareError> {
+    let svg = figure.to_svg();
+    svg.map_err(|error| CompareError::Input(error.to_string()))
+}
+
 /// Methods that could not run, with the reason; each once.
 pub fn unavailable(kept: &[Kept]) -> BTreeSet<String> {
     let runs = kept.iter().flat_map(|kept| &kept.results.runs);
@@ -195,7 +209,7 @@ fn is_drawn(run: &Run, viewport: Option<[u32; 2]>) -> bool {
 /// Viewports with something to draw, in the order of the file.
 fn viewports(results: &Results, wanted: Option<[u32; 2]>) -> Vec<[u32; 2]> {
     let drawn = results.runs.iter().filter(|run| is_drawn(run, wanted));
-    unique(&drawn.map(|run| run.viewport).collect::<Vec<_>>())
+    unique(drawn.map(|run| run.viewport))
 }
 
 fn drawn(results: &Results, viewport: [u32; 2]) -> impl Iterator<Item = (&Run, &Measured)> {
@@ -219,15 +233,11 @@ fn time(kept: &Kept, measured: &Measured) -> Result<f64, CompareError> {
 
 /// Lines that say under which conditions everything was measured.
 pub fn conditions(kept: &[Kept]) -> Vec<String> {
-    let adapters: BTreeSet<String> = kept
-        .iter()
-        .map(|kept| kept.results.adapter.to_string())
-        .collect();
-    let medians: BTreeSet<u32> = kept.iter().map(|kept| kept.results.frames).collect();
-    let medians: Vec<String> = medians.into_iter().map(frames).collect();
-    let mut lines: Vec<String> = adapters.into_iter().collect();
-    lines.push(format!("Medians of {}", medians.join(" or ")));
-    lines
+    let results = || kept.iter().map(|kept| &kept.results);
+    let adapters = results().map(|results| results.adapter.to_string());
+    let medians = results().map(|results| results.frames).sorted().dedup();
+    let medians = format!("Medians of {}", medians.map(frames).join(" or "));
+    adapters.sorted().dedup().chain([medians]).collect()
 }
 
 #[cfg(test)]

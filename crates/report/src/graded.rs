@@ -1,5 +1,6 @@
 //! Remarks of tables and notes on graded answers, and on lights that have an extent.
 
+use itertools::Itertools;
 use skiagraph_compare::records::results::{AreaReference, Run};
 use skiagraph_compare::wording::thousands;
 use skiagraph_reference::Graded;
@@ -59,8 +60,8 @@ pub fn no_shares(run: &Run) -> Option<String> {
         ("outside 0 to 1", invalid.outside),
     ];
     let counts = counts.into_iter().filter(|(_, count)| *count > 0);
-    let counts = counts.map(|(what, count)| format!("{what} {}", thousands(count)));
-    let counts = counts.collect::<Vec<_>>().join(", ");
+    let mut counts = counts.map(|(what, count)| format!("{what} {}", thousands(count)));
+    let counts = counts.join(", ");
     let label = run.method_label();
     let text = format!("warning: {label}: visibility that is not a share of light: {counts}");
     (invalid.total() > 0).then_some(text)
@@ -73,23 +74,16 @@ fn ranks(runs: &[Run]) -> Option<String> {
     let mut ranks: Vec<(f64, String)> = runs.iter().filter_map(rank).collect();
     ranks.sort_by(|(one, _), (other, _)| one.total_cmp(other));
     let in_doubt = ranks.iter().filter(|(rmse, _)| *rmse < 10.0 * reference);
-    let in_doubt: Vec<&str> = in_doubt.map(|(_, label)| label.as_str()).collect();
-    let listed: Vec<String> = ranks
+    let in_doubt = in_doubt.map(|(_, label)| label).join(", ");
+    let mut listed = ranks
         .iter()
-        .map(|(rmse, label)| format!("{label} {rmse:.5}"))
-        .collect();
-    if listed.is_empty() {
-        return None;
+        .map(|(rmse, label)| format!("{label} {rmse:.5}"));
+    let mut text = format!("by RMSE: {}", listed.join(", "));
+    if !in_doubt.is_empty() {
+        text += "; the reference's own error is more than a tenth of that of ";
+        text += &in_doubt;
     }
-    let doubt = if in_doubt.is_empty() {
-        String::new()
-    } else {
-        format!(
-            "; the reference's own error is more than a tenth of that of {}",
-            in_doubt.join(", ")
-        )
-    };
-    Some(format!("by RMSE: {}{doubt}", listed.join(", ")))
+    (!ranks.is_empty()).then_some(text)
 }
 
 #[cfg(test)]

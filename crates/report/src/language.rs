@@ -1,5 +1,6 @@
 //! The reference of the language, in Markdown, from the JSON Schema of documents.
 
+use itertools::Itertools;
 use serde_json::{Map, Value};
 use std::collections::BTreeSet;
 
@@ -117,8 +118,8 @@ impl<'s> Page<'s> {
         let common = ["EveryEntry", "EveryPass"].map(|name| &defs[name]["properties"]);
         for (tags, name) in groups {
             let of = &defs[name];
-            let tags: Vec<String> = tags.iter().map(|tag| format!("`{tag}`")).collect();
-            self.heading(&format!("### {}", tags.join(", ")));
+            let tags = tags.iter().map(|tag| format!("`{tag}`")).join(", ");
+            self.heading(&format!("### {tags}"));
             self.description(of);
             let has = |common: &&Value| {
                 let mut names = common.as_object().into_iter().flat_map(Map::keys);
@@ -144,8 +145,7 @@ impl<'s> Page<'s> {
             if of["properties"].is_object() {
                 self.table(of, &BTreeSet::new());
             } else if let Some(words) = of["enum"].as_array() {
-                let words: Vec<String> = words.iter().map(quoted).collect();
-                self.prose(&words.join(", "));
+                self.prose(&words.iter().map(quoted).join(", "));
             } else {
                 for one in alternatives.into_iter().flatten() {
                     self.alternative(one);
@@ -177,6 +177,11 @@ impl<'s> Page<'s> {
         self.text += &format!("{gap}- {}\n", wrapped(&format!("{value}{what}"), "  "));
     }
 
+    fn values_of<'v>(&self, parts: impl IntoIterator<Item = &'v Value>) -> String {
+        let parts = parts.into_iter();
+        parts.map(|part| self.value(part)).join(", ")
+    }
+
     /// Describes the values that a field may have, in a few words.
     fn value(&self, of: &Value) -> String {
         if let Some(name) = named(of) {
@@ -189,30 +194,25 @@ impl<'s> Page<'s> {
             return quoted(constant);
         }
         if let Some(words) = of["enum"].as_array() {
-            return words.iter().map(quoted).collect::<Vec<_>>().join(", ");
+            return words.iter().map(quoted).join(", ");
         }
         if let Some(several) = either(of) {
-            let several: Vec<String> = several.iter().map(|one| self.value(one)).collect();
-            return several.join(" or ");
+            return several.iter().map(|one| self.value(one)).join(" or ");
         }
         if let Some((tag, inner)) = variant(of) {
             return match inner["prefixItems"].as_array() {
-                Some(parts) => {
-                    let parts: Vec<String> = parts.iter().map(|part| self.value(part)).collect();
-                    format!("`{tag}`({})", parts.join(", "))
-                }
+                Some(parts) => format!("`{tag}`({})", self.values_of(parts)),
                 None => format!("`{tag}`({})", self.value(inner)),
             };
         }
         match of["type"].as_str() {
             Some("array") if of["prefixItems"].is_array() => {
                 let parts = of["prefixItems"].as_array().into_iter().flatten();
-                let parts: Vec<String> = parts.map(|part| self.value(part)).collect();
-                format!("({})", parts.join(", "))
+                format!("({})", self.values_of(parts))
             }
             Some("array") if of["items"]["properties"].is_object() => {
                 let tags = of["items"]["properties"].as_object().into_iter().flatten();
-                let tags: Vec<String> = tags.map(|(tag, _)| format!("`{tag}`")).collect();
+                let mut tags = tags.map(|(tag, _)| format!("`{tag}`"));
                 format!("list of {}", tags.join(", "))
             }
             Some("array") => format!("list of {}", self.value(&of["items"])),

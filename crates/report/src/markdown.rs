@@ -1,10 +1,9 @@
 //! Results as a document: a header, then for every view and viewport one table of errors and of the
 //! times of steps.
 
-use crate::graded::{area_reference, by_answer, graded};
-use crate::notes::{
-    band_warning, certain_wrong, path_costs, remembering, surface_warning, times_missing,
-};
+use crate::graded::{area_reference, by_answer};
+use crate::notes::{band_warning, of_runs, surface_warning};
+use skiagraph_compare::lists::{entry, place, unique};
 use skiagraph_compare::records::columns::{self, Column, STEPS};
 use skiagraph_compare::records::published_row::PublishedFile;
 use skiagraph_compare::records::results::{Measured, Results, Run, step};
@@ -127,13 +126,7 @@ pub fn viewport(results: &Results, runs: &[Run]) -> String {
     }
     let mut notes: Vec<String> = band_warning(first).into_iter().collect();
     notes.extend(surface_warning(first));
-    notes.extend(certain_wrong(runs));
-    notes.extend(graded(runs));
-    notes.extend(runs.iter().filter_map(remembering));
-    notes.extend(runs.iter().flat_map(path_costs));
-    if results.adapter.gpu_unavailable.is_none() {
-        notes.extend(runs.iter().filter_map(times_missing));
-    }
+    notes.extend(of_runs(results, runs));
     notes.extend(unavailable(runs));
     notes.extend(footnotes.notes());
     if !notes.is_empty() {
@@ -170,13 +163,8 @@ fn steps<'a>(runs: &[(&'a Run, &'a Measured)]) -> Vec<&'a str> {
     let passes = runs.iter().flat_map(|(_, measured)| &measured.passes);
     let published = runs.iter().flat_map(|(run, _)| &run.published);
     let published = published.filter_map(|figure| figure.quantity.strip_prefix("ms."));
-    let mut steps = Vec::new();
-    for step in passes.map(|pass| step(&pass.name)).chain(published) {
-        if !steps.contains(&step) && !["frame", "steps"].contains(&step) {
-            steps.push(step);
-        }
-    }
-    steps
+    let all = passes.map(|pass| step(&pass.name)).chain(published);
+    unique(all.filter(|step| !["frame", "steps"].contains(step)))
 }
 
 /// A row: the columns before the steps, the steps, and the columns behind them.
@@ -203,12 +191,7 @@ impl<'a> Footnotes<'a> {
             let value = published(figure.value, quantity);
             let mark = figure.note.as_deref().map_or_else(String::new, |note| {
                 let note = (figure.by.as_str(), figure.source.as_str(), note);
-                let known = self.0.iter().position(|known| *known == note);
-                let index = known.unwrap_or_else(|| {
-                    self.0.push(note);
-                    self.0.len() - 1
-                });
-                superscript(index + 1)
+                superscript(place(&mut self.0, note) + 1)
             });
             ours += &format!(" ({} {value}{mark})", figure.by);
         }
@@ -250,21 +233,14 @@ fn superscript(number: usize) -> String {
 
 /// Which methods could not run, each reason once.
 fn unavailable(runs: &[Run]) -> Vec<String> {
-    let mut reasons: Vec<(&str, &str, Vec<String>)> = Vec::new();
+    let mut reasons: Vec<((&str, &str), Vec<String>)> = Vec::new();
     for run in runs {
-        let Some(reason) = &run.unavailable else {
-            continue;
-        };
-        let maps = run.map_size.iter().map(u32::to_string);
-        match reasons
-            .iter_mut()
-            .find(|(preset, known, _)| *preset == run.preset && known == reason)
-        {
-            Some((.., known)) => known.extend(maps),
-            None => reasons.push((&run.preset, reason, maps.collect())),
+        if let Some(reason) = &run.unavailable {
+            let maps = entry(&mut reasons, (&run.preset, reason));
+            maps.extend(run.map_size.iter().map(u32::to_string));
         }
     }
-    let text = |(preset, reason, maps): (&str, &str, Vec<String>)| {
+    let text = |((preset, reason), maps): ((&str, &str), Vec<String>)| {
         let maps = if maps.is_empty() {
             String::new()
         } else {

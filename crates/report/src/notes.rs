@@ -1,6 +1,8 @@
 //! Notes below tables, wherever they stand.
 
-use skiagraph_compare::records::results::Run;
+use crate::graded::graded;
+use itertools::Itertools;
+use skiagraph_compare::records::results::{Results, Run};
 use skiagraph_compare::records::sequence::{FrameCost, Sequence};
 use skiagraph_compare::wording::{frames, ms, thousands};
 use skiagraph_reference::BlockerCounts;
@@ -58,14 +60,10 @@ pub fn certain_wrong(runs: &[Run]) -> Vec<String> {
 /// A method with those of its maps that the runs are of; `None` without runs.
 fn maps(runs: &[&Run]) -> Option<String> {
     let preset = &runs.first()?.preset;
-    let maps: Vec<String> = runs
-        .iter()
-        .filter_map(|run| Some(run.map_size?.to_string()))
-        .collect();
-    Some(if maps.is_empty() {
-        preset.clone()
-    } else {
-        format!("{preset} {}", maps.join(" / "))
+    let maps = runs.iter().filter_map(|run| run.map_size).join(" / ");
+    Some(match maps.as_str() {
+        "" => preset.clone(),
+        maps => format!("{preset} {maps}"),
     })
 }
 
@@ -90,6 +88,19 @@ pub fn blocked_by(counts: &[(u64, BlockerCounts)]) -> String {
     let kinds = KINDS.iter().map(|(name, of)| said(name, &|(_, by)| of(by)));
     let parts: Vec<String> = [all].into_iter().chain(kinds).flatten().collect();
     parts.join(", ")
+}
+
+/// Notes of a group of runs: what is certain and wrong, grades, what is kept from frame to frame,
+/// and, of an adapter that has GPU times, those that are missing.
+pub fn of_runs(results: &Results, runs: &[Run]) -> Vec<String> {
+    let mut notes = certain_wrong(runs);
+    notes.extend(graded(runs));
+    notes.extend(runs.iter().filter_map(remembering));
+    notes.extend(runs.iter().flat_map(path_costs));
+    if results.adapter.gpu_unavailable.is_none() {
+        notes.extend(runs.iter().filter_map(times_missing));
+    }
+    notes
 }
 
 /// Says what was judged of a method that remembers.
@@ -148,17 +159,12 @@ pub fn path_costs(run: &Run) -> Vec<String> {
 /// Lists the resources of the scene that followed from what moves.
 fn remade(run: &Run, sequence: &Sequence) -> Option<String> {
     let all = sequence.frames.len();
-    let remade = sequence
-        .remade()
-        .into_iter()
-        .map(|(name, how, count, time)| {
-            format!("{name} {how} in {count} of {all}, {} ms each", ms(time))
-        });
-    let remade: Vec<String> = remade.collect();
-    (!remade.is_empty()).then(|| {
-        let label = run.method_label();
-        format!("{label} between frames, on the CPU: {}", remade.join("; "))
-    })
+    let remade = sequence.remade().into_iter();
+    let mut remade = remade.map(|(name, how, count, time)| {
+        format!("{name} {how} in {count} of {all}, {} ms each", ms(time))
+    });
+    let (label, remade) = (run.method_label(), remade.join("; "));
+    (!remade.is_empty()).then(|| format!("{label} between frames, on the CPU: {remade}"))
 }
 
 /// Which GPU times a run lacks on an adapter whose timestamps are true.
@@ -172,9 +178,7 @@ pub fn times_missing(run: &Run) -> Option<String> {
 
 /// Which GPU times are missing: of passes, each with whether it has one, and of the frame.
 pub fn untimed<'a>(passes: impl Iterator<Item = (&'a str, bool)>, frame: bool) -> Option<String> {
-    let untimed: Vec<&str> = passes
-        .filter_map(|(name, is_timed)| (!is_timed).then_some(name))
-        .collect();
+    let mut untimed = passes.filter_map(|(name, is_timed)| (!is_timed).then_some(name));
     let untimed = untimed.join(", ");
     Some(match (frame, untimed.as_str()) {
         (true, "") => return None,

@@ -40,9 +40,7 @@ pub fn write(folders: &[PathBuf], file: &Path, sink: &dyn Sink) -> Result<(), Co
         let matrix = read_back::stress(folder)?;
         // A folder may be of `stress` alone.
         if matrix.is_none() || folder.join("results.json").exists() {
-            let results = read_back::kept(folder)?;
-            let folder = folder.clone();
-            kept.push(Kept { folder, results });
+            kept.push(Kept::read(folder)?);
         }
         matrices.extend(matrix);
     }

@@ -51,7 +51,7 @@ pub fn matrices(profiles: &[Profile]) -> String {
     let methods = profiles
         .iter()
         .map(|profile| profile.conditions.preset.as_str());
-    for method in unique(&methods.collect::<Vec<_>>()) {
+    for method in unique(methods) {
         let columns = profiles.iter();
         let columns = columns.filter(|profile| profile.conditions.preset == method);
         text += &format!("\n{}\n", matrix(method, &columns.collect::<Vec<_>>()));
@@ -66,25 +66,22 @@ fn matrix(method: &str, profiles: &[&Profile]) -> String {
         let map = map.map_or(String::new(), |map| format!("\nmap {map}"));
         format!("{view}\n{}{map}", size(*viewport))
     };
-    let heads: Vec<String> = profiles.iter().map(head).collect();
-    let heads = [method].into_iter().chain(heads.iter().map(String::as_str));
+    let heads = [method.to_owned()].into_iter();
+    let heads = heads.chain(profiles.iter().map(head));
     let passes = profiles.iter().flat_map(|profile| &profile.passes);
-    let passes = unique(&passes.map(|pass| pass.name.as_str()).collect::<Vec<_>>());
+    let passes = unique(passes.map(|pass| pass.name.as_str()));
     let cell = |series: Option<&Series>| series.map_or("–".into(), |of| ms(of.median));
-    let rows = passes.into_iter().map(|name| {
-        let of = |profile: &&Profile| {
-            let pass = profile.passes.iter().find(|pass| pass.name == name);
-            cell(pass.and_then(|pass| pass.gpu_ms.as_ref()))
-        };
-        let cells = profiles.iter().map(of);
+    let row = |name: &str, of: &dyn Fn(&Profile) -> Option<&Series>| -> Vec<String> {
+        let cells = profiles.iter().map(|profile| cell(of(profile)));
         [name.to_owned()].into_iter().chain(cells).collect()
+    };
+    let rows = passes.into_iter().map(|name| {
+        row(name, &|profile| {
+            let pass = profile.passes.iter().find(|pass| pass.name == name);
+            pass.and_then(|pass| pass.gpu_ms.as_ref())
+        })
     });
-    let wholes = profiles.iter();
-    let wholes = wholes.map(|profile| cell(profile.frame.gpu_ms.as_ref()));
-    let whole: Vec<String> = ["whole frame".to_owned()]
-        .into_iter()
-        .chain(wholes)
-        .collect();
+    let whole = row("whole frame", &|profile| profile.frame.gpu_ms.as_ref());
     terminal(&Table::new(heads, 1, rows.chain([whole])))
 }
 
@@ -136,14 +133,9 @@ fn conditions(profile: &Profile) -> String {
         ..
     } = &profile.conditions;
     let params = profile.conditions.params();
-    let params: Vec<String> = params
-        .map(|(name, value)| format!("{name} = {value}"))
-        .collect();
-    let params = if params.is_empty() {
-        "none".to_owned()
-    } else {
-        params.join(", ")
-    };
+    let params = params.map(|(name, value)| format!("{name} = {value}"));
+    let params = params.reduce(|all, param| format!("{all}, {param}"));
+    let params = params.unwrap_or("none".into());
     let timed = profile.timed() as u32;
     let stopped = if timed < *asked {
         format!(", stopped before the {asked} asked for")
@@ -213,19 +205,17 @@ fn comparison(baseline: &Comparison, new: &Profile) -> String {
             text += &format!("  {what}: then {old}, now {new}\n");
         }
     }
-    let mut rows = Vec::new();
-    let mut add = |clock: &str, name: &str, ratio: Option<&Ratio>| {
-        rows.push(ratio_row(clock, name, ratio));
-    };
-    for pass in &baseline.passes {
-        add("GPU", &pass.name, pass.gpu.as_ref());
-    }
-    add("GPU", "whole frame", baseline.frame.gpu.as_ref());
-    for pass in &baseline.passes {
-        add("CPU", &pass.name, Some(&pass.cpu));
-    }
-    add("CPU", "whole frame", Some(&baseline.frame.cpu));
-    add("wall", "whole frame", Some(&baseline.frame.wall));
+    let (passes, frame) = (&baseline.passes, &baseline.frame);
+    let gpu = passes
+        .iter()
+        .map(|pass| ratio_row("GPU", &pass.name, pass.gpu.as_ref()));
+    let cpu = passes
+        .iter()
+        .map(|pass| ratio_row("CPU", &pass.name, Some(&pass.cpu)));
+    let whole = |clock, ratio| [ratio_row(clock, "whole frame", ratio)];
+    let gpu = gpu.chain(whole("GPU", frame.gpu.as_ref()));
+    let cpu = cpu.chain(whole("CPU", Some(&frame.cpu)));
+    let rows = gpu.chain(cpu).chain(whole("wall", Some(&frame.wall)));
     let heads = "pass|clock|then|now|now / then|its spread|".split('|');
     text += &format!("{}\n", terminal(&Table::new(heads, 2, rows)));
     if baseline.frame.gpu.is_none() {

@@ -41,8 +41,7 @@ pub fn draw(
         .collect();
     let theirs = published_rows.iter().filter(|row| is_in(row.key().2));
     let mut left_out = without_counterpart(&cells, theirs, label);
-    let methods: Vec<String> = cells.iter().map(|cell| cell.run.preset.clone()).collect();
-    let methods = unique(&methods);
+    let methods = unique(cells.iter().map(|cell| cell.run.preset.clone()));
     let mut charts = Vec::new();
     let mut add = |name: String, [title, note]: [String; 2], drawn: &[PanelRow], panels| {
         let whose = format!("Left: {label}, as published. Right: ours, measured as follows.");
@@ -135,14 +134,10 @@ fn axis(cells: &[Cell], quantity: &str) -> Result<(String, String), String> {
 
 /// The quantities that are published of these runs, but counts, which are shares, too.
 fn of_runs(cells: &[Cell]) -> Vec<String> {
-    let mut found: Vec<String> = Vec::new();
     let figures = cells.iter().flat_map(|cell| &cell.run.published);
-    for quantity in figures.map(|figure| &figure.quantity) {
-        let is_drawn = quantity.ends_with("_percent") || whole_of(quantity).is_some();
-        if is_drawn && !found.contains(quantity) {
-            found.push(quantity.clone());
-        }
-    }
+    let quantities_of = figures.map(|figure| figure.quantity.clone());
+    let is_drawn = |name: &String| name.ends_with("_percent") || whole_of(name).is_some();
+    let mut found = unique(quantities_of.filter(is_drawn));
     let order = quantities();
     let place = |quantity: &String| order.iter().position(|known| known == quantity);
     found.sort_by_key(|quantity| place(quantity).unwrap_or(order.len()));
@@ -166,16 +161,11 @@ fn file_name(quantity: &str) -> String {
 
 /// Lists what is wrong with the figures that are drawn.
 fn remarks(drawn: &[PanelRow]) -> Vec<String> {
-    let mut remarks = Vec::new();
-    for figure in drawn.iter().flat_map(PanelRow::figures) {
-        if let Some(note) = &figure.note {
-            let remark = format!("{}, {}: {note}", figure.by, figure.source);
-            if !remarks.contains(&remark) {
-                remarks.push(remark);
-            }
-        }
-    }
-    remarks
+    let figures = drawn.iter().flat_map(PanelRow::figures);
+    unique(figures.filter_map(|figure| {
+        let note = figure.note.as_ref()?;
+        Some(format!("{}, {}: {note}", figure.by, figure.source))
+    }))
 }
 
 /// The bar of a quantity: a share as it is, a time or a rate in percent of the whole.

@@ -1,6 +1,8 @@
 //! Gaps in charts of published figures and ours, because only one side has a figure.
 
 use crate::published_panels::{Cell, Groups, PanelRow};
+use itertools::Itertools;
+use skiagraph_compare::lists::entry;
 use skiagraph_compare::records::published_row::Row;
 use skiagraph_compare::wording::size;
 use std::collections::BTreeSet;
@@ -40,7 +42,7 @@ pub fn without_counterpart<'a>(
     let mut theirs: Vec<(&str, Sides)> = Vec::new();
     for cell in cells {
         let run = cell.run;
-        let sides = of_scene(&mut ours, cell.scene());
+        let sides = entry(&mut ours, cell.scene());
         sides.add(&run.view, run.viewport, run.map_size, &run.preset);
     }
     for row in rows {
@@ -56,7 +58,7 @@ pub fn without_counterpart<'a>(
             row.named.first() == Some(&row.preset)
         };
         if !preset.is_empty() && known {
-            of_scene(&mut theirs, scene).add(view, viewport, map, preset);
+            entry(&mut theirs, scene).add(view, viewport, map, preset);
         }
     }
     let find = |all: &[(&str, Sides)], scene: &str| {
@@ -83,15 +85,6 @@ pub fn without_counterpart<'a>(
     lines
 }
 
-fn of_scene<'a, 's>(all: &'s mut Vec<(&'a str, Sides)>, scene: &'a str) -> &'s mut Sides {
-    let place = all.iter().position(|(known, _)| *known == scene);
-    let place = place.unwrap_or_else(|| {
-        all.push((scene, Sides::default()));
-        all.len() - 1
-    });
-    &mut all[place].1
-}
-
 /// Figures that one side has of a scene.
 #[derive(Clone, Default)]
 struct Sides {
@@ -111,25 +104,18 @@ impl Sides {
 
     /// Says what the other side lacks, in words.
     fn lacking(&self, other: &Self) -> Option<String> {
-        let viewports = &self.viewports - &other.viewports;
-        let maps = &self.maps - &other.maps;
+        let viewports = self.viewports.difference(&other.viewports);
+        let maps = self.maps.difference(&other.maps);
         let kinds = [
-            ("view", (&self.views - &other.views).into_iter().collect()),
-            ("viewport", viewports.into_iter().map(size).collect()),
-            (
-                "map",
-                maps.into_iter().map(|map| format!("{map}²")).collect(),
-            ),
-            (
-                "preset",
-                (&self.presets - &other.presets).into_iter().collect(),
-            ),
+            ("view", self.views.difference(&other.views).join(", ")),
+            ("viewport", viewports.map(|it| size(*it)).join(", ")),
+            ("map", maps.map(|map| format!("{map}²")).join(", ")),
+            ("preset", self.presets.difference(&other.presets).join(", ")),
         ];
-        let kinds = kinds
-            .into_iter()
-            .filter(|(_, lacking): &(_, Vec<String>)| !lacking.is_empty());
-        let words = kinds.map(|(kind, lacking)| format!("{kind} {}", lacking.join(", ")));
-        let words: Vec<String> = words.collect();
-        (!words.is_empty()).then(|| words.join("; "))
+        let kinds = kinds.iter().filter(|(_, lacking)| !lacking.is_empty());
+        let words = kinds
+            .map(|(kind, lacking)| format!("{kind} {lacking}"))
+            .join("; ");
+        (!words.is_empty()).then_some(words)
     }
 }

@@ -1,9 +1,7 @@
 //! Results as tables for a terminal: speed beside error, then the time of each pass.
 
-use crate::graded::{area_reference, by_answer, graded};
-use crate::notes::{
-    band_warning, certain_wrong, path_costs, remembering, surface_warning, times_missing,
-};
+use crate::graded::{area_reference, by_answer};
+use crate::notes::{band_warning, of_runs, surface_warning};
 use crate::table::terminal;
 use skiagraph_compare::records::columns::{self, Column, are_paths};
 use skiagraph_compare::records::results::{Results, Run};
@@ -41,20 +39,13 @@ pub fn group(results: &Results, runs: &[Run]) -> String {
 }
 
 fn heading(results: &Results, run: &Run, runs: &[Run]) -> String {
-    let Run {
-        view,
-        viewport,
-        pixels,
-        band,
-        area,
-        ..
-    } = run;
+    let (view, pixels) = (&run.view, &run.pixels);
     let what = if are_paths(runs) {
         format!("path {view}, counts of all its frames together")
     } else {
         format!("view {view}")
     };
-    let title = format!("{} · {what} · {}", results.scene, size(*viewport));
+    let title = format!("{} · {what} · {}", results.scene, size(run.viewport));
     let mut lines = vec![
         results.adapter.to_string(),
         format!(
@@ -72,12 +63,12 @@ fn heading(results: &Results, run: &Run, runs: &[Run]) -> String {
             thousands(pixels.background)
         ),
     ];
-    lines.push(match area {
-        Some(area) => area_reference(area, *band),
+    lines.push(match &run.area {
+        Some(area) => area_reference(area, run.band),
         None => format!(
             "in the band, where the answer hangs on rounding: {} ({} of PFL)",
-            thousands(*band),
-            percent(*band, pixels.facing_light)
+            thousands(run.band),
+            percent(run.band, pixels.facing_light)
         ),
     });
     lines.extend(band_warning(run));
@@ -157,14 +148,9 @@ fn passes(runs: &[Run]) -> String {
 }
 
 fn footnotes(results: &Results, runs: &[Run]) -> Vec<String> {
-    let mut notes = certain_wrong(runs);
-    notes.extend(graded(runs));
-    notes.extend(runs.iter().filter_map(remembering));
-    notes.extend(runs.iter().flat_map(path_costs));
-    match &results.adapter.gpu_unavailable {
-        Some(reason) => notes.push(format!("No GPU times: {reason}")),
-        None => notes.extend(runs.iter().filter_map(times_missing)),
-    }
+    let mut notes = of_runs(results, runs);
+    let reason = results.adapter.gpu_unavailable.as_ref();
+    notes.extend(reason.map(|reason| format!("No GPU times: {reason}")));
     notes.extend(runs.iter().filter_map(|run| {
         let cached = run.measured.as_ref()?.cached.as_ref()?;
         Some(format!(

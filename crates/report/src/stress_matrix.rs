@@ -2,6 +2,7 @@
 
 use crate::notes::wrong_surface;
 use crate::table::terminal;
+use skiagraph_compare::lists::unique;
 use skiagraph_compare::records::stress::{
     Case, Casters, Cell, Column, Guarantee, OutsideBand, Report, Verdict,
 };
@@ -105,13 +106,8 @@ pub fn matrix(report: &Report) -> (Table, Vec<MatrixRow<'_>>) {
 
 /// The rows of a case: as the methods are, then with what is set besides.
 fn sets(case: &Case) -> Vec<Option<&str>> {
-    let mut sets = vec![None];
-    for cell in &case.cells {
-        if !sets.contains(&cell.set.as_deref()) {
-            sets.push(cell.set.as_deref());
-        }
-    }
-    sets
+    let sets = case.cells.iter().map(|cell| cell.set.as_deref());
+    unique([None].into_iter().chain(sets))
 }
 
 fn heads_of(case: &Case, set: Option<&str>) -> [String; 3] {

@@ -1,6 +1,7 @@
 //! Runs folded to a row per method and setting, over all views of a viewport: the figures by which
 //! to pick a method.
 
+use skiagraph_compare::lists::entry;
 use skiagraph_compare::records::results::{Measured, Part, Run, step};
 use skiagraph_compare::records::sequence::SequenceFrame;
 use skiagraph_compare::records::statistics::FrameTimes;
@@ -86,10 +87,7 @@ impl<'a> Row<'a> {
         let passes = self.runs.iter().flat_map(|(_, of)| &of.passes);
         for (name, gpu) in passes.filter_map(|pass| Some((step(&pass.name), pass.gpu_ms?))) {
             let ms = gpu.median / self.views() as f64;
-            match steps.iter_mut().find(|(known, _)| *known == name) {
-                Some((_, sum)) => *sum += ms,
-                None => steps.push((name, ms)),
-            }
+            *entry(&mut steps, name) += ms;
         }
         steps
     }
@@ -194,11 +192,7 @@ fn median(times: &FrameTimes, by_wall: bool) -> Option<f64> {
 pub fn rows<'a>(runs: impl IntoIterator<Item = &'a Run>, viewport: [u32; 2]) -> Vec<Row<'a>> {
     let mut cells: Vec<(String, Vec<&Run>)> = Vec::new();
     for run in runs.into_iter().filter(|run| run.viewport == viewport) {
-        let label = run.method_label();
-        match cells.iter_mut().find(|(known, _)| *known == label) {
-            Some((_, runs)) => runs.push(run),
-            None => cells.push((label, vec![run])),
-        }
+        entry(&mut cells, run.method_label()).push(run);
     }
     let rows = cells
         .into_iter()

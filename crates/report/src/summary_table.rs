@@ -7,9 +7,10 @@ use crate::notes::{
 use crate::summary::{Row, by_wall, rows};
 use crate::verdict::{Verdict, verdict};
 use crate::{graded, results_table::timed_frames, table::terminal};
-use skiagraph_compare::lists::unique;
+use itertools::Itertools;
+use skiagraph_compare::lists::{place, unique};
 use skiagraph_compare::records::columns::are_paths;
-use skiagraph_compare::records::results::{Promise, Results, Run};
+use skiagraph_compare::records::results::{Results, Run};
 use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::{bytes, ms, percent, plural, size, thousands};
 use skiagraph_reference::BlockerCounts;
@@ -35,8 +36,7 @@ pub struct Group<'a> {
 
 /// One summary per viewport, in the order of the results.
 pub fn summaries(results: &Results) -> Vec<Summary<'_>> {
-    let viewports: Vec<[u32; 2]> = results.runs.iter().map(|run| run.viewport).collect();
-    let all = unique(&viewports).into_iter();
+    let all = unique(results.runs.iter().map(|run| run.viewport)).into_iter();
     all.map(|viewport| Summary::new(results, viewport))
         .collect()
 }
@@ -123,9 +123,7 @@ impl<'a> Summary<'a> {
     /// Under which conditions all this was measured, a line each.
     pub fn conditions(&self) -> Vec<String> {
         let views = self.views();
-        let mut seen = BTreeSet::new();
-        let each = self.runs.iter().filter(|run| seen.insert(&run.view));
-        let each: Vec<&&Run> = each.collect();
+        let each = self.of_each_view();
         let sum = |of: fn(&Run) -> u64| each.iter().map(|run| of(run)).sum::<u64>();
         let (facing, band) = (sum(|run| run.pixels.facing_light), sum(|run| run.band));
         let mean = match views.len() {
@@ -152,12 +150,9 @@ impl<'a> Summary<'a> {
                 percent(band, facing)
             ),
         ];
-        let warned = each.iter();
-        lines.extend(warned.filter_map(|run| Some(self.named(run, band_warning(run)?))));
-        lines.extend(each.iter().filter_map(|run| {
-            let area = graded::area_reference(&run.area?, run.band);
-            Some(self.named(run, area))
-        }));
+        let area = |run: &Run| Some(graded::area_reference(&run.area?, run.band));
+        lines.extend(self.told(&each, band_warning));
+        lines.extend(self.told(&each, area));
         lines
     }
 
@@ -238,24 +233,33 @@ impl<'a> Summary<'a> {
             Some(format!("{} is unavailable: {why}", row.label))
         }));
         notes.extend(self.certain_wrong());
-        let told = self.runs.iter().copied();
-        notes.extend(
-            told.clone()
-                .filter_map(|run| Some(self.named(run, graded::no_shares(run)?))),
-        );
-        notes.extend(
-            told.clone()
-                .filter_map(|run| Some(self.named(run, remembering(run)?))),
-        );
-        notes.extend(told.clone().flat_map(|run| {
-            let costs = path_costs(run).into_iter();
-            costs.map(move |note| self.named(run, note))
-        }));
+        notes.extend(self.told(&self.runs, graded::no_shares));
+        notes.extend(self.told(&self.runs, remembering));
+        notes.extend(self.told(&self.runs, path_costs));
         match &self.results.adapter.gpu_unavailable {
             Some(reason) => notes.push(format!("No GPU times: {reason}")),
-            None => notes.extend(told.filter_map(|run| Some(self.named(run, times_missing(run)?)))),
+            None => notes.extend(self.told(&self.runs, times_missing)),
         }
         notes
+    }
+
+    /// A run of each view.
+    fn of_each_view(&self) -> Vec<&'a Run> {
+        let runs = self.runs.iter().copied();
+        runs.unique_by(|run| &run.view).collect()
+    }
+
+    /// Lines on runs, with their views where there are several.
+    fn told<L: IntoIterator<Item = String>>(
+        &self,
+        runs: &[&Run],
+        say: impl Fn(&Run) -> L,
+    ) -> Vec<String> {
+        let each = runs.iter().flat_map(|run| {
+            let lines = say(run).into_iter();
+            lines.map(|line| self.named(run, line)).collect::<Vec<_>>()
+        });
+        each.collect()
     }
 
     /// A line with the view or path that it is of, where there are several.
@@ -272,25 +276,13 @@ impl<'a> Summary<'a> {
     /// That promises end at open parts, and whose.
     fn open_parts(&self) -> Option<String> {
         let parts = &self.results.scene.parts;
-        if parts.open == 0 {
+        let closed_only = |run: &&&Run| run.promise.as_ref().is_some_and(|of| of.closed_only);
+        let methods = self.runs.iter().filter(closed_only);
+        let methods = methods.map(|run| format!("`{}`", run.preset));
+        let methods: Vec<String> = methods.sorted().dedup().collect();
+        if parts.open == 0 || methods.is_empty() {
             return None;
         }
-        let closed_only = |run: &&&Run| {
-            matches!(
-                run.promise,
-                Some(Promise {
-                    closed_only: true,
-                    ..
-                })
-            )
-        };
-        let methods: BTreeSet<String> = self
-            .runs
-            .iter()
-            .filter(closed_only)
-            .map(|run| format!("`{}`", run.preset))
-            .collect();
-        let methods: Vec<String> = methods.into_iter().collect();
         let share = format!(
             "{} of the mesh's {} are open ({} of its triangles)",
             thousands(parts.open),
@@ -300,20 +292,17 @@ impl<'a> Summary<'a> {
             },
             percent(parts.open_triangles, self.results.scene.triangles)
         );
-        (!methods.is_empty()).then(|| {
-            format!(
-                "{share}: what {} promise{} ends at shadows of these, unless --set cull=none",
-                methods.join(", "),
-                if methods.len() == 1 { "s" } else { "" }
-            )
-        })
+        let s = if methods.len() == 1 { "s" } else { "" };
+        let methods = methods.join(", ");
+        Some(format!(
+            "{share}: what {methods} promise{s} ends at shadows of these, unless --set cull=none"
+        ))
     }
 
     /// Says of each view that pixels show a surface that is not seen there.
     fn wrong_surfaces(&self) -> Vec<String> {
         let views = self.views();
-        let mut told = BTreeSet::new();
-        let each = self.runs.iter().filter(|run| told.insert(&run.view));
+        let each = self.of_each_view().into_iter();
         let notes = each.filter_map(|run| Some((run, surface_warning(run)?)));
         notes
             .map(|(run, note)| match views.len() {
@@ -363,12 +352,12 @@ fn or_dash<T>(value: Option<T>, text: impl Fn(T) -> String) -> String {
 /// means where there are several views.
 pub fn passes(results: &Results) -> String {
     let measured = results.runs.iter().filter(|run| run.measured.is_some());
-    let methods: Vec<&String> = measured.map(|run| &run.preset).collect();
-    let tables = unique(&methods).into_iter().map(|method| {
+    let methods = unique(measured.map(|run| &run.preset));
+    let mut tables = methods.into_iter().map(|method| {
         let runs = results.runs.iter().filter(|run| run.preset == *method);
         matrix(method, &runs.collect::<Vec<_>>())
     });
-    tables.collect::<Vec<_>>().join("\n")
+    tables.join("\n")
 }
 
 fn matrix(method: &str, runs: &[&Run]) -> String {
@@ -376,22 +365,15 @@ fn matrix(method: &str, runs: &[&Run]) -> String {
     let mut passes: Vec<&str> = Vec::new();
     // A pass's place, and the sum and number of its times, by pass and column.
     let mut times: BTreeMap<(usize, usize), (f64, u32)> = BTreeMap::new();
-    let place = |list: &mut Vec<&'_ str>, name| list.iter().position(|known| *known == name);
+
     for run in runs {
         let Some(measured) = &run.measured else {
             continue;
         };
         let cell = (run.viewport, run.map_size);
-        let column = columns.iter().position(|known| *known == cell);
-        let column = column.unwrap_or_else(|| {
-            columns.push(cell);
-            columns.len() - 1
-        });
+        let column = place(&mut columns, cell);
         for pass in &measured.passes {
-            let row = place(&mut passes, pass.name.as_str()).unwrap_or_else(|| {
-                passes.push(&pass.name);
-                passes.len() - 1
-            });
+            let row = place(&mut passes, pass.name.as_str());
             if let Some(gpu) = pass.gpu_ms {
                 let (sum, count) = times.entry((row, column)).or_default();
                 *sum += gpu.median;
@@ -399,17 +381,12 @@ fn matrix(method: &str, runs: &[&Run]) -> String {
             }
         }
     }
-    let heads: Vec<String> = columns
-        .iter()
-        .map(|(viewport, map)| match map {
-            Some(map) => format!("{}\nmap {map}", size(*viewport)),
-            None => size(*viewport),
-        })
-        .collect();
-    let first = format!("{method}, GPU ms");
-    let heads = [first.as_str()]
-        .into_iter()
-        .chain(heads.iter().map(String::as_str));
+    let head = |(viewport, map): &([u32; 2], Option<u32>)| match map {
+        Some(map) => format!("{}\nmap {map}", size(*viewport)),
+        None => size(*viewport),
+    };
+    let heads = [format!("{method}, GPU ms")].into_iter();
+    let heads = heads.chain(columns.iter().map(head));
     let rows = passes.iter().enumerate().map(|(row, name)| {
         let cell = |column| {
             let time = times.get(&(row, column));
@@ -425,6 +402,7 @@ fn matrix(method: &str, runs: &[&Run]) -> String {
 mod tests {
     use super::*;
     use crate::samples::results as sample;
+    use skiagraph_compare::records::results::Promise;
     use skiagraph_compare::records::steady::{Cycle, Steady};
 
     /// `sample()` with a second view, and with a promise that ends at open parts.

@@ -78,6 +78,11 @@ impl<'a> Contender<'a> {
             ),
         }
     }
+
+    fn figures(&self) -> String {
+        let ms = ms(self.frame);
+        format!("`{}` ({}, {ms} ms)", self.label, self.error())
+    }
 }
 
 type Time = fn(&Contender) -> f64;
@@ -86,21 +91,24 @@ const TIMES: [(&str, Time); 2] = [
     ("while only the camera moves", |of| of.kept),
 ];
 
-fn fastest<'c, 'a>(of: &'c [Contender<'a>], time: Time) -> Option<&'c Contender<'a>> {
-    of.iter()
-        .min_by(|one, other| time(one).total_cmp(&time(other)))
+fn least<'c, 'a>(
+    of: impl IntoIterator<Item = &'c Contender<'a>>,
+    figure: impl Fn(&Contender) -> f64,
+) -> Option<&'c Contender<'a>> {
+    let of = of.into_iter();
+    of.min_by(|one, other| figure(one).total_cmp(&figure(other)))
 }
 
 fn hard(all: &[Contender]) -> Verdict {
     let exact: Vec<Contender> = all.iter().filter(|of| of.is_exact()).cloned().collect();
-    let Some(best) = fastest(&exact, TIMES[0].1) else {
+    let Some(best) = least(&exact, TIMES[0].1) else {
         return Verdict {
             fastest_exact: None,
             sentences: none_exact(all),
         };
     };
     let mut sentences = Vec::new();
-    let kept = fastest(&exact, TIMES[1].1).unwrap_or(best);
+    let kept = least(&exact, TIMES[1].1).unwrap_or(best);
     if kept.index == best.index {
         sentences.push(sentence(best, None, &exact, all));
     } else {
@@ -143,14 +151,14 @@ fn sentence(
         text += &format!(" ({} while only the camera moves)", ms(best.kept));
     }
     let all_exact = exact.len() == all.len();
-    let quickest = fastest(all, time).filter(|_| !all_exact);
+    let quickest = least(all, time).filter(|_| !all_exact);
     if let Some(of) = quickest.filter(|of| time(of) > 0.0 && of.index != best.index) {
         let times = ratio(time(best) / time(of));
         text += &format!(", {times} x `{}` ({})", of.label, of.error());
     }
     let other_method = |of: &&Contender| of.method != best.method && !level(of);
     let next = exact.iter().filter(other_method);
-    if let Some(of) = next.min_by(|one, other| time(one).total_cmp(&time(other))) {
+    if let Some(of) = least(next, time) {
         let times = ratio(time(best) / time(of));
         text += &format!(", {times} x `{}`, the next exact method", of.label);
     }
@@ -161,52 +169,38 @@ fn sentence(
 }
 
 fn none_exact(all: &[Contender]) -> Vec<String> {
-    let least = all.iter().min_by(|one, other| {
+    let right = all.iter().min_by(|one, other| {
         let shares = one.wrong.share().total_cmp(&other.wrong.share());
         shares.then(one.frame.total_cmp(&other.frame))
     });
-    let (Some(least), Some(fastest)) = (least, fastest(all, TIMES[0].1)) else {
+    let (Some(right), Some(fastest)) = (right, least(all, TIMES[0].1)) else {
         return Vec::new();
     };
-    let of = |of: &Contender| format!("`{}` ({}, {} ms)", of.label, of.error(), ms(of.frame));
-    vec![if least.index == fastest.index {
-        format!(
-            "None is exact here; the least wrong and the fastest is {}.",
-            of(least)
-        )
+    let (wrong, quick) = (right.figures(), fastest.figures());
+    vec![if right.index == fastest.index {
+        format!("None is exact here; the least wrong and the fastest is {wrong}.")
     } else {
-        format!(
-            "None is exact here; the least wrong is {}, the fastest {}.",
-            of(least),
-            of(fastest)
-        )
+        format!("None is exact here; the least wrong is {wrong}, the fastest {quick}.")
     }]
 }
 
 /// Judges errors of shares: the least one, and the fastest.
 fn graded(all: &[Contender], rows: &[Row]) -> Verdict {
     let rmse = |of: &Contender| of.rmse.unwrap_or(f64::INFINITY);
-    let least = all
-        .iter()
-        .min_by(|one, other| rmse(one).total_cmp(&rmse(other)));
-    let (Some(least), Some(fastest)) = (least, fastest(all, TIMES[0].1)) else {
+    let (Some(right), Some(fastest)) = (least(all, rmse), least(all, TIMES[0].1)) else {
         return Verdict::default();
     };
-    let of = |of: &Contender| format!("`{}` ({}, {} ms)", of.label, of.error(), ms(of.frame));
-    let mut text = if least.index == fastest.index {
-        format!("The least error and the fastest: {}", of(least))
+    let (error, quick) = (right.figures(), fastest.figures());
+    let mut text = if right.index == fastest.index {
+        format!("The least error and the fastest: {error}")
     } else {
-        format!(
-            "The least error: {}; the fastest: {}",
-            of(least),
-            of(fastest)
-        )
+        format!("The least error: {error}; the fastest: {quick}")
     };
     let own = rows
         .iter()
         .filter_map(Row::reference_error)
         .reduce(f64::max);
-    if let Some(own) = own.filter(|own| rmse(least) < 10.0 * own) {
+    if let Some(own) = own.filter(|own| rmse(right) < 10.0 * own) {
         text += &format!(
             "; the reference's own error is {own:.4}, more samples would tell more \
              (--reference-samples)"

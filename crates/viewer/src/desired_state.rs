@@ -28,7 +28,7 @@ pub struct DesiredState {
 }
 
 /// A method of the desired state.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct DesiredMethod {
     /// Preset or path.
     pub name: String,

@@ -11,13 +11,14 @@ use skiagraph_compare::pictures::material::Picture;
 use skiagraph_compare::wording::{percent, thousands};
 use skiagraph_gpu::Content;
 use skiagraph_graph::{Capture, PartSummary};
-use skiagraph_reference::{Class, Image, statistics::UNANSWERED};
+use skiagraph_reference::{GroundTruthPixels, Image, statistics::UNANSWERED};
 use std::collections::BTreeMap;
 
 /// Kinds of pictures of a pane.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub enum Show {
     /// The scene in the method's light.
+    #[default]
     Shaded,
     /// The output `visibility`, with the status' background and what faces away.
     Visibility,
@@ -30,7 +31,7 @@ pub enum Show {
 }
 
 /// How a material is shown.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reading {
     /// Which of its mips and layers, in their order.
     pub part: usize,
@@ -106,28 +107,22 @@ fn lit(snapshot: &FrameSnapshot, method: &MethodSnapshot, show: &Show) -> Result
         _ => Image::shaded(&shown, facing),
     };
     let uncertain = outputs.status.iter().filter(|&&status| status == 4).count() as u64;
-    let facing_light = facing.classes.iter().filter(|class| class.faces_light());
-    let facing_light = facing_light.count() as u64;
-    let legend = match show {
+    let mut legend = match show {
         Show::Visibility => "black shadow, white light, green facing away".to_owned(),
         Show::Uncertain => format!(
             "purple: uncertain, {} of the pixels that face the light",
-            percent(uncertain, facing_light)
+            percent(uncertain, facing_light(facing))
         ),
         _ => "lit by what the method sees of the light".to_owned(),
     };
-    let legend = match outputs.rays {
-        Some(rays) => format!("{legend}; {} rays", thousands(rays)),
-        None => legend,
-    };
+    if let Some(rays) = outputs.rays {
+        legend += &format!("; {} rays", thousands(rays));
+    }
     let unanswered = outputs.visibility.iter();
-    let legend = match unanswered.filter(|&&shown| shown == UNANSWERED).count() {
-        0 => legend,
-        count => format!(
-            "{legend}; {} pixels without an answer",
-            thousands(count as u64)
-        ),
-    };
+    let unanswered = unanswered.filter(|&&shown| shown == UNANSWERED).count() as u64;
+    if unanswered > 0 {
+        legend += &format!("; {} pixels without an answer", thousands(unanswered));
+    }
     // The numbers under the cursor are those of the answer.
     let numbers = method.contents.get(VISIBILITY).map(Content::split);
     let numbers = numbers
@@ -182,25 +177,27 @@ pub fn of_pixels(stride: u32) -> &'static str {
     }
 }
 
-fn verdict(judgement: &Judgement, truth: &skiagraph_reference::GroundTruthPixels) -> String {
+/// Pixels that face the light.
+fn facing_light(truth: &GroundTruthPixels) -> u64 {
+    let facing = truth.classes.iter().filter(|class| class.faces_light());
+    facing.count() as u64
+}
+
+fn verdict(judgement: &Judgement, truth: &GroundTruthPixels) -> String {
     if let Some(graded) = &judgement.graded {
         return format!(
             "blue too light, red too dark; RMSE {:.4}, mean {:.4}, FLIP {:.4}",
             graded.rmse, graded.mean_absolute_error, graded.flip
         );
     }
-    let facing = truth
-        .classes
-        .iter()
-        .filter(|class: &&Class| class.faces_light());
-    let facing = facing.count() as u64;
+
     let wrong = &judgement.counts.wrong;
     let outside = wrong.total - wrong.in_band;
     format!(
         "blue wrongly lit, red wrongly in shadow, paler in the band, rings around lone ones; {} \
          wrong outside the band ({}), {} in it",
         thousands(outside),
-        percent(outside, facing),
+        percent(outside, facing_light(truth)),
         thousands(wrong.in_band)
     )
 }
@@ -285,15 +282,13 @@ fn material(method: &MethodSnapshot, name: &str, reading: &Reading) -> Drawn {
 
 fn table(text: &str) -> Drawn {
     let lines = text.lines().count().saturating_sub(1);
+    let items = thousands(lines as u64);
     let shown: Vec<&str> = text.lines().take(MOST_LINES + 1).collect();
     Drawn {
         legend: if lines > MOST_LINES {
-            format!(
-                "the first {MOST_LINES} of {} items",
-                thousands(lines as u64)
-            )
+            format!("the first {MOST_LINES} of {items} items")
         } else {
-            format!("{} items", thousands(lines as u64))
+            format!("{items} items")
         },
         table: Some(shown.join("\n")),
         ..Drawn::default()

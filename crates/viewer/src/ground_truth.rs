@@ -87,11 +87,8 @@ impl GroundTruthThread {
 
     /// Asks about a frame, if that was not the last question; what was asked before is given up.
     pub fn ask(&mut self, snapshot: &FrameSnapshot) {
-        if self
-            .last
-            .as_ref()
-            .is_some_and(|last| last.is_about(snapshot))
-        {
+        let mut last = self.last.iter();
+        if last.any(|last| last.is_about(snapshot)) {
             return;
         }
         self.forget();

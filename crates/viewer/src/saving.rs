@@ -49,10 +49,8 @@ pub fn save(
             "{scene}: {why}; copy the view and paste it into a scene file's `views`"
         ))
     };
-    let located = library
-        .locate(scene)
-        .map_err(|error| by_hand(error.to_string()))?;
-    let (file, text) = located;
+    let located = library.locate(scene);
+    let (file, text) = located.map_err(|error| by_hand(error.to_string()))?;
     let parsed = SceneFile::parse(&text, scene).map_err(|error| by_hand(error.to_string()))?;
     let taken = |name: &str| parsed.views.iter().any(|view| view.name == name);
     let name = first_free("seen", |name| !taken(name));
@@ -62,10 +60,8 @@ pub fn save(
     };
     let text =
         with_view(&text, &named).ok_or_else(|| by_hand("its views were not found".into()))?;
-    let folder = file
-        .as_deref()
-        .and_then(Path::parent)
-        .unwrap_or(Path::new(""));
+    let folder = file.as_deref().and_then(Path::parent);
+    let folder = folder.unwrap_or(Path::new(""));
     let stem = file.as_deref().and_then(Path::file_stem);
     let stem = stem.map_or(scene.into(), |stem| stem.to_string_lossy().into_owned());
     let path = |name: &str| folder.join(format!("{name}.ron"));

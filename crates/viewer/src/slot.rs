@@ -26,6 +26,7 @@ struct PlannedFor {
 }
 
 /// One method.
+#[derive(Default)]
 pub struct Slot {
     name: String,
     preset: Option<Preset>,
@@ -48,15 +49,7 @@ impl Slot {
     pub fn new(name: &str) -> Self {
         Self {
             name: name.to_owned(),
-            preset: None,
-            executor: None,
-            planned: None,
-            refused: None,
-            faults: None,
-            error: None,
-            texts: None,
-            reads: 0,
-            last: MethodSnapshot::default(),
+            ..Self::default()
         }
     }
 
@@ -127,7 +120,7 @@ impl Slot {
                 Ok(snapshot) => self.last = snapshot,
                 Err(error) => {
                     if let Some(planned) = self.planned.clone() {
-                        self.refuse(planned, Refusal::new(error))?;
+                        self.refuse(planned, error.into())?;
                     }
                     self.forget_device();
                 }
@@ -167,23 +160,17 @@ impl Slot {
         if let (Some(executor), Some(planned)) = (&mut self.executor, &self.planned)
             && planned.only_sets_params(next)
         {
-            executor.refresh(provider).map_err(Refusal::new)?;
+            executor.refresh(provider)?;
             for (name, value) in &next.desired.params {
-                let set = executor.set_param(name, value.clone(), provider);
-                set.map_err(Refusal::new)?;
+                executor.set_param(name, value.clone(), provider)?;
             }
         } else {
             let plan = plan(preset, next, Capabilities::new(session.gpu), provider)?;
             match &mut self.executor {
                 Some(executor) => {
-                    executor
-                        .replace_graph(plan, provider)
-                        .map_err(Refusal::new)?;
+                    executor.replace_graph(plan, provider)?;
                 }
-                None => {
-                    let made = frame::executor(session, plan, provider);
-                    self.executor = Some(made.map_err(Refusal::new)?);
-                }
+                None => self.executor = Some(frame::executor(session, plan, provider)?),
             }
         }
         self.planned = Some(next.clone());
@@ -239,8 +226,8 @@ struct Refusal {
     is_fatal: bool,
 }
 
-impl Refusal {
-    fn new(error: ExecuteError) -> Self {
+impl From<ExecuteError> for Refusal {
+    fn from(error: ExecuteError) -> Self {
         Self {
             text: match &error {
                 ExecuteError::Plan(found) => found.render(false),

@@ -124,8 +124,7 @@ fn desired_methods(opening: &Opening, sink: &dyn Sink) -> Result<Vec<DesiredMeth
     if !own && map_sizes.is_empty() && params.is_empty() {
         let plain = arguments.into_iter().map(|argument| DesiredMethod {
             name: argument.preset,
-            params: Default::default(),
-            material: None,
+            ..DesiredMethod::default()
         });
         return Ok(plain.collect());
     }

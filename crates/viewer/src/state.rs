@@ -30,6 +30,7 @@ pub enum Drag {
 }
 
 /// One of the pictures.
+#[derive(Default)]
 pub struct Pane {
     /// Kind of picture that it shows.
     pub show: Show,
@@ -42,23 +43,6 @@ pub struct Pane {
     /// GPU times of the last frames, or wall times where there are none, milliseconds.
     pub history: VecDeque<f64>,
     is_stale: bool,
-}
-
-impl Pane {
-    fn new() -> Self {
-        Self {
-            show: Show::Shaded,
-            reading: Reading {
-                part: 0,
-                heat: None,
-                channel: 0,
-            },
-            drawn: Drawn::default(),
-            version: 0,
-            history: VecDeque::new(),
-            is_stale: true,
-        }
-    }
 }
 
 /// Channels to and from the other threads.
@@ -120,7 +104,7 @@ impl Viewer {
             loaded: None,
             snapshot: None,
             answer: None,
-            panes: [Pane::new(), Pane::new()],
+            panes: Default::default(),
             drag: Drag::Look,
             keep_running: false,
             is_judged: false,
@@ -137,11 +121,7 @@ impl Viewer {
             is_new = true;
         }
         while let Ok(answer) = self.channels.answers.try_recv() {
-            let fits = self
-                .snapshot
-                .as_ref()
-                .is_some_and(|snapshot| answer.question.is_about(snapshot));
-            if fits {
+            if self.fits(&answer) {
                 self.answer = Some(answer);
                 self.redraw();
                 is_new = true;
@@ -159,6 +139,12 @@ impl Viewer {
             }
         }
         is_new
+    }
+
+    /// True if an answer is about what is shown.
+    fn fits(&self, answer: &Answer) -> bool {
+        let mut shown = self.snapshot.iter();
+        shown.any(|snapshot| answer.question.is_about(snapshot))
     }
 
     fn on_event(&mut self, event: Event) {
@@ -184,13 +170,8 @@ impl Viewer {
                 // A scene is chosen by its first frame, which says where it is seen from.
                 let is_newest = self.sent.as_ref() == Some(&snapshot.desired);
                 self.snapshot = Some(*snapshot);
-                let about = |answer: &Answer| {
-                    let snapshot = self.snapshot.as_ref();
-                    snapshot.is_some_and(|snapshot| answer.question.is_about(snapshot))
-                };
-                if !self.answer.as_ref().is_some_and(about) {
-                    self.answer = None;
-                }
+                let answer = self.answer.take();
+                self.answer = answer.filter(|answer| self.fits(answer));
                 self.redraw();
                 if self.keep_running && is_newest {
                     self.desired.frame += 1;
@@ -276,13 +257,13 @@ impl Viewer {
 
     /// Another method in a pane, with its defaults.
     pub fn choose_method(&mut self, index: usize, name: &str) {
+        let name = name.to_owned();
         let method = DesiredMethod {
-            name: name.to_owned(),
-            params: Default::default(),
-            material: None,
+            name,
+            ..DesiredMethod::default()
         };
         match self.desired.methods.get_mut(index) {
-            Some(place) if place.name == name => return,
+            Some(place) if place.name == method.name => return,
             Some(place) => *place = method,
             None => self.desired.methods.push(method),
         }

@@ -13,15 +13,14 @@ pub struct Texels {
     /// Width and height.
     pub size: [u32; 2],
     channels: usize,
-    values: Values,
+    values: Vec<f64>,
+    is_whole: bool,
     is_depth: bool,
     planes: Option<ClipPlanes>,
 }
 
-enum Values {
-    U32(Vec<u32>),
-    I32(Vec<i32>),
-    F32(Vec<f32>),
+fn wide<N: Into<f64>>(numbers: Vec<N>) -> Vec<f64> {
+    numbers.into_iter().map(Into::into).collect()
 }
 
 /// How often values occur.
@@ -43,21 +42,17 @@ impl Texels {
         let Content::Texture { format, parts, .. } = part else {
             return None;
         };
-        let values = part.as_u32().map(Values::U32);
-        let values = values.or_else(|| part.as_i32().map(Values::I32));
-        let values = values.or_else(|| part.as_f32().map(Values::F32))?;
-        let size = *parts.first()?;
-        let count = match &values {
-            Values::U32(values) => values.len(),
-            Values::I32(values) => values.len(),
-            Values::F32(values) => values.len(),
-        };
+        let whole = part.as_u32().map(wide).or_else(|| part.as_i32().map(wide));
+        let is_whole = whole.is_some();
+        let values = whole.or_else(|| part.as_f32().map(wide))?;
+        let (size, count) = (*parts.first()?, values.len());
         let texels = size[0] as usize * size[1] as usize;
         let channels = usize::from(format.components());
         (texels * channels == count && count > 0).then_some(Self {
             size,
             channels,
             values,
+            is_whole,
             is_depth: format.is_depth_stencil_format(),
             planes,
         })
@@ -74,15 +69,17 @@ impl Texels {
             return None;
         }
         let first = (y as usize * self.size[0] as usize + x as usize) * self.channels;
-        let range = first..first + self.channels;
-        let texts: Vec<String> = match &self.values {
-            Values::U32(values) => values[range].iter().map(u32::to_string).collect(),
-            Values::I32(values) => values[range].iter().map(i32::to_string).collect(),
-            Values::F32(values) => values[range].iter().map(f32::to_string).collect(),
+        let text = |&value: &f64| {
+            if self.is_whole {
+                value.to_string()
+            } else {
+                (value as f32).to_string()
+            }
         };
-        let distance = self
-            .planes
-            .map(|planes| planes.distance(self.number(first) as f32));
+        let values = &self.values[first..first + self.channels];
+        let texts: Vec<String> = values.iter().map(text).collect();
+        let depth = self.values[first] as f32;
+        let distance = self.planes.map(|planes| planes.distance(depth));
         Some(match distance {
             Some(distance) if self.is_depth => {
                 format!("{} = {distance} along the view", texts.join(", "))
@@ -91,20 +88,12 @@ impl Texels {
         })
     }
 
-    fn number(&self, index: usize) -> f64 {
-        match &self.values {
-            Values::U32(values) => f64::from(values[index]),
-            Values::I32(values) => f64::from(values[index]),
-            Values::F32(values) => f64::from(values[index]),
-        }
-    }
-
     /// The values of a channel. A camera's depths are distances here, or all would lie in the last
     /// bar; those that nothing has written are left out.
     fn numbers(&self, channel: usize) -> impl Iterator<Item = Option<f64>> {
         let texels = self.size[0] as usize * self.size[1] as usize;
         (0..texels).map(move |texel| {
-            let number = self.number(texel * self.channels + channel);
+            let number = self.values[texel * self.channels + channel];
             if !self.is_depth {
                 return Some(number);
             }

@@ -129,11 +129,8 @@ impl Worker {
 
     /// Loads the scene, if it is another one; says whether there is one.
     fn load(&mut self, desired: &DesiredState) -> bool {
-        if self
-            .stage
-            .as_ref()
-            .is_some_and(|stage| stage.name == desired.scene)
-        {
+        let loaded = self.stage.as_ref().map(|stage| &stage.name);
+        if loaded == Some(&desired.scene) {
             return true;
         }
         if self.failed_scene.as_ref() == Some(&desired.scene) {
@@ -142,14 +139,10 @@ impl Worker {
         match (self.load_scene)(&desired.scene) {
             Ok((scene, views)) => {
                 let scene = Arc::new(scene);
-                let mut all = views;
-                let others = scene.views.iter();
-                let others: Vec<View> = others
-                    .filter(|view| all.iter().all(|known| known.name != view.name))
-                    .cloned()
-                    .collect();
-                all.extend(others);
-                let loaded = Loaded { scene, views: all };
+                let is_other = |view: &&View| views.iter().all(|known| known.name != view.name);
+                let others: Vec<View> = scene.views.iter().filter(is_other).cloned().collect();
+                let views = [views, others].concat();
+                let loaded = Loaded { scene, views };
                 (self.tell)(Event::Scene(desired.scene.clone(), Ok(loaded.clone())));
                 self.slots.iter_mut().for_each(Slot::forget_device);
                 self.failed_scene = None;

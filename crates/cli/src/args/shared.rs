@@ -77,7 +77,7 @@ impl From<BackendWord> for wgpu::Backends {
 const MAX_SECONDS: u64 = 86_400;
 
 /// The scene to draw, and the place that it is seen from.
-#[derive(Args, Clone, Debug)]
+#[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Scene")]
 pub struct SceneArgs {
     /// Built-in scene, scene file (.ron), name in scenes/, or a mesh (.obj, .gltf, .glb).
@@ -164,26 +164,6 @@ impl SceneArgs {
         match &self.light {
             Some(LightArgument::Name(name)) => Some(name),
             Some(LightArgument::Direction(_)) | None => None,
-        }
-    }
-}
-
-#[cfg(feature = "window")]
-impl SceneArgs {
-    /// A scene as its file says.
-    pub fn new(scene: &str) -> Self {
-        Self {
-            scene: scene.to_owned(),
-            view: None,
-            eye: None,
-            look: None,
-            light: None,
-            up: None,
-            fov: None,
-            near: None,
-            far: None,
-            materials: None,
-            concave: None,
         }
     }
 }

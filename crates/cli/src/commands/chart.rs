@@ -6,7 +6,6 @@ use crate::terminal::console::{note, print};
 use skiagraph_compare::files::write::{check_folder, check_writable, write_whole};
 use skiagraph_compare::records::published;
 use skiagraph_compare::records::published_row::PublishedFile;
-use skiagraph_compare::records::read_back;
 use skiagraph_compare::size::Size;
 use skiagraph_compare::wording::plural;
 use skiagraph_report::charts::{self, Kept};
@@ -42,9 +41,7 @@ pub fn chart(args: &ChartArgs) -> Result<(), CliError> {
             "there is nothing to draw: no run{of} has measurements"
         )));
     }
-    let svg = figure
-        .to_svg()
-        .map_err(|error| CliError::Input(error.to_string()))?;
+    let svg = charts::svg(&figure)?;
     match &args.out {
         Some(file) if file.extension().is_some_and(|it| it == "png") => {
             Ok(write_whole(file, &raster::png(&svg)?)?)
@@ -56,14 +53,7 @@ pub fn chart(args: &ChartArgs) -> Result<(), CliError> {
 
 fn kept(args: &ChartArgs) -> Result<Vec<Kept>, CliError> {
     let folders = args.folders.iter();
-    folders
-        .map(|folder| {
-            Ok(Kept {
-                folder: folder.clone(),
-                results: read_back::kept(folder)?,
-            })
-        })
-        .collect()
+    folders.map(|folder| Ok(Kept::read(folder)?)).collect()
 }
 
 /// Writes the charts of published figures and ours.
@@ -86,10 +76,10 @@ fn beside(args: &ChartArgs, file: &PublishedFile, folder: &Path) -> Result<(), C
     }
     check_folder(folder)?;
     for (name, figure) in &drawn.charts {
-        let svg = figure
-            .to_svg()
-            .map_err(|error| CliError::Input(error.to_string()))?;
-        write_whole(&folder.join(format!("{name}.svg")), svg.as_bytes())?;
+        write_whole(
+            &folder.join(format!("{name}.svg")),
+            charts::svg(figure)?.as_bytes(),
+        )?;
     }
     let count = plural(drawn.charts.len(), "chart");
     note(&format!("{count} in {}", folder.display()));

@@ -1,15 +1,15 @@
 //! `skiagraph compare`: every method on every view, viewport and map size, speed beside error.
 
 use crate::args::commands::{CompareArgs, Format, Images};
-use crate::args::shared::{GpuArgs, SceneArgs};
-use crate::args::values::LightArgument;
+use crate::args::shared::GpuArgs;
 use crate::error::CliError;
-use crate::scene_selection::{SceneSelection, check_path};
+use crate::scene_selection::{SceneSelection, paths};
 use crate::terminal::{
     Terminal,
     console::{note, print},
     interrupt,
 };
+use itertools::Itertools;
 use skiagraph_compare::comparison::{Comparison, Protocol};
 use skiagraph_compare::error::CompareError;
 use skiagraph_compare::files::{
@@ -36,7 +36,7 @@ use skiagraph_report::{
     markdown, page, results_table,
     summary_table::{self, Summary},
 };
-use skiagraph_scene::{Scene, SceneLibrary, View};
+use skiagraph_scene::Scene;
 use std::sync::Arc;
 
 /// Checks everything, then runs the comparison.
@@ -56,15 +56,18 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let session = Session::new(&gpu, &Terminal);
     let SceneSelection { scene, views } = SceneSelection::load(&args.scene)?;
     let scene = Arc::new(scene);
-    let views = views_or_paths(
-        args,
-        &scene,
-        views,
-        &lights(args, &methods, &scene, session),
-    )?;
+    let light = light_name(args, &methods, &scene, session);
+    let views = match (&args.path, &args.scene.light) {
+        (Some(name), _) => paths(&args.scene, &scene, name, light)?,
+        (None, Some(_)) => views.into_iter().map(ViewOrPath::Still).collect(),
+        (None, None) => {
+            let views = under_lights(&scene, views, light)?.into_iter();
+            views.map(ViewOrPath::Still).collect()
+        }
+    };
     let comparison = Comparison {
         views,
-        viewports: unique(&args.size).iter().map(|Size(size)| *size).collect(),
+        viewports: unique(args.size.iter().map(|Size(size)| *size)),
         methods,
         protocol: Protocol {
             frames: args.frames,
@@ -133,46 +136,21 @@ fn graphs(comparison: &Comparison, session: Session) -> Vec<(String, String)> {
     comparison.methods.iter().filter_map(chart).collect()
 }
 
-/// The scene arguments: where a method answers for every light it is judged under every light,
+/// The light by its name: where a method answers for every light it is judged under every light,
 /// unless one is named.
-fn lights(
-    args: &CompareArgs,
+fn light_name<'a>(
+    args: &'a CompareArgs,
     methods: &[Method],
     scene: &Arc<Scene>,
     session: Session,
-) -> SceneArgs {
+) -> Option<&'a str> {
     let provider = SceneProvider::new(scene.clone());
     let device = Capabilities::new(session.gpu);
     let is_layered = |method: &Method| shadow_method::is_layered(method, &device, &provider);
-    let all = || LightArgument::Name("all".into());
-    match &args.scene.light {
-        None if methods.iter().any(is_layered) => SceneArgs {
-            light: Some(all()),
-            ..args.scene.clone()
-        },
-        _ => args.scene.clone(),
+    match args.scene.light {
+        None if methods.iter().any(is_layered) => Some("all"),
+        _ => args.scene.light_name(),
     }
-}
-
-/// The views, or the camera paths that are asked for, under the lights that are.
-fn views_or_paths(
-    args: &CompareArgs,
-    scene: &Scene,
-    views: Vec<View>,
-    lights: &SceneArgs,
-) -> Result<Vec<ViewOrPath>, CliError> {
-    let Some(name) = &args.path else {
-        let views = if args.scene.light == lights.light {
-            views
-        } else {
-            under_lights(scene, views, lights.light_name())?
-        };
-        return Ok(views.into_iter().map(ViewOrPath::Still).collect());
-    };
-    check_path(&args.scene, name)?;
-    let paths = SceneLibrary::from_environment().paths(&args.scene.scene);
-    let paths = paths.map_err(|error| CliError::Input(error.to_string()))?;
-    Ok(ViewOrPath::paths(scene, paths, name, lights.light_name())?)
 }
 
 /// Measures what is missing, and prints every view and viewport when it is whole.
@@ -214,18 +192,13 @@ fn print_summary(args: &CompareArgs, results: &Results) -> Result<(), CliError> 
     let summaries = summary_table::summaries(results);
     match args.format {
         Format::Table => {
-            let texts: Vec<String> = summaries.iter().map(Summary::text).collect();
-            print(&texts.join("\n"))?;
+            print(&summaries.iter().map(Summary::text).join("\n"))?;
             if args.passes {
-                print(&format!("\n{}\n", summary_table::passes(results)))
-            } else {
-                Ok(())
+                print(&format!("\n{}\n", summary_table::passes(results)))?;
             }
+            Ok(())
         }
-        Format::Markdown => {
-            let texts: Vec<String> = summaries.iter().map(Summary::markdown).collect();
-            print(&texts.concat())
-        }
+        Format::Markdown => print(&summaries.iter().map(Summary::markdown).collect::<String>()),
         Format::Json => print(&json::to_text(results)),
     }
 }

@@ -3,6 +3,7 @@
 use crate::args::commands::{PresetsArgs, PresetsFormat};
 use crate::error::CliError;
 use crate::terminal::{Terminal, console::print};
+use itertools::Itertools;
 use skiagraph_compare::graphs::method::Method;
 use skiagraph_compare::graphs::planning::{Capabilities, placeholder};
 use skiagraph_compare::graphs::preset::{self, Preset, RAY_COUNT, VISIBILITY};
@@ -18,15 +19,13 @@ use std::sync::Arc;
 pub fn presets(args: &PresetsArgs) -> Result<(), CliError> {
     let sources = preset::sources(&Terminal);
     let loaded = preset::load_all(&preset::names(&sources), &sources)?;
-    match args.format {
-        PresetsFormat::Text => {
-            let texts = loaded
-                .iter()
-                .map(|preset| describe(&preset.name, &preset.graph));
-            print(&texts.collect::<Vec<_>>().join("\n"))
-        }
-        PresetsFormat::Markdown => print(&table(&loaded)?),
-    }
+    let mut texts = loaded
+        .iter()
+        .map(|preset| describe(&preset.name, &preset.graph));
+    print(&match args.format {
+        PresetsFormat::Text => texts.join("\n"),
+        PresetsFormat::Markdown => table(&loaded)?,
+    })
 }
 
 fn describe(name: &str, graph: &Graph) -> String {
@@ -92,8 +91,7 @@ fn row(preset: &Arc<Preset>) -> Result<Vec<String>, CliError> {
     };
     let traces = graph.outputs().contains(&RAY_COUNT);
     let fits = preset.param("fit").map_or("–".to_owned(), |fit| {
-        let words: Vec<&str> = fit.words().map(|word| word.as_str()).collect();
-        words.join(", ")
+        fit.words().map(|word| word.as_str()).join(", ")
     });
     let method = Method::new(preset.clone(), Default::default());
     let promise = guarantee::find(&method, &[])?;

@@ -7,6 +7,7 @@ use crate::error::CliError;
 use crate::scene_selection::SceneSelection;
 use crate::terminal::console::{note, print};
 use crate::terminal::{Terminal, interrupt};
+use itertools::Itertools;
 use skiagraph_compare::error::CompareError;
 use skiagraph_compare::files::json;
 use skiagraph_compare::files::write::{check_writable, write_whole};
@@ -42,7 +43,7 @@ pub fn profile(args: &ProfileArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let gpu = device::open(&gpu.request(), graphs)?;
     let session = Session::new(&gpu, &Terminal);
     let SceneSelection { scene, views } = SceneSelection::load(&args.scene)?;
-    let viewports = unique(&args.size);
+    let viewports = unique(args.size.iter().map(|Size(size)| *size));
     let planned = methods.len() * views.len() * viewports.len();
     check_single(args, planned)?;
     interrupt::install()?;
@@ -52,7 +53,7 @@ pub fn profile(args: &ProfileArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     for method in methods {
         let method = method.settled(gpu.device.features());
         for view in &views {
-            for &Size(viewport) in &viewports {
+            for &viewport in &viewports {
                 let method = method.at(viewport);
                 let mut profile;
                 let count = [args.warmup, args.frames];
@@ -152,13 +153,11 @@ fn write(
     if let Some((path, profile)) = args.trace.as_ref().zip(single) {
         write_whole(path, trace(&profile.conditions, timed).as_bytes())?;
     }
-    let names: Vec<String> = files(args)
-        .iter()
-        .map(|(_, path)| path.display().to_string())
-        .collect();
-    if names.is_empty() {
-        return Ok(String::new());
+    let files = files(args);
+    let names = files.iter().map(|(_, path)| path.display()).join(", ");
+    if files.is_empty() {
+        return Ok(names);
     }
-    note(&format!("wrote {}", names.join(", ")));
-    Ok(format!("; so are {}", names.join(", ")))
+    note(&format!("wrote {names}"));
+    Ok(format!("; so are {names}"))
 }

@@ -13,13 +13,13 @@ use skiagraph_compare::graphs::preset;
 use skiagraph_compare::measuring::{device, frame, poison};
 use skiagraph_compare::pictures::colours::ClipPlanes;
 use skiagraph_compare::pictures::save::{
-    Decoding, Save, capture, captures, check_encodings, write,
+    Save, capture, captures, check_encodings, decodings, names, write_all,
 };
 use skiagraph_compare::sink::Session;
 use skiagraph_compare::wording::bytes;
 use skiagraph_graph::Plan;
 use skiagraph_passes::SceneProvider;
-use std::{collections::BTreeSet, sync::Arc};
+use std::sync::Arc;
 
 /// Plans, renders a frame, or those of a sequence, says what ran, and saves what was asked for.
 ///
@@ -33,16 +33,19 @@ pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
             "--save takes the picture of one view; give its name instead of `all`".into(),
         ));
     }
-    let name = |save: &Save| capture(save).name();
+
     let is_sequence = args.frames.is_some() || args.path.is_some();
     let files: Vec<Save> = if is_sequence {
         saves.iter().map(|save| of_frame(save, 0)).collect()
     } else {
         saves.clone()
     };
-    let files = files
-        .iter()
-        .map(|save| (format!("--save {}", name(save)), save.file.as_path()));
+    let files = files.iter().map(|save| {
+        (
+            format!("--save {}", capture(save).name()),
+            save.file.as_path(),
+        )
+    });
     check_writable(&files.collect::<Vec<_>>())?;
     let gpu = device::open(&gpu.request(), [&preset.graph])?;
     let session = Session::new(&gpu, &Terminal);
@@ -65,10 +68,7 @@ pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         let plan = preset.plan(&request, &Terminal)?;
         idle.note_of(&Terminal, &preset.name, &plan, provider.light());
         check_encodings(&plan, saves)?;
-        let readings: Vec<Decoding> = saves
-            .iter()
-            .map(|save| Decoding::new(&plan, &name(save), ClipPlanes::new(view)))
-            .collect();
+        let decodings = decodings(&plan, saves, ClipPlanes::new(view));
         print(&format!(
             "{} on {}, view {}, {}\n{}",
             preset.name,
@@ -82,21 +82,14 @@ pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
             .then(|| poison::check(session, &plan, &mut provider, preset));
         if let Some(poses) = &poses {
             poses.record(session, (preset, plan), &mut provider, saves)?;
-            if let Some(verdict) = poisoned {
-                print(&verdict?)?;
+        } else {
+            let (graph, names) = (&preset.name, names(saves));
+            let names: Vec<&str> = names.iter().map(String::as_str).collect();
+            let (contents, growth) = frame::render(session, graph, plan, &mut provider, &names)?;
+            print(&growth.text())?;
+            for said in write_all(graph, saves, &decodings, &contents) {
+                print(&said?)?;
             }
-            continue;
-        }
-        let names: BTreeSet<String> = saves.iter().map(name).collect();
-        let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        let (contents, growth) = frame::render(session, &preset.name, plan, &mut provider, &names)?;
-        print(&growth.text())?;
-        for (save, reading) in saves.iter().zip(readings) {
-            let name = name(save);
-            let content = contents.get(&name).ok_or_else(|| {
-                CliError::Input(format!("`{}` has no `{name}` to save", preset.name))
-            })?;
-            print(&write(save, content, &reading)?)?;
         }
         if let Some(verdict) = poisoned {
             print(&verdict?)?;

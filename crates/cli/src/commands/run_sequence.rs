@@ -2,7 +2,7 @@
 
 use crate::args::commands::RunArgs;
 use crate::error::CliError;
-use crate::scene_selection::check_path;
+use crate::scene_selection::paths;
 use crate::terminal::console::print;
 use crate::terminal::{Terminal, interrupt};
 use skiagraph_compare::graphs::preset::Preset;
@@ -12,13 +12,13 @@ use skiagraph_compare::measuring::mesh_frames::MeshFrames;
 use skiagraph_compare::measuring::view_or_path::ViewOrPath;
 use skiagraph_compare::pictures::colours::ClipPlanes;
 use skiagraph_compare::pictures::run_pictures::numbered;
-use skiagraph_compare::pictures::save::{Decoding, Save, capture, write};
+use skiagraph_compare::pictures::save::{Save, capture, decodings, names, write_all};
 use skiagraph_compare::sink::{Session, Step};
 use skiagraph_compare::wording::frames;
 use skiagraph_gpu::{Executor, Frame};
 use skiagraph_graph::Plan;
 use skiagraph_passes::SceneProvider;
-use skiagraph_scene::{CameraPath, Scene, SceneLibrary, View};
+use skiagraph_scene::{Scene, View};
 
 /// The file in which a frame is saved.
 pub fn of_frame(save: &Save, index: usize) -> Save {
@@ -81,13 +81,9 @@ impl PoseSequence {
     }
 
     fn path(args: &RunArgs, scene: &Scene, name: &str) -> Result<ViewOrPath, CliError> {
-        check_path(&args.scene, name)?;
-        let paths: Result<Vec<CameraPath>, _> =
-            SceneLibrary::from_environment().paths(&args.scene.scene);
-        let paths = paths.map_err(|error| CliError::Input(error.to_string()))?;
-        let mut views_or_paths = ViewOrPath::paths(scene, paths, name, args.scene.light_name())?;
-        match views_or_paths.len() {
-            1 => Ok(views_or_paths.remove(0)),
+        let mut found = paths(&args.scene, scene, name, args.scene.light_name())?.into_iter();
+        match (found.next(), found.next()) {
+            (Some(path), None) => Ok(path),
             _ => Err(CliError::Usage(
                 "--save takes the pictures of one path under one light; name them".into(),
             )),
@@ -133,21 +129,14 @@ impl PoseSequence {
             if let Some(mesh_frames) = &self.mesh_frames {
                 mesh_frames.show(index, provider)?;
             }
-            let readings = saves.iter();
-            let planes = ClipPlanes::new(&pose.view);
-            let plan = executor.plan();
-            let readings = readings.map(|save| Decoding::new(plan, &capture(save).name(), planes));
-            let readings: Vec<Decoding> = readings.collect();
+            let decodings = decodings(executor.plan(), saves, ClipPlanes::new(&pose.view));
             let contents = self
                 .frame(session, &mut executor, provider, (index, saves))
                 .map_err(failed)?;
-            for (save, reading) in saves.iter().zip(readings) {
-                let name = capture(save).name();
-                let content = contents.get(&name).ok_or_else(|| {
-                    CliError::Input(format!("`{}` has no `{name}` to save", preset.name))
-                })?;
-                write(&of_frame(save, index), content, &reading)?;
-            }
+            let files = saves.iter().map(|save| of_frame(save, index));
+            let files: Vec<Save> = files.collect();
+            write_all(&preset.name, &files, &decodings, &contents)
+                .try_for_each(|said| said.map(drop))?;
             step.set_done(index as u64 + 1);
         }
         step.end();
@@ -172,9 +161,7 @@ impl PoseSequence {
         (index, saves): (usize, &[Save]),
     ) -> Result<frame::Contents, skiagraph_gpu::ExecuteError> {
         executor.refresh(provider)?;
-        let mut names: Vec<String> = saves.iter().map(|save| capture(save).name()).collect();
-        names.sort();
-        names.dedup();
+        let names = names(saves);
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         let request = Frame {
             read: &names,

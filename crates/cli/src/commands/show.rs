@@ -13,9 +13,6 @@ use skiagraph_passes::registry;
 use skiagraph_scene::SceneLibrary;
 use std::collections::BTreeSet;
 
-/// Where documents and shaders stand.
-const FOLDERS: [&str; 4] = ["pipelines", "pipelines/shared", "shaders", "shaders/shared"];
-
 /// Prints a file of the working directory, else one that is built in; behind a document, as a
 /// comment, what its passes read and write; or a scene file.
 ///
@@ -118,7 +115,7 @@ fn find(name: &str, sources: &dyn Sources) -> Result<Found, CliError> {
             .map(|file| format!("{folder}/{file}"))
             .collect::<Vec<_>>()
     };
-    let files: Vec<String> = FOLDERS.iter().flat_map(in_folder).collect();
+    let files: Vec<String> = preset::FOLDERS.iter().flat_map(in_folder).collect();
     let listed = scenes.list().into_iter().map(|scene| scene.name);
     let listed: Vec<String> = listed.collect();
     // With their ending and without.

@@ -5,6 +5,7 @@ use crate::args::shared::GpuArgs;
 use crate::error::CliError;
 use crate::terminal::console::print;
 use crate::terminal::{Terminal, interrupt, progress};
+use itertools::Itertools;
 use skiagraph_cases::{Casters, HardCase};
 use skiagraph_compare::files::json::to_text;
 use skiagraph_compare::files::lock::{self, Locked, Shared};
@@ -22,7 +23,8 @@ use skiagraph_compare::records::results::PROGRAM;
 use skiagraph_compare::records::stress::{Column, Report, Verdict};
 use skiagraph_compare::records::table::Table;
 use skiagraph_compare::sink::Session;
-use skiagraph_compare::wording::{command_line, did_you_mean, plural};
+use skiagraph_compare::sink::Sink;
+use skiagraph_compare::wording::{command_line, did_you_mean, plural, unknown};
 use skiagraph_gpu::{device::Gpu, timing::Trust};
 use skiagraph_passes::SceneProvider;
 use skiagraph_report::stress_matrix;
@@ -110,14 +112,14 @@ fn run(
     progress::begin_quietly("hard cases", cases.len() as u64, "cases");
     let outcome = (0..).zip(cases).try_for_each(|(done, case)| {
         progress::set_part(case.name);
-        progress::set_done(done);
+        Terminal.set_done(done);
         report.cases.push(context.run(case)?);
         if let Some(folder) = out {
             write_whole(&folder.join("stress.json"), to_text(report).as_bytes())?;
         }
         Ok(())
     });
-    progress::end_step(outcome.is_ok());
+    Terminal.end_step(outcome.is_ok());
     outcome
 }
 
@@ -154,10 +156,12 @@ fn finish(
         (report.failed_cases(), "case"),
     ];
     let failed = failed.into_iter().filter(|(count, _)| *count > 0);
-    let failed: Vec<String> = failed.map(|(count, noun)| plural(count, noun)).collect();
-    match &failed[..] {
-        [] => Ok(()),
-        _ => Err(CliError::Judged(format!("{} failed", failed.join(" and ")))),
+    let failed = failed
+        .map(|(count, noun)| plural(count, noun))
+        .join(" and ");
+    match failed.as_str() {
+        "" => Ok(()),
+        failed => Err(CliError::Judged(format!("{failed} failed"))),
     }
 }
 
@@ -227,7 +231,7 @@ fn cases(names: &[String]) -> Result<Vec<HardCase>, CliError> {
             ))
         })
     };
-    unique(names).iter().map(find).collect()
+    unique(names).into_iter().map(find).collect()
 }
 
 /// A case with something to draw, if there is one: what is wrong with a graph on an empty mesh is a
@@ -238,16 +242,12 @@ fn with_triangles(cases: &[HardCase]) -> HardCase {
 }
 
 fn check_exact(exact: &[String], names: &[String]) -> Result<(), CliError> {
-    match exact.iter().find(|name| !names.contains(name)) {
-        None => Ok(()),
-        Some(name) => {
-            let hint = did_you_mean(name, names.iter().map(String::as_str));
-            Err(CliError::Usage(format!(
-                "--exact {name}: none of the methods that run has this name{hint}\n  methods: {}",
-                names.join(", ")
-            )))
-        }
-    }
+    let Some(name) = exact.iter().find(|name| !names.contains(name)) else {
+        return Ok(());
+    };
+    let what = format!("--exact {name}: none of the methods that run has this name");
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    Err(CliError::Usage(unknown(&what, name, "methods", &names)))
 }
 
 /// Refuses cells that would overwrite each other's pictures, before anything runs.

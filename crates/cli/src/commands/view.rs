@@ -26,7 +26,10 @@ pub fn view(args: &ViewArgs, gpu: &GpuArgs) -> Result<(), CliError> {
             let loaded = if scene == named.scene {
                 SceneSelection::load(&named)
             } else {
-                SceneSelection::load(&SceneArgs::new(scene))
+                SceneSelection::load(&SceneArgs {
+                    scene: scene.to_owned(),
+                    ..SceneArgs::default()
+                })
             };
             let SceneSelection { scene, views } = loaded?;
             Ok((scene, views))

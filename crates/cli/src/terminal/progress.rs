@@ -2,11 +2,14 @@
 //! in a pipe. `SKIAGRAPH_PROGRESS=lines` writes a line at the begin and the end of each step
 //! instead, for logs.
 
-use crate::terminal::console::note;
+use crate::terminal::console::{self, note};
+use crate::terminal::interrupt;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use skiagraph_compare::sink::Sink;
+use skiagraph_graph::{Diagnostic, diagnostics};
 use std::{
     io::{self, IsTerminal},
-    sync::{Mutex, MutexGuard, PoisonError},
+    sync::{Mutex, MutexGuard, PoisonError, atomic::AtomicBool},
     thread,
     time::{Duration, Instant},
 };
@@ -133,32 +136,64 @@ impl Now {
     }
 }
 
-/// Begins so many runs, for an estimate of the time that they take.
-pub fn begin_runs(total: u64) {
-    now().runs = Some(Share::begin(total, "runs"));
-}
+/// Standard error, which hears of the work, and Ctrl-C, which ends it.
+pub struct Terminal;
 
-/// Counts a run that is done.
-pub fn count_run() {
-    if let Some(runs) = &mut now().runs {
-        runs.done += 1;
+impl Sink for Terminal {
+    fn note(&self, text: &str) {
+        note(text);
+    }
+
+    fn warnings(&self, warnings: &[Diagnostic]) {
+        note(diagnostics::render(warnings, console::colour()).trim_end());
+    }
+
+    fn begin_runs(&self, total: u64) {
+        now().runs = Some(Share::begin(total, "runs"));
+    }
+
+    fn count_run(&self) {
+        if let Some(runs) = &mut now().runs {
+            runs.done += 1;
+        }
+    }
+
+    fn end_runs(&self) {
+        now().runs = None;
+    }
+
+    fn begin_step(&self, name: &str, total: u64, unit: &'static str) {
+        if style() == Style::Steps {
+            note(&format!("starting {name}"));
+        }
+        begin_quietly(name, total, unit);
+    }
+
+    fn set_done(&self, done: u64) {
+        if let Some(step) = &mut now().step {
+            step.bar.set_position(done);
+            step.share.done = done;
+        }
+    }
+
+    /// One cut short by an error must not leave its bar in front of the message.
+    fn end_step(&self, is_whole: bool) {
+        let Some(step) = now().step.take() else {
+            return;
+        };
+        step.bar.finish_and_clear();
+        if is_whole && style() == Style::Steps {
+            let seconds = step.share.began.elapsed().as_secs_f64();
+            note(&format!("{}: {seconds:.1} s", step.name));
+        }
+    }
+
+    fn stop(&self) -> &AtomicBool {
+        interrupt::flag()
     }
 }
 
-/// No runs are under way any more.
-pub fn end_runs() {
-    now().runs = None;
-}
-
-/// Begins a step of `total` parts, counted in `unit`.
-pub fn begin_step(name: &str, total: u64, unit: &'static str) {
-    if style() == Style::Steps {
-        note(&format!("starting {name}"));
-    }
-    begin_quietly(name, total, unit);
-}
-
-/// The same without a line of its own in a log of steps.
+/// Begins a step without a line of its own in a log of steps.
 pub fn begin_quietly(name: &str, total: u64, unit: &'static str) {
     let mut now = now();
     let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr());
@@ -191,26 +226,6 @@ pub fn set_part(part: &str) {
     if let Some(step) = &mut now().step {
         step.bar.set_message(part.to_owned());
         step.name = part.to_owned();
-    }
-}
-
-/// Says how many parts are done; from any thread.
-pub fn set_done(done: u64) {
-    if let Some(step) = &mut now().step {
-        step.bar.set_position(done);
-        step.share.done = done;
-    }
-}
-
-/// Ends the step. One cut short by an error must not leave its bar in front of the message.
-pub fn end_step(is_whole: bool) {
-    let Some(step) = now().step.take() else {
-        return;
-    };
-    step.bar.finish_and_clear();
-    if is_whole && style() == Style::Steps {
-        let seconds = step.share.began.elapsed().as_secs_f64();
-        note(&format!("{}: {seconds:.1} s", step.name));
     }
 }
 

@@ -20,7 +20,8 @@ use crate::graphs::planning::Capabilities;
 use crate::graphs::preset::{self, Preset};
 use crate::graphs::variants::{self, MAP_SIZE, Setting};
 use crate::lists::unique;
-use crate::wording::did_you_mean;
+use crate::wording::unknown;
+use itertools::Itertools;
 use skiagraph_gpu::Provider;
 use skiagraph_graph::{Diagnostics, ParamValue, Plan, Sources};
 use std::{collections::BTreeMap, slice, sync::Arc};
@@ -181,20 +182,17 @@ fn methods(
         let Some(preset) = named else {
             continue;
         };
-        let mut sizes: Vec<Option<u32>> = unique(map_sizes).into_iter().map(Some).collect();
+        let mut sizes = unique(map_sizes.iter().copied().map(Some));
         if sizes.is_empty() || preset.param(MAP_SIZE).is_none() {
             sizes = vec![None];
         }
-        for Setting { label, set } in variants::settings(preset, &argument, params)? {
+        for Setting { label, set } in variants::settings(preset, argument, params)? {
             let name = match label.as_str() {
                 "" => preset.name.clone(),
                 label if is_over_another(&preset.name) => format!("{},{label}", preset.name),
                 label => format!("{}@{label}", preset.name),
             };
-            let set = set
-                .into_iter()
-                .map(|(name, value)| Assignment { name, value });
-            let set: Vec<Assignment> = set.collect();
+
             let has_size = argument.own.iter().any(|own| own.name == MAP_SIZE);
             for &size in if has_size { &[None][..] } else { &sizes } {
                 let params = param_values(preset, &set, size)?;
@@ -253,10 +251,9 @@ pub fn param_values(
     let own = own.map(|set| (set.name.as_str(), set.value.clone()));
     let size = map_size.map(|size| (MAP_SIZE, size.to_string()));
     let parsed = own.chain(size).map(|(name, value)| {
-        let parsed = preset.graph.parse_param(name, &value);
-        parsed
-            .map(|value| (name.to_owned(), value))
-            .map_err(|error| CompareError::Input(error.to_string()))
+        let value = preset.graph.parse_param(name, &value);
+        let value = value.map_err(|error| CompareError::Input(error.to_string()))?;
+        Ok((name.to_owned(), value))
     });
     parsed.collect()
 }
@@ -267,20 +264,13 @@ fn check_names(presets: &[Arc<Preset>], assignments: &[Assignment]) -> Result<()
         if presets.iter().any(|preset| preset.param(name).is_some()) {
             continue;
         }
-        let mut known: Vec<&str> = presets
-            .iter()
-            .flat_map(|preset| preset.settable())
-            .collect();
-        known.sort_unstable();
-        known.dedup();
-        let list = match &known[..] {
-            [] => "none".into(),
-            known => known.join(", "),
-        };
-        return Err(CompareError::Input(format!(
-            "unknown param `{name}`{}\n  params: {list}",
-            did_you_mean(name, known.iter().copied())
-        )));
+        let known = presets.iter().flat_map(|preset| preset.settable());
+        let mut known: Vec<&str> = known.sorted_unstable().dedup().collect();
+        if known.is_empty() {
+            known.push("none");
+        }
+        let what = format!("unknown param `{name}`");
+        return Err(CompareError::Input(unknown(&what, name, "params", &known)));
     }
     Ok(())
 }

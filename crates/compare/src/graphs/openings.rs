@@ -24,6 +24,7 @@ use crate::graphs::argument::Assignment;
 use crate::graphs::argument::MethodArgument;
 use crate::graphs::preset;
 use crate::lists::unique;
+use itertools::Itertools;
 use skiagraph_graph::Sources;
 use std::collections::BTreeSet;
 
@@ -78,13 +79,14 @@ fn over(
     let mut names = vec![argument.preset];
     for (number, set) in documents.iter().chain(for_all).enumerate() {
         let sign = if number == 0 { '@' } else { ',' };
-        let documents: Vec<&str> = set.value.split(',').map(str::trim).collect();
-        let with = |document: &&str| {
-            let named = names.iter();
-            let named = named.map(|name| format!("{name}{sign}{}={document}", set.name));
-            named.collect::<Vec<_>>()
-        };
-        names = unique(&documents).iter().flat_map(with).collect();
+        let documents = unique(set.value.split(',').map(str::trim));
+        let with =
+            |(document, name): (&str, &String)| format!("{name}{sign}{}={document}", set.name);
+        names = documents
+            .into_iter()
+            .cartesian_product(&names)
+            .map(with)
+            .collect();
     }
     let with = |preset| MethodArgument {
         preset,

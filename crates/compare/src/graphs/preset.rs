@@ -19,7 +19,8 @@ use crate::graphs::argument::MethodArgument;
 use crate::graphs::faults::{GraphFaults, warn};
 use crate::graphs::planning;
 use crate::sink::Sink;
-use crate::wording::did_you_mean;
+use crate::wording::unknown;
+use itertools::Itertools;
 use skiagraph_graph::{
     Diagnostics, FolderSources, Graph, LayeredSources, Param, Plan, PlanRequest, Sources,
 };
@@ -55,56 +56,42 @@ pub fn sources(sink: &dyn Sink) -> LayeredSources {
     ])
 }
 
-/// Folders of what presets are made of.
-const PARTS: [&str; 3] = ["pipelines/shared", "shaders", "shaders/shared"];
+/// Folders of presets and of what they are made of.
+pub const FOLDERS: [&str; 4] = ["pipelines", "pipelines/shared", "shaders", "shaders/shared"];
 
 /// Which files of a folder stand in for built-in ones that differ: a line for the presets, one for
-/// what they are made of.
+/// each folder of what they are made of.
 fn stand_ins(folder: &dyn Sources) -> Option<String> {
-    let differ = |parent: &str| {
-        let files = folder.list(parent).into_iter();
-        let differs = |file: &String| {
+    let line = |parent: &&str| {
+        let differs = |file: &&String| {
             let path = format!("{parent}/{file}");
             let built_in = EmbeddedSources.read(&path).ok().flatten();
             let own = folder.read(&path).ok().flatten();
             built_in.is_some_and(|built_in| own.is_some_and(|own| own != built_in))
         };
-        files.filter(differs).collect::<Vec<_>>()
+        let (what, ending) = match *parent {
+            "pipelines" => ("presets", ".ron"),
+            _ => ("files", ""),
+        };
+        let files = folder.list(parent);
+        let names = files.iter().filter(differs);
+        let names = names
+            .map(|file| file.strip_suffix(ending).unwrap_or(file))
+            .join(", ");
+        let text = format!("./{parent} stands in for built-in {what}, which differ: {names}");
+        (!names.is_empty()).then_some(text)
     };
-    let presets: Vec<String> = differ("pipelines")
+    FOLDERS
         .iter()
-        .map(|file| file.trim_end_matches(".ron").to_owned())
-        .collect();
-    let mut lines = Vec::new();
-    if !presets.is_empty() {
-        let names = presets.join(", ");
-        lines.push(format!(
-            "./pipelines stands in for built-in presets, which differ: {names}"
-        ));
-    }
-    for parent in PARTS {
-        let files = differ(parent);
-        if !files.is_empty() {
-            let names = files.join(", ");
-            lines.push(format!(
-                "./{parent} stands in for built-in files, which differ: {names}"
-            ));
-        }
-    }
-    (!lines.is_empty()).then(|| lines.join("\n"))
+        .filter_map(line)
+        .reduce(|text, line| text + "\n" + &line)
 }
 
 /// Names of the presets: `pipelines/*.ron` on disk and built in, sorted.
 pub fn names(sources: &dyn Sources) -> Vec<String> {
     let files = sources.list("pipelines");
-    let mut names: Vec<String> = files
-        .iter()
-        .filter_map(|file| file.strip_suffix(".ron"))
-        .map(Into::into)
-        .collect();
-    names.sort();
-    names.dedup();
-    names
+    let names = files.iter().filter_map(|file| file.strip_suffix(".ron"));
+    names.sorted().dedup().map(Into::into).collect()
 }
 
 /// The presets that a command is to take: those that its arguments name, else all.
@@ -242,12 +229,14 @@ pub fn locate(argument: &str, sources: &dyn Sources) -> Result<String, CompareEr
         }
         Ok(None) => {
             let known = names(sources);
-            format!(
-                "unknown preset `{argument}`{}\n  presets: {}\n  a graph of your own is \
-                 given as a path that ends in .ron",
-                did_you_mean(argument, known.iter().map(String::as_str)),
-                known.join(", ")
-            )
+            let known: Vec<&str> = known.iter().map(String::as_str).collect();
+            let text = unknown(
+                &format!("unknown preset `{argument}`"),
+                argument,
+                "presets",
+                &known,
+            );
+            text + "\n  a graph of your own is given as a path that ends in .ron"
         }
     };
     Err(CompareError::Input(missing))
@@ -264,8 +253,7 @@ mod tests {
         let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
         let mut open = vec!["pipelines".to_owned(), "shaders".to_owned()];
         while let Some(folder) = open.pop() {
-            let is_listed = folder == "pipelines" || PARTS.contains(&folder.as_str());
-            assert!(is_listed, "{folder}");
+            assert!(FOLDERS.contains(&folder.as_str()), "{folder}");
             for entry in std::fs::read_dir(root.join(&folder)).unwrap().flatten() {
                 if entry.path().is_dir() {
                     open.push(format!("{folder}/{}", entry.file_name().display()));

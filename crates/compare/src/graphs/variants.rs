@@ -9,15 +9,16 @@
 //! let nsm = MethodArgument::new("nsm@cull=none,front");
 //! let settings = settings(&presets[0], &nsm, &["bias=0..0.01/3".parse()?])?;
 //! assert_eq!(settings.len(), 6);
-//! assert_eq!(settings[0].set[0], ("cull".into(), "none".into()));
+//! assert_eq!(settings[0].set[0].value, "none");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 use crate::error::CompareError;
-use crate::graphs::argument::Assignment;
-use crate::graphs::argument::MethodArgument;
+use crate::graphs::argument::{Assignment, MethodArgument};
 use crate::graphs::preset::Preset;
-use crate::wording::did_you_mean;
+use crate::lists::unique;
+use crate::wording::unknown;
+use itertools::Itertools;
 use skiagraph_graph::ParamType;
 
 /// The param that `--map-size` sets.
@@ -28,8 +29,7 @@ const MOST: usize = 1000;
 
 /// Presets that arguments name, each once.
 pub fn presets(arguments: &[MethodArgument]) -> Vec<String> {
-    let names = arguments.iter().map(|argument| argument.preset.clone());
-    crate::lists::unique(&names.collect::<Vec<_>>())
+    unique(arguments.iter().map(|argument| argument.preset.clone()))
 }
 
 /// A setting of a preset: what tells it from the preset's others, `n=1,depth=plane`, and all that
@@ -38,8 +38,8 @@ pub fn presets(arguments: &[MethodArgument]) -> Vec<String> {
 pub struct Setting {
     /// Empty where there is only one.
     pub label: String,
-    /// Names and values.
-    pub set: Vec<(String, String)>,
+    /// Set params.
+    pub set: Vec<Assignment>,
 }
 
 /// The settings of a preset. Values of the argument itself win over those of `all`. Lists of values
@@ -61,31 +61,28 @@ pub fn settings(
     for (assignment, is_own) in own.chain(others.map(|set| (set, false))) {
         let name = &assignment.name;
         let Some(param) = preset.param(name) else {
+            let what = format!("`{}` has no param `{name}`", preset.name);
             let known: Vec<&str> = preset.settable().collect();
-            let hint = did_you_mean(name, known.iter().copied());
-            return Err(CompareError::Input(format!(
-                "`{}` has no param `{name}`{hint}\n  params: {}",
-                preset.name,
-                known.join(", ")
-            )));
+            return Err(CompareError::Input(unknown(&what, name, "params", &known)));
         };
         let values = values(assignment, &param.ty)?;
         let is_told = is_own || values.len() > 1;
-        let with = |setting: &Setting, value: &String| {
+        let with = |(setting, value): (&Setting, &String)| {
             let mut setting = setting.clone();
-            setting.set.push((name.clone(), value.clone()));
             // The map's size has a column of its own.
             if is_told && name != MAP_SIZE {
                 let comma = if setting.label.is_empty() { "" } else { "," };
                 setting.label += &format!("{comma}{name}={value}");
             }
+            let (name, value) = (name.clone(), value.clone());
+            setting.set.push(Assignment { name, value });
             setting
         };
-        let each = settings.iter().flat_map(|setting| {
-            let values = values.iter();
-            values.map(|value| with(setting, value)).collect::<Vec<_>>()
-        });
-        settings = each.collect();
+        settings = settings
+            .iter()
+            .cartesian_product(&values)
+            .map(with)
+            .collect();
         if settings.len() > MOST {
             return Err(CompareError::Input(format!(
                 "`{}` would run in {} settings; {MOST} are the most",
@@ -115,7 +112,7 @@ fn values(assignment: &Assignment, ty: &ParamType) -> Result<Vec<String>, Compar
     }
     let between = if is_vector { ';' } else { ',' };
     let values = text.split(between).map(|value| value.trim().to_owned());
-    Ok(crate::lists::unique(&values.collect::<Vec<_>>()))
+    Ok(unique(values))
 }
 
 fn range(from: &str, to: &str, count: &str, ty: &ParamType) -> Option<Vec<String>> {
@@ -136,8 +133,7 @@ fn range(from: &str, to: &str, count: &str, ty: &ParamType) -> Option<Vec<String
             format!("{}", value as f32)
         }
     };
-    let values: Vec<String> = (0..count).map(value).collect();
-    Some(crate::lists::unique(&values))
+    Some(unique((0..count).map(value)))
 }
 
 #[cfg(test)]

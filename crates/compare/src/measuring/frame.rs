@@ -91,12 +91,9 @@ pub fn run(
     frame: &Frame,
 ) -> Result<(FrameReport, Duration), ExecuteError> {
     let began = Instant::now();
-    let mut encoder = session
-        .gpu
-        .device
-        .create_command_encoder(&wgpu::CommandEncoderDescriptor {
-            label: Some("frame"),
-        });
+    let label = Some("frame");
+    let begun = wgpu::CommandEncoderDescriptor { label };
+    let mut encoder = session.gpu.device.create_command_encoder(&begun);
     executor.encode(&mut encoder, frame)?;
     session.gpu.queue.submit([encoder.finish()]);
     let report = wait(session, executor)?;

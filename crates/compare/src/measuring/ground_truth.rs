@@ -146,12 +146,11 @@ impl<'a> GroundTruthView<'a> {
         tracing: Tracing,
         (what, sink): (&str, &dyn Sink),
     ) -> Result<Self, CompareError> {
-        let step = Step::begin(
-            sink,
-            &format!("reference, {what}"),
-            camera.viewport[1].into(),
-            "rows",
-        );
+        let begin = |of: &str| {
+            let (name, rows) = (format!("{of}, {what}"), camera.viewport[1]);
+            Step::begin(sink, &name, rows.into(), "rows")
+        };
+        let step = begin("reference");
         let rows_done = |rows| step.set_done(rows);
         let ground_truth = ground_truth(
             &oracle,
@@ -163,15 +162,15 @@ impl<'a> GroundTruthView<'a> {
             what,
         )?;
         step.end();
-        let step = Step::begin(
-            sink,
-            &format!("what is visible, {what}"),
-            camera.viewport[1].into(),
-            "rows",
-        );
+        let step = begin("what is visible");
         let rows_done = |rows| step.set_done(rows);
-        let wrong_surfaces =
-            wrong_surfaces(&oracle, &camera, &primitives, heard(sink, &rows_done), what)?;
+        let wrong_surfaces = skiagraph_reference::wrong_surfaces(
+            &oracle,
+            &camera,
+            &primitives,
+            heard(sink, &rows_done),
+        );
+        let wrong_surfaces = wrong_surfaces.map_err(|error| named(error, what))?;
         step.end();
         Ok(Self {
             oracle,
@@ -237,23 +236,8 @@ pub fn ground_truth(
     ground_truth.map_err(|error| named(error, what))
 }
 
-/// Counts the pixels that show a surface which is not seen there.
-///
-/// # Errors
-/// An early end, ids of another mesh.
-pub fn wrong_surfaces(
-    oracle: &Oracle,
-    camera: &Camera,
-    primitives: &[u32],
-    progress: Progress,
-    what: &str,
-) -> Result<u64, CompareError> {
-    let wrong = skiagraph_reference::wrong_surfaces(oracle, camera, primitives, progress);
-    wrong.map_err(|error| named(error, what))
-}
-
 /// Why there is no reference of a view.
-fn named(error: Error, what: &str) -> CompareError {
+pub(crate) fn named(error: Error, what: &str) -> CompareError {
     match error {
         Error::Interrupted => CompareError::interrupted(),
         error => CompareError::Input(format!("no reference for {what}: {error}")),

@@ -36,7 +36,7 @@ use crate::graphs::planning::Capabilities;
 use crate::graphs::shadow_method::Outputs;
 use crate::measuring::frame;
 use crate::measuring::ground_truth::{
-    PrimaryVisibility, REFERENCE_SAMPLES, Tracing, ground_truth, heard, own_counts, wrong_surfaces,
+    PrimaryVisibility, REFERENCE_SAMPLES, Tracing, ground_truth, heard, named, own_counts,
 };
 use crate::measuring::guarantee::{self, WITHOUT_CULLING};
 use crate::measuring::steady;
@@ -197,9 +197,7 @@ impl HardCaseContext<'_> {
         };
         for run in self.methods.iter().filter(can_run) {
             for variant in run.variants(case.casters) {
-                if self.session.is_stopped() {
-                    return Err(CompareError::interrupted());
-                }
+                self.session.check_stopped()?;
                 let mut cell = Cell {
                     preset: variant.method.name.clone(),
                     map_size: variant.method.map_size,
@@ -269,7 +267,8 @@ impl HardCaseContext<'_> {
             silent,
             &scene.name,
         )?;
-        let wrong = wrong_surfaces(&oracle, &camera, &ids, silent, &scene.name)?;
+        let wrong = skiagraph_reference::wrong_surfaces(&oracle, &camera, &ids, silent);
+        let wrong = wrong.map_err(|error| named(error, &scene.name))?;
         Ok((ground_truth, wrong))
     }
 

@@ -70,26 +70,13 @@ pub fn profile(
     let mut executor = frame::executor(session, plan, &mut provider).map_err(failed)?;
     frame::grow(session, &mut executor, &mut provider).map_err(failed)?;
     let (passes, memory) = (executor.plan().passes(), memory(executor.plan()));
-    let step = Step::begin(
-        session.sink,
-        &format!(
-            "{}, {}",
-            method.name,
-            conditions_in_words(method, &view.name, viewport)
-        ),
-        u64::from(warmup) + u64::from(frames),
-        "frames",
-    );
-    let count = [warmup, frames];
+    let name = conditions_in_words(method, &view.name, viewport);
+    let name = format!("{}, {name}", method.name);
+    let total = u64::from(warmup) + u64::from(frames);
+    let step = Step::begin(session.sink, &name, total, "frames");
+    let (count, all) = ([warmup, frames], FrameMode::AllPasses);
     let set_done = |frames| step.set_done(frames);
-    let timed = timing::sample(
-        session,
-        &mut executor,
-        FrameMode::AllPasses,
-        count,
-        set_done,
-    )
-    .map_err(failed)?;
+    let timed = timing::sample(session, &mut executor, all, count, set_done).map_err(failed)?;
     step.end();
 
     match Profile::new(conditions, &passes, &Samples::new(&timed), memory) {

@@ -51,7 +51,7 @@ impl ResultsFolder {
     pub fn whole(&self, own: &Results) -> Results {
         let commands = [&self.commands[..], &own.commands].concat();
         Results {
-            commands: unique(&commands),
+            commands: unique(commands),
             runs: [&own.runs[..], &self.others].concat(),
             ..own.clone()
         }
@@ -90,7 +90,7 @@ impl ResultsFolder {
         if self.known.as_deref() != Some(&*file.text) {
             let found = read_back::results_of(&file)?;
             resume::check_alike(&path, &found, own)?;
-            self.commands = unique(&[found.commands, self.commands.clone()].concat());
+            self.commands = unique([found.commands, self.commands.clone()].concat());
             self.others = found.runs;
             self.others.retain(|run| !self.dropped.contains(run));
         }

@@ -95,7 +95,7 @@ pub fn earlier(
 ) -> Result<Earlier, CompareError> {
     let path = folder.join("results.json");
     let name = path.display().to_string();
-    let nothing = || planned.iter().map(|_| None).collect();
+
     let Some(earlier) = read_back::results(&path)? else {
         if resumes {
             sink.note(&format!(
@@ -103,7 +103,7 @@ pub fn earlier(
             ));
         }
         return Ok(Earlier {
-            kept: nothing(),
+            kept: vec![None; planned.len()],
             ..Earlier::default()
         });
     };
@@ -111,38 +111,28 @@ pub fn earlier(
     let is_planned = |run: &Run| planned.iter().any(|planned| planned.is_place_of(run));
     let (mut runs, others): (Vec<Run>, Vec<Run>) = earlier.runs.into_iter().partition(is_planned);
     if !others.is_empty() {
-        sink.note(&format!(
-            "{} that {name} holds already {} in it",
-            plural(others.len(), "other run"),
-            if others.len() == 1 { "stays" } else { "stay" }
-        ));
+        let stay = if others.len() == 1 { "stays" } else { "stay" };
+        let runs = plural(others.len(), "other run");
+        sink.note(&format!("{runs} that {name} holds already {stay} in it"));
     }
     let commands = if others.is_empty() && !resumes {
         Vec::new()
     } else {
         earlier.commands
     };
-    if !resumes {
-        return Ok(Earlier {
-            kept: nothing(),
-            others,
-            dropped: runs,
-            commands,
-        });
-    }
     let total = runs.len();
     let take = |planned: &RunKey| {
-        let index = runs.iter().position(|run| planned.is_of(run))?;
+        let mut known = runs.iter();
+        let index = known.position(|run| resumes && planned.is_of(run))?;
         Some(runs.swap_remove(index))
     };
     let kept: Vec<Option<Run>> = planned.iter().map(take).collect();
-    let measured = kept.iter().flatten().filter(|run| run.measured.is_some());
-    sink.note(&format!(
-        "{} of {} runs are kept from {name}",
-        measured.count(),
-        planned.len()
-    ));
-    if !runs.is_empty() {
+    if resumes {
+        let measured = kept.iter().flatten().filter(|run| run.measured.is_some());
+        let (count, of) = (measured.count(), planned.len());
+        sink.note(&format!("{count} of {of} runs are kept from {name}"));
+    }
+    if resumes && !runs.is_empty() {
         sink.note(&format!(
             "{} of the {total} in it are measured again: params, graph, shaders or \
              scene have changed since",

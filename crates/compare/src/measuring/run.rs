@@ -17,10 +17,11 @@ use crate::measuring::{
     guarantee,
 };
 use crate::pictures::run_pictures::{PictureFile, PicturePlace, conditions, draw_pictures, stem};
-use crate::records::results::{Answer, AreaReference, Cached, Images, Measured, Run};
+use crate::records::results::{Answer, AreaReference, Images, Measured, Run};
+use crate::records::statistics::FrameTimes;
 use crate::records::steady::Steady;
 use crate::sink::{Session, Step};
-use skiagraph_gpu::{ExecuteError, Provider};
+use skiagraph_gpu::{ExecuteError, Executor, Provider};
 use skiagraph_graph::Plan;
 use skiagraph_passes::SceneProvider;
 use skiagraph_reference::{GroundTruth, Statistics};
@@ -54,14 +55,13 @@ pub struct MeasureContext<'a> {
     pub pictures: Option<RefCell<Vec<PictureFile>>>,
 }
 
-/// Results of a method's frames.
-struct Executed {
-    times: Times,
-    cached: Option<Cached>,
-    outputs: Outputs,
-    judgement: Judgement,
-    steady: Option<Steady>,
-    memory: (u64, u64),
+/// A method whose buffers have grown, in its steady state where it remembers.
+pub struct Prepared {
+    /// Runs it.
+    pub executor: Executor,
+    /// Where it remembers.
+    pub steady: Option<Steady>,
+    memory: [u64; 2],
     scene_bytes: u64,
 }
 
@@ -85,16 +85,10 @@ impl MeasureContext<'_> {
             // The graph itself is sound: that was checked before anything ran.
             Err(diagnostics) => return Ok(self.unavailable(method, reasons(&diagnostics))),
         };
-        let step = Step::begin(
-            self.session.sink,
-            &format!(
-                "{}, {}",
-                method.name,
-                conditions(method, self.view, viewport)
-            ),
-            u64::from(self.warmup) + self.frames,
-            "frames",
-        );
+        let name = conditions(method, self.view, viewport);
+        let name = format!("{}, {name}", method.name);
+        let frames = u64::from(self.warmup) + self.frames;
+        let step = Step::begin(self.session.sink, &name, frames, "frames");
         let came = run(method, plan, provider, &step);
         let run = match attempt(self.session, method, came)? {
             Ok(measured) => Run {
@@ -107,7 +101,8 @@ impl MeasureContext<'_> {
         Ok(run)
     }
 
-    /// Runs, times and judges a method on one view.
+    /// Runs, times and judges a method on one view. A method that remembers is judged first, in its
+    /// steady state: what is timed behind that does not change what it shows.
     ///
     /// # Errors
     /// A method that the device refuses, and those of [`measure`](Self::measure).
@@ -118,8 +113,117 @@ impl MeasureContext<'_> {
         provider: &mut dyn Provider,
         step: &Step,
     ) -> Result<Measured, Stop> {
-        let executed = self.execute(method, plan, provider, step)?;
-        Ok(self.judge(method, executed)?)
+        let mut prepared = self.prepare(plan, provider)?;
+        let executor = &mut prepared.executor;
+        let ground_truth = &self.truth_view.ground_truth;
+        let names = method.preset.judged();
+        let judge = |contents| {
+            let outputs = self.decode(contents, self.truth_view);
+            judged(&method.preset, outputs, ground_truth)
+        };
+        let worst = match &mut prepared.steady {
+            Some(steady) => Some(steady::judge(
+                self.session,
+                executor,
+                &names,
+                steady,
+                judge,
+            )?),
+            None => None,
+        };
+        let (count, all) = ([self.warmup, self.frames as u32], FrameMode::AllPasses);
+        let set_done = |frames| step.set_done(frames);
+        let times = timing::times(self.session, executor, all, count, set_done)?;
+        let mut cached = timing::cached(self.session, executor, self.cached_frames)?;
+        if let Some(cached) = &mut cached {
+            self.distrust(&mut cached.frame);
+        }
+        let (outputs, judgement) = match worst {
+            Some(worst) => worst,
+            // Only now: a readback would be timed, too.
+            None => judge(frame::read(self.session, executor, &names)?)?,
+        };
+        let Judgement { counts, graded } = &judgement;
+        let blockers = match counts.wrong.certain {
+            0 => None,
+            // Which pixels are wrong is a question of grades.
+            _ if graded.is_some() => None,
+            _ => Some(self.truth_view.blockers(&outputs)?),
+        };
+        Ok(Measured {
+            rays: outputs.rays,
+            certain_wrong_blockers: blockers,
+            graded: *graded,
+            cached,
+            images: self.draw(method, None, ground_truth, (&outputs, &judgement))?,
+            ..self.measured(prepared, times, counts, outputs.shares.is_some())
+        })
+    }
+
+    /// Makes a method's executor, and lets it run until it is in its steady state where it
+    /// remembers.
+    ///
+    /// # Errors
+    /// A method that the device refuses, Ctrl-C, a lost device.
+    pub fn prepare(&self, plan: Plan, provider: &mut dyn Provider) -> Result<Prepared, Stop> {
+        let mut executor = frame::executor(self.session, plan, provider)?;
+        frame::grow(self.session, &mut executor, provider)?;
+        let plan = executor.plan();
+        let memory = [plan.memory_bytes(), plan.saved_bytes()];
+        let scene_bytes = self.scene_bytes(plan, provider)?;
+        let remembers = plan.remembers();
+        let settle = || steady::settle(self.session, &mut executor);
+        let steady = remembers.then(settle).transpose()?;
+        Ok(Prepared {
+            executor,
+            steady,
+            memory,
+            scene_bytes,
+        })
+    }
+
+    /// The part of the measurements that a view and a path have alike.
+    pub fn measured(
+        &self,
+        prepared: Prepared,
+        mut times: Times,
+        counts: &Statistics,
+        answers_in_shares: bool,
+    ) -> Measured {
+        self.distrust(&mut times.frame);
+        if !self.timestamps {
+            times.passes.iter_mut().for_each(|pass| pass.gpu_ms = None);
+        }
+        let [memory_bytes, saved_bytes] = prepared.memory;
+        Measured {
+            certain: counts.certain,
+            uncertain: counts.uncertain,
+            split: counts.split,
+            rays: None,
+            wrong: counts.wrong,
+            certain_wrong_blockers: None,
+            facing_mismatch: counts.facing_mismatch,
+            answer: if answers_in_shares {
+                Answer::Graded
+            } else {
+                Answer::Hard
+            },
+            graded: None,
+            passes: times.passes,
+            frame: times.frame,
+            cached: None,
+            memory_bytes,
+            saved_bytes,
+            scene_bytes: prepared.scene_bytes,
+            steady: prepared.steady,
+            sequence: None,
+            images: None,
+        }
+    }
+
+    /// Leaves out the GPU's time of a frame if timestamps are not true.
+    pub fn distrust(&self, frame: &mut FrameTimes) {
+        frame.gpu_ms = frame.gpu_ms.filter(|_| self.timestamps);
     }
 
     /// A run that says why there are no measurements.
@@ -128,62 +232,6 @@ impl MeasureContext<'_> {
             unavailable: Some(reason),
             ..self.empty(method)
         }
-    }
-
-    /// Runs, times and judges frames. A method that remembers is judged first, in its steady state:
-    /// what is timed behind that does not change what it shows.
-    fn execute(
-        &self,
-        method: &Method,
-        plan: Plan,
-        provider: &mut dyn Provider,
-        step: &Step,
-    ) -> Result<Executed, Stop> {
-        let mut executor = frame::executor(self.session, plan, provider)?;
-        frame::grow(self.session, &mut executor, provider)?;
-        let plan = executor.plan();
-        let memory = (plan.memory_bytes(), plan.saved_bytes());
-        let scene_bytes = self.scene_bytes(plan, provider)?;
-        let names = method.preset.judged();
-        let judge = |contents| {
-            let outputs = self.decode(contents, self.truth_view);
-            judged(&method.preset, outputs, &self.truth_view.ground_truth)
-        };
-        let mut settled = None;
-        if executor.plan().remembers() {
-            let mut steady = steady::settle(self.session, &mut executor)?;
-            let worst = steady::judge(self.session, &mut executor, &names, &mut steady, judge)?;
-            settled = Some((worst, steady));
-        }
-        let count = [self.warmup, self.frames as u32];
-        let set_done = |frames| step.set_done(frames);
-        let times = timing::times(
-            self.session,
-            &mut executor,
-            FrameMode::AllPasses,
-            count,
-            set_done,
-        )?;
-        let times = times.ok_or_else(CompareError::interrupted)?;
-        let cached = timing::cached(self.session, &mut executor, self.cached_frames)?;
-        let cached = cached.ok_or_else(CompareError::interrupted)?;
-        let ((outputs, judgement), steady) = match settled {
-            Some((worst, steady)) => (worst, Some(steady)),
-            // Only now: a readback would be timed, too.
-            None => (
-                judge(frame::read(self.session, &mut executor, &names)?)?,
-                None,
-            ),
-        };
-        Ok(Executed {
-            times,
-            cached,
-            outputs,
-            judgement,
-            steady,
-            memory,
-            scene_bytes,
-        })
     }
 
     /// Decodes the outputs that were read, of the light that is judged.
@@ -196,11 +244,7 @@ impl MeasureContext<'_> {
     }
 
     /// Bytes of what the scene gives to the plan.
-    pub fn scene_bytes(
-        &self,
-        plan: &Plan,
-        provider: &mut dyn Provider,
-    ) -> Result<u64, ExecuteError> {
+    fn scene_bytes(&self, plan: &Plan, provider: &mut dyn Provider) -> Result<u64, ExecuteError> {
         let mut bytes = 0;
         let provided = plan.provided().into_iter();
         // Last frame's camera is a copy of the executor's own.
@@ -216,57 +260,6 @@ impl MeasureContext<'_> {
             bytes += buffer.size();
         }
         Ok(bytes)
-    }
-
-    fn judge(&self, method: &Method, executed: Executed) -> Result<Measured, CompareError> {
-        let Executed {
-            mut times,
-            mut cached,
-            outputs,
-            judgement,
-            steady,
-            memory: (memory_bytes, saved_bytes),
-            scene_bytes,
-        } = executed;
-        let ground_truth = &self.truth_view.ground_truth;
-        let Judgement { counts, graded } = &judgement;
-        let blockers = match counts.wrong.certain {
-            0 => None,
-            // Which pixels are wrong is a question of grades.
-            _ if graded.is_some() => None,
-            _ => Some(self.truth_view.blockers(&outputs)?),
-        };
-        if !self.timestamps {
-            times.frame.gpu_ms = None;
-            cached
-                .iter_mut()
-                .for_each(|cached| cached.frame.gpu_ms = None);
-            times.passes.iter_mut().for_each(|pass| pass.gpu_ms = None);
-        }
-        let images = self.draw(method, None, ground_truth, (&outputs, &judgement))?;
-        Ok(Measured {
-            certain: counts.certain,
-            uncertain: counts.uncertain,
-            split: counts.split,
-            rays: outputs.rays,
-            wrong: counts.wrong,
-            certain_wrong_blockers: blockers,
-            facing_mismatch: counts.facing_mismatch,
-            answer: match outputs.shares {
-                Some(_) => Answer::Graded,
-                None => Answer::Hard,
-            },
-            graded: *graded,
-            passes: times.passes,
-            frame: times.frame,
-            cached,
-            memory_bytes,
-            saved_bytes,
-            scene_bytes,
-            steady,
-            sequence: None,
-            images,
-        })
     }
 
     /// Draws the pictures of a view, or of a frame of a path, where there are to be any.

@@ -8,17 +8,15 @@ use crate::measuring::camera_pose::CameraPose;
 use crate::measuring::frame;
 use crate::measuring::ground_truth::{GroundTruthView, heard, own_counts};
 use crate::measuring::mesh_frames::MeshFrames;
-use crate::measuring::run::MeasureContext;
-use crate::measuring::steady;
+use crate::measuring::run::{MeasureContext, Prepared};
 use crate::measuring::stop::Stop;
-use crate::measuring::timing::Times;
-use crate::records::results::{Answer, Measured};
+use crate::measuring::timing::{Times, timed_frame};
+use crate::records::results::Measured;
 use crate::records::samples::TimedFrame;
 use crate::records::sequence::{FrameCost, Remade, Sequence, SequenceFrame};
 use crate::records::statistics::FrameTimes;
-use crate::records::steady::Steady;
 use crate::sink::{Sink, Step};
-use skiagraph_gpu::{ExecuteError, Executor, Frame, FrameReport};
+use skiagraph_gpu::{Executor, Frame, FrameReport};
 use skiagraph_graph::Plan;
 use skiagraph_passes::{Built, How, SceneProvider};
 use skiagraph_reference::{
@@ -107,14 +105,6 @@ impl<'a> Path<'a> {
     }
 }
 
-/// A method that stands at a path's begin.
-struct Begun {
-    executor: Executor,
-    memory: (u64, u64),
-    scene_bytes: u64,
-    steady: Option<Steady>,
-}
-
 /// A frame that was run.
 struct Done {
     report: FrameReport,
@@ -139,19 +129,6 @@ fn remade(before: &[Built], now: &[Built]) -> Vec<Remade> {
         ms: ms(built.time),
     });
     remade.collect()
-}
-
-/// A frame's times.
-fn timed_frame(report: FrameReport, wall: Duration) -> Result<TimedFrame, ExecuteError> {
-    let timing = report.timing.ok_or(ExecuteError::Internal(
-        "a timed frame came back without times",
-    ))?;
-    Ok(TimedFrame {
-        began: Duration::ZERO,
-        timing,
-        wall,
-        skipped: report.skipped,
-    })
 }
 
 /// Figures of the frames so far.
@@ -185,33 +162,17 @@ pub fn follow(
     provider: &mut SceneProvider,
     step: &Step,
 ) -> Result<Measured, Stop> {
-    let Begun {
-        mut executor,
-        memory,
-        scene_bytes,
-        steady,
-    } = begin(context, plan, path, provider)?;
+    let mut prepared = begin(context, plan, path, provider)?;
+    let executor = &mut prepared.executor;
     let mut account = Account::default();
     let names = method.preset.judged();
     for index in 0..path.poses.len() {
-        let done = run_frame(
-            context,
-            &mut executor,
-            path,
-            index,
-            (&names, false),
-            provider,
-        )?;
+        let done = run_frame(context, executor, path, index, (&names, false), provider)?;
         add(context, method, path, index, done, &mut account)?;
         step.set_done(u64::from(context.warmup) + index as u64 + 1);
     }
-    let every_pass = every_pass(context, &mut executor, path, &names, provider, &mut account)?;
-    let times = Times::new(account.timed);
-    let mut times = times.ok_or_else(CompareError::interrupted)?;
-    if !context.timestamps {
-        times.frame.gpu_ms = None;
-        times.passes.iter_mut().for_each(|pass| pass.gpu_ms = None);
-    }
+    let every_pass = every_pass(context, executor, path, &names, provider, &mut account)?;
+    let times = Times::new(account.timed)?;
     let images = match &account.worst {
         Some((index, outputs, judgement)) => {
             let ground_truth = &path.truth_views[*index].ground_truth;
@@ -223,34 +184,17 @@ pub fn follow(
     for frame in &account.frames {
         all += frame.shimmer.unwrap_or_default();
     }
-    let counts = account.counts;
     Ok(Measured {
-        certain: counts.certain,
-        uncertain: counts.uncertain,
-        split: counts.split,
         rays: account.rays,
-        wrong: counts.wrong,
         certain_wrong_blockers: account.blockers,
-        facing_mismatch: counts.facing_mismatch,
-        answer: if account.shares {
-            Answer::Graded
-        } else {
-            Answer::Hard
-        },
         graded: (!account.graded.is_empty()).then(|| Graded::together(account.graded)),
-        passes: times.passes,
-        frame: times.frame,
-        cached: None,
-        memory_bytes: memory.0,
-        saved_bytes: memory.1,
-        scene_bytes,
         images,
-        steady,
         sequence: Some(Sequence {
             frames: account.frames,
             shimmer: all,
             every_pass,
         }),
+        ..context.measured(prepared, times, &account.counts, account.shares)
     })
 }
 
@@ -261,35 +205,15 @@ fn begin(
     plan: Plan,
     path: &Path,
     provider: &mut SceneProvider,
-) -> Result<Begun, Stop> {
+) -> Result<Prepared, Stop> {
     path.show(0, context.truth_view.ground_truth.pixels.viewport, provider)?;
-    let mut executor = frame::executor(context.session, plan, provider)?;
-    frame::grow(context.session, &mut executor, provider)?;
-    let steady = if executor.plan().remembers() {
-        Some(steady::settle(context.session, &mut executor)?)
-    } else {
-        stand(context, &mut executor, context.warmup)?;
-        None
-    };
-    let plan = executor.plan();
-    Ok(Begun {
-        memory: (plan.memory_bytes(), plan.saved_bytes()),
-        scene_bytes: context.scene_bytes(plan, provider)?,
-        executor,
-        steady,
-    })
-}
-
-/// Runs frames whose outputs are not read.
-fn stand(
-    context: &MeasureContext<'_>,
-    executor: &mut Executor,
-    frames: u32,
-) -> Result<(), ExecuteError> {
-    (0..frames).try_for_each(|_| {
-        frame::run(context.session, executor, &Frame::default())?;
-        Ok(())
-    })
+    let mut prepared = context.prepare(plan, provider)?;
+    if prepared.steady.is_none() {
+        for _ in 0..context.warmup {
+            frame::run(context.session, &mut prepared.executor, &Frame::default())?;
+        }
+    }
+    Ok(prepared)
 }
 
 /// The path once more with every pass run in every frame, where some were skipped: its pictures
@@ -310,7 +234,7 @@ fn every_pass(
     // The first one brings the camera back, and is no frame of the path.
     for index in std::iter::once(0).chain(0..path.poses.len()) {
         let done = run_frame(context, executor, path, index, (names, true), provider)?;
-        timed.push(timed_frame(done.report, done.wall)?);
+        timed.push(timed_frame(done.report, Duration::ZERO, done.wall)?);
     }
     let timed = timed.split_off(1);
     for (frame, timed) in account.frames.iter_mut().zip(&timed) {
@@ -319,11 +243,9 @@ fn every_pass(
             wall_ms: ms(timed.wall),
         });
     }
-    let times = Times::new(timed).ok_or_else(CompareError::interrupted)?;
-    Ok(Some(FrameTimes {
-        gpu_ms: times.frame.gpu_ms.filter(|_| context.timestamps),
-        ..times.frame
-    }))
+    let mut times = Times::new(timed)?.frame;
+    context.distrust(&mut times);
+    Ok(Some(times))
 }
 
 /// The GPU's time of a frame, if it can be trusted.
@@ -339,9 +261,7 @@ fn run_frame(
     (read, all): (&[&str], bool),
     provider: &mut SceneProvider,
 ) -> Result<Done, Stop> {
-    if context.session.is_stopped() {
-        return Err(CompareError::interrupted().into());
-    }
+    context.session.check_stopped()?;
     let viewport = context.truth_view.ground_truth.pixels.viewport;
     path.show(index, viewport, provider)?;
     let before = provider.built().to_vec();
@@ -379,7 +299,7 @@ fn add(
     } = done;
     let truth_view = &path.truth_views[index];
     let contents = frame::contents(std::mem::take(&mut report.readbacks));
-    let timed = timed_frame(report, wall)?;
+    let timed = timed_frame(report, Duration::ZERO, wall)?;
     let outputs = context.decode(contents, truth_view);
     let (outputs, judgement) = judged(&method.preset, outputs, &truth_view.ground_truth)?;
     let counts = judgement.counts;

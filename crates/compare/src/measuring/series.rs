@@ -411,7 +411,11 @@ impl<'a> Series<'a> {
     }
 
     fn done(&mut self, place: usize, mut run: Run) {
-        attach(&self.comparison.published, &self.results, &mut run);
+        attach(
+            &self.comparison.published,
+            &self.results.scene.name,
+            &mut run,
+        );
         let index = self.done_before(place);
         self.results.runs.insert(index, run);
         self.states[place] = RunState::Done;
@@ -475,14 +479,12 @@ fn measured(
     frames: &sequence::Path,
     provider: &mut SceneProvider,
 ) -> Result<Run, CompareError> {
-    match view {
-        ViewOrPath::Still(_) => {
-            context.measure(method, provider, |method, plan, provider, step| {
-                context.still(method, plan, provider, step)
-            })
-        }
-        ViewOrPath::Path(_) => context.measure(method, provider, |method, plan, provider, step| {
-            sequence::follow(context, method, plan, frames, provider, step)
-        }),
-    }
+    context.measure(
+        method,
+        provider,
+        |method, plan, provider, step| match view {
+            ViewOrPath::Still(_) => context.still(method, plan, provider, step),
+            ViewOrPath::Path(_) => sequence::follow(context, method, plan, frames, provider, step),
+        },
+    )
 }

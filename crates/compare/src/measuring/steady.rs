@@ -27,9 +27,7 @@ pub fn settle(session: Session, executor: &mut Executor) -> Result<Steady, Stop>
     let mut shown = Vec::new();
     let mut found = None;
     while found.is_none() && shown.len() < MOST {
-        if session.is_stopped() {
-            return Err(CompareError::interrupted().into());
-        }
+        session.check_stopped()?;
         let contents = frame::read(session, executor, &[VISIBILITY])?;
         let mut hasher = DefaultHasher::new();
         contents
@@ -72,9 +70,7 @@ pub fn judge(
     let (mut wrong, mut rmse) = (0, None);
     let mut worst: Option<(Outputs, Judgement)> = None;
     for _ in 0..pictures {
-        if session.is_stopped() {
-            return Err(CompareError::interrupted().into());
-        }
+        session.check_stopped()?;
         let (outputs, judgement) = judge(frame::read(session, executor, names)?)?;
         wrong += judgement.counts.wrong.total;
         if let Some(graded) = &judgement.graded {

@@ -1,12 +1,14 @@
 //! Many frames of a graph, timed.
 
+use crate::error::CompareError;
 use crate::measuring::frame;
+use crate::measuring::stop::Stop;
 use crate::records::results::{Cached, Pass};
 use crate::records::samples::{PassSamples, Samples, TimedFrame};
 use crate::records::statistics::{FrameTimes, Spread};
 use crate::sink::Session;
-use skiagraph_gpu::{ExecuteError, Executor, Frame};
-use std::time::Instant;
+use skiagraph_gpu::{ExecuteError, Executor, Frame, FrameReport};
+use std::time::{Duration, Instant};
 
 /// Kinds of frames that are timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,19 +56,31 @@ pub fn sample(
             done => done?,
         };
         if index >= u64::from(warmup) {
-            let timing = report.timing.ok_or(ExecuteError::Internal(
-                "a timed frame came back without times",
-            ))?;
-            timed.push(TimedFrame {
-                began,
-                timing,
-                wall,
-                skipped: report.skipped,
-            });
+            timed.push(timed_frame(report, began, wall)?);
         }
         done(index + 1);
     }
     Ok(timed)
+}
+
+/// The times of a frame that was run with timing.
+///
+/// # Errors
+/// There are none.
+pub fn timed_frame(
+    report: FrameReport,
+    began: Duration,
+    wall: Duration,
+) -> Result<TimedFrame, ExecuteError> {
+    let timing = report.timing.ok_or(ExecuteError::Internal(
+        "a timed frame came back without times",
+    ))?;
+    Ok(TimedFrame {
+        began,
+        timing,
+        wall,
+        skipped: report.skipped,
+    })
 }
 
 /// Times of some frames, per pass and whole.
@@ -80,8 +94,15 @@ pub struct Times {
 }
 
 impl Times {
-    /// The times of some frames in short; `None` of none.
-    pub fn new(timed: Vec<TimedFrame>) -> Option<Self> {
+    /// The times of some frames in short.
+    ///
+    /// # Errors
+    /// Ctrl-C came before there were any.
+    pub fn new(timed: Vec<TimedFrame>) -> Result<Self, CompareError> {
+        Self::of_some(timed).ok_or_else(CompareError::interrupted)
+    }
+
+    fn of_some(timed: Vec<TimedFrame>) -> Option<Self> {
         let samples = Samples::new(&timed);
         let pass = |PassSamples { name, gpu, cpu }| Pass {
             name,
@@ -99,51 +120,42 @@ impl Times {
     }
 }
 
-/// [`sample`] in short; `None` if Ctrl-C came first.
+/// [`sample`] in short.
 ///
 /// # Errors
-/// Those of the executor.
+/// Those of the executor, Ctrl-C.
 pub fn times(
     session: Session,
     executor: &mut Executor,
     mode: FrameMode,
     [warmup, frames]: [u32; 2],
     done: impl Fn(u64),
-) -> Result<Option<Times>, ExecuteError> {
+) -> Result<Times, Stop> {
     let timed = sample(session, executor, mode, [warmup, frames], done)?;
     if timed.len() < frames as usize {
-        return Ok(None);
+        return Err(CompareError::interrupted().into());
     }
-    Ok(Times::new(timed))
+    Ok(Times::new(timed)?)
 }
 
-/// The times of frames in which only the camera moves: `None` if Ctrl-C came first, `Some(None)` if
-/// every pass runs then too.
+/// The times of frames in which only the camera moves; none if every pass runs then too.
 ///
 /// # Errors
-/// Those of the executor.
+/// Those of the executor, Ctrl-C.
 pub fn cached(
     session: Session,
     executor: &mut Executor,
     frames: u32,
-) -> Result<Option<Option<Cached>>, ExecuteError> {
+) -> Result<Option<Cached>, Stop> {
     if frames == 0 {
-        return Ok(Some(None));
+        return Ok(None);
     }
-    let mut times = |frames| {
-        times(
-            session,
-            executor,
-            FrameMode::CameraMoves,
-            [0, frames],
-            |_| {},
-        )
-    };
-    let skipped = match times(1)? {
-        None => return Ok(None),
-        Some(first) if first.skipped.is_empty() => return Ok(Some(None)),
-        Some(first) => first.skipped,
-    };
-    let cached = |Times { frame, .. }| Some(Cached { frame, skipped });
-    Ok(times(frames)?.map(cached))
+    let moves = FrameMode::CameraMoves;
+    let mut times = |frames| times(session, executor, moves, [0, frames], |_| {});
+    let skipped = times(1)?.skipped;
+    if skipped.is_empty() {
+        return Ok(None);
+    }
+    let frame = times(frames)?.frame;
+    Ok(Some(Cached { frame, skipped }))
 }

@@ -21,7 +21,7 @@ use crate::error::CompareError;
 use crate::files::fingerprint::Fingerprint;
 use crate::measuring::camera_pose::CameraPose;
 use crate::measuring::mesh_frames::MeshFrames;
-use crate::wording::did_you_mean;
+use crate::wording::unknown;
 use skiagraph_scene::{CameraPath, LightKind, Scene, View};
 
 /// One still view or camera path of a comparison.
@@ -36,10 +36,12 @@ pub enum ViewOrPath {
 impl ViewOrPath {
     /// Its name in results.
     pub fn name(&self) -> &str {
-        match self {
-            Self::Still(view) => &view.name,
-            Self::Path(path) => &path.view.name,
-        }
+        &self.view().name
+    }
+
+    fn view(&self) -> &View {
+        let (Self::Still(view) | Self::Path(CameraPath { view, .. })) = self;
+        view
     }
 
     /// The camera of each frame. `jitter`: how many frames are blended; each then looks through
@@ -77,8 +79,7 @@ impl ViewOrPath {
 
     /// Its light.
     pub fn light(&self, scene: &Scene) -> LightKind {
-        let (Self::Still(view) | Self::Path(CameraPath { view, .. })) = self;
-        scene.light_of(view)
+        scene.light_of(self.view())
     }
 
     /// With what it depends on.
@@ -110,23 +111,16 @@ impl ViewOrPath {
             )));
         }
         if name != "all" && !names.contains(&name) {
-            let hint = did_you_mean(name, names.iter().copied());
-            return Err(CompareError::Input(format!(
-                "the scene `{}` has no path `{name}`{hint}\n  paths: {}, or all of them: all",
-                scene.name,
-                names.join(", ")
-            )));
+            let what = format!("the scene `{}` has no path `{name}`", scene.name);
+            let text = unknown(&what, name, "paths", &names) + ", or all of them: all";
+            return Err(CompareError::Input(text));
         }
         let mut views_or_paths = Vec::new();
         for path in paths {
             if name == "all" || path.view.name == name {
-                let views = under_lights(scene, vec![path.view.clone()], light)?;
-                let lit = views.into_iter().map(|view| lit(scene, &path, view));
-                views_or_paths.extend(
-                    lit.collect::<Result<Vec<_>, _>>()?
-                        .into_iter()
-                        .map(Self::Path),
-                );
+                for view in under_lights(scene, vec![path.view.clone()], light)? {
+                    views_or_paths.push(Self::Path(lit(scene, &path, view)?));
+                }
             }
         }
         Ok(views_or_paths)
@@ -169,14 +163,10 @@ pub fn under_lights(
             .collect();
         if chosen.is_empty() {
             let names: Vec<&str> = lights.iter().map(|light| light.name.as_str()).collect();
-            let hint = did_you_mean(name, names.iter().copied());
-            return Err(CompareError::Input(format!(
-                "view `{}` of the scene `{}` has no light `{name}`{hint}\n  lights: {}, or all of \
-                 them: all",
-                view.name,
-                scene.name,
-                names.join(", ")
-            )));
+            let (view, scene) = (&view.name, &scene.name);
+            let what = format!("view `{view}` of the scene `{scene}` has no light `{name}`");
+            let text = unknown(&what, name, "lights", &names) + ", or all of them: all";
+            return Err(CompareError::Input(text));
         }
         lit.extend(chosen.into_iter().map(|light| View {
             name: if several {

@@ -79,6 +79,10 @@ pub fn draw_pictures(
         files.push(file);
         Ok(name)
     };
+    let error = match graded {
+        None => Image::error(&outputs.visibility, status, truth),
+        Some(_) => Image::difference(visibility, &ground_truth.shares(), truth),
+    };
     let images = Images {
         frame: place.frame,
         reference: of_reference.name.clone(),
@@ -87,19 +91,13 @@ pub fn draw_pictures(
             "visibility",
             Image::visibility(truth.viewport, visibility, status),
         )?,
-        error: match graded {
-            None => draw("error", Image::error(&outputs.visibility, status, truth))?,
-            Some(_) => {
-                let difference = Image::difference(visibility, &ground_truth.shares(), truth);
-                draw("error", difference)?
-            }
-        },
+        error: draw("error", error)?,
         uncertain: match counts.certain.lit + counts.certain.shadow + counts.uncertain {
             0 => None,
-            _ => {
-                let image = Image::uncertain(visibility, status, truth);
-                Some(draw("uncertain", image)?)
-            }
+            _ => Some(draw(
+                "uncertain",
+                Image::uncertain(visibility, status, truth),
+            )?),
         },
     };
     files.push(of_reference);

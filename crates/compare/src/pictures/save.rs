@@ -21,6 +21,7 @@ use crate::pictures::colours::ClipPlanes;
 use crate::pictures::material::Picture;
 use crate::pictures::{buffer_csv, png};
 use crate::wording::{bytes, size, thousands};
+use itertools::Itertools;
 use skiagraph_gpu::Content;
 use skiagraph_graph::{Capture, Item, PartSummary, Plan};
 use skiagraph_passes::names::{CAMERA, LIGHT};
@@ -179,6 +180,32 @@ impl Decoding {
     }
 }
 
+/// Names of the materials that are saved, each once.
+pub fn names(saves: &[Save]) -> Vec<String> {
+    let names = saves.iter().map(|save| capture(save).name());
+    names.sorted().dedup().collect()
+}
+
+/// How to decode each of the materials that are saved.
+pub fn decodings(plan: &Plan, saves: &[Save], planes: ClipPlanes) -> Vec<Decoding> {
+    let decoding = |save| Decoding::new(plan, &capture(save).name(), planes);
+    saves.iter().map(decoding).collect()
+}
+
+/// Writes what was read of a graph, each as [`write`] does.
+pub fn write_all<'a>(
+    graph: &'a str,
+    saves: &'a [Save],
+    decodings: &'a [Decoding],
+    contents: &'a BTreeMap<String, Content>,
+) -> impl Iterator<Item = Result<String, CompareError>> + 'a {
+    saves.iter().zip(decodings).map(move |(save, decoding)| {
+        let name = capture(save).name();
+        let missing = || CompareError::Input(format!("`{graph}` has no `{name}` to save"));
+        write(save, contents.get(&name).ok_or_else(missing)?, decoding)
+    })
+}
+
 /// Writes the file; returns what to say about it.
 ///
 /// # Errors
@@ -212,8 +239,8 @@ pub fn write(save: &Save, content: &Content, reading: &Decoding) -> Result<Strin
             write_whole(&save.file, raw)?;
             let what = match content {
                 Content::Texture { format, parts, .. } => {
-                    let sizes: Vec<String> = parts.iter().map(|part| size(*part)).collect();
-                    format!("{} texels of {format:?}", sizes.join(", "))
+                    let sizes = parts.iter().map(|part| size(*part)).join(", ");
+                    format!("{sizes} texels of {format:?}")
                 }
                 Content::Buffer(_) => "a buffer".into(),
             };

@@ -57,19 +57,16 @@ pub fn read(files: &[PublishedFile]) -> Result<Vec<Row>, CompareError> {
 }
 
 /// Puts the figures beside the runs that they belong to.
-pub fn attach(rows: &[Row], results: &Results, run: &mut Run) {
-    let scene = &results.scene.name;
+pub fn attach(rows: &[Row], scene: &str, run: &mut Run) {
     let figures = rows.iter().filter(|row| row.applies_to(scene, run));
     run.published = figures.map(|row| row.figure.clone()).collect();
 }
 
 /// Puts the figures beside all runs of some results, instead of those that are there.
 pub fn attach_all(rows: &[Row], results: &mut Results) {
-    let mut runs = std::mem::take(&mut results.runs);
-    for run in &mut runs {
-        attach(rows, results, run);
+    for run in &mut results.runs {
+        attach(rows, &results.scene.name, run);
     }
-    results.runs = runs;
 }
 
 /// The rows of a file, and what is wrong with the others.
@@ -145,7 +142,7 @@ mod tests {
         let mut results = sample();
         let mut runs = std::mem::take(&mut results.runs);
         let mut beside = |run: usize| {
-            attach(&rows, &results, &mut runs[run]);
+            attach(&rows, &results.scene.name, &mut runs[run]);
             let figures = runs[run].published.iter();
             let figures = figures.map(|figure| (figure.quantity.clone(), figure.value));
             figures.collect::<Vec<_>>()
@@ -155,7 +152,7 @@ mod tests {
         assert_eq!(beside(1), [lit(), ("ms.frame".into(), 1.5)]);
         assert_eq!(beside(2), [lit()]);
         (runs[2].preset, runs[2].map_size) = ("nsm_d".into(), Some(2048));
-        attach(&rows, &results, &mut runs[2]);
+        attach(&rows, &results.scene.name, &mut runs[2]);
         let figure = &runs[2].published[1];
         assert_eq!((figure.value, figure.source.as_str()), (3.82, "table 12"));
         let note = runs[0].published[1].note.as_deref();

@@ -78,11 +78,16 @@ pub fn results(path: &Path) -> Result<Option<Results>, CompareError> {
 /// # Errors
 /// A file that cannot be read.
 pub fn results_file(path: &Path) -> Result<Option<SourceFile>, CompareError> {
+    read(&RESULTS, path).map_err(CompareError::Input)
+}
+
+/// Reads a file; `None` if there is none.
+fn read(limit: &Limit, path: &Path) -> Result<Option<SourceFile>, String> {
     let name = path.display().to_string();
-    match RESULTS.read_text(path) {
+    match limit.read_text(path) {
         Ok(text) => Ok(Some(SourceFile::new(name, text))),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
-        Err(error) => Err(CompareError::Input(format!("{name}: {error}"))),
+        Err(error) => Err(format!("{name}: {error}")),
     }
 }
 
@@ -92,28 +97,16 @@ pub fn results_file(path: &Path) -> Result<Option<SourceFile>, CompareError> {
 /// No such folder, no results.json in it, or a file that cannot be read or is no results.json; with
 /// the place.
 pub fn kept(folder: &Path) -> Result<Results, CompareError> {
-    let path = folder.join("results.json");
-    let name = path.display().to_string();
     let refused = |why: String| CompareError::Input(format!("{why}; {COMPARE_FIRST}"));
     if !folder.is_dir() {
         return Err(refused(format!("there is no folder {}", folder.display())));
     }
-    let text = KEPT.read_text(&path).map_err(|error| {
-        refused(match error.kind() {
-            io::ErrorKind::NotFound => {
-                format!("there is no results.json in {}", folder.display())
-            }
-            _ => format!("{name}: {error}"),
-        })
-    })?;
-    let file = SourceFile::new(name, text);
+    let found = read(&KEPT, &folder.join("results.json")).map_err(refused)?;
+    let missing = || refused(format!("there is no results.json in {}", folder.display()));
+    let file = found.ok_or_else(missing)?;
     parse_results(&file.text).map_err(|mistake| {
-        mistake.in_file(
-            &file,
-            "results.json",
-            COMPARE_FIRST,
-            "the results cannot be used",
-        )
+        let summary = "the results cannot be used";
+        mistake.in_file(&file, "results.json", COMPARE_FIRST, summary)
     })
 }
 
@@ -122,18 +115,15 @@ pub fn kept(folder: &Path) -> Result<Results, CompareError> {
 /// # Errors
 /// A file that cannot be read or is not a stress.json; with the place.
 pub fn stress(folder: &Path) -> Result<Option<Report>, CompareError> {
-    let path = folder.join("stress.json");
-    let name = path.display().to_string();
-    let text = match KEPT.read_text(&path) {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
-        text => text.map_err(|error| CompareError::Input(format!("{name}: {error}")))?,
-    };
-    let file = SourceFile::new(name, text);
-    parse_stress(&file.text).map(Some).map_err(|mistake| {
-        let help = "`skiagraph stress --out DIR` writes it anew";
-        let summary = "the matrix cannot be used";
-        mistake.in_file(&file, "stress.json", help, summary)
-    })
+    let file = read(&KEPT, &folder.join("stress.json")).map_err(CompareError::Input)?;
+    let matrix = file.map(|file| {
+        parse_stress(&file.text).map_err(|mistake| {
+            let help = "`skiagraph stress --out DIR` writes it anew";
+            let summary = "the matrix cannot be used";
+            mistake.in_file(&file, "stress.json", help, summary)
+        })
+    });
+    matrix.transpose()
 }
 
 fn parse_stress(text: &str) -> Result<Report, Mistake> {

@@ -126,12 +126,9 @@ impl fmt::Display for Adapter {
 
 impl fmt::Display for Scene {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let noun = if self.triangles == 1 {
-            "triangle"
-        } else {
-            "triangles"
-        };
-        write!(f, "{}, {} {noun}", self.name, thousands(self.triangles))
+        let s = if self.triangles == 1 { "" } else { "s" };
+        let triangles = thousands(self.triangles);
+        write!(f, "{}, {triangles} triangle{s}", self.name)
     }
 }
 
@@ -192,32 +189,22 @@ impl Run {
         let map = self
             .map_size
             .map_or(String::new(), |n| format!(", map {n}"));
-        format!(
-            "{} on {} {}{map}",
-            self.preset,
-            self.view,
-            size(self.viewport)
-        )
+        let size = size(self.viewport);
+        format!("{} on {} {size}{map}", self.preset, self.view)
     }
 
     /// The pixels that the method lights wrongly, of all that it lights.
     pub fn wrong_lit(&self) -> Option<Part> {
-        let wrong = self.measured.as_ref()?.wrong;
-        let of = (self.pixels.lit + wrong.lit).saturating_sub(wrong.shadow);
-        Some(Part {
-            count: wrong.lit,
-            of,
-        })
+        let WrongCounts { lit, shadow, .. } = self.measured.as_ref()?.wrong;
+        let of = (self.pixels.lit + lit).saturating_sub(shadow);
+        Some(Part { count: lit, of })
     }
 
     /// The pixels that the method has wrongly in shadow, of all that it has there.
     pub fn wrong_shadow(&self) -> Option<Part> {
-        let wrong = self.measured.as_ref()?.wrong;
-        let of = (self.pixels.shadow + wrong.shadow).saturating_sub(wrong.lit);
-        Some(Part {
-            count: wrong.shadow,
-            of,
-        })
+        let WrongCounts { lit, shadow, .. } = self.measured.as_ref()?.wrong;
+        let of = (self.pixels.shadow + shadow).saturating_sub(lit);
+        Some(Part { count: shadow, of })
     }
 
     /// True if it stands at the same place of a comparison as another one: of the same method,

@@ -269,14 +269,12 @@ impl Report {
 
     /// How many cells passed without calling anything certain.
     pub fn left_to_rays(&self) -> usize {
-        let of = |case: &Case| {
-            let passed = case
-                .cells
-                .iter()
-                .filter(|cell| cell.verdict == Verdict::Pass);
-            passed.filter(|cell| case.is_left_to_rays(cell)).count()
-        };
-        self.cases.iter().map(of).sum()
+        let cases = self.cases.iter();
+        let cells = cases.flat_map(|case| case.cells.iter().map(move |cell| (case, cell)));
+        let passed = cells.filter(|(_, cell)| cell.verdict == Verdict::Pass);
+        passed
+            .filter(|(case, cell)| case.is_left_to_rays(cell))
+            .count()
     }
 
     /// How many cases have too large a band, or no reference.

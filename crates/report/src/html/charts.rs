@@ -98,8 +98,8 @@ pub fn legends(tables: &[Shown]) -> String {
     };
     let legend = |(index, table): (usize, &Shown)| {
         let rows = table.group.rows.iter().filter(|row| row.views() > 0);
-        let methods: Vec<String> = rows.map(|row| row.method.clone()).collect();
-        let buttons: String = unique(&methods).iter().map(button).collect();
+        let methods = unique(rows.map(|row| &row.method));
+        let buttons: String = methods.into_iter().map(button).collect();
         part("legend", &[index], None, &buttons)
     };
     tables.iter().enumerate().map(legend).collect()

@@ -6,7 +6,7 @@ use crate::html::sources::Source;
 use crate::results_table::timed_frames;
 use crate::summary::Row;
 use serde::Serialize;
-use skiagraph_compare::records::results::{PROGRAM, Results};
+use skiagraph_compare::records::results::PROGRAM;
 use std::collections::BTreeSet;
 
 /// All of it.
@@ -73,31 +73,20 @@ pub fn text(sources: &[Source], tables: &[Shown], pictures: &Pictures) -> String
 }
 
 fn conditions(source: &Source) -> Conditions<'_> {
-    let Results {
-        adapter,
-        scene,
-        oracle,
-        warmup,
-        commands,
-        runs,
-        ..
-    } = &source.results;
-    let dates = runs.iter().map(|run| run.date.as_str());
+    let results = &source.results;
+    let dates = results.runs.iter().map(|run| run.date.as_str());
+    let folders = source.folders.iter();
     Conditions {
-        scene: &scene.name,
-        triangles: scene.triangles,
-        adapter: adapter.to_string(),
-        device_type: &adapter.device_type,
-        oracle,
-        frames: timed_frames(&source.results, runs),
-        warmup: *warmup,
+        scene: &results.scene.name,
+        triangles: results.scene.triangles,
+        adapter: results.adapter.to_string(),
+        device_type: &results.adapter.device_type,
+        oracle: &results.oracle,
+        frames: timed_frames(results, &results.runs),
+        warmup: results.warmup,
         dates: dates.collect(),
-        commands,
-        folders: source
-            .folders
-            .iter()
-            .map(|folder| folder.display().to_string())
-            .collect(),
+        commands: &results.commands,
+        folders: folders.map(|folder| folder.display().to_string()).collect(),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::html::sources::Source;
 use base64::{Engine, engine::general_purpose::STANDARD};
+use itertools::Itertools;
 use serde::Serialize;
 use skiagraph_compare::pictures::run_pictures::graph_name;
 use skiagraph_compare::records::results::{Images, Run};
@@ -23,7 +24,7 @@ pub struct Pictures {
 }
 
 /// The pictures of a run, or of the reference.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Default, Serialize)]
 pub struct Set {
     source: usize,
     view: String,
@@ -122,8 +123,7 @@ impl Pictures {
         }
         if !left_out.is_empty() {
             let all: usize = left_out.values().sum();
-            let each = left_out.iter();
-            let each: Vec<String> = each.map(|(kind, n)| format!("{n} of {kind}")).collect();
+            let mut each = left_out.iter().map(|(kind, n)| format!("{n} of {kind}"));
             pictures.left_out.push(format!(
                 "{} had no room in this page: {}; they are in the folders of the results",
                 plural(all, "picture"),
@@ -158,11 +158,8 @@ impl Pictures {
                 viewport: run.viewport,
                 label,
                 frame: of.frame,
-                shaded: None,
-                visibility: None,
-                error: None,
-                uncertain: None,
                 graded: !run.is_hard(),
+                ..Set::default()
             });
             self.sets.len() - 1
         });

@@ -4,6 +4,7 @@
 use crate::html::sources::Source;
 use crate::summary::{Row, by_wall};
 use crate::summary_table::{Group, Summary};
+use itertools::Itertools;
 use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::size;
 use std::collections::BTreeSet;
@@ -92,10 +93,10 @@ pub fn times(tables: &[Shown]) -> &'static [bool] {
 /// An element that the script shows while one of these tables is chosen, and that time, if any.
 pub fn part(class: &str, tables: &[usize], kept: Option<bool>, content: &str) -> String {
     let time = kept.map_or(String::new(), |kept| format!(" data-kept=\"{kept}\""));
-    let names: Vec<String> = tables.iter().map(ToString::to_string).collect();
+
     // The script begins with the first table.
     let is_shown = tables.contains(&0) && kept != Some(true);
     let hidden = if is_shown { "" } else { " hidden" };
-    let names = names.join(" ");
+    let names = tables.iter().join(" ");
     format!("<div class=\"{class}\" data-table=\"{names}\"{time}{hidden}>{content}</div>\n")
 }

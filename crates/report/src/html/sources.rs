@@ -1,6 +1,7 @@
 //! Folders that were measured alike become one source.
 
 use crate::charts::Kept;
+use skiagraph_compare::lists::unique;
 use skiagraph_compare::records::results::{Results, Run};
 use std::path::{Path, PathBuf};
 
@@ -21,46 +22,16 @@ impl Source {
     }
 
     fn is_like(&self, other: &Results) -> bool {
-        let conditions = |of: &Results| {
-            let Results {
-                adapter,
-                scene,
-                oracle,
-                frames,
-                warmup,
-                cached_frames,
-                program,
-                ..
-            } = of.clone();
-            (
-                (adapter, scene, oracle, program),
-                (frames, warmup, cached_frames),
-            )
-        };
-        conditions(&self.results) == conditions(other)
+        without_runs(&self.results) == without_runs(other)
     }
 
     fn add(&mut self, folder: PathBuf, results: Results) {
         let place = self.folders.len();
         self.folders.push(folder);
-        for command in results.commands {
-            if !self.results.commands.contains(&command) {
-                self.results.commands.push(command);
-            }
-        }
+        self.results.commands.extend(results.commands);
+        self.results.commands = unique(std::mem::take(&mut self.results.commands));
         for run in results.runs {
-            let is_same = |known: &Run| {
-                let key = |run: &Run| {
-                    let Run {
-                        preset,
-                        view,
-                        params,
-                        ..
-                    } = run.clone();
-                    (preset, view, run.viewport, run.map_size, params)
-                };
-                key(known) == key(&run)
-            };
+            let is_same = |known: &Run| known.is_in_place_of(&run) && known.params == run.params;
             match self.results.runs.iter().position(is_same) {
                 // Days are written so that they sort.
                 Some(at) if self.results.runs[at].date <= run.date => {
@@ -77,6 +48,15 @@ impl Source {
     }
 }
 
+/// The conditions of results.
+fn without_runs(results: &Results) -> Results {
+    Results {
+        runs: Vec::new(),
+        commands: Vec::new(),
+        ..results.clone()
+    }
+}
+
 /// One source for each adapter, scene and set of conditions, in the order of the folders.
 pub fn sources(kept: Vec<Kept>) -> Vec<Source> {
     let mut sources: Vec<Source> = Vec::new();
@@ -84,11 +64,7 @@ pub fn sources(kept: Vec<Kept>) -> Vec<Source> {
         let index = sources.iter().position(|source| source.is_like(&results));
         let index = index.unwrap_or_else(|| {
             sources.push(Source {
-                results: Results {
-                    runs: Vec::new(),
-                    commands: Vec::new(),
-                    ..results.clone()
-                },
+                results: without_runs(&results),
                 folders: Vec::new(),
                 places: Vec::new(),
             });

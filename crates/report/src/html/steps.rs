@@ -2,6 +2,7 @@
 
 use crate::html::shown::{Shown, part};
 use skiagraph_chart::xml;
+use skiagraph_compare::lists::entry;
 use skiagraph_compare::wording::ms;
 
 /// Steps that have a colour of their own: those that take the longest, over all rows.
@@ -19,10 +20,7 @@ pub fn bars(tables: &[Shown]) -> String {
             .fold(1e-9, f64::max);
         let mut totals: Vec<(&str, f64)> = Vec::new();
         for (name, ms) in rows.iter().flat_map(|(_, steps)| steps) {
-            match totals.iter_mut().find(|(known, _)| known == name) {
-                Some((_, total)) => *total += ms,
-                None => totals.push((name, *ms)),
-            }
+            *entry(&mut totals, *name) += ms;
         }
         totals.sort_by(|(_, one), (_, other)| other.total_cmp(one));
         let colour = |name: &str| match totals.iter().position(|(known, _)| *known == name) {

@@ -1,6 +1,7 @@
 //! The params of a method, by type: sliders within bounds, words, ticks.
 
 use crate::state::Viewer;
+use egui::emath::Numeric;
 use egui::{ComboBox, DragValue, Response, Slider, Ui};
 use skiagraph_graph::{Param, ParamType, ParamValue};
 
@@ -34,25 +35,10 @@ fn edited(ui: &mut Ui, param: &Param, now: &ParamValue) -> Option<ParamValue> {
     let name = param.name.value.as_str();
     let bounds = (param.min, param.max);
     let response = match (&mut value, &param.ty) {
-        (ParamValue::F32(number), _) => {
-            let mut wide = f64::from(*number);
-            let response = slider(ui, name, &mut wide, bounds, false);
-            *number = wide as f32;
-            response
-        }
-        (ParamValue::I32(number), _) => {
-            let mut wide = f64::from(*number);
-            let response = slider(ui, name, &mut wide, bounds, true);
-            *number = wide as i32;
-            response
-        }
+        (ParamValue::F32(number), _) => slider(ui, name, number, bounds),
+        (ParamValue::I32(number), _) => slider(ui, name, number, bounds),
         (ParamValue::U32(number), _) => {
-            let (low, high) = bounds;
-            let mut wide = f64::from(*number);
-            let bounds = (low.or(Some(0.0)), high);
-            let response = slider(ui, name, &mut wide, bounds, true);
-            *number = wide as u32;
-            response
+            slider(ui, name, number, (bounds.0.or(Some(0.0)), bounds.1))
         }
         (ParamValue::Bool(flag), _) => ui.checkbox(flag, name),
         (ParamValue::Vec(numbers), _) => vector(ui, name, numbers, bounds),
@@ -82,36 +68,27 @@ fn edited(ui: &mut Ui, param: &Param, now: &ParamValue) -> Option<ParamValue> {
 }
 
 /// A slider where there are bounds to slide between, else a number to drag.
-fn slider(
+fn slider<N: Numeric>(
     ui: &mut Ui,
     name: &str,
-    number: &mut f64,
-    bounds: (Option<f64>, Option<f64>),
-    is_whole: bool,
+    number: &mut N,
+    (low, high): (Option<f64>, Option<f64>),
 ) -> Response {
-    if let (Some(low), Some(high)) = bounds {
+    if let (Some(low), Some(high)) = (low, high) {
         // Sizes and counts are told apart by their factors.
         let is_wide = low >= 0.0 && high > 1000.0 * low.max(1.0);
-        let slider = Slider::new(number, low..=high)
-            .logarithmic(is_wide)
-            .text(name);
-        return ui.add(if is_whole { slider.integer() } else { slider });
+        let slider = Slider::new(number, N::from_f64(low)..=N::from_f64(high));
+        return ui.add(slider.logarithmic(is_wide).text(name));
     }
-    let low = bounds.0.unwrap_or(f64::from(f32::MIN));
-    let high = bounds.1.unwrap_or(f64::from(f32::MAX));
-    let speed = if is_whole {
+    let low = low.unwrap_or(N::MIN.to_f64());
+    let high = high.unwrap_or(N::MAX.to_f64());
+    let speed = if N::INTEGRAL {
         0.2
     } else {
-        (number.abs() * 0.01).max(1e-4)
+        (number.to_f64().abs() * 0.01).max(1e-4)
     };
     ui.horizontal(|ui| {
-        let drag = DragValue::new(number).range(low..=high).speed(speed);
-        let drag = if is_whole {
-            drag.fixed_decimals(0)
-        } else {
-            drag
-        };
-        let response = ui.add(drag);
+        let response = ui.add(DragValue::new(number).range(low..=high).speed(speed));
         let label = ui.label(name);
         response.labelled_by(label.id)
     })

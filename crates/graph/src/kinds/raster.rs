@@ -133,7 +133,7 @@ enum Winding {
 /// Primitives that vertices form.
 #[derive(Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(remote = "wgt::PrimitiveTopology")]
+#[serde(remote = "wgt::PrimitiveTopology", rename = "Topology")]
 enum Topology {
     TriangleList,
     TriangleStrip,

@@ -203,11 +203,11 @@ impl Param {
         };
         let converted = match (&self.ty, value) {
             (ParamType::F32, Value::Scalar(scalar)) => ParamValue::F32(scalar.number() as f32),
-            (ParamType::I32, Value::Scalar(Scalar::Whole(whole))) => {
-                ParamValue::I32(i32::try_from(*whole).map_err(|_| wrong())?)
+            (ParamType::I32, Value::Scalar(scalar)) => {
+                ParamValue::I32(scalar.whole().ok_or_else(wrong)?)
             }
-            (ParamType::U32, Value::Scalar(Scalar::Whole(whole))) => {
-                ParamValue::U32(u32::try_from(*whole).map_err(|_| wrong())?)
+            (ParamType::U32, Value::Scalar(scalar)) => {
+                ParamValue::U32(scalar.whole().ok_or_else(wrong)?)
             }
             (ParamType::Bool, Value::Bool(value)) => ParamValue::Bool(*value),
             (ParamType::Vec2, _) => list(2)?,

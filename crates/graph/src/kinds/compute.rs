@@ -5,10 +5,7 @@ use super::{
     kind::{Lowering, PassKind},
     step::{Dispatch, Groups, Operand, Step, Threads},
 };
-use crate::language::{
-    syntax::{Expr, Reference},
-    value::Scalar,
-};
+use crate::language::syntax::{Expr, Reference};
 use serde::Deserialize;
 
 /// One dispatch of a compute shader.
@@ -57,12 +54,8 @@ impl PassKind for Compute {
 
 /// A thread for each of a number of items, or for each texel of a size.
 fn over(threads: &Expr, pass: &mut Lowering<'_>) -> Threads {
-    let edge = |scalar: &Scalar| match scalar {
-        Scalar::Whole(whole) => u64::try_from(*whole).ok(),
-        Scalar::Number(_) => None,
-    };
     let list = pass.list(threads);
-    let edges: Option<Vec<u64>> = list.iter().map(edge).collect();
+    let edges: Option<Vec<u64>> = list.iter().map(|edge| edge.whole()).collect();
     match edges.as_deref() {
         Some([items]) => Threads::Items(*items),
         Some([width, height]) => Threads::Texels([*width, *height, 1]),

@@ -33,19 +33,12 @@ impl PassKind for Fullscreen {
         let mut program = pass.program();
         program.fragment = self.fragment.as_ref().and_then(|entry| entry.chosen(pass));
         let area = self.area.as_ref();
-        let colors = self
-            .color
-            .iter()
-            .map(|color| targets::color(color, area, pass));
         let draw = Draw {
             program,
             fullscreen: true,
-            colors: colors.collect(),
+            colors: targets::colors(&self.color, area, pass),
             depth: None,
-            stencil: self
-                .stencil
-                .as_ref()
-                .map(|entry| targets::stencil(entry, area, pass)),
+            stencil: targets::stencil(self.stencil.as_ref(), area, pass),
             canvas: None,
             area: area.and_then(|area| targets::area(area, pass)),
             call: DrawCall::Direct {

@@ -213,10 +213,7 @@ impl<'a> Lowering<'a> {
         let of = Subject::Material(Box::new(texture.clone()));
         let size = ExprKind::Attribute(of, Attribute::Size);
         let size = self.list(&Expr::new(size, texture.span.clone()));
-        let edge = |edge: usize| match size.get(edge) {
-            Some(Scalar::Whole(whole)) => u64::try_from(*whole).unwrap_or(1),
-            _ => 1,
-        };
+        let edge = |edge: usize| size.get(edge).and_then(|edge| edge.whole()).unwrap_or(1);
         Threads::Texels([edge(0), edge(1), edge(2)])
     }
 

@@ -48,8 +48,9 @@ pub(super) struct Raster {
     #[serde(default = "counter_clockwise")]
     front_face: Chosen<Winding>,
     /// Primitives that vertices form; `TriangleList` without it.
-    #[serde(default)]
-    topology: Topology,
+    #[serde(default, deserialize_with = "Topology::deserialize")]
+    #[cfg_attr(feature = "schema", schemars(with = "Topology"))]
+    topology: wgt::PrimitiveTopology,
     /// Counts every pixel that a triangle touches, not only those whose centre it covers.
     #[serde(default)]
     conservative: bool,
@@ -130,10 +131,10 @@ enum Winding {
 }
 
 /// Primitives that vertices form.
-#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[derive(Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(remote = "wgt::PrimitiveTopology", rename = "Topology")]
 enum Topology {
-    #[default]
     TriangleList,
     TriangleStrip,
     LineList,
@@ -157,12 +158,7 @@ impl PassKind for Raster {
             Call::Indirect(buffer) => DrawCall::Indirect(Operand::from(buffer)),
         };
         let primitive = wgt::PrimitiveState {
-            topology: match self.topology {
-                Topology::TriangleList => wgt::PrimitiveTopology::TriangleList,
-                Topology::TriangleStrip => wgt::PrimitiveTopology::TriangleStrip,
-                Topology::LineList => wgt::PrimitiveTopology::LineList,
-                Topology::PointList => wgt::PrimitiveTopology::PointList,
-            },
+            topology: self.topology,
             front_face: match pass.word(&self.front_face, &WINDINGS) {
                 Winding::Ccw => wgt::FrontFace::Ccw,
                 Winding::Cw => wgt::FrontFace::Cw,
@@ -177,22 +173,15 @@ impl PassKind for Raster {
             ..wgt::PrimitiveState::default()
         };
         let area = self.area.as_ref();
-        let colors = self
-            .color
-            .iter()
-            .map(|color| targets::color(color, area, pass));
         let draw = Draw {
             program,
             fullscreen: false,
-            colors: colors.collect(),
+            colors: targets::colors(&self.color, area, pass),
             depth: self
                 .depth
                 .as_ref()
                 .map(|depth| targets::depth(depth, area, pass)),
-            stencil: self
-                .stencil
-                .as_ref()
-                .map(|entry| targets::stencil(entry, area, pass)),
+            stencil: targets::stencil(self.stencil.as_ref(), area, pass),
             canvas: self.size.as_ref().map(|size| targets::canvas(size, pass)),
             area: area.and_then(|area| targets::area(area, pass)),
             call,

@@ -7,10 +7,7 @@ use super::{
 use crate::{
     document::fields::{Compare, Load, short_or_long},
     errors::document::DocumentError,
-    language::{
-        syntax::{Expr, Reference},
-        value::Scalar,
-    },
+    language::syntax::{Expr, Reference},
     source::span::Located,
 };
 use serde::{Deserialize, Deserializer};
@@ -18,16 +15,10 @@ use skiagraph_located_ron::reader::{raw, refuse};
 
 /// A colour attachment: `"image"`, or `(target: "image", load: …, blend: …, write: …, resolve: …)`.
 #[derive(Clone, Debug)]
-pub(super) struct ColorEntry {
-    target: Reference,
-    load: Option<Load>,
-    blend: Option<Blend>,
-    write: WriteMask,
-    resolve: Option<Reference>,
-}
+pub(super) struct ColorEntry(ColorFields);
 
 /// A colour attachment.
-#[derive(Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct ColorFields {
@@ -49,21 +40,14 @@ pub(super) struct ColorFields {
 
 impl<'de> Deserialize<'de> for ColorEntry {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let long = |long: ColorFields| Self {
-            target: long.target,
-            load: long.load,
-            blend: long.blend,
-            write: long.write,
-            resolve: long.resolve,
-        };
-        let short = |target| Self {
+        let short = |target| ColorFields {
             target,
             load: None,
             blend: None,
             write: WriteMask::default(),
             resolve: None,
         };
-        short_or_long(deserializer, long, short)
+        short_or_long(deserializer, Self, |target| Self(short(target)))
     }
 }
 
@@ -137,16 +121,10 @@ impl<'de> Deserialize<'de> for WriteMask {
 /// A depth attachment: `"depth"`, or
 /// `(target: "depth", load: …, compare: …, write: …, bias: …)`.
 #[derive(Clone, Debug)]
-pub(super) struct DepthEntry {
-    target: Reference,
-    load: Option<Load>,
-    compare: Compare,
-    write: bool,
-    bias: BiasEntry,
-}
+pub(super) struct DepthEntry(DepthFields);
 
 /// A depth attachment.
-#[derive(Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct DepthFields {
@@ -168,21 +146,14 @@ pub(super) struct DepthFields {
 
 impl<'de> Deserialize<'de> for DepthEntry {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let long = |long: DepthFields| Self {
-            target: long.target,
-            load: long.load,
-            compare: long.compare,
-            write: long.write,
-            bias: long.bias,
-        };
-        let short = |target| Self {
+        let short = |target| DepthFields {
             target,
             load: None,
             compare: Compare::default(),
             write: true,
             bias: BiasEntry::default(),
         };
-        short_or_long(deserializer, long, short)
+        short_or_long(deserializer, Self, |target| Self(short(target)))
     }
 }
 
@@ -258,23 +229,26 @@ struct FaceEntry {
     #[serde(default = "always")]
     compare: Compare,
     /// Operation where the test fails; `Keep` without it, as below.
-    #[serde(default)]
-    fail: StencilOperation,
+    #[serde(default, deserialize_with = "StencilOperation::deserialize")]
+    #[cfg_attr(feature = "schema", schemars(with = "StencilOperation"))]
+    fail: wgt::StencilOperation,
     /// Where it passes and that of depth fails.
-    #[serde(default)]
-    depth_fail: StencilOperation,
+    #[serde(default, deserialize_with = "StencilOperation::deserialize")]
+    #[cfg_attr(feature = "schema", schemars(with = "StencilOperation"))]
+    depth_fail: wgt::StencilOperation,
     /// Where both pass.
-    #[serde(default)]
-    pass: StencilOperation,
+    #[serde(default, deserialize_with = "StencilOperation::deserialize")]
+    #[cfg_attr(feature = "schema", schemars(with = "StencilOperation"))]
+    pass: wgt::StencilOperation,
 }
 
 impl Default for FaceEntry {
     fn default() -> Self {
         Self {
             compare: always(),
-            fail: StencilOperation::Keep,
-            depth_fail: StencilOperation::Keep,
-            pass: StencilOperation::Keep,
+            fail: wgt::StencilOperation::Keep,
+            depth_fail: wgt::StencilOperation::Keep,
+            pass: wgt::StencilOperation::Keep,
         }
     }
 }
@@ -284,10 +258,10 @@ fn always() -> Compare {
 }
 
 /// Operation on a stencil value; wgpu's names.
-#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[derive(Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(remote = "wgt::StencilOperation")]
 enum StencilOperation {
-    #[default]
     Keep,
     Zero,
     Replace,
@@ -298,28 +272,13 @@ enum StencilOperation {
     DecrementWrap,
 }
 
-impl From<StencilOperation> for wgt::StencilOperation {
-    fn from(operation: StencilOperation) -> Self {
-        match operation {
-            StencilOperation::Keep => Self::Keep,
-            StencilOperation::Zero => Self::Zero,
-            StencilOperation::Replace => Self::Replace,
-            StencilOperation::Invert => Self::Invert,
-            StencilOperation::IncrementClamp => Self::IncrementClamp,
-            StencilOperation::DecrementClamp => Self::DecrementClamp,
-            StencilOperation::IncrementWrap => Self::IncrementWrap,
-            StencilOperation::DecrementWrap => Self::DecrementWrap,
-        }
-    }
-}
-
 impl From<FaceEntry> for wgt::StencilFaceState {
     fn from(face: FaceEntry) -> Self {
         Self {
             compare: face.compare.into(),
-            fail_op: face.fail.into(),
-            depth_fail_op: face.depth_fail.into(),
-            pass_op: face.pass.into(),
+            fail_op: face.fail,
+            depth_fail_op: face.depth_fail,
+            pass_op: face.pass,
         }
     }
 }
@@ -356,22 +315,23 @@ fn clear(
     }))
 }
 
-pub(super) fn color(
-    entry: &ColorEntry,
+pub(super) fn colors(
+    entries: &[ColorEntry],
     area: Option<&Expr>,
     pass: &mut Lowering<'_>,
-) -> ColorTarget<Names> {
-    ColorTarget {
+) -> Vec<ColorTarget<Names>> {
+    let color = |ColorEntry(entry): &ColorEntry| ColorTarget {
         target: entry.target.clone(),
         resolve: entry.resolve.clone(),
         clear: clear(entry.load.as_ref(), 0.0, area, pass),
         blend: entry.blend.map(Blend::state),
         write: entry.write.0,
-    }
+    };
+    entries.iter().map(color).collect()
 }
 
 pub(super) fn depth(
-    entry: &DepthEntry,
+    DepthEntry(entry): &DepthEntry,
     area: Option<&Expr>,
     pass: &mut Lowering<'_>,
 ) -> DepthTarget<Names> {
@@ -390,12 +350,13 @@ pub(super) fn depth(
 }
 
 pub(super) fn stencil(
-    entry: &StencilEntry,
+    entry: Option<&StencilEntry>,
     area: Option<&Expr>,
     pass: &mut Lowering<'_>,
-) -> StencilTarget<Names> {
+) -> Option<StencilTarget<Names>> {
+    let entry = entry?;
     let reference = entry.reference.as_ref();
-    StencilTarget {
+    Some(StencilTarget {
         target: entry.target.clone(),
         clear: clear(entry.load.as_ref(), 0.0, area, pass).map(|value| match &entry.load {
             Some(Load::Clear(values)) => pass.count32(&values[0]),
@@ -408,7 +369,7 @@ pub(super) fn stencil(
             write_mask: entry.write_mask,
         },
         reference: reference.map_or(0, |reference| pass.count32(reference)),
-    }
+    })
 }
 
 /// The width and height of a draw without attachments.
@@ -427,11 +388,7 @@ pub(super) fn area(entry: &Expr, pass: &mut Lowering<'_>) -> Option<[u32; 4]> {
     if list.is_empty() {
         return None;
     }
-    let edge = |scalar: &Scalar| match scalar {
-        Scalar::Whole(whole) => u32::try_from(*whole).ok(),
-        Scalar::Number(_) => None,
-    };
-    let edges: Option<Vec<u32>> = list.iter().map(edge).collect();
+    let edges: Option<Vec<u32>> = list.iter().map(|edge| edge.whole()).collect();
     let area = edges.and_then(|edges| <[u32; 4]>::try_from(edges).ok());
     if area.is_none() {
         pass.report(DocumentError::Area(entry.span.clone()));

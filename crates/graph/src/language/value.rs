@@ -21,6 +21,14 @@ impl Scalar {
             Self::Number(number) => number,
         }
     }
+
+    /// A whole number that the type holds.
+    pub(crate) fn whole<T: TryFrom<i64>>(self) -> Option<T> {
+        match self {
+            Self::Whole(whole) => T::try_from(whole).ok(),
+            Self::Number(_) => None,
+        }
+    }
 }
 
 impl fmt::Display for Scalar {

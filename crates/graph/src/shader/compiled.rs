@@ -63,11 +63,10 @@ fn immediate(module: &Module, source: &Expanded) -> Option<ShaderError> {
     let mut globals = module.global_variables.iter();
     let (handle, global) =
         globals.find(|(_, global)| global.space == naga::AddressSpace::Immediate)?;
-    let range = module.global_variables.get_span(handle).to_range();
     Some(ShaderError::Immediate {
         file: source.file.name.to_string(),
         global: global.name.clone().unwrap_or_default(),
-        at: source.locate(range.unwrap_or(0..0)),
+        at: source.place(module.global_variables.get_span(handle)),
     })
 }
 

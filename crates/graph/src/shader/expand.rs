@@ -67,6 +67,11 @@ impl Expanded {
         }
     }
 
+    /// The place of what naga has read; the begin where it gives none.
+    pub fn place(&self, span: naga::Span) -> Span {
+        self.locate(span.to_range().unwrap_or(0..0))
+    }
+
     /// Appends a generated piece; mistakes in it are told at `origin`.
     pub fn push(&mut self, text: &str, origin: &Span) {
         let (file, at) = (origin.file.clone(), origin.range.start);
@@ -120,14 +125,8 @@ impl<'a> ShaderFiles<'a> {
         if escapes(name) {
             return Err(ImportError::Outside(name.clone()).into());
         }
-        let file = match self.find(&candidates) {
-            Ok(Some(file)) => file,
-            Ok(None) => {
-                let likeness = self.likeness(&candidates, name);
-                return Err(ImportError::NoShader(name.clone(), candidates, likeness).into());
-            }
-            Err(why) => return Err(ImportError::Unreadable(name.clone(), why).into()),
-        };
+        let (missing, unreadable) = (ImportError::NoShader, ImportError::Unreadable);
+        let file = self.found(name, candidates, missing, unreadable)?;
         let mut expanded = Expanded {
             text: String::new(),
             file: file.clone(),
@@ -145,14 +144,25 @@ impl<'a> ShaderFiles<'a> {
             return Err(ImportError::Leaves(name.clone()));
         }
         let candidates = module_candidates(folder_of(&name.span.file.name), name);
-        match self.find(&candidates) {
-            Ok(Some(file)) => Ok(file),
-            Ok(None) => {
-                let likeness = self.likeness(&candidates, name);
-                Err(ImportError::NoFile(name.clone(), candidates, likeness))
-            }
-            Err(why) => Err(ImportError::UnreadableFile(name.clone(), why)),
-        }
+        let (missing, unreadable) = (ImportError::NoFile, ImportError::UnreadableFile);
+        self.found(name, candidates, missing, unreadable)
+    }
+
+    /// The first of the candidates that is there, or one of two errors: none is, or one cannot be
+    /// read.
+    fn found(
+        &mut self,
+        name: &Located<String>,
+        candidates: Vec<String>,
+        missing: fn(Located<String>, Vec<String>, Option<String>) -> ImportError,
+        unreadable: fn(Located<String>, String) -> ImportError,
+    ) -> Result<SourceFile, ImportError> {
+        let found = self.find(&candidates);
+        let found = found.map_err(|why| unreadable(name.clone(), why))?;
+        found.ok_or_else(|| {
+            let likeness = self.likeness(&candidates, name);
+            missing(name.clone(), candidates, likeness)
+        })
     }
 
     fn likeness(&self, candidates: &[String], name: &str) -> Option<String> {
@@ -247,14 +257,8 @@ impl<'a> ShaderFiles<'a> {
             return Err(ImportError::Leaves(path));
         }
         let candidates = import_candidates(&file.name, &path);
-        match self.find(&candidates) {
-            Ok(Some(imported)) => Ok(imported),
-            Ok(None) => {
-                let likeness = self.likeness(&candidates, &path);
-                Err(ImportError::NoFile(path, candidates, likeness))
-            }
-            Err(why) => Err(ImportError::UnreadableFile(path, why)),
-        }
+        let (missing, unreadable) = (ImportError::NoFile, ImportError::UnreadableFile);
+        self.found(&path, candidates, missing, unreadable)
     }
 }
 

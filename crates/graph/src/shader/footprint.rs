@@ -118,8 +118,7 @@ fn bytes_of(of: &Specialised<'_>, ty: &TypeInner) -> u64 {
 }
 
 fn located(name: Option<&str>, span: naga::Span, source: &Expanded) -> Located<String> {
-    let place = source.locate(span.to_range().unwrap_or(0..0));
-    Located::new(name.unwrap_or_default().to_owned(), place)
+    Located::new(name.unwrap_or_default().to_owned(), source.place(span))
 }
 
 /// The functions that one calls, and those that these call, each once.

@@ -2,13 +2,14 @@
 //! per entry point.
 
 use super::{
-    class::{Class, TextureClass, class_of, vector},
+    class::{Class, TextureClass, class_of},
     compiled::{compiled, specialised},
     expand::Expanded,
     footprint::Footprint,
     guard,
     items::{Item, item},
     text::words,
+    varyings::Varyings,
     wgsl_errors::function_span,
 };
 use crate::{
@@ -276,12 +277,8 @@ impl Shader {
         handle: Handle<naga::GlobalVariable>,
         variable: &naga::GlobalVariable,
     ) -> Span {
-        let range = self
-            .module
-            .global_variables
-            .get_span(handle)
-            .to_range()
-            .unwrap_or(0..0);
+        let span = self.module.global_variables.get_span(handle);
+        let range = span.to_range().unwrap_or(0..0);
         let name = variable.name.as_deref().unwrap_or("");
         // The declaration begins with its attributes; the name is what matters, and the type
         // follows it.
@@ -316,27 +313,15 @@ impl Shader {
     /// Overridable constants: name, the key that wgpu knows it by (its `@id` if it has one),
     /// whether it has a value of its own, and its place.
     pub(crate) fn overrides(&self) -> impl Iterator<Item = (&str, String, bool, Span)> {
-        self.module
-            .overrides
-            .iter()
-            .filter_map(|(handle, constant)| {
-                let name = constant.name.as_deref()?;
-                let key = constant
-                    .id
-                    .map_or_else(|| name.to_owned(), |id| id.to_string());
-                let range = self
-                    .module
-                    .overrides
-                    .get_span(handle)
-                    .to_range()
-                    .unwrap_or(0..0);
-                Some((
-                    name,
-                    key,
-                    constant.init.is_some(),
-                    self.source.locate(range),
-                ))
-            })
+        let overrides = self.module.overrides.iter();
+        overrides.filter_map(|(handle, constant)| {
+            let name = constant.name.as_deref()?;
+            let key = constant
+                .id
+                .map_or_else(|| name.to_owned(), |id| id.to_string());
+            let span = self.module.overrides.get_span(handle);
+            Some((name, key, constant.init.is_some(), self.source.place(span)))
+        })
     }
 
     /// The numbers that an override holds; `None` of a `bool`.
@@ -385,19 +370,24 @@ impl Shader {
 
     /// Names of what the module asks for: members of the uniform `params`, and overrides.
     pub(crate) fn params(&self) -> impl Iterator<Item = &str> {
-        let mut globals = self.module.global_variables.iter();
-        let params = globals.find(|(_, global)| global.name.as_deref() == Some("params"));
-        let members = params.map(|(_, global)| &self.module.types[global.ty].inner);
-        let members = match members {
-            Some(TypeInner::Struct { members, .. }) => members.as_slice(),
-            _ => &[],
-        };
+        let members = self
+            .uniform_params()
+            .map_or(&[][..], |(_, members)| members);
+        let members = members.iter().filter_map(|member| member.name.as_deref());
         let overrides = self.module.overrides.iter();
-        let overrides = overrides.filter_map(|(_, constant)| constant.name.as_deref());
-        members
-            .iter()
-            .filter_map(|member| member.name.as_deref())
-            .chain(overrides)
+        members.chain(overrides.filter_map(|(_, constant)| constant.name.as_deref()))
+    }
+
+    /// The uniform `params` with its members.
+    pub(super) fn uniform_params(
+        &self,
+    ) -> Option<(Handle<naga::GlobalVariable>, &[naga::StructMember])> {
+        let mut globals = self.module.global_variables.iter();
+        let (handle, global) = globals.find(|(_, of)| of.name.as_deref() == Some("params"))?;
+        match &self.module.types[global.ty].inner {
+            TypeInner::Struct { members, .. } => Some((handle, members)),
+            _ => None,
+        }
     }
 
     /// True if an entry point uses a global.
@@ -414,23 +404,12 @@ impl Shader {
     /// Scalar class and component count of each colour output of a fragment entry point, by
     /// location.
     pub(crate) fn fragment_outputs(&self, entry: usize) -> Vec<(u32, ScalarClass, u32)> {
-        let Some(result) = &self.module.entry_points[entry].function.result else {
-            return Vec::new();
-        };
-        let mut outputs = Vec::new();
-        let mut add = |binding: &Option<naga::Binding>, ty: Handle<naga::Type>| {
-            if let (Some(naga::Binding::Location { location, .. }), Some((scalar, width))) =
-                (binding, vector(&self.module, ty))
-            {
-                outputs.push((*location, scalar, width));
-            }
-        };
-        match &self.module.types[result.ty].inner {
-            TypeInner::Struct { members, .. } => members
-                .iter()
-                .for_each(|member| add(&member.binding, member.ty)),
-            _ => add(&result.binding, result.ty),
-        }
+        let outputs = Varyings::outputs(self, entry).locations.into_iter();
+        let outputs = outputs.filter_map(|output| {
+            let scalar = ScalarClass::from_kind(output.kind)?;
+            Some((output.location, scalar, output.width))
+        });
+        let mut outputs: Vec<_> = outputs.collect();
         outputs.sort_by_key(|(location, ..)| *location);
         outputs
     }

@@ -4,9 +4,10 @@ use super::{
     expand::{Expanded, ImportLine},
     reflect::Shader,
     text::next,
+    wgsl_errors::functions,
 };
 use crate::source::span::{Located, SourceFile};
-use naga::{Expression, TypeInner};
+use naga::Expression;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Something that is not used: its kind, and its name where it stands.
@@ -121,12 +122,7 @@ impl<'s> UnusedFinder<'s> {
 /// Members of the uniform `params` that no function reads.
 fn unused_params(shader: &Shader) -> Vec<Unused> {
     let module = shader.module();
-    let mut globals = module.global_variables.iter();
-    let params = globals.find(|(_, global)| global.name.as_deref() == Some("params"));
-    let Some((params, global)) = params else {
-        return Vec::new();
-    };
-    let TypeInner::Struct { members, .. } = &module.types[global.ty].inner else {
+    let Some((params, members)) = shader.uniform_params() else {
         return Vec::new();
     };
     let mut read = vec![false; members.len()];
@@ -184,11 +180,6 @@ fn own(shader: &Shader, name: &str, what: &'static str) -> Option<Unused> {
     let span = shader.source.locate(at..at + name.len());
     let name = Located::new(name.to_owned(), span);
     (name.span.file == shader.source.file).then_some(Unused { what, name })
-}
-
-fn functions(module: &naga::Module) -> impl Iterator<Item = &naga::Function> {
-    let functions = module.functions.iter().map(|(_, function)| function);
-    functions.chain(module.entry_points.iter().map(|entry| &entry.function))
 }
 
 /// The file and those that it imports, directly or not.

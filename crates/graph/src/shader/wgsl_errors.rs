@@ -39,7 +39,7 @@ fn collision(
 ) -> ShaderError {
     let globals = &module.global_variables;
     let binding = globals[handle].binding;
-    let place = |handle| source.locate(globals.get_span(handle).to_range().unwrap_or(0..0));
+    let place = |handle| source.place(globals.get_span(handle));
     let name = |handle: Handle<naga::GlobalVariable>| globals[handle].name.clone();
     let others = globals
         .iter()
@@ -127,6 +127,19 @@ fn without_handles(what: &str, module: &naga::Module) -> String {
     said + rest
 }
 
+/// An error of naga's with its causes: they say what is wrong; the outermost one only which
+/// function.
+fn in_full(error: &dyn std::error::Error, module: &naga::Module) -> String {
+    let mut what = error.to_string();
+    let mut cause = error.source();
+    while let Some(inner) = cause {
+        what.push_str(&format!(": {inner}"));
+        cause = inner.source();
+    }
+    // Only structs have names.
+    without_handles(&what, module).replace("Type '' is", "a type is")
+}
+
 /// Rewords an error that naga tells by its own numbers and flags.
 fn plainly(error: &ValidationError, module: &naga::Module) -> Option<String> {
     let of_function = |name: &str, fault: &FunctionError| match fault {
@@ -175,6 +188,12 @@ fn plainly(error: &ValidationError, module: &naga::Module) -> Option<String> {
     }
 }
 
+/// All functions of a module, its entry points among them.
+pub(super) fn functions(module: &naga::Module) -> impl Iterator<Item = &naga::Function> {
+    let functions = module.functions.iter().map(|(_, function)| function);
+    functions.chain(module.entry_points.iter().map(|entry| &entry.function))
+}
+
 /// The place of what has a type that is written where it is used.
 fn user_of(ty: Handle<naga::Type>, module: &naga::Module, source: &Expanded) -> Option<Span> {
     let located = |span: naga::Span| Some(source.locate(span.to_range()?));
@@ -182,9 +201,7 @@ fn user_of(ty: Handle<naga::Type>, module: &naga::Module, source: &Expanded) -> 
     if let Some((global, _)) = globals.find(|(_, global)| global.ty == ty) {
         return located(module.global_variables.get_span(global));
     }
-    let functions = module.functions.iter().map(|(_, function)| function);
-    let mut functions = functions.chain(module.entry_points.iter().map(|entry| &entry.function));
-    functions.find_map(|function| {
+    functions(module).find_map(|function| {
         let mut locals = function.local_variables.iter();
         if let Some((local, _)) = locals.find(|(_, local)| local.ty == ty) {
             return located(function.local_variables.get_span(local));
@@ -210,18 +227,8 @@ pub(super) fn validation_error(
     {
         return collision(*handle, module, source);
     }
-    // The causes say what is wrong; the outermost one only which function.
-    let mut what = format!("is not valid: {}", error.as_inner());
-    let mut cause = std::error::Error::source(error.as_inner());
-    while let Some(inner) = cause {
-        what.push_str(&format!(": {inner}"));
-        cause = inner.source();
-    }
-    let what = match plainly(error.as_inner(), module) {
-        Some(said) => format!("is not valid: {said}"),
-        // Only structs have names.
-        None => without_handles(&what, module).replace("Type '' is", "a type is"),
-    };
+    let said = plainly(error.as_inner(), module);
+    let said = said.unwrap_or_else(|| in_full(error.as_inner(), module));
     let place = |(span, text): &(naga::Span, String)| {
         // Some spans are labelled with a handle of naga's, which tells an author nothing.
         let text = if text.starts_with("naga::") { "" } else { text };
@@ -251,7 +258,7 @@ pub(super) fn validation_error(
     }
     ShaderError::Naga {
         file: blamed(&places, source),
-        what,
+        what: format!("is not valid: {said}"),
         places,
         notes: Vec::new(),
     }
@@ -263,17 +270,11 @@ pub(super) fn specialisation_error(
     entry: &str,
     source: &Expanded,
 ) -> ShaderError {
-    let mut what = format!("is not valid with the values of its overrides: {error}");
-    let mut cause = std::error::Error::source(error);
-    while let Some(inner) = cause {
-        what.push_str(&format!(": {inner}"));
-        cause = inner.source();
-    }
     // Its numbers are those of a module that is gone.
-    let what = without_handles(&what, &naga::Module::default()).replace("Type '' is", "a type is");
+    let said = in_full(error, &naga::Module::default());
     ShaderError::Naga {
         file: format!("`{}`", source.file.name),
-        what,
+        what: format!("is not valid with the values of its overrides: {said}"),
         places: vec![(function_span(source, entry), String::new())],
         notes: Vec::new(),
     }

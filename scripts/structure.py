@@ -20,7 +20,6 @@ from house import ROOT, circles, code, imports, modules, paths
 
 LIST = ROOT / "scripts" / "structure.txt"
 WHOLE = {
-    "crates/graph/src/link/linker.rs": "Linker",
     "crates/graph/src/instantiate/symbols.rs": "SymbolTable",
     "crates/graph/src/instantiate/build.rs": "Builder",
 }

@@ -62,10 +62,7 @@ impl Memory<'_> {
                 size,
                 mips,
                 layers,
-                bytes: resource
-                    .kind
-                    .bytes()
-                    .saturating_mul(self.versions(*id) as u64),
+                bytes: self.bytes_of(*id),
                 shared_with: others
                     .filter(|other| *other != id)
                     .map(|other| self.resources[other.0].name.clone())
@@ -201,9 +198,12 @@ impl Memory<'_> {
     }
 
     fn allocation_bytes(&self, allocation: &Allocation) -> u64 {
-        let alias = allocation.aliases[0];
-        let bytes = self.resources[alias.0].kind.bytes();
-        bytes.saturating_mul(self.versions(alias) as u64)
+        self.bytes_of(allocation.aliases[0])
+    }
+
+    fn bytes_of(&self, id: ResourceId) -> u64 {
+        let bytes = self.resources[id.0].kind.bytes();
+        bytes.saturating_mul(self.versions(id) as u64)
     }
 
     pub fn versions(&self, id: ResourceId) -> usize {

@@ -1,5 +1,7 @@
 //! WGSL as text, for questions that naga does not answer, or must not be asked before.
 
+use std::ops::Range;
+
 /// WGSL's line breaks besides `\n`: a comment ends at any of them.
 pub(super) const BREAKS: [char; 6] = ['\r', '\u{b}', '\u{c}', '\u{85}', '\u{2028}', '\u{2029}'];
 
@@ -63,6 +65,16 @@ pub(super) fn next(text: &str) -> Option<(usize, &str)> {
     }
 }
 
+/// All tokens of a text, each with its place.
+pub(super) fn tokens(text: &str) -> impl Iterator<Item = (Range<usize>, &str)> {
+    let mut at = 0;
+    std::iter::from_fn(move || {
+        let (length, token) = next(&text[at..])?;
+        at += length;
+        Some((at - token.len()..at, token))
+    })
+}
+
 /// Bytes of the block comment, possibly with others inside, that `text` begins with.
 fn comment(text: &[u8]) -> usize {
     let (mut depth, mut at) = (0, 0);
@@ -91,10 +103,9 @@ impl<'t> Declared<'t> {
         const BEFORE_A_NAME: [&str; 8] = [
             "fn", "let", "var", "const", "override", "struct", "alias", ">",
         ];
-        let (mut declared, mut at, mut is_struct) = (Self::default(), 0, false);
+        let (mut declared, mut is_struct) = (Self::default(), false);
         let (mut before, mut last) = ("", "");
-        while let Some((length, token)) = next(&text[at..]) {
-            at += length;
+        for (_, token) in tokens(text) {
             match token {
                 "struct" => is_struct = true,
                 "}" => is_struct = false,
@@ -124,20 +135,15 @@ pub(super) fn words<'a>(text: &'a str, word: &'a str) -> impl Iterator<Item = us
 
 /// The words of a text outside comments, and which of them are declared as module-scope constants.
 pub(super) fn identifiers(text: &str) -> impl Iterator<Item = (&str, bool)> {
-    let (mut at, mut depth, mut after_const) = (0, 0usize, false);
-    std::iter::from_fn(move || {
-        loop {
-            let (length, token) = next(&text[at..])?;
-            at += length;
-            match token {
-                "{" => depth += 1,
-                "}" => depth = depth.saturating_sub(1),
-                _ => {}
-            }
-            let is_declared = std::mem::replace(&mut after_const, depth == 0 && token == "const");
-            if token.starts_with(|c: char| c.is_alphabetic() || c == '_') {
-                return Some((token, is_declared));
-            }
+    let (mut depth, mut after_const) = (0usize, false);
+    tokens(text).filter_map(move |(_, token)| {
+        match token {
+            "{" => depth += 1,
+            "}" => depth = depth.saturating_sub(1),
+            _ => {}
         }
+        let is_declared = std::mem::replace(&mut after_const, depth == 0 && token == "const");
+        let is_word = token.starts_with(|c: char| c.is_alphabetic() || c == '_');
+        is_word.then_some((token, is_declared))
     })
 }

@@ -282,13 +282,9 @@ impl Param {
 
     /// True if every value of `other` is a value of this param.
     pub(crate) fn holds_all_of(&self, other: &Param) -> bool {
-        let within = match (self.min, other.min) {
-            (Some(least), Some(other)) => least <= other,
-            (least, _) => least.is_none(),
-        } && match (self.max, other.max) {
-            (Some(most), Some(other)) => most >= other,
-            (most, _) => most.is_none(),
-        };
+        let above = |least: f64| other.min.is_some_and(|other| least <= other);
+        let below = |most: f64| other.max.is_some_and(|other| most >= other);
+        let within = self.min.is_none_or(above) && self.max.is_none_or(below);
         match (&self.ty, &other.ty) {
             (ParamType::Choice(_), ParamType::Choice(_)) => other
                 .words()

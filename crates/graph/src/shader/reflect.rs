@@ -9,7 +9,6 @@ use super::{
     guard,
     items::{Item, item},
     text::words,
-    varyings::Varyings,
     wgsl_errors::function_span,
 };
 use crate::{
@@ -399,19 +398,6 @@ impl Shader {
     pub(crate) fn global_names(&self) -> impl Iterator<Item = &str> {
         let globals = self.module.global_variables.iter();
         globals.filter_map(|(_, global)| global.name.as_deref())
-    }
-
-    /// Scalar class and component count of each colour output of a fragment entry point, by
-    /// location.
-    pub(crate) fn fragment_outputs(&self, entry: usize) -> Vec<(u32, ScalarClass, u32)> {
-        let outputs = Varyings::outputs(self, entry).locations.into_iter();
-        let outputs = outputs.filter_map(|output| {
-            let scalar = ScalarClass::from_kind(output.kind)?;
-            Some((output.location, scalar, output.width))
-        });
-        let mut outputs: Vec<_> = outputs.collect();
-        outputs.sort_by_key(|(location, ..)| *location);
-        outputs
     }
 }
 

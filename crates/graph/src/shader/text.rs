@@ -19,23 +19,27 @@ impl Comments {
     /// Reads on.
     pub fn read(&mut self, text: &str) {
         let mut at = 0;
-        while let Some(rest) = text.get(at..).filter(|rest| !rest.is_empty()) {
-            let length = rest.chars().next().map_or(1, char::len_utf8);
-            at += match rest.as_bytes() {
-                [b'/', b'*', ..] => {
-                    self.depth += 1;
-                    2
-                }
-                [b'*', b'/', ..] if self.depth > 0 => {
-                    self.depth -= 1;
-                    2
-                }
-                [b'/', b'/', ..] if self.depth == 0 => {
-                    let end = rest.find(|c| c == '\n' || BREAKS.contains(&c));
-                    end.unwrap_or(rest.len())
-                }
-                _ => length,
-            };
+        while at < text.len() {
+            at += self.step(&text[at..]);
+        }
+    }
+
+    /// Reads a sign, a bracket of a comment or a line comment. Returns its length.
+    fn step(&mut self, text: &str) -> usize {
+        match text.as_bytes() {
+            [b'/', b'*', ..] => {
+                self.depth += 1;
+                2
+            }
+            [b'*', b'/', ..] if self.depth > 0 => {
+                self.depth -= 1;
+                2
+            }
+            [b'/', b'/', ..] if self.depth == 0 => {
+                let end = text.find(|c| c == '\n' || BREAKS.contains(&c));
+                end.unwrap_or(text.len())
+            }
+            _ => text.chars().next().map_or(1, char::len_utf8),
         }
     }
 }
@@ -48,11 +52,8 @@ pub(super) fn next(text: &str) -> Option<(usize, &str)> {
     loop {
         let rest = text.get(at..)?;
         let first = rest.chars().next()?;
-        if rest.starts_with("//") {
-            // The line ends of WGSL: code for naga must not be a comment here.
-            at += rest.find(|c| matches!(c, '\n'..='\r' | '\u{85}' | '\u{2028}' | '\u{2029}'))?;
-        } else if rest.starts_with("/*") {
-            at += comment(rest.as_bytes());
+        if rest.starts_with("//") || rest.starts_with("/*") {
+            at += comment(rest);
         } else if is_word(first) {
             let length = rest.find(|c| !is_word(c)).unwrap_or(rest.len());
             return Some((at + length, &rest[..length]));
@@ -75,18 +76,14 @@ pub(super) fn tokens(text: &str) -> impl Iterator<Item = (Range<usize>, &str)> {
     })
 }
 
-/// Bytes of the block comment, possibly with others inside, that `text` begins with.
-fn comment(text: &[u8]) -> usize {
-    let (mut depth, mut at) = (0, 0);
-    loop {
-        (depth, at) = match text.get(at..) {
-            None | Some([]) => return text.len(),
-            Some([b'/', b'*', ..]) => (depth + 1, at + 2),
-            Some([b'*', b'/', ..]) if depth == 1 => return at + 2,
-            Some([b'*', b'/', ..]) => (depth - 1, at + 2),
-            Some(_) => (depth, at + 1),
-        };
+/// Length of the comment that a text begins with; comments nest, and one may stay open.
+fn comment(text: &str) -> usize {
+    let mut comments = Comments::default();
+    let mut at = comments.step(text);
+    while comments.are_open() && at < text.len() {
+        at += comments.step(&text[at..]);
     }
+    at
 }
 
 /// Declarations of a text.

@@ -2,7 +2,7 @@
 //! per entry point.
 
 use super::{
-    class::{Class, TextureClass, class_of},
+    class::{Class, TextureClass, class_of, vector},
     compiled::{compiled, specialised},
     expand::Expanded,
     footprint::Footprint,
@@ -398,6 +398,30 @@ impl Shader {
     pub(crate) fn global_names(&self) -> impl Iterator<Item = &str> {
         let globals = self.module.global_variables.iter();
         globals.filter_map(|(_, global)| global.name.as_deref())
+    }
+
+    /// Scalar class and component count of each colour output of a fragment entry point, by
+    /// location.
+    pub(crate) fn fragment_outputs(&self, entry: usize) -> Vec<(u32, ScalarClass, u32)> {
+        let Some(result) = &self.module.entry_points[entry].function.result else {
+            return Vec::new();
+        };
+        let mut outputs = Vec::new();
+        let mut add = |binding: &Option<naga::Binding>, ty: Handle<naga::Type>| {
+            if let (Some(naga::Binding::Location { location, .. }), Some((scalar, width))) =
+                (binding, vector(&self.module, ty))
+            {
+                outputs.push((*location, scalar, width));
+            }
+        };
+        match &self.module.types[result.ty].inner {
+            TypeInner::Struct { members, .. } => members
+                .iter()
+                .for_each(|member| add(&member.binding, member.ty)),
+            _ => add(&result.binding, result.ty),
+        }
+        outputs.sort_by_key(|(location, ..)| *location);
+        outputs
     }
 }
 

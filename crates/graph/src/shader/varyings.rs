@@ -2,7 +2,6 @@
 //! interpolated, and what of the limit built-in values take.
 
 use super::reflect::Shader;
-use crate::scalar_class::ScalarClass;
 use naga::{Binding, BuiltIn, Handle, ScalarKind, Type, TypeInner};
 
 /// A value at a location.
@@ -21,21 +20,6 @@ pub(crate) struct Varyings {
     pub locations: Vec<Varying>,
     /// How many of a device's variables between stages its built-in values take.
     pub builtins: u32,
-}
-
-impl Shader {
-    /// Scalar class and component count of each colour output of a fragment entry point, by
-    /// location.
-    pub(crate) fn fragment_outputs(&self, entry: usize) -> Vec<(u32, ScalarClass, u32)> {
-        let outputs = Varyings::outputs(self, entry).locations.into_iter();
-        let outputs = outputs.filter_map(|output| {
-            let scalar = ScalarClass::from_kind(output.kind)?;
-            Some((output.location, scalar, output.width))
-        });
-        let mut outputs: Vec<_> = outputs.collect();
-        outputs.sort_by_key(|(location, ..)| *location);
-        outputs
-    }
 }
 
 impl Varyings {

@@ -268,11 +268,8 @@ impl<'a> Parser<'a> {
                 return Err(self.unexpected("a name"));
             };
             let range = self.next();
-            let selection = if self.take("[") {
-                Some(self.selection()?)
-            } else {
-                None
-            };
+            let is_selected = self.take("[");
+            let selection = is_selected.then(|| self.selection()).transpose()?;
             parts.push(Part {
                 word,
                 range,
@@ -375,10 +372,11 @@ impl<'a> Parser<'a> {
                 "number",
             ));
         }
-        let mut names = Vec::new();
-        for part in &path {
-            names.push(self.name(part)?.value.to_string());
-        }
-        Ok(ExprKind::Param(names.join(".")))
+        let names = path
+            .iter()
+            .map(|part| self.name(part).map(|name| name.value.to_string()));
+        Ok(ExprKind::Param(
+            names.collect::<Parsed<Vec<_>>>()?.join("."),
+        ))
     }
 }

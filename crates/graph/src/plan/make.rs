@@ -66,12 +66,9 @@ pub(super) fn plan_all(graph: &Graph, request: &PlanRequest<'_>) -> Outcome {
         reports.report(error);
         return Outcome::lacking(reports, PlanInputs::default());
     }
-    let Ok(params) = params else {
+    let (Ok(params), 0) = (params, reports.errors()) else {
         return Outcome::failed(reports, PlanInputs::default());
     };
-    if reports.errors() > 0 {
-        return Outcome::failed(reports, PlanInputs::default());
-    }
     let values = params.list.iter().filter_map(|bound| {
         let value = bound.value.clone().ok()?;
         Some((bound.param.name.value.clone(), value))

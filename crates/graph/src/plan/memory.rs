@@ -116,9 +116,8 @@ impl Memory<'_> {
         rows.sort_by_key(|(bytes, _)| std::cmp::Reverse(*bytes));
         let rest = rows.split_off(rows.len().min(ROWS));
         if !rest.is_empty() {
-            let sum = rest
-                .iter()
-                .fold(0, |sum: u64, (bytes, _)| sum.saturating_add(*bytes));
+            let bytes = rest.iter().map(|(bytes, _)| *bytes);
+            let sum = bytes.fold(0, u64::saturating_add);
             let name = format!("{} more", rest.len());
             rows.push((sum, [name, String::new(), String::new()]));
         }

@@ -76,6 +76,29 @@ pub enum ParamType {
     Choice(Arc<[Name]>),
 }
 
+impl ParamType {
+    /// Number of components of a vector; `None` of another type.
+    fn components(&self) -> Option<usize> {
+        match self {
+            Self::Vec2 => Some(2),
+            Self::Vec3 => Some(3),
+            Self::Vec4 => Some(4),
+            _ => None,
+        }
+    }
+
+    /// A number as a value of this type, of a vector that of each component; `None` of a type that
+    /// has no numbers.
+    pub(crate) fn with_number(&self, number: f64) -> Option<ParamValue> {
+        Some(match self {
+            Self::F32 => ParamValue::F32(number as f32),
+            Self::I32 => ParamValue::I32(number as i32),
+            Self::U32 => ParamValue::U32(number as u32),
+            _ => ParamValue::Vec(vec![number as f32; self.components()?]),
+        })
+    }
+}
+
 impl fmt::Display for ParamType {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -194,13 +217,6 @@ impl Param {
     /// The value of an expression as one of this param.
     pub(crate) fn convert(&self, value: &Value) -> Result<ParamValue, ParamFault> {
         let wrong = || ParamFault::Type(self.ty.to_string());
-        let list = |count: usize| match value {
-            Value::List(list) if list.len() == count => {
-                let list = list.iter().map(|scalar| scalar.number() as f32);
-                Ok(ParamValue::Vec(list.collect()))
-            }
-            _ => Err(wrong()),
-        };
         let converted = match (&self.ty, value) {
             (ParamType::F32, Value::Scalar(scalar)) => ParamValue::F32(scalar.number() as f32),
             (ParamType::I32, Value::Scalar(scalar)) => {
@@ -210,9 +226,10 @@ impl Param {
                 ParamValue::U32(scalar.whole().ok_or_else(wrong)?)
             }
             (ParamType::Bool, Value::Bool(value)) => ParamValue::Bool(*value),
-            (ParamType::Vec2, _) => list(2)?,
-            (ParamType::Vec3, _) => list(3)?,
-            (ParamType::Vec4, _) => list(4)?,
+            (ty, Value::List(list)) if ty.components() == Some(list.len()) => {
+                let list = list.iter().map(|scalar| scalar.number() as f32);
+                ParamValue::Vec(list.collect())
+            }
             (ParamType::Choice(_), Value::Word(word)) => ParamValue::Choice(word.word.to_string()),
             _ => return Err(wrong()),
         };
@@ -254,29 +271,20 @@ impl Param {
             .min
             .unwrap_or(1.0)
             .min(self.max.unwrap_or(f64::INFINITY));
-        match &self.ty {
-            ParamType::F32 => ParamValue::F32(number as f32),
-            ParamType::I32 => ParamValue::I32(number as i32),
-            ParamType::U32 => ParamValue::U32(number as u32),
-            ParamType::Bool => ParamValue::Bool(false),
-            ParamType::Vec2 => ParamValue::Vec(vec![number as f32; 2]),
-            ParamType::Vec3 => ParamValue::Vec(vec![number as f32; 3]),
-            ParamType::Vec4 => ParamValue::Vec(vec![number as f32; 4]),
+        let number = self.ty.with_number(number);
+        number.unwrap_or_else(|| match &self.ty {
             ParamType::Choice(_) => {
                 ParamValue::Choice(self.words().next().map(Name::to_string).unwrap_or_default())
             }
-        }
+            _ => ParamValue::Bool(false),
+        })
     }
 
     /// True if every value of `other` is a value of this param.
     pub(crate) fn holds_all_of(&self, other: &Param) -> bool {
-        let within = match (self.min, other.min) {
-            (Some(least), Some(other)) => least <= other,
-            (least, _) => least.is_none(),
-        } && match (self.max, other.max) {
-            (Some(most), Some(other)) => most >= other,
-            (most, _) => most.is_none(),
-        };
+        let above = |least: f64| other.min.is_some_and(|other| least <= other);
+        let below = |most: f64| other.max.is_some_and(|other| most >= other);
+        let within = self.min.is_none_or(above) && self.max.is_none_or(below);
         match (&self.ty, &other.ty) {
             (ParamType::Choice(_), ParamType::Choice(_)) => other
                 .words()
@@ -339,13 +347,7 @@ impl Param {
             (ParamType::I32, ParamValue::I32(v)) => vec![f64::from(*v)],
             (ParamType::U32, ParamValue::U32(v)) => vec![f64::from(*v)],
             (ParamType::Bool, ParamValue::Bool(_)) => Vec::new(),
-            (ParamType::Vec2, ParamValue::Vec(v)) if v.len() == 2 => {
-                v.iter().map(|&v| f64::from(v)).collect()
-            }
-            (ParamType::Vec3, ParamValue::Vec(v)) if v.len() == 3 => {
-                v.iter().map(|&v| f64::from(v)).collect()
-            }
-            (ParamType::Vec4, ParamValue::Vec(v)) if v.len() == 4 => {
+            (ty, ParamValue::Vec(v)) if ty.components() == Some(v.len()) => {
                 v.iter().map(|&v| f64::from(v)).collect()
             }
             (ParamType::Choice(_), ParamValue::Choice(word)) => {

@@ -65,26 +65,27 @@ written!(Expr, "Expression", generator => {
     })
 });
 
+/// A map with these keys and no others, of which some must be there.
+fn object(description: &str, properties: Value, required: &[&str]) -> Value {
+    json!({
+        "description": description,
+        "type": "object",
+        "properties": properties,
+        "required": required,
+        "additionalProperties": false,
+    })
+}
+
 written!(Load, "Load", generator => {
     let value = generator.subschema_for::<Expr>();
+    let load_if = json!({ "LoadIf": value });
+    let clear = json!({ "Clear": value });
     json_schema!({
         "description": "Operation on an attachment before the first draw.",
         "oneOf": [
             { "const": "Load", "description": "Keeps the content." },
-            {
-                "type": "object",
-                "description": "Keeps the content under a condition, and clears else.",
-                "properties": { "LoadIf": value },
-                "required": ["LoadIf"],
-                "additionalProperties": false,
-            },
-            {
-                "type": "object",
-                "description": "One value for all channels, or four.",
-                "properties": { "Clear": value },
-                "required": ["Clear"],
-                "additionalProperties": false,
-            },
+            object("Keeps the content under a condition, and clears else.", load_if, &["LoadIf"]),
+            object("One value for all channels, or four.", clear, &["Clear"]),
         ],
     })
 });
@@ -237,31 +238,19 @@ impl Kinds<'_> {
             entry(kind.name, schema.to_value(), &common, &mut self.entries);
         }
         let include = IncludeFields::json_schema(self.generator).to_value();
-        let group = json!({
-            "description": "Entries that have a name, a condition, a repetition in common.",
-            "type": "object",
-            "properties": {
-                "passes": { "description": "The entries.", "$ref": "#/$defs/Entries" },
-            },
-            "required": ["passes"],
-            "additionalProperties": false,
-        });
+        let group = object(
+            "Entries that have a name, a condition, a repetition in common.",
+            json!({ "passes": { "description": "The entries.", "$ref": "#/$defs/Entries" } }),
+            &["passes"],
+        );
         let path = json!({ "description": "Its path: `\"blur.x\"` is `x` of the group `blur`.",
             "type": "string" });
-        let change = json!({
-            "description": "An entry of the extended document gets other fields, and more.",
-            "type": "object",
-            "properties": { "pass": path },
-            "required": ["pass"],
-            "additionalProperties": true,
-        });
-        let remove = json!({
-            "description": "An entry of the extended document is left out.",
-            "type": "object",
-            "properties": { "pass": path },
-            "required": ["pass"],
-            "additionalProperties": false,
-        });
+        let path = json!({ "pass": path });
+        let change = "An entry of the extended document gets other fields, and more.";
+        let mut change = object(change, path.clone(), &["pass"]);
+        change["additionalProperties"] = true.into();
+        let remove = "An entry of the extended document is left out.";
+        let remove = object(remove, path, &["pass"]);
         entry("Include", include, &[&every_entry], &mut self.entries);
         entry("Group", group, &[&every_entry], &mut self.entries);
         entry("Change", change, &[], &mut self.entries);

@@ -212,15 +212,9 @@ fn binary(
         return Ok(Value::Bool(order.is_some_and(holds)));
     }
     let values = [value(left, env)?, value(right, env)?];
-    let by_zero = matches!(operator, Binary::Divide | Binary::Remainder) && {
-        let is_zero = |scalar: &Scalar| scalar.number() == 0.0;
-        match &values[1] {
-            Value::Scalar(scalar) => is_zero(scalar),
-            Value::List(list) => list.iter().any(is_zero),
-            _ => false,
-        }
-    };
-    if by_zero {
+    let is_zero = |scalar: &Scalar| scalar.number() == 0.0;
+    let by_zero = matches!(operator, Binary::Divide | Binary::Remainder);
+    if by_zero && values[1].scalars().iter().any(is_zero) {
         return Err(env.report(EvaluationError::DivisionByZero(expr.span.clone())));
     }
     each(expr, values, env, |a, b| arithmetic(operator, a, b))
@@ -301,23 +295,20 @@ fn each(
     let apply = |a, b| apply(a, b).filter(|result| result.number().is_finite());
     let result = match &values {
         [Value::Scalar(a), Value::Scalar(b)] => apply(*a, *b).map(Value::Scalar),
-        [Value::List(a), Value::List(b)] if a.len() == b.len() => {
-            let list = a.iter().zip(b).map(|(a, b)| apply(*a, *b));
-            list.collect::<Option<_>>().map(Value::List)
-        }
-        [Value::List(a), Value::Scalar(b)] => {
-            let list = a.iter().map(|a| apply(*a, *b));
-            list.collect::<Option<_>>().map(Value::List)
-        }
-        [Value::Scalar(a), Value::List(b)] => {
-            let list = b.iter().map(|b| apply(*a, *b));
-            list.collect::<Option<_>>().map(Value::List)
-        }
-        [Value::List(a), Value::List(b)] => {
+        [Value::List(a), Value::List(b)] if a.len() != b.len() => {
             return Err(env.report(EvaluationError::Lengths {
                 span: expr.span.clone(),
                 lengths: [a.len(), b.len()],
             }));
+        }
+        [
+            a @ (Value::Scalar(_) | Value::List(_)),
+            b @ (Value::Scalar(_) | Value::List(_)),
+        ] => {
+            let (a, b) = (a.scalars(), b.scalars());
+            let pairs = a.iter().cycle().zip(b.iter().cycle());
+            let list = pairs.take(a.len().max(b.len())).map(|(a, b)| apply(*a, *b));
+            list.collect::<Option<_>>().map(Value::List)
         }
         [Value::Scalar(_) | Value::List(_), other] | [other, _] => {
             return Err(wrong(expr, "a number", other, env));

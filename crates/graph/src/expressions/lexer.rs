@@ -64,10 +64,8 @@ pub(crate) fn tokens(
 fn number(text: &str) -> Option<(Token<'static>, usize)> {
     let digits = |from: usize| {
         let rest = &text[from..];
-        rest.len()
-            - rest
-                .trim_start_matches(|c: char| c.is_ascii_digit() || c == '_')
-                .len()
+        let end = rest.find(|c: char| !c.is_ascii_digit() && c != '_');
+        end.unwrap_or(rest.len())
     };
     let mut end = digits(0);
     let mut whole = true;

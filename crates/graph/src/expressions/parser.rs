@@ -51,11 +51,7 @@ struct Parser<'a> {
     at: usize,
 }
 
-/// A dotted path as it stands there: materials, params and attributes look alike.
-struct Path<'a> {
-    parts: Vec<Part<'a>>,
-}
-
+/// A part of a dotted path as it stands there: materials, params and attributes look alike.
 struct Part<'a> {
     word: &'a str,
     range: Range<usize>,
@@ -198,20 +194,17 @@ impl<'a> Parser<'a> {
 
     fn primary(&mut self) -> Parsed<Expr> {
         let start = self.range().start;
-        let literal = |value| Ok(ExprKind::Literal(value));
+        let literal = match self.peek() {
+            Token::Whole(number) => Some(Value::Scalar(Scalar::Whole(number))),
+            Token::Number(number) => Some(Value::Scalar(Scalar::Number(number))),
+            Token::Word(word @ ("true" | "false")) => Some(Value::Bool(word == "true")),
+            _ => None,
+        };
+        if let Some(value) = literal {
+            self.next();
+            return Ok(Expr::new(ExprKind::Literal(value), self.span(start)));
+        }
         let kind = match self.peek() {
-            Token::Whole(number) => {
-                self.next();
-                literal(Value::Scalar(Scalar::Whole(number)))
-            }
-            Token::Number(number) => {
-                self.next();
-                literal(Value::Scalar(Scalar::Number(number)))
-            }
-            Token::Word(word @ ("true" | "false")) => {
-                self.next();
-                literal(Value::Bool(word == "true"))
-            }
             Token::Sign("(") => {
                 self.next();
                 let inner = self.expr()?;
@@ -221,10 +214,9 @@ impl<'a> Parser<'a> {
             Token::Word(word) if self.tokens[self.at + 1].0 == Token::Sign("(") => self.call(word),
             Token::Word(word) if word.starts_with(|c: char| c.is_ascii_uppercase()) => {
                 self.next();
-                match format_named(word) {
-                    Some(format) => literal(Value::Format(format)),
-                    None => Ok(ExprKind::Constant(word.to_owned())),
-                }
+                let format =
+                    format_named(word).map(|format| ExprKind::Literal(Value::Format(format)));
+                Ok(format.unwrap_or_else(|| ExprKind::Constant(word.to_owned())))
             }
             Token::Word(_) => {
                 let path = self.path()?;
@@ -269,25 +261,22 @@ impl<'a> Parser<'a> {
         Ok(ExprKind::Call(*function, arguments))
     }
 
-    fn path(&mut self) -> Parsed<Path<'a>> {
+    fn path(&mut self) -> Parsed<Vec<Part<'a>>> {
         let mut parts = Vec::new();
         loop {
             let Token::Word(word) = self.peek() else {
                 return Err(self.unexpected("a name"));
             };
             let range = self.next();
-            let selection = if self.take("[") {
-                Some(self.selection()?)
-            } else {
-                None
-            };
+            let is_selected = self.take("[");
+            let selection = is_selected.then(|| self.selection()).transpose()?;
             parts.push(Part {
                 word,
                 range,
                 selection,
             });
             if !self.take(".") {
-                return Ok(Path { parts });
+                return Ok(parts);
             }
         }
     }
@@ -312,8 +301,8 @@ impl<'a> Parser<'a> {
     }
 
     /// A path that is a material or a part of one.
-    fn reference(&self, mut path: Path<'_>) -> Parsed<Reference> {
-        let (first, last) = match path.parts.as_slice() {
+    fn reference(&self, mut path: Vec<Part<'_>>) -> Parsed<Reference> {
+        let (first, last) = match path.as_slice() {
             [first, .., last] | [first @ last] => (first.range.start, last),
             [] => return Err(self.unexpected("a name")),
         };
@@ -329,17 +318,17 @@ impl<'a> Parser<'a> {
         let is = |part: Option<&Part<'_>>, word: &str, selected: bool| {
             part.is_some_and(|part| part.word == word && part.selection.is_some() == selected)
         };
-        if is(path.parts.last(), "mip", true) {
-            reference.mips = path.parts.pop().and_then(|part| part.selection);
+        if is(path.last(), "mip", true) {
+            reference.mips = path.pop().and_then(|part| part.selection);
         }
-        if path.parts.len() > 1 && is(path.parts.last(), "previous", false) {
+        if path.len() > 1 && is(path.last(), "previous", false) {
             reference.previous = true;
-            path.parts.pop();
+            path.pop();
         }
-        if path.parts.is_empty() {
+        if path.is_empty() {
             return Err(SyntaxFault::Part(reference.span, "mip"));
         }
-        for (index, part) in path.parts.into_iter().enumerate() {
+        for (index, part) in path.into_iter().enumerate() {
             let is_attribute = Attribute::ALL.iter().any(|(name, _)| *name == part.word);
             if index > 0 && (is_attribute || matches!(part.word, "previous" | "mip")) {
                 let word = if is_attribute { "attribute" } else { "order" };
@@ -353,13 +342,13 @@ impl<'a> Parser<'a> {
     }
 
     /// A path that has a value: a param, or an attribute of something.
-    fn value_of(&self, mut path: Path<'_>) -> Parsed<ExprKind> {
-        let attribute = path.parts.last().and_then(|last| {
+    fn value_of(&self, mut path: Vec<Part<'_>>) -> Parsed<ExprKind> {
+        let attribute = path.last().and_then(|last| {
             let mut known = Attribute::ALL.iter();
             let known = known.find(|(name, _)| *name == last.word)?;
             last.selection.is_none().then_some(known.1)
         });
-        let alone = path.parts.len() == 1;
+        let alone = path.len() == 1;
         if alone && attribute == Some(Attribute::Index) {
             return Ok(ExprKind::Attribute(
                 Subject::Repetition(None),
@@ -367,8 +356,8 @@ impl<'a> Parser<'a> {
             ));
         }
         if let Some(attribute) = attribute.filter(|_| !alone) {
-            path.parts.pop();
-            let subject = match path.parts.as_slice() {
+            path.pop();
+            let subject = match path.as_slice() {
                 [one] if one.word == "viewport" && one.selection.is_none() => Subject::Viewport,
                 [one] if attribute == Attribute::Index => {
                     Subject::Repetition(Some(self.name(one)?.value))
@@ -377,16 +366,17 @@ impl<'a> Parser<'a> {
             };
             return Ok(ExprKind::Attribute(subject, attribute));
         }
-        if let Some(part) = path.parts.iter().find(|part| part.selection.is_some()) {
+        if let Some(part) = path.iter().find(|part| part.selection.is_some()) {
             return Err(SyntaxFault::Part(
                 self.file.span(part.range.clone()),
                 "number",
             ));
         }
-        let mut names = Vec::new();
-        for part in &path.parts {
-            names.push(self.name(part)?.value.to_string());
-        }
-        Ok(ExprKind::Param(names.join(".")))
+        let names = path
+            .iter()
+            .map(|part| self.name(part).map(|name| name.value.to_string()));
+        Ok(ExprKind::Param(
+            names.collect::<Parsed<Vec<_>>>()?.join("."),
+        ))
     }
 }

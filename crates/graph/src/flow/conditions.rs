@@ -8,6 +8,7 @@ use crate::{
     link::pass::{Access, LinkedPass, PassId},
     resource::{Origin, ResourceId},
 };
+use petgraph::unionfind::UnionFind;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// When a pass runs in this plan.
@@ -80,14 +81,14 @@ pub(crate) fn conditions(
             uses.entry(access.resource).or_default().push((at, access));
         }
     }
-    let mut group: Vec<usize> = (0..schedule.len()).collect();
+    let mut joint = UnionFind::new(schedule.len());
     for (id, uses) in &uses {
         if matches!(view.resource(*id).origin, Origin::Previous(_)) {
             continue;
         }
         let writers: Vec<_> = uses.iter().filter(|(_, access)| access.writes).collect();
         if view.resource(*id).keep {
-            join_by_condition(&mut group, &writers, |at| &view.pass(schedule[at]).run);
+            join_by_condition(&mut joint, &writers, |at| &view.pass(schedule[at]).run);
             continue;
         }
         let is_overwritten = |(at, access): &&(usize, &Access)| {
@@ -106,10 +107,13 @@ pub(crate) fn conditions(
                 &view.resource(*id).name,
                 reports,
             );
-            join(&mut group, *first, *other);
+            joint.union(*first, *other);
         }
     }
-    let group: Vec<usize> = (0..group.len()).map(|at| root(&group, at)).collect();
+    // The first pass of a group is its number.
+    let joint = joint.into_labeling();
+    let first = |of: &usize| joint.iter().position(|other| other == of);
+    let group: Vec<usize> = joint.iter().filter_map(first).collect();
     let mut writers = vec![None; view.resources.len()];
     for (id, uses) in &uses {
         let writer = uses.iter().find(|(_, access)| access.writes);
@@ -161,27 +165,14 @@ fn outliving(
 
 /// Joins the positions of writers that have one run condition.
 fn join_by_condition<'r>(
-    group: &mut [usize],
+    joint: &mut UnionFind<usize>,
     writers: &[&(usize, &Access)],
     run: impl Fn(usize) -> &'r Run,
 ) {
     for (at, _) in writers {
         let first = writers.iter().find(|(first, _)| run(*first) == run(*at));
-        join(group, first.map_or(*at, |(first, _)| *first), *at);
+        joint.union(first.map_or(*at, |(first, _)| *first), *at);
     }
-}
-
-/// The first position of a group.
-fn root(group: &[usize], mut at: usize) -> usize {
-    while group[at] != at {
-        at = group[at];
-    }
-    at
-}
-
-fn join(group: &mut [usize], a: usize, b: usize) {
-    let (a, b) = (root(group, a), root(group, b));
-    group[a.max(b)] = a.min(b);
 }
 
 fn check([a, b]: [&LinkedPass; 2], name: &str, reports: &mut Reports) {

@@ -48,9 +48,8 @@ pub(super) struct Raster {
     #[serde(default = "counter_clockwise")]
     front_face: Chosen<Winding>,
     /// Primitives that vertices form; `TriangleList` without it.
-    #[serde(default, deserialize_with = "Topology::deserialize")]
-    #[cfg_attr(feature = "schema", schemars(with = "Topology"))]
-    topology: wgt::PrimitiveTopology,
+    #[serde(default)]
+    topology: Topology,
     /// Counts every pixel that a triangle touches, not only those whose centre it covers.
     #[serde(default)]
     conservative: bool,
@@ -131,10 +130,10 @@ enum Winding {
 }
 
 /// Primitives that vertices form.
-#[derive(Deserialize)]
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(remote = "wgt::PrimitiveTopology", rename = "Topology")]
 enum Topology {
+    #[default]
     TriangleList,
     TriangleStrip,
     LineList,
@@ -158,7 +157,12 @@ impl PassKind for Raster {
             Call::Indirect(buffer) => DrawCall::Indirect(Operand::from(buffer)),
         };
         let primitive = wgt::PrimitiveState {
-            topology: self.topology,
+            topology: match self.topology {
+                Topology::TriangleList => wgt::PrimitiveTopology::TriangleList,
+                Topology::TriangleStrip => wgt::PrimitiveTopology::TriangleStrip,
+                Topology::LineList => wgt::PrimitiveTopology::LineList,
+                Topology::PointList => wgt::PrimitiveTopology::PointList,
+            },
             front_face: match pass.word(&self.front_face, &WINDINGS) {
                 Winding::Ccw => wgt::FrontFace::Ccw,
                 Winding::Cw => wgt::FrontFace::Cw,

@@ -93,6 +93,15 @@ impl Value {
         Self::whole(i64::try_from(count).unwrap_or(i64::MAX))
     }
 
+    /// Its numbers; none of what has no numbers.
+    pub(crate) fn scalars(&self) -> &[Scalar] {
+        match self {
+            Self::Scalar(scalar) => std::slice::from_ref(scalar),
+            Self::List(list) => list,
+            _ => &[],
+        }
+    }
+
     /// Returns the type in words, for messages.
     pub(crate) fn describe(&self) -> &'static str {
         match self {

@@ -66,11 +66,7 @@ impl Graph {
         // Without its params nothing of the document has a size.
         let outcome = match graph.document.invalid_params {
             None => plan_for_any(&graph, request),
-            Some(_) => Outcome {
-                plan: None,
-                found: Vec::new(),
-                plan_inputs: PlanInputs::default(),
-            },
+            Some(_) => Outcome::default(),
         };
         if outcome.plan.is_some() && errors.is_empty() {
             errors.extend(sweep(&graph, request, &outcome.plan_inputs));
@@ -204,22 +200,18 @@ fn wrong_with(graph: &Graph, request: &PlanRequest<'_>, condition: &str) -> Vec<
 
 /// The values of a param that `check` looks at: every word, true and false, the ends of its range.
 fn ends(param: &Param) -> Vec<ParamValue> {
-    let numbers = || [param.min, param.max].into_iter().flatten();
     match &param.ty {
         ParamType::Bool => [true, false].map(ParamValue::Bool).to_vec(),
         ParamType::Choice(_) => param
             .words()
             .map(|word| ParamValue::Choice(word.to_string()))
             .collect(),
-        ParamType::F32 => numbers()
-            .map(|number| ParamValue::F32(number as f32))
-            .collect(),
-        ParamType::I32 => numbers()
-            .map(|number| ParamValue::I32(number as i32))
-            .collect(),
-        ParamType::U32 => numbers()
-            .map(|number| ParamValue::U32(number as u32))
-            .collect(),
         ParamType::Vec2 | ParamType::Vec3 | ParamType::Vec4 => Vec::new(),
+        ty => {
+            let numbers = [param.min, param.max].into_iter().flatten();
+            numbers
+                .filter_map(|number| ty.with_number(number))
+                .collect()
+        }
     }
 }

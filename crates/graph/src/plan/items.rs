@@ -101,14 +101,11 @@ pub(super) fn part<'p>(
 
 /// The resource that a target is a copy of, or is itself.
 fn origin<'p>(live: impl Iterator<Item = &'p LinkedPass>, target: &Target) -> ResourceId {
-    let mut origin = target.id;
-    let mut steps: Vec<&Step<Ids>> = live.flat_map(|pass| &pass.steps).collect();
+    let steps: Vec<&Step<Ids>> = live.flat_map(|pass| &pass.steps).collect();
     // The last copy onto it counts; its source was copied before.
-    while let Some(step) = steps.pop() {
-        origin = match step {
-            Step::Copy { from, to } if to.id == origin => from.id,
-            _ => origin,
-        };
-    }
-    origin
+    let steps = steps.into_iter().rev();
+    steps.fold(target.id, |origin, step| match step {
+        Step::Copy { from, to } if to.id == origin => from.id,
+        _ => origin,
+    })
 }

@@ -30,8 +30,9 @@ use crate::{
     },
     link::{
         linker::{Linked, link},
-        pass::{Access, LinkedPass, PassId},
+        pass::{Access, PassId},
     },
+    param::ParamValue,
     request::{PlanRequest, Request},
     resource::{Buffer, Growth, Origin, Resource, ResourceId, ResourceKind, Target},
     source::span::Located,
@@ -40,6 +41,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Result of planning: the plan, if nothing is wrong; the mistakes; the values that decide which
 /// entries exist.
+#[derive(Default)]
 pub(super) struct Outcome {
     pub plan: Option<Plan>,
     pub found: Vec<Diagnostic>,
@@ -64,12 +66,9 @@ pub(super) fn plan_all(graph: &Graph, request: &PlanRequest<'_>) -> Outcome {
         reports.report(error);
         return Outcome::lacking(reports, PlanInputs::default());
     }
-    let Ok(params) = params else {
+    let (Ok(params), 0) = (params, reports.errors()) else {
         return Outcome::failed(reports, PlanInputs::default());
     };
-    if reports.errors() > 0 {
-        return Outcome::failed(reports, PlanInputs::default());
-    }
     let values = params.list.iter().filter_map(|bound| {
         let value = bound.value.clone().ok()?;
         Some((bound.param.name.value.clone(), value))
@@ -94,19 +93,21 @@ pub(super) fn plan_all(graph: &Graph, request: &PlanRequest<'_>) -> Outcome {
         merges = false;
     };
     let plan_inputs = std::mem::take(&mut linked.plan_inputs);
-    match schedule(graph, linked, request, &mut reports) {
-        Some(scheduled) => finish(graph, scheduled, request, values, (reports, plan_inputs)),
+    match schedule(graph, linked, request, values, &mut reports) {
+        Some(plan) => finish(plan, request, reports, plan_inputs),
         None => Outcome::failed(reports, plan_inputs),
     }
 }
 
-/// Orders and culls what was linked, unless something is wrong with it.
+/// Orders and culls what was linked, unless something is wrong with it. The plan knows neither the
+/// warnings nor the params that it depends on yet.
 fn schedule(
     graph: &Graph,
     mut linked: Linked<'_>,
     request: &PlanRequest<'_>,
+    values: BTreeMap<String, ParamValue>,
     reports: &mut Reports,
-) -> Option<Scheduled> {
+) -> Option<Plan> {
     let is_complete = linked.first_invalid.is_none();
     let first_invalid = linked.first_invalid.unwrap_or(linked.passes.len());
     let order = order(view(&linked), first_invalid, reports);
@@ -145,14 +146,6 @@ fn schedule(
         lifetimes.entry(*base).or_insert(lifetime);
     }
     further_uses(&mut lifetimes, &readable, &previous, request, view);
-    let counters: Vec<ResourceId> = growing(lifetimes.keys(), view.resources)
-        .map(|(_, growth)| growth.counter.id)
-        .collect();
-    for counter in &counters {
-        if let Some(lifetime) = lifetimes.get_mut(counter) {
-            lifetime.buffers |= wgt::BufferUsages::COPY_SRC;
-        }
-    }
     usages::check(view, &sequence, request, reports);
     if reports.errors() > 0 {
         return None;
@@ -167,7 +160,7 @@ fn schedule(
         .copied()
         .chain(readable.iter().map(|(_, target)| target.id))
         .chain(previous.values().copied())
-        .chain(counters)
+        .chain(counters(&lifetimes, view))
         .collect();
     let aliases = aliases(view, &sequence, &lifetimes, &kept);
     let culled = culled(view, &live);
@@ -181,41 +174,30 @@ fn schedule(
         conditions,
         aliases,
     };
-    Some(Scheduled {
+    Some(Plan {
+        graph: graph.clone(),
+        request: Request::new(request),
+        values,
         named_values,
-        passes,
         resources,
+        passes,
         schedule,
         readable,
         culled,
+        warnings: Vec::new(),
+        depends_on: BTreeSet::new(),
     })
 }
 
 fn finish(
-    graph: &Graph,
-    scheduled: Scheduled,
+    mut plan: Plan,
     request: &PlanRequest<'_>,
-    values: BTreeMap<String, crate::param::ParamValue>,
-    (mut reports, plan_inputs): (Reports, PlanInputs),
+    mut reports: Reports,
+    plan_inputs: PlanInputs,
 ) -> Outcome {
-    let mut plan = Plan {
-        graph: graph.clone(),
-        request: Request::new(request),
-        values,
-        named_values: scheduled.named_values,
-        resources: scheduled.resources,
-        passes: scheduled.passes,
-        schedule: scheduled.schedule,
-        readable: scheduled.readable,
-        culled: scheduled.culled,
-        warnings: Vec::new(),
-        depends_on: std::mem::take(&mut reports.depends_on),
-    };
-    if let Some(too_much) = plan.check_memory(request.memory_limit) {
-        reports.report(too_much);
-        return Outcome::failed(reports, plan_inputs);
-    }
-    if let Some(error) = plan.refused_light() {
+    plan.depends_on = std::mem::take(&mut reports.depends_on);
+    let too_much = plan.check_memory(request.memory_limit);
+    if let Some(error) = too_much.or_else(|| plan.refused_light()) {
         reports.report(error);
         return Outcome::failed(reports, plan_inputs);
     }
@@ -225,16 +207,6 @@ fn finish(
         found: Vec::new(),
         plan_inputs,
     }
-}
-
-/// Parts of a plan that come from its order.
-struct Scheduled {
-    passes: Vec<LinkedPass>,
-    resources: Vec<Resource>,
-    schedule: Schedule,
-    readable: Vec<(String, Target)>,
-    culled: Vec<CulledPass>,
-    named_values: Vec<(String, String)>,
 }
 
 impl Outcome {
@@ -334,6 +306,12 @@ fn previous(lifetimes: &Lifetimes, view: GraphView<'_>) -> BTreeMap<ResourceId, 
     lifetimes.keys().filter_map(of).collect()
 }
 
+/// The buffers that count what growing resources would have needed.
+fn counters(lifetimes: &Lifetimes, view: GraphView<'_>) -> Vec<ResourceId> {
+    let growing = growing(lifetimes.keys(), view.resources);
+    growing.map(|(_, growth)| growth.counter.id).collect()
+}
+
 /// Adds what is done to resources besides the passes' work: reading back, filling with a pattern or
 /// with what stands in the document, two versions taking turns.
 fn further_uses(
@@ -369,6 +347,11 @@ fn further_uses(
         if let Some(of_base) = lifetimes.get_mut(base) {
             of_base.textures |= textures;
             of_base.buffers |= buffers;
+        }
+    }
+    for counter in counters(lifetimes, view) {
+        if let Some(lifetime) = lifetimes.get_mut(&counter) {
+            lifetime.buffers |= wgt::BufferUsages::COPY_SRC;
         }
     }
 }

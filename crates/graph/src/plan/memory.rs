@@ -62,10 +62,7 @@ impl Memory<'_> {
                 size,
                 mips,
                 layers,
-                bytes: resource
-                    .kind
-                    .bytes()
-                    .saturating_mul(self.versions(*id) as u64),
+                bytes: self.bytes_of(*id),
                 shared_with: others
                     .filter(|other| *other != id)
                     .map(|other| self.resources[other.0].name.clone())
@@ -119,9 +116,8 @@ impl Memory<'_> {
         rows.sort_by_key(|(bytes, _)| std::cmp::Reverse(*bytes));
         let rest = rows.split_off(rows.len().min(ROWS));
         if !rest.is_empty() {
-            let sum = rest
-                .iter()
-                .fold(0, |sum: u64, (bytes, _)| sum.saturating_add(*bytes));
+            let bytes = rest.iter().map(|(bytes, _)| *bytes);
+            let sum = bytes.fold(0, u64::saturating_add);
             let name = format!("{} more", rest.len());
             rows.push((sum, [name, String::new(), String::new()]));
         }
@@ -201,9 +197,12 @@ impl Memory<'_> {
     }
 
     fn allocation_bytes(&self, allocation: &Allocation) -> u64 {
-        let alias = allocation.aliases[0];
-        let bytes = self.resources[alias.0].kind.bytes();
-        bytes.saturating_mul(self.versions(alias) as u64)
+        self.bytes_of(allocation.aliases[0])
+    }
+
+    fn bytes_of(&self, id: ResourceId) -> u64 {
+        let bytes = self.resources[id.0].kind.bytes();
+        bytes.saturating_mul(self.versions(id) as u64)
     }
 
     pub fn versions(&self, id: ResourceId) -> usize {

@@ -32,12 +32,14 @@ pub(super) fn readable(
             });
         }
     }
+    let is_wanted = |name: &String| {
+        let wanted = request.outputs.as_ref();
+        wanted.is_none_or(|wanted| wanted.contains(name))
+    };
     for output in graph.document.material_outputs() {
-        if let Some(condition) = &output.condition {
-            match eval::boolean(condition, at) {
-                Ok(true) => {}
-                Ok(false) | Err(_) => continue,
-            }
+        let condition = output.condition.as_ref();
+        if condition.is_some_and(|condition| !eval::boolean(condition, at).unwrap_or(false)) {
+            continue;
         }
         let name = Located::new(output.name.value.to_string(), output.name.span.clone());
         let material = &output.material;
@@ -54,11 +56,7 @@ pub(super) fn readable(
                 material: material.span.clone(),
                 what,
             });
-        } else if request
-            .outputs
-            .as_ref()
-            .is_none_or(|wanted| wanted.contains(&name.value))
-        {
+        } else if is_wanted(&name.value) {
             readable.push((name.value, target));
         }
     }

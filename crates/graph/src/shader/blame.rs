@@ -2,7 +2,7 @@
 //! and in a function the first statement, up to which it panics. Both by bisection, so that a long
 //! text is read a few dozen times.
 
-use super::text::next;
+use super::text::{next, tokens};
 use std::{
     collections::{BTreeMap, BTreeSet},
     ops::Range,
@@ -93,30 +93,29 @@ fn in_order_of_need(declarations: &[Declaration<'_>]) -> Vec<usize> {
 /// Declarations of a module, in order.
 fn declarations(text: &str) -> Vec<Declaration<'_>> {
     let mut found = Vec::new();
-    let (mut at, mut start, mut depth) = (0, None, 0usize);
-    let (mut tokens, mut body): (Vec<&str>, _) = (Vec::new(), None);
-    while let Some((length, token)) = next(&text[at..]) {
-        at += length;
-        let first = *start.get_or_insert(at - token.len());
+    let (mut start, mut depth) = (None, 0usize);
+    let (mut read, mut body): (Vec<&str>, _) = (Vec::new(), None);
+    for (place, token) in tokens(text) {
+        let (first, at) = (*start.get_or_insert(place.start), place.end);
         match token {
             "{" | "(" | "[" => {
-                if token == "{" && depth == 0 && tokens.contains(&"fn") {
-                    body = Some((at, result_of(&tokens)));
+                if token == "{" && depth == 0 && read.contains(&"fn") {
+                    body = Some((at, result_of(&read)));
                 }
                 depth += 1;
             }
             "}" | ")" | "]" => depth = depth.saturating_sub(1),
             _ => {}
         }
-        tokens.push(token);
+        read.push(token);
         let ends = depth == 0 && matches!(token, ";" | "}");
         if !ends {
             continue;
         }
         found.push(Declaration {
             range: first..at,
-            name: name_of(&tokens),
-            words: tokens.drain(..).collect(),
+            name: name_of(&read),
+            words: read.drain(..).collect(),
             body: body.take().map(|(from, ty)| (from..at - 1, ty)),
         });
         start = None;
@@ -159,10 +158,9 @@ fn result_of(head: &[&str]) -> String {
 /// Where statements of a body and their heads end, in bytes from its begin, and how many braces are
 /// open there.
 fn statement_ends(body: &str) -> Vec<(usize, usize)> {
-    let (mut at, mut braces, mut brackets) = (0, 0usize, 0usize);
+    let (mut braces, mut brackets) = (0usize, 0usize);
     let mut ends = Vec::new();
-    while let Some((length, token)) = next(&body[at..]) {
-        at += length;
+    for (place, token) in tokens(body) {
         match token {
             "(" | "[" => brackets += 1,
             ")" | "]" => brackets = brackets.saturating_sub(1),
@@ -171,7 +169,7 @@ fn statement_ends(body: &str) -> Vec<(usize, usize)> {
             _ => {}
         }
         if brackets == 0 && matches!(token, ";" | "{" | "}") {
-            ends.push((at, braces));
+            ends.push((place.end, braces));
         }
     }
     ends

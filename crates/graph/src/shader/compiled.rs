@@ -26,10 +26,8 @@ pub(super) type Valid = (Module, ModuleInfo, Layouter);
 
 /// Parses and validates.
 pub(super) fn compiled(source: &Expanded) -> Result<Valid, ShaderError> {
-    match caught(|| parsed_and_valid(source)) {
-        Ok(result) => result,
-        Err(panicked) => Err(fault(source, panicked, "is read", None)),
-    }
+    let read = caught(|| parsed_and_valid(source));
+    read.unwrap_or_else(|panicked| Err(fault(source, panicked, "is read", None)))
 }
 
 fn parsed_and_valid(source: &Expanded) -> Result<Valid, ShaderError> {
@@ -97,21 +95,15 @@ pub(super) fn specialised<'a>(
             .map_err(|error| specialisation_error(&error, name, source))?;
         Ok(Specialised { module, info })
     });
-    let specialised = match put_in {
-        Ok(result) => result?,
-        Err(panicked) => {
-            return Err(fault(source, panicked, "gets its overrides", Some(name)));
-        }
-    };
+    let panicked = |panicked, while_it| fault(source, panicked, while_it, Some(name));
+    let specialised = put_in.map_err(|it| panicked(it, "gets its overrides"))??;
     let pipeline = PipelineOptions {
         shader_stage: stage,
         entry_point: name.to_owned(),
     };
     let written = caught(|| write(&specialised.module, &specialised.info, Some(&pipeline)));
-    match written {
-        Ok(()) => Ok(specialised),
-        Err(panicked) => Err(fault(source, panicked, "is written as SPIR-V", Some(name))),
-    }
+    written.map_err(|it| panicked(it, "is written as SPIR-V"))?;
+    Ok(specialised)
 }
 
 /// Writes as wgpu does for Vulkan. The writer's errors about features are left to the device.

@@ -2,7 +2,10 @@
 //! expression, per `else if` of a chain and per declaration that names a later one, with no limit
 //! of its own. A text that is refused here would overflow the stack.
 
-use super::{expand::Expanded, text::next};
+use super::{
+    expand::Expanded,
+    text::{next, tokens},
+};
 use crate::errors::shader::ShaderError;
 
 /// Longest text, imports in place, in bytes: ten times the longest shader one would write.
@@ -53,10 +56,7 @@ pub(super) fn check(source: &Expanded) -> Result<(), ShaderError> {
     }
     let mut levels = vec![Level::default()];
     let mut declarations = 0;
-    let mut at = 0;
-    while let Some((length, token)) = next(&text[at..]) {
-        at += length;
-        let here = at - token.len()..at;
+    for (here, token) in tokens(text) {
         let outside = levels.len() == 1;
         // There is always the outermost level: it is never closed.
         let Some(level) = levels.last_mut() else {
@@ -75,7 +75,7 @@ pub(super) fn check(source: &Expanded) -> Result<(), ShaderError> {
                 if token == "}" {
                     // A block ends a statement, unless an `else` continues it.
                     around.end();
-                    if next(&text[at..]).is_some_and(|(_, token)| token == "else") {
+                    if next(&text[here.end..]).is_some_and(|(_, token)| token == "else") {
                         around.current = before + ELSE;
                     }
                 }

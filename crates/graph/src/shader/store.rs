@@ -42,9 +42,8 @@ type Variant = (Replaced, Result<Arc<Shader>, ErrorGuaranteed>);
 
 impl Shaders {
     fn key(document: &Document, name: &Located<String>) -> ShaderKey {
-        let folder = folder_of(&name.span.file.name).to_owned();
-        let document = Arc::clone(&document.file.name);
-        (document, folder, name.value.clone())
+        let (folder, name) = Self::module_key(name);
+        (Arc::clone(&document.file.name), folder, name)
     }
 
     /// The shader that a pass of a document names, where these modules stand in for others; `None`
@@ -83,8 +82,12 @@ impl Shaders {
 
     /// The path of a module that a document names.
     pub fn module(&self, name: &Located<String>) -> Option<&String> {
+        self.modules.get(&Self::module_key(name))
+    }
+
+    fn module_key(name: &Located<String>) -> (String, String) {
         let folder = folder_of(&name.span.file.name).to_owned();
-        self.modules.get(&(folder, name.value.clone()))
+        (folder, name.value.clone())
     }
 
     /// `around`, where a module that a document names stands in for another one.
@@ -252,16 +255,13 @@ impl Loader<'_> {
 
     /// The path of a module that a document names; `None` if there is none, which is reported once.
     fn module(&mut self, name: &Located<String>) -> Option<String> {
-        let key = (
-            folder_of(&name.span.file.name).to_owned(),
-            name.value.clone(),
-        );
-        if let Some(path) = self.shaders.modules.get(&key) {
+        if let Some(path) = self.shaders.module(name) {
             return Some(path.clone());
         }
         match self.files.module(name) {
             Ok(file) => {
                 let path = file.name.to_string();
+                let key = Shaders::module_key(name);
                 self.shaders.modules.insert(key, path.clone());
                 Some(path)
             }

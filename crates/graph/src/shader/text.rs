@@ -1,5 +1,7 @@
 //! WGSL as text, for questions that naga does not answer, or must not be asked before.
 
+use std::ops::Range;
+
 /// WGSL's line breaks besides `\n`: a comment ends at any of them.
 pub(super) const BREAKS: [char; 6] = ['\r', '\u{b}', '\u{c}', '\u{85}', '\u{2028}', '\u{2029}'];
 
@@ -17,23 +19,27 @@ impl Comments {
     /// Reads on.
     pub fn read(&mut self, text: &str) {
         let mut at = 0;
-        while let Some(rest) = text.get(at..).filter(|rest| !rest.is_empty()) {
-            let length = rest.chars().next().map_or(1, char::len_utf8);
-            at += match rest.as_bytes() {
-                [b'/', b'*', ..] => {
-                    self.depth += 1;
-                    2
-                }
-                [b'*', b'/', ..] if self.depth > 0 => {
-                    self.depth -= 1;
-                    2
-                }
-                [b'/', b'/', ..] if self.depth == 0 => {
-                    let end = rest.find(|c| c == '\n' || BREAKS.contains(&c));
-                    end.unwrap_or(rest.len())
-                }
-                _ => length,
-            };
+        while at < text.len() {
+            at += self.step(&text[at..]);
+        }
+    }
+
+    /// Reads a sign, a bracket of a comment or a line comment. Returns its length.
+    fn step(&mut self, text: &str) -> usize {
+        match text.as_bytes() {
+            [b'/', b'*', ..] => {
+                self.depth += 1;
+                2
+            }
+            [b'*', b'/', ..] if self.depth > 0 => {
+                self.depth -= 1;
+                2
+            }
+            [b'/', b'/', ..] if self.depth == 0 => {
+                let end = text.find(|c| c == '\n' || BREAKS.contains(&c));
+                end.unwrap_or(text.len())
+            }
+            _ => text.chars().next().map_or(1, char::len_utf8),
         }
     }
 }
@@ -46,11 +52,8 @@ pub(super) fn next(text: &str) -> Option<(usize, &str)> {
     loop {
         let rest = text.get(at..)?;
         let first = rest.chars().next()?;
-        if rest.starts_with("//") {
-            // The line ends of WGSL: code for naga must not be a comment here.
-            at += rest.find(|c| matches!(c, '\n'..='\r' | '\u{85}' | '\u{2028}' | '\u{2029}'))?;
-        } else if rest.starts_with("/*") {
-            at += comment(rest.as_bytes());
+        if rest.starts_with("//") || rest.starts_with("/*") {
+            at += comment(rest);
         } else if is_word(first) {
             let length = rest.find(|c| !is_word(c)).unwrap_or(rest.len());
             return Some((at + length, &rest[..length]));
@@ -63,18 +66,24 @@ pub(super) fn next(text: &str) -> Option<(usize, &str)> {
     }
 }
 
-/// Bytes of the block comment, possibly with others inside, that `text` begins with.
-fn comment(text: &[u8]) -> usize {
-    let (mut depth, mut at) = (0, 0);
-    loop {
-        (depth, at) = match text.get(at..) {
-            None | Some([]) => return text.len(),
-            Some([b'/', b'*', ..]) => (depth + 1, at + 2),
-            Some([b'*', b'/', ..]) if depth == 1 => return at + 2,
-            Some([b'*', b'/', ..]) => (depth - 1, at + 2),
-            Some(_) => (depth, at + 1),
-        };
+/// All tokens of a text, each with its place.
+pub(super) fn tokens(text: &str) -> impl Iterator<Item = (Range<usize>, &str)> {
+    let mut at = 0;
+    std::iter::from_fn(move || {
+        let (length, token) = next(&text[at..])?;
+        at += length;
+        Some((at - token.len()..at, token))
+    })
+}
+
+/// Length of the comment that a text begins with; comments nest, and one may stay open.
+fn comment(text: &str) -> usize {
+    let mut comments = Comments::default();
+    let mut at = comments.step(text);
+    while comments.are_open() && at < text.len() {
+        at += comments.step(&text[at..]);
     }
+    at
 }
 
 /// Declarations of a text.
@@ -91,10 +100,9 @@ impl<'t> Declared<'t> {
         const BEFORE_A_NAME: [&str; 8] = [
             "fn", "let", "var", "const", "override", "struct", "alias", ">",
         ];
-        let (mut declared, mut at, mut is_struct) = (Self::default(), 0, false);
+        let (mut declared, mut is_struct) = (Self::default(), false);
         let (mut before, mut last) = ("", "");
-        while let Some((length, token)) = next(&text[at..]) {
-            at += length;
+        for (_, token) in tokens(text) {
             match token {
                 "struct" => is_struct = true,
                 "}" => is_struct = false,
@@ -124,20 +132,15 @@ pub(super) fn words<'a>(text: &'a str, word: &'a str) -> impl Iterator<Item = us
 
 /// The words of a text outside comments, and which of them are declared as module-scope constants.
 pub(super) fn identifiers(text: &str) -> impl Iterator<Item = (&str, bool)> {
-    let (mut at, mut depth, mut after_const) = (0, 0usize, false);
-    std::iter::from_fn(move || {
-        loop {
-            let (length, token) = next(&text[at..])?;
-            at += length;
-            match token {
-                "{" => depth += 1,
-                "}" => depth = depth.saturating_sub(1),
-                _ => {}
-            }
-            let is_declared = std::mem::replace(&mut after_const, depth == 0 && token == "const");
-            if token.starts_with(|c: char| c.is_alphabetic() || c == '_') {
-                return Some((token, is_declared));
-            }
+    let (mut depth, mut after_const) = (0usize, false);
+    tokens(text).filter_map(move |(_, token)| {
+        match token {
+            "{" => depth += 1,
+            "}" => depth = depth.saturating_sub(1),
+            _ => {}
         }
+        let is_declared = std::mem::replace(&mut after_const, depth == 0 && token == "const");
+        let is_word = token.starts_with(|c: char| c.is_alphabetic() || c == '_');
+        is_word.then_some((token, is_declared))
     })
 }

@@ -3,7 +3,7 @@
 use super::{
     expand::{Expanded, ImportLine},
     reflect::Shader,
-    text::next,
+    text::tokens,
     wgsl_errors::functions,
 };
 use crate::source::span::{Located, SourceFile};
@@ -29,11 +29,10 @@ struct Words<'t> {
 impl<'t> Words<'t> {
     fn new(text: &'t str) -> Self {
         let mut words = Self::default();
-        let (mut at, mut depth, mut before) = (0, 0usize, "");
+        let (mut depth, mut before) = (0usize, "");
         // Inside `<…>` behind `var`.
         let mut is_template = false;
-        while let Some((length, token)) = next(&text[at..]) {
-            at += length;
+        for (_, token) in tokens(text) {
             match token {
                 "{" | "(" => depth += 1,
                 "}" | ")" => depth = depth.saturating_sub(1),

@@ -35,7 +35,7 @@ pub(crate) const CASES: &[HardCase] = &[
         "empty_scene",
         "no triangle: no fit, no hierarchy, empty buffers",
         seen([0.0, 1.0, 3.0], [0.0; 3], DVec3::new(0.3, -1.0, 0.2)),
-        || Shape::default(),
+        Shape::default,
     )
     .showing(Shows::Nothing),
     HardCase::open(

@@ -60,7 +60,8 @@ pub fn flip(reference: &Image, test: &Image) -> Result<f64, Error> {
         return Ok(0.0);
     }
     let [reference, test] = [reference, test].map(Seen::new);
-    let greatest = greatest_colour_difference();
+    // That of green and blue.
+    let greatest = colour_difference(hunt_lab([0.0, 1.0, 0.0]), hunt_lab([0.0, 0.0, 1.0]));
     let each = (0..reference.colours.len()).into_par_iter().map(|pixel| {
         let colour = colour_difference(reference.colours[pixel], test.colours[pixel]);
         let colour = beyond_knee(colour, greatest);
@@ -247,11 +248,6 @@ fn hunt_lab(linear: Colour) -> Colour {
 fn colour_difference(one: Colour, other: Colour) -> f64 {
     let [lightness, a, b]: Colour = std::array::from_fn(|index| one[index] - other[index]);
     (lightness.abs() + a.hypot(b)).powf(COLOUR_EXPONENT)
-}
-
-/// That of green and blue, the greatest there is.
-fn greatest_colour_difference() -> f64 {
-    colour_difference(hunt_lab([0.0, 1.0, 0.0]), hunt_lab([0.0, 0.0, 1.0]))
 }
 
 /// Most of the range for the differences that are frequent.

@@ -154,7 +154,7 @@ impl SceneLibrary {
     fn parse(&self, argument: &str) -> Result<(Option<PathBuf>, SceneFile), SceneError> {
         let (file, text) = self.locate(argument)?;
         let name = file.as_ref().map_or_else(
-            || built_in_file(argument),
+            || format!("<built-in {argument}>"),
             |file| file.display().to_string(),
         );
         Ok((file, SceneFile::parse(&text, &name)?))
@@ -431,8 +431,4 @@ fn is_bare(path: &Path) -> bool {
 fn has_extension(path: &Path, extension: &str) -> bool {
     path.extension()
         .is_some_and(|found| found.eq_ignore_ascii_case(extension))
-}
-
-fn built_in_file(name: &str) -> String {
-    format!("<built-in {name}>")
 }

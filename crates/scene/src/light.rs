@@ -37,16 +37,12 @@ impl DirectionalLight {
         self.angle_degrees > 0.0
     }
 
-    /// Half the light's width at distance 1.
-    fn radius_at_one(&self) -> f64 {
-        (self.angle_degrees.to_radians() * 0.5).tan()
-    }
-
     /// From the light's centre to its rim along two axes, as seen from distance 1: its points lie
     /// at `to_light() + across()[0] · x + across()[1] · y` of the unit disk's points.
     pub fn across(&self) -> [DVec3; 2] {
         let (right, up) = self.to_light().any_orthonormal_pair();
-        [right, up].map(|axis| axis * self.radius_at_one())
+        let radius = (self.angle_degrees.to_radians() * 0.5).tan();
+        [right, up].map(|axis| axis * radius)
     }
 
     /// Unit vector from any point to the light, l = −direction.

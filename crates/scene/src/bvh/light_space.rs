@@ -124,7 +124,8 @@ impl LightSpace {
         while let Some(&index) = open.last() {
             let node = &bvh.nodes[index];
             let children = [node.first as usize, node.first as usize + 1];
-            let bounds = match (node.count, children.map(|child| child_of(&nodes, child))) {
+            let bounds_of = |child: usize| nodes.get(child).copied().flatten();
+            let bounds = match (node.count, children.map(bounds_of)) {
                 (0, [Some(first), Some(second)]) => Some(first.or(second)),
                 (0, _) => None,
                 _ => corners(bvh, mesh, node)
@@ -142,10 +143,6 @@ impl LightSpace {
         let nodes = bvh.nodes.iter().zip(nodes);
         nodes.map(|(node, bounds)| bounds?.rounded(node)).collect()
     }
-}
-
-fn child_of(nodes: &[Option<Bounds>], child: usize) -> Option<Bounds> {
-    nodes.get(child).copied().flatten()
 }
 
 /// Extent of a node.

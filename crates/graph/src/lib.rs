@@ -48,6 +48,7 @@ pub mod diagnostics;
 mod document;
 mod errors;
 mod expressions;
+mod fields;
 mod flow;
 mod graph;
 mod instantiate;
@@ -66,9 +67,12 @@ mod scalar_class;
 mod schema;
 mod shader;
 mod source;
+#[cfg(feature = "schema")]
+mod written;
 
 pub use diagnostics::{Code, Diagnostic, Diagnostics, Label, Severity};
-pub use document::{Address, Chosen, Filter};
+pub use document::{Address, Filter};
+pub use fields::Chosen;
 pub use flow::{
     Aliases, Allocation, Conditions, Dependences, Hazard, Lifetime, Lifetimes, Schedule, When,
 };

@@ -4,7 +4,6 @@ use crate::{
     document::{
         entries::{Header, IncludeFields, PassFields},
         extend::PLACES,
-        fields::{Chosen, Load},
         materials::{
             BufferEntry, BufferInput, Data, FormatEntry, Mips, SamplerEntry, SamplerInput,
             TextureEntry, TextureInput,
@@ -12,14 +11,15 @@ use crate::{
         params::ParamFields,
         raw::{FORMAT, SECTIONS},
         typed::{ClaimEntry, ClaimFields, ImportEntry, Narrow, Output, OutputFields},
-        written::{short_or_long, written},
     },
     errors::document::PARAM_TYPES,
+    fields::{Chosen, Load},
     kinds::registry::{Kind, Registry},
     language::{
         name::Name,
         syntax::{Expr, Reference},
     },
+    written::{short_or_long, written},
 };
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::{Map, Value, json};

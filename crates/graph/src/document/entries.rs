@@ -1,13 +1,13 @@
 //! Reads the entries of `passes`: passes, included documents, and groups of entries.
 
 use super::{
-    fields::Mentions,
     raw::{Invalid, RawEntry, RawMap, stem},
     typed::{Entry, Include, Pass, Run, What},
 };
 use crate::{
     diagnostics::{diagnostic::Diagnostic, reports::Reports},
     errors::document::DocumentError,
+    fields::Mentions,
     kinds::{
         kind::{Lowering, OF_PASS},
         registry::Registry,
@@ -126,7 +126,7 @@ impl<'de> Deserialize<'de> for Expose {
 }
 
 #[cfg(feature = "schema")]
-crate::document::written::written!(Expose, "Expose", generator => {
+crate::written::written!(Expose, "Expose", generator => {
     let list = generator.subschema_for::<Vec<Located<String>>>();
     schemars::json_schema!({
         "description": "Names of params, or `All` that are not set.",

@@ -1,7 +1,7 @@
 //! Materials: the textures, buffers and samplers of a document ("material" is Nau3D's word for what
 //! passes share), and the inputs that an includer or the host gives.
 
-use super::fields::Compare;
+use crate::fields::Compare;
 use crate::{
     errors::document::DocumentError,
     language::{

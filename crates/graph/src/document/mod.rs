@@ -2,15 +2,11 @@
 
 pub(crate) mod entries;
 pub(crate) mod extend;
-pub(crate) mod fields;
 pub(crate) mod flat;
 pub(crate) mod materials;
 pub(crate) mod params;
 pub(crate) mod raw;
 pub(crate) mod read;
 pub(crate) mod typed;
-#[cfg(feature = "schema")]
-pub(crate) mod written;
 
-pub use fields::Chosen;
 pub use materials::{Address, Filter};

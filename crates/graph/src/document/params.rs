@@ -1,6 +1,6 @@
 //! Params as a document writes them.
 
-use super::fields::prose;
+use crate::fields::prose;
 use crate::{
     diagnostics::diagnostic::Diagnostic,
     errors::document::DocumentError,

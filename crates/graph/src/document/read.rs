@@ -3,7 +3,6 @@
 use super::{
     entries,
     extend::no_edits,
-    fields::one_line,
     materials::{BufferInput, Input, Material, SamplerInput, TextureInput},
     params,
     raw::{RawDocument, RawItem, RawMap},
@@ -15,6 +14,7 @@ use crate::{
         reports::{ErrorGuaranteed, Reports},
     },
     errors::{document::DocumentError, language::SyntaxFault},
+    fields::one_line,
     kinds::registry::Registry,
     language::{
         name::{Name, RESERVED},

@@ -1,12 +1,12 @@
 //! A document with everything in it read, and nothing looked up.
 
 use super::{
-    fields::{Mentions, prose, short_or_long},
     materials::{Input, Material},
     raw::Invalid,
 };
 use crate::{
     diagnostics::reports::ErrorGuaranteed,
+    fields::{Mentions, prose, short_or_long},
     kinds::{kind::PassKind, step::ShaderUse},
     language::{
         name::Name,

@@ -41,7 +41,7 @@ impl EntryName {
 }
 
 #[cfg(feature = "schema")]
-crate::document::written::written!(EntryName, "EntryName", _generator => {
+crate::written::written!(EntryName, "EntryName", _generator => {
     schemars::json_schema!({
         "description": "The name of an entry point, or by a condition one of two, of which `none` \
             is no entry point.",

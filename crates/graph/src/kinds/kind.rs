@@ -3,9 +3,9 @@
 use super::step::{Names, Operand, Program, Scratch, ShaderUse, Step, Threads};
 use crate::{
     diagnostics::{code::Code, diagnostic::Diagnostic, reports::ErrorGuaranteed},
-    document::fields::Chosen,
     errors::evaluation::EvaluationError,
     expressions::eval::{self, Environment},
+    fields::Chosen,
     language::{
         name::Name,
         syntax::{Attribute, Expr, ExprKind, Reference, Subject},

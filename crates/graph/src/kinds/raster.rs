@@ -7,7 +7,7 @@ use super::{
     targets::{self, ColorEntry, DepthEntry, StencilEntry},
 };
 use crate::{
-    document::fields::Chosen,
+    fields::Chosen,
     language::syntax::{Expr, Reference},
 };
 use serde::{Deserialize, Deserializer};
@@ -196,7 +196,7 @@ impl PassKind for Raster {
 }
 
 #[cfg(feature = "schema")]
-crate::document::written::written!(Call, "Call", generator => {
+crate::written::written!(Call, "Call", generator => {
     let count = generator.subschema_for::<Expr>();
     let words = <CallWords as schemars::JsonSchema>::json_schema(generator);
     schemars::json_schema!({

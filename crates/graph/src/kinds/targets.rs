@@ -5,8 +5,8 @@ use super::{
     step::{ColorTarget, DepthTarget, Names, StencilTarget},
 };
 use crate::{
-    document::fields::{Compare, Load, short_or_long},
     errors::document::DocumentError,
+    fields::{Compare, Load, short_or_long},
     language::syntax::{Expr, Reference},
     source::span::Located,
 };
@@ -397,11 +397,11 @@ pub(super) fn area(entry: &Expr, pass: &mut Lowering<'_>) -> Option<[u32; 4]> {
 }
 
 #[cfg(feature = "schema")]
-crate::document::written::short_or_long!(ColorEntry, "Color", ColorFields);
+crate::written::short_or_long!(ColorEntry, "Color", ColorFields);
 #[cfg(feature = "schema")]
-crate::document::written::short_or_long!(DepthEntry, "Depth", DepthFields);
+crate::written::short_or_long!(DepthEntry, "Depth", DepthFields);
 #[cfg(feature = "schema")]
-crate::document::written::written!(WriteMask, "Channels", _generator => schemars::json_schema!({
+crate::written::written!(WriteMask, "Channels", _generator => schemars::json_schema!({
     "description": "`true`, `false`, or channels: `rg`.",
     "anyOf": [{ "type": "boolean" }, { "type": "string", "pattern": "^[rgba]+$" }],
 }));

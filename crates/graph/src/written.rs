@@ -18,7 +18,7 @@ pub(crate) use written;
 /// The same for one that is a reference alone, or has fields.
 macro_rules! short_or_long {
     ($type:ty, $name:literal, $long:ty) => {
-        $crate::document::written::written!($type, $name, generator => {
+        $crate::written::written!($type, $name, generator => {
             let long = <$long>::json_schema(generator);
             let reference = generator.subschema_for::<$crate::language::syntax::Reference>();
             schemars::json_schema!({ "anyOf": [reference, long] })

@@ -8,8 +8,7 @@
 //! # let pinned = "skiagraph_compare__records__stress__tests__the_schema_is_pinned";
 //! # let pinned = std::fs::read_to_string(format!("src/records/snapshots/{pinned}.snap"))?;
 //! # std::fs::write(out.path().join("stress.json"), &pinned[pinned.find('{').unwrap_or(0)..])?;
-//! let matrix = read_back::stress(out.path())?.ok_or("there is no stress.json")?;
-//! let report: Report = serde_json::from_value(matrix)?;
+//! let report: Report = read_back::stress(out.path())?.ok_or("there is no stress.json")?;
 //! for case in &report.cases {
 //!     let failed = case.cells.iter().filter(|cell| cell.verdict == Verdict::Fail);
 //!     println!("{}: {} failed", case.name, failed.count());

@@ -5,10 +5,10 @@
 //! ```
 //! use skiagraph_graph::{Graph, PlanRequest};
 //! use skiagraph_passes::{EmbeddedSources, SceneProvider, names::LIGHT, registry};
-//! # use skiagraph_scene::{DirectionalLight, Indexed, Mesh};
+//! # use skiagraph_scene::{DirectionalLight, Indexed};
 //! # let positions = &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]];
 //! # let indices = &[0, 1, 2];
-//! # let mesh = Mesh::indexed(&Indexed { positions, normals: &[], indices })?;
+//! # let mesh = Indexed { positions, normals: &[], indices }.mesh()?;
 //! # let sun = DirectionalLight::new(glam::DVec3::NEG_Y);
 //!
 //! let provider = SceneProvider::from_mesh(mesh, sun);

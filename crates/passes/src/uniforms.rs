@@ -4,14 +4,15 @@
 //! ```
 //! use glam::DVec3;
 //! use skiagraph_passes::uniforms::LightUniform;
-//! use skiagraph_scene::{DirectionalLight, Indexed, Mesh};
+//! use skiagraph_scene::{DirectionalLight, Indexed};
 //!
 //! let square = [[0.0; 3], [0.0, 0.0, 8.0], [8.0, 0.0, 8.0], [8.0, 0.0, 0.0]];
-//! let mesh = Mesh::indexed(&Indexed {
+//! let mesh = Indexed {
 //!     positions: &square,
 //!     normals: &[],
 //!     indices: &[0, 1, 2, 0, 2, 3],
-//! })?;
+//! }
+//! .mesh()?;
 //! let light = LightUniform::new(DirectionalLight::new(DVec3::NEG_Y), &mesh);
 //! assert_eq!(light.to_light, glam::Vec3::Y);
 //! assert_eq!(bytemuck::bytes_of(&light).len(), 144);

@@ -43,7 +43,7 @@ pub struct Mark {
     pub x: f64,
     /// Upwards: finite and above 0; in a [`Kind::Front`] and in [`Kind::Bars`] also 0.
     pub y: f64,
-    /// Index into [`Figure::sizes`]; 0 where these are empty.
+    /// Index into [`Figure::sizes`](crate::Figure::sizes); 0 where these are empty.
     pub size: usize,
     /// Lines that a page tells of it, the first one its name.
     pub about: String,

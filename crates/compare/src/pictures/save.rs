@@ -192,7 +192,7 @@ pub fn decodings(plan: &Plan, saves: &[Save], planes: ClipPlanes) -> Vec<Decodin
     saves.iter().map(decoding).collect()
 }
 
-/// Writes what was read of a graph, each as [`write`] does.
+/// Writes what was read of a graph, each as [`write`](fn@write) does.
 pub fn write_all<'a>(
     graph: &'a str,
     saves: &'a [Save],

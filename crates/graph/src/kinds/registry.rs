@@ -69,7 +69,7 @@ impl Registry {
         });
     }
 
-    /// Says for [`schema`](Self::schema) what the fields of a registered kind may be; those of
+    /// Says for [`schema`](crate::schema) what the fields of a registered kind may be; those of
     /// others are anything there.
     #[cfg(feature = "schema")]
     pub fn describe<K: schemars::JsonSchema>(&mut self, tag: &str) {

@@ -239,7 +239,7 @@ mod tests {
     use crate::files::json::to_text;
     use crate::records::{profile, results};
 
-    /// What is said of each of these texts, each of which differs from a good one.
+    /// Lists the messages for these texts, each of which differs from a good one.
     fn refused<T>(
         read: fn(&SourceFile) -> Result<T, CompareError>,
         name: &str,

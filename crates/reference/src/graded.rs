@@ -8,6 +8,7 @@ use crate::{
     pixels::check_pixel_count,
 };
 use serde::{Deserialize, Serialize};
+use std::ops::RangeInclusive;
 
 /// How a picture of shares, 0 in shadow to 1 in light, compares with the reference.
 ///
@@ -31,6 +32,68 @@ pub struct Graded {
     pub flip: f64,
     /// PFL pixels that hold no share at all.
     pub invalid: Invalid,
+    /// The errors apart by the light that the reference shows.
+    #[serde(default)]
+    pub soft: SoftErrors,
+}
+
+/// Errors of shares, apart by the share that the reference shows: light in the umbra is seen as a
+/// leak, dark in the light as a stain, and an error in the penumbra hardly at all. Of pixels facing
+/// the light (PFL) that are not indeterminate.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct SoftErrors {
+    /// Pixels in the umbra: they see less than a tenth of the light.
+    pub umbra: u64,
+    /// Mean share that they show beyond the reference's.
+    pub light_in_umbra: f64,
+    /// Pixels in the light: they see more than nine tenths of it.
+    pub light: u64,
+    /// Mean share that they show too little.
+    pub dark_in_light: f64,
+    /// Pixels in between.
+    pub penumbra: u64,
+    /// Root mean square error of their shares.
+    pub penumbra_rmse: f64,
+    /// Mean error of their shares: positive if too light.
+    pub penumbra_bias: f64,
+}
+
+/// The shares between which a pixel is in the penumbra.
+const PENUMBRA: RangeInclusive<f32> = 0.1..=0.9;
+
+impl SoftErrors {
+    /// The errors of one pixel, too light by `off`.
+    fn of_pixel(share: f32, off: f64) -> Self {
+        let mut of = Self::default();
+        if PENUMBRA.contains(&share) {
+            (of.penumbra, of.penumbra_rmse, of.penumbra_bias) = (1, off.abs(), off);
+        } else if share < *PENUMBRA.start() {
+            (of.umbra, of.light_in_umbra) = (1, off.max(0.0));
+        } else {
+            (of.light, of.dark_in_light) = (1, (-off).max(0.0));
+        }
+        of
+    }
+
+    /// Adds errors to sums, those of squares among them, until [`means`](Self::means).
+    fn add(&mut self, of: Self) {
+        self.umbra += of.umbra;
+        self.light_in_umbra += of.light_in_umbra * of.umbra as f64;
+        self.light += of.light;
+        self.dark_in_light += of.dark_in_light * of.light as f64;
+        self.penumbra += of.penumbra;
+        self.penumbra_rmse += of.penumbra_rmse.powi(2) * of.penumbra as f64;
+        self.penumbra_bias += of.penumbra_bias * of.penumbra as f64;
+    }
+
+    fn means(mut self) -> Self {
+        let count = |pixels: u64| pixels.max(1) as f64;
+        self.light_in_umbra /= count(self.umbra);
+        self.dark_in_light /= count(self.light);
+        self.penumbra_rmse = (self.penumbra_rmse / count(self.penumbra)).sqrt();
+        self.penumbra_bias /= count(self.penumbra);
+        self
+    }
 }
 
 /// PFL pixels that are off by more than a bound; each holds those of the next.
@@ -92,12 +155,15 @@ impl Graded {
                 continue;
             }
             graded.invalid.add(shown);
-            let off = error(shown, share).abs();
+            let signed = error(shown, share);
+            let off = signed.abs();
             facing += 1;
             squares += off * off;
             if indeterminate {
                 in_band += 1;
                 squares_in_band += off * off;
+            } else {
+                graded.soft.add(SoftErrors::of_pixel(share, signed));
             }
             graded.mean_absolute_error += off;
             graded.off.over_1_255 += u64::from(off > 1.0 / 255.0);
@@ -109,6 +175,7 @@ impl Graded {
         let facing = facing.max(1) as f64;
         graded.rmse = (squares / facing).sqrt();
         graded.mean_absolute_error /= facing;
+        graded.soft = graded.soft.means();
         let right = Image::shaded(shares, truth)?;
         graded.flip = flip(&right, &Image::shaded(visibility, truth)?)?;
         Ok(graded)
@@ -138,7 +205,9 @@ impl Graded {
                 off,
                 flip,
                 invalid,
+                soft,
             } = of;
+            all.soft.add(soft);
             let of_facing = pixels.facing_light as f64;
             let of_outside = pixels.facing_light.saturating_sub(pixels.in_band) as f64;
             count += 1.0;
@@ -156,6 +225,7 @@ impl Graded {
         all.rmse_outside_band = (all.rmse_outside_band / f64::max(outside, 1.0)).sqrt();
         all.mean_absolute_error /= f64::max(facing, 1.0);
         all.flip /= f64::max(count, 1.0);
+        all.soft = all.soft.means();
         all
     }
 }
@@ -198,8 +268,27 @@ mod tests {
         };
         assert_eq!((graded.off, graded.invalid.total()), (off, 0));
         assert!(graded.flip > 0.0);
+        // By hand: in the umbra 0.5 too light; in the penumbra 0 and −0.1; in the light nothing is
+        // left, its pixel is in the band.
+        let soft = graded.soft;
+        assert_eq!([soft.umbra, soft.penumbra, soft.light], [1, 2, 0]);
+        assert!((soft.light_in_umbra - 0.5).abs() < 1e-7, "{soft:?}");
+        assert!((soft.penumbra_rmse - 0.005f64.sqrt()).abs() < 1e-7);
+        assert!((soft.penumbra_bias + 0.05).abs() < 1e-7);
+        assert_eq!(soft.dark_in_light, 0.0);
         let right = Graded::judged(&shares, &shares, &truth).unwrap();
-        assert_eq!(right, Graded::default());
+        let soft = SoftErrors {
+            umbra: 1,
+            penumbra: 2,
+            ..SoftErrors::default()
+        };
+        assert_eq!(
+            right,
+            Graded {
+                soft,
+                ..Graded::default()
+            }
+        );
         assert!(Graded::judged(&shares[1..], &shares, &truth).is_err());
     }
 
@@ -228,6 +317,9 @@ mod tests {
         assert!((together.rmse_outside_band - whole.rmse_outside_band).abs() < 1e-9);
         assert!((together.mean_absolute_error - whole.mean_absolute_error).abs() < 1e-9);
         assert_eq!((together.off, together.invalid), (whole.off, whole.invalid));
+        let (dark, light) = (together.soft.dark_in_light, together.soft.light);
+        assert!((dark - whole.soft.dark_in_light).abs() < 1e-9 && dark > 0.3);
+        assert_eq!(light, whole.soft.light);
         // One picture is itself.
         let one = Graded::together([parts[0]]);
         assert!((one.rmse_outside_band - parts[0].0.rmse_outside_band).abs() < 1e-12);

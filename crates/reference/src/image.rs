@@ -18,32 +18,12 @@ const WRONGLY_LIT: Colour = [48, 96, 255];
 const WRONGLY_LIT_INDETERMINATE: Colour = [160, 190, 255];
 const WRONGLY_SHADOWED: Colour = [255, 32, 32];
 const WRONGLY_SHADOWED_INDETERMINATE: Colour = [255, 170, 170];
-/// The colours of wrong pixels.
-const WRONG: [Colour; 4] = [
-    WRONGLY_LIT,
-    WRONGLY_LIT_INDETERMINATE,
-    WRONGLY_SHADOWED,
-    WRONGLY_SHADOWED_INDETERMINATE,
-];
 /// Grey levels under the error image: pale enough for blue and red to stand out, apart enough to
 /// show shadow contours.
 const DIM_LIGHT: Colour = [212, 212, 212];
 const DIM_SHADOW: Colour = [144, 144, 144];
 const DIM_FACING_AWAY: Colour = [116, 116, 116];
 const DIM_BACKGROUND: Colour = [232, 236, 240];
-
-/// A ring around a lone wrong pixel, in a colour that no backdrop has: it marks no pixel as wrong.
-const RING: Colour = [16, 12, 20];
-/// Pictures whose longer edge is shorter have no rings: a pixel is seen in them.
-const LEAST_EDGE: u32 = 256;
-/// So many pixels of the longer edge make a ring's radius one pixel larger.
-const EDGE_PER_RADIUS: u32 = 64;
-/// So many make its line one pixel wider.
-const EDGE_PER_LINE: u32 = 512;
-/// Most wrong pixels within two radii; more of them are seen without a ring.
-const FEW: usize = 12;
-/// Most rings: where more would be, there is enough to see.
-const MOST_RINGS: usize = 24;
 
 const NO_NUMBER: Colour = [255, 0, 255];
 /// The error from which on [`Image::difference`] shows its colours in full.
@@ -93,9 +73,7 @@ pub struct Image {
 impl Image {
     /// Where a method is wrong: blue = wrongly lit, red = wrongly in shadow, both paler where
     /// indeterminate, over the reference's shadows in pale grey. As many pixels are coloured as are
-    /// wrong. In pictures of 256 pixels and more in which few are wrong, a thin dark ring points to
-    /// those that have no others near; it hides right pixels alone.
-    /// [`Statistics`](crate::Statistics) defines wrong pixels.
+    /// wrong, and no others. [`Statistics`](crate::Statistics) defines wrong pixels.
     ///
     /// # Errors
     /// Those of [`Statistics::judged`](crate::Statistics::judged).
@@ -105,12 +83,8 @@ impl Image {
         truth: &GroundTruthPixels,
     ) -> Result<Self, Error> {
         let mut rgb = Vec::with_capacity(truth.classes.len() * 3);
-        let mut wrong = Vec::new();
         for_each_verdict(visibility, status, truth, |pixel| {
             let backdrop = |grey| tinted(grey, truth, pixel.place);
-            if pixel.verdict != Verdict::Right && !pixel.indeterminate {
-                wrong.push(pixel.place);
-            }
             rgb.extend(match (pixel.verdict, pixel.indeterminate, pixel.class) {
                 (Verdict::WronglyLit, false, _) => WRONGLY_LIT,
                 (Verdict::WronglyLit, true, _) => WRONGLY_LIT_INDETERMINATE,
@@ -122,61 +96,10 @@ impl Image {
                 (Verdict::Right, _, Class::Shadow) => backdrop(DIM_SHADOW),
             });
         })?;
-        let mut image = Self {
+        Ok(Self {
             size: truth.viewport,
             rgb,
-        };
-        image.point_out(&wrong);
-        Ok(image)
-    }
-
-    /// Draws a ring around pixels that have few others near, over what is not coloured itself,
-    /// unless there would be many rings.
-    fn point_out(&mut self, pixels: &[usize]) {
-        let edge = self.size[0].max(self.size[1]);
-        if edge < LEAST_EDGE {
-            return;
-        }
-        let [width, height] = self.size.map(|edge| edge as usize);
-        let radius = (edge / EDGE_PER_RADIUS) as usize;
-        let line = (edge / EDGE_PER_LINE).max(1) as f64;
-        let mut is_wrong = vec![false; width * height];
-        pixels.iter().for_each(|&pixel| is_wrong[pixel] = true);
-        let around = |pixel: usize, reach: usize| {
-            let (x, y) = (pixel % width, pixel / width);
-            let rows = y.saturating_sub(reach)..(y + reach + 1).min(height);
-            let columns = x.saturating_sub(reach)..(x + reach + 1).min(width);
-            rows.flat_map(move |row| columns.clone().map(move |column| row * width + column))
-        };
-        let far = |a: usize, b: usize| {
-            let across = (a % width).abs_diff(b % width) as f64;
-            across.hypot((a / width).abs_diff(b / width) as f64)
-        };
-        // Pixels that a ring points to already.
-        let mut is_ringed = vec![false; width * height];
-        let mut middles = Vec::new();
-        for &pixel in pixels {
-            let near = around(pixel, 2 * radius).filter(|&other| is_wrong[other]);
-            if is_ringed[pixel] || near.take(FEW + 1).count() > FEW {
-                continue;
-            }
-            around(pixel, radius).for_each(|other| is_ringed[other] = true);
-            middles.push(pixel);
-            if middles.len() > MOST_RINGS {
-                return;
-            }
-        }
-        let radius_in_pixels = radius as f64;
-        for middle in middles {
-            for other in around(middle, radius) {
-                let distance = far(middle, other);
-                let is_on_it = distance <= radius_in_pixels && distance > radius_in_pixels - line;
-                let rgb = &mut self.rgb[3 * other..3 * other + 3];
-                if is_on_it && WRONG.iter().all(|colour| rgb != colour) {
-                    rgb.copy_from_slice(&RING);
-                }
-            }
-        }
+        })
     }
 
     /// Where shares of light are off: blue = too light, red = too dark, the stronger the farther,
@@ -407,9 +330,8 @@ mod tests {
     }
 
     #[test]
-    fn as_many_pixels_are_coloured_as_are_wrong_and_lone_ones_have_a_ring() {
+    fn as_many_pixels_are_coloured_as_are_wrong() {
         let [width, height] = [512usize, 64];
-        let at = |x: usize, y: usize| y * width + x;
         let mut truth = GroundTruthPixels {
             viewport: [512, 64],
             classes: vec![Class::Lit; width * height],
@@ -417,37 +339,16 @@ mod tests {
             n_dot_l: vec![1.0; width * height],
             base_colors: Vec::new(),
         };
-        let lone = at(100, 32);
-        let crowd: Vec<usize> = (0..15).map(|column| at(300 + column, 32)).collect();
-        let (pair, corner) = ([at(400, 20), at(402, 21)], at(0, 0));
-        // In the band, where the lone pixel's ring would lie.
-        let in_band = at(108, 32);
+        let (lone, in_band) = (32 * width + 100, 32 * width + 108);
         truth.indeterminate[in_band] = true;
-        let wrong = [&crowd[..], &pair, &[lone, corner, in_band]].concat();
         let mut visibility = vec![1u8; width * height];
-        wrong.iter().for_each(|&pixel| visibility[pixel] = 0);
+        [0, lone, in_band].map(|pixel| visibility[pixel] = 0);
         let status = vec![status::CERTAIN_LIGHT as u8; width * height];
-        let image = Image::error(&visibility, &status, &truth).unwrap();
-        let found = colours(image);
+        let found = colours(Image::error(&visibility, &status, &truth).unwrap());
         let count = |of: Colour| found.iter().filter(|colour| **colour == of).count();
-        assert_eq!(count(WRONGLY_SHADOWED), wrong.len() - 1);
-        assert_eq!(count(WRONGLY_SHADOWED_INDETERMINATE), 1);
+        assert_eq!(count(WRONGLY_SHADOWED), 2);
         assert_eq!(found[in_band], WRONGLY_SHADOWED_INDETERMINATE);
-        // All else is backdrop and three rings: of the lone one, the pair, cut off at the corner.
-        assert_eq!(count(DIM_LIGHT) + count(RING) + wrong.len(), width * height);
-        let ring = |x: usize, y: usize| found[at(x, y)] == RING;
-        assert!(ring(92, 32) && ring(100, 24) && ring(100, 40));
-        assert!(!ring(101, 32) && !ring(105, 32) && !ring(109, 32));
-        assert!(ring(8, 0) && ring(0, 8));
-        let near = |x: usize, y: usize| (x - 12..x + 12).any(|x| ring(x, y));
-        assert!(!near(307, 32), "a crowd is seen without");
-        assert!(near(400, 20));
-        assert!((90..150).contains(&count(RING)), "{}", count(RING));
-        // Where many are alone, all are seen.
-        let many = (0..30).map(|index| at(10 + 16 * index, 32));
-        many.for_each(|pixel| visibility[pixel] = 0);
-        let image = Image::error(&visibility, &status, &truth).unwrap();
-        assert!(!colours(image).contains(&RING));
+        assert_eq!(count(DIM_LIGHT), width * height - 3);
     }
 
     #[test]

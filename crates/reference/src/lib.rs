@@ -31,6 +31,7 @@
 pub mod area;
 pub mod blockers;
 mod contact;
+pub mod edge;
 mod error;
 pub mod error_bound;
 pub mod flip;
@@ -52,8 +53,9 @@ mod visible;
 
 pub use area::{ground_truth, shade_area};
 pub use blockers::{BlockerCounts, blockers};
+pub use edge::{Distances, EdgeDistances};
 pub use error::Error;
-pub use graded::{Graded, Invalid, JudgedPixels, OffBy};
+pub use graded::{Graded, Invalid, JudgedPixels, OffBy, SoftErrors};
 pub use ground_truth::{AreaVisibility, Class, GroundTruth, GroundTruthPixels};
 pub use image::Image;
 pub use oracle::{Occlusion, Oracle, OracleMode, unshadowed};

@@ -66,7 +66,7 @@ pub fn same_receivers(before: Seen, now: Seen, progress: Progress) -> Result<Vec
 
 /// Where the ray through a pixel's centre meets the plane of its primitive; `None` for one that is
 /// edge-on.
-fn hit(mesh: &Mesh, primitive: u32, camera: &Camera, [x, y]: [u32; 2]) -> Option<DVec3> {
+pub(crate) fn hit(mesh: &Mesh, primitive: u32, camera: &Camera, [x, y]: [u32; 2]) -> Option<DVec3> {
     let [a, b, c] = mesh.corners(primitive);
     let normal = (b - a).cross(c - a);
     let direction = camera.pixel_direction(x, y);

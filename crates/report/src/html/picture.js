@@ -27,7 +27,7 @@ const meanings = {
   error: [
     [[48, 96, 255], 'wrongly lit', true], [[255, 32, 32], 'wrongly in shadow', true],
     [[160, 190, 255], 'wrongly lit, in the band', true], [[255, 170, 170], 'wrongly in shadow, in the band', true],
-    [[16, 12, 20], 'ring: around lone wrong pixels'], [[232, 236, 240], 'background'],
+    [[232, 236, 240], 'background'],
   ],
   difference: [
     [[48, 96, 255], 'too light, by a quarter or more'], [[255, 32, 32], 'too dark, by a quarter or more'],

@@ -248,12 +248,12 @@ function paint() {
     if (one.divider) one.divider.style.left = `${100 * viewer.wipe}%`;
   }
   const { scale } = fit(viewer.stages[0]);
-  const isLarger = viewer.loaded.some((loaded) => loaded && isEnlarged(loaded, scale * ratio, ratio));
+  const isLarger = viewer.loaded.some((loaded) => loaded && isEnlarged(loaded, scale));
   byId('zoom').textContent = `${scale >= 1 ? scale.toFixed(1) : scale.toFixed(2)} ×${isLarger ? ', coloured pixels drawn larger' : ''}`;
 }
 
-/** From afar a few coloured pixels would vanish: they are drawn three screen pixels wide. Of many, each as it is. */
-const isEnlarged = ({ telling: found }, on, ratio) => found.length > 0 && found.length <= 500 && on < 3 * ratio;
+/** Below 1:1 a few coloured pixels would vanish: they are drawn three screen pixels wide. Of many, each as it is. */
+const isEnlarged = ({ telling: found }, scale) => found.length > 0 && found.length <= 500 && scale < 1;
 
 function paintPane(context, loaded, { scale, corner }, ratio) {
   const [width, height] = table().viewport;
@@ -263,7 +263,7 @@ function paintPane(context, loaded, { scale, corner }, ratio) {
   context.imageSmoothingEnabled = on < 1;
   context.drawImage(loaded.picture.canvas, corner[0] * ratio, corner[1] * ratio, width * on, height * on);
   const least = 3 * ratio;
-  if (!isEnlarged(loaded, on, ratio)) return;
+  if (!isEnlarged(loaded, scale)) return;
   for (const [x, y, colour] of loaded.telling) {
     context.fillStyle = colour;
     context.fillRect((corner[0] + (x + 0.5) * scale) * ratio - least / 2,

@@ -1,0 +1,306 @@
+//! How far wrong pixels lie from the reference's shadow edges.
+//!
+//! The distances tell the causes apart: the steps of a map's texels stay within a texel of an edge,
+//! acne lies anywhere on lit surfaces, and a bias lights the shadow beside its caster.
+
+use crate::{
+    error::Error,
+    ground_truth::GroundTruthPixels,
+    pixels::check_pixel_count,
+    shimmer::{Seen, hit},
+    statistics::{Verdict, for_each_verdict},
+};
+use rayon::prelude::*;
+use rstar::RTree;
+use serde::{Deserialize, Serialize};
+
+/// Pixels within which a wrong pixel counts as lying at an edge.
+const NEAR: f64 = 2.0;
+
+/// Distances of the wrong pixels outside the band from the nearest pixel at an edge: one that faces
+/// the light beside another that does, where one is lit and the other in shadow.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct EdgeDistances {
+    /// Of the wrongly lit pixels.
+    pub lit: Distances,
+    /// Of the pixels wrongly in shadow.
+    pub shadow: Distances,
+}
+
+/// Distances of some pixels from the nearest edge.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Distances {
+    /// Number of pixels that have a distance.
+    pub count: u64,
+    /// Number of these that lie within two pixels of an edge.
+    pub near: u64,
+    /// Mean distance in pixels; 0 if the pixel is at the edge itself.
+    pub mean_pixels: f64,
+    /// Greatest distance in pixels.
+    pub max_pixels: f64,
+    /// Mean distance in scene units, from the pixel's receiver to the nearest receiver at an edge.
+    pub mean_world: f64,
+    /// Greatest distance in scene units.
+    pub max_world: f64,
+    /// Number of pixels without a distance: no shadow edge is in the picture, or the pixel's
+    /// primitive is seen edge-on.
+    pub without: u64,
+}
+
+impl Distances {
+    fn new(distances: impl Iterator<Item = Option<[f64; 2]>>) -> Self {
+        let mut all = Self::default();
+        for distance in distances {
+            all = all.with(match distance {
+                None => Self {
+                    without: 1,
+                    ..Self::default()
+                },
+                Some([pixels, world]) => Self {
+                    count: 1,
+                    near: u64::from(pixels <= NEAR),
+                    mean_pixels: pixels,
+                    max_pixels: pixels,
+                    mean_world: world,
+                    max_world: world,
+                    without: 0,
+                },
+            });
+        }
+        all
+    }
+
+    /// Returns the distances of both sets of pixels.
+    pub fn with(self, other: Self) -> Self {
+        let count = self.count + other.count;
+        let mean = |one: f64, another: f64| {
+            let sum = one * self.count as f64 + another * other.count as f64;
+            sum / count.max(1) as f64
+        };
+        Self {
+            count,
+            near: self.near + other.near,
+            mean_pixels: mean(self.mean_pixels, other.mean_pixels),
+            max_pixels: self.max_pixels.max(other.max_pixels),
+            mean_world: mean(self.mean_world, other.mean_world),
+            max_world: self.max_world.max(other.max_world),
+            without: self.without + other.without,
+        }
+    }
+}
+
+impl EdgeDistances {
+    /// Measures the wrong pixels of a method's picture; `visibility`, `status` and `truth` as for
+    /// [`Statistics::judged`](crate::Statistics::judged).
+    ///
+    /// # Errors
+    /// Those of [`Statistics::judged`](crate::Statistics::judged); [`Error::PixelCount`] if
+    /// `seen.primitives` does not fit the reference.
+    pub fn measured(
+        seen: Seen,
+        visibility: &[impl Copy + Into<u32>],
+        status: &[impl Copy + Into<u32>],
+        truth: &GroundTruthPixels,
+    ) -> Result<Self, Error> {
+        check_pixel_count("primitives", truth.viewport, seen.primitives.len())?;
+        let mut wrong: [Vec<usize>; 2] = Default::default();
+        for_each_verdict(visibility, status, truth, |pixel| {
+            if !pixel.indeterminate && pixel.verdict != Verdict::Right {
+                wrong[usize::from(pixel.verdict == Verdict::WronglyShadowed)].push(pixel.place);
+            }
+        })?;
+        if wrong.iter().all(Vec::is_empty) {
+            return Ok(Self::default());
+        }
+        let edges = Edges::new(seen, truth);
+        let [lit, shadow] = wrong.map(|pixels| {
+            let each = pixels.par_iter().map(|&pixel| edges.distance(pixel));
+            // Summed in order, so that the result is the same on any number of cores.
+            Distances::new(each.collect::<Vec<_>>().into_iter())
+        });
+        Ok(Self { lit, shadow })
+    }
+
+    /// Returns the distances of both pictures' pixels.
+    pub fn with(self, other: Self) -> Self {
+        Self {
+            lit: self.lit.with(other.lit),
+            shadow: self.shadow.with(other.shadow),
+        }
+    }
+
+    /// Returns the distances of all wrong pixels.
+    pub fn all(self) -> Distances {
+        self.lit.with(self.shadow)
+    }
+}
+
+/// The pixels at the edges of the reference's shadows, for the nearest one on the screen and in the
+/// scene.
+struct Edges<'a> {
+    seen: Seen<'a>,
+    on_screen: RTree<[f64; 2]>,
+    in_scene: RTree<[f64; 3]>,
+}
+
+impl<'a> Edges<'a> {
+    fn new(seen: Seen<'a>, truth: &GroundTruthPixels) -> Self {
+        let [width, height] = truth.viewport.map(|edge| edge as usize);
+        let is_edge = |pixel: usize| {
+            let (x, y, class) = (pixel % width, pixel / width, truth.classes[pixel]);
+            let neighbours = [
+                (x > 0).then(|| pixel - 1),
+                (x + 1 < width).then(|| pixel + 1),
+                (y > 0).then(|| pixel - width),
+                (y + 1 < height).then(|| pixel + width),
+            ];
+            let mut others = neighbours.into_iter().flatten();
+            class.faces_light()
+                && others.any(|other| {
+                    truth.classes[other].faces_light() && truth.classes[other] != class
+                })
+        };
+        let edges: Vec<usize> = (0..width * height)
+            .filter(|&pixel| is_edge(pixel))
+            .collect();
+        let screen = edges.iter().map(|&pixel| place(seen, pixel).map(f64::from));
+        let scene = edges.iter().filter_map(|&pixel| receiver(seen, pixel));
+        Self {
+            seen,
+            on_screen: RTree::bulk_load(screen.collect()),
+            in_scene: RTree::bulk_load(scene.collect()),
+        }
+    }
+
+    /// The distance of a pixel from the nearest edge, in pixels and in scene units.
+    fn distance(&self, pixel: usize) -> Option<[f64; 2]> {
+        let on_screen = place(self.seen, pixel).map(f64::from);
+        let in_scene = receiver(self.seen, pixel)?;
+        let pixels = self.on_screen.nearest_neighbor(on_screen)?;
+        let world = self.in_scene.nearest_neighbor(in_scene)?;
+        Some([apart(&on_screen, pixels), apart(&in_scene, world)])
+    }
+}
+
+fn place(seen: Seen, pixel: usize) -> [u32; 2] {
+    let (pixel, width) = (pixel as u32, seen.camera.viewport[0]);
+    [pixel % width, pixel / width]
+}
+
+/// The place in the scene that a pixel shows, where it has one.
+fn receiver(seen: Seen, pixel: usize) -> Option<[f64; 3]> {
+    let primitive = seen.primitives[pixel];
+    let is_known = (primitive as usize) < seen.mesh.triangles.len();
+    let hit = is_known.then(|| hit(seen.mesh, primitive, seen.camera, place(seen, pixel)));
+    Some(hit??.to_array())
+}
+
+fn apart<const N: usize>(one: &[f64; N], other: &[f64; N]) -> f64 {
+    let squares = one
+        .iter()
+        .zip(other)
+        .map(|(one, other)| (one - other).powi(2));
+    squares.sum::<f64>().sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Class::{self, FacingAway, Lit, Shadow};
+    use glam::{DVec3, Vec3};
+    use skiagraph_scene::{Camera, Mesh, View};
+
+    /// A wall of two triangles across a camera whose pixels are one unit wide on it.
+    fn wall(viewport: [u32; 2]) -> (Mesh, Camera) {
+        let corners = [[-99.0, -99.0], [99.0, -99.0], [99.0, 99.0], [-99.0, 99.0]];
+        let mesh = Mesh {
+            positions: corners.map(|[x, y]| Vec3::new(x, y, 0.0)).to_vec(),
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+            ..Mesh::default()
+        };
+        let half_height = f64::from(viewport[1]) * 0.5;
+        let view = View {
+            name: "main".into(),
+            eye: DVec3::new(0.25, 0.25, half_height),
+            direction: DVec3::NEG_Z,
+            up: DVec3::Y,
+            fov_y_degrees: 90.0,
+            near: 0.1,
+            far: 1000.0,
+            light: None,
+        };
+        (mesh, view.camera(viewport))
+    }
+
+    fn measured(classes: &[Class], width: u32, shown: &[u8], in_band: &[usize]) -> EdgeDistances {
+        let viewport = [width, classes.len() as u32 / width];
+        let (mesh, camera) = wall(viewport);
+        let mut truth = GroundTruthPixels {
+            viewport,
+            classes: classes.to_vec(),
+            indeterminate: vec![false; classes.len()],
+            n_dot_l: vec![1.0; classes.len()],
+            base_colors: Vec::new(),
+        };
+        in_band
+            .iter()
+            .for_each(|&pixel| truth.indeterminate[pixel] = true);
+        // Either triangle lies in the same plane.
+        let seen = Seen {
+            mesh: &mesh,
+            camera: &camera,
+            primitives: &vec![0; classes.len()],
+        };
+        let status = truth.status();
+        EdgeDistances::measured(seen, shown, &status, &truth).unwrap()
+    }
+
+    #[test]
+    fn distances_are_those_counted_by_hand() {
+        // The edge lies between the third pixel and the fourth.
+        let classes = [Lit, Lit, Lit, Shadow, Shadow, Shadow, Shadow];
+        let of = measured(&classes, 7, &[0, 1, 0, 0, 0, 0, 1], &[]);
+        // Wrongly in shadow: two pixels from the third one, and the third one itself.
+        let shadow = Distances {
+            count: 2,
+            near: 2,
+            mean_pixels: 1.0,
+            max_pixels: 2.0,
+            ..of.shadow
+        };
+        assert_eq!(of.shadow, shadow);
+        assert!((of.shadow.mean_world - 1.0).abs() < 1e-9, "{of:?}");
+        assert!((of.shadow.max_world - 2.0).abs() < 1e-9);
+        // Wrongly lit: three pixels from the fourth.
+        assert_eq!((of.lit.count, of.lit.near, of.lit.max_pixels), (1, 0, 3.0));
+        assert!((of.lit.mean_world - 3.0).abs() < 1e-9);
+        assert_eq!(of.all().count, 3);
+        assert!((of.all().mean_pixels - 5.0 / 3.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn distances_go_across_the_picture_and_leave_out_the_band() {
+        // Two rows and an edge at the upper right corner.
+        let classes = [Lit, Lit, Lit, Shadow, Lit, Lit, Lit, Lit];
+        let of = measured(&classes, 4, &[1, 1, 1, 0, 0, 0, 1, 1], &[5]);
+        // From (0, 1) to the edge pixel (2, 0).
+        assert_eq!(of.shadow.count, 1);
+        assert!((of.shadow.max_pixels - 5f64.sqrt()).abs() < 1e-12);
+        assert_eq!(of.lit, Distances::default());
+    }
+
+    #[test]
+    fn a_picture_without_edges_has_no_distances() {
+        // Facing away is no shadow edge.
+        let of = measured(&[FacingAway, Lit, Lit], 3, &[0, 0, 1], &[]);
+        let without = Distances {
+            without: 1,
+            ..Distances::default()
+        };
+        assert_eq!(of.shadow, without);
+        assert_eq!(
+            measured(&[Lit, Shadow], 2, &[1, 0], &[]),
+            EdgeDistances::default()
+        );
+    }
+}

@@ -59,7 +59,7 @@ pub fn flip(reference: &Image, test: &Image) -> Result<f64, Error> {
     if reference.rgb.is_empty() {
         return Ok(0.0);
     }
-    let [reference, test] = [reference, test].map(Seen::new);
+    let (reference, test) = rayon::join(|| Seen::new(reference), || Seen::new(test));
     // That of green and blue.
     let greatest = colour_difference(hunt_lab([0.0, 1.0, 0.0]), hunt_lab([0.0, 0.0, 1.0]));
     let each = (0..reference.colours.len()).into_par_iter().map(|pixel| {
@@ -98,8 +98,10 @@ impl Seen {
             .collect();
         let channel =
             |index: usize| -> Vec<f64> { opponent.iter().map(|colour| colour[index]).collect() };
-        let filtered: [Vec<f64>; 3] =
-            std::array::from_fn(|index| filtered(&channel(index), size, SENSITIVITY[index]));
+        let filtered: Vec<Vec<f64>> = (0..3)
+            .into_par_iter()
+            .map(|index| filtered(&channel(index), size, SENSITIVITY[index]))
+            .collect();
         let colours = (0..opponent.len())
             .map(|pixel| hunt(&std::array::from_fn(|index| filtered[index][pixel])))
             .collect();
@@ -144,14 +146,15 @@ fn features(luminance: &[f64], size: [usize; 2]) -> [Vec<f64>; 2] {
     balance(&mut smooth);
     let first = |at: f64| -at * bell(at);
     let second = |at: f64| (at * at / (deviation * deviation) - 1.0) * bell(at);
-    let strength = |derivative: &dyn Fn(f64) -> f64| {
+    let strength = |derivative: &(dyn Fn(f64) -> f64 + Sync)| {
         let mut derivative = kernel(radius, derivative);
         balance(&mut derivative);
         let across = convolved(luminance, size, &derivative, &smooth);
         let down = convolved(luminance, size, &smooth, &derivative);
         across.iter().zip(down).map(|(x, y)| x.hypot(y)).collect()
     };
-    [strength(&first), strength(&second)]
+    let (edges, points) = rayon::join(|| strength(&first), || strength(&second));
+    [edges, points]
 }
 
 fn kernel(radius: i32, value: impl Fn(f64) -> f64) -> Vec<f64> {

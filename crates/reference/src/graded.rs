@@ -17,12 +17,12 @@ use std::ops::RangeInclusive;
 /// as a texture of 0 to 1 would hold them: infinities and values outside are clamped. NaN counts as
 /// 1 off.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Graded {
     /// Root of the mean squared error over PFL.
     pub rmse: f64,
     /// The same over those pixels of PFL that are not indeterminate: of the others f32 may take
     /// another receiver than the reference does.
-    #[serde(default)]
     pub rmse_outside_band: f64,
     /// Mean of the errors' sizes over PFL.
     pub mean_absolute_error: f64,
@@ -33,7 +33,6 @@ pub struct Graded {
     /// PFL pixels that hold no share at all.
     pub invalid: Invalid,
     /// The errors apart by the light that the reference shows.
-    #[serde(default)]
     pub soft: SoftErrors,
 }
 

@@ -342,7 +342,9 @@ mod tests {
         let (lone, in_band) = (32 * width + 100, 32 * width + 108);
         truth.indeterminate[in_band] = true;
         let mut visibility = vec![1u8; width * height];
-        [0, lone, in_band].map(|pixel| visibility[pixel] = 0);
+        for pixel in [0, lone, in_band] {
+            visibility[pixel] = 0;
+        }
         let status = vec![status::CERTAIN_LIGHT as u8; width * height];
         let found = colours(Image::error(&visibility, &status, &truth).unwrap());
         let count = |of: Colour| found.iter().filter(|colour| **colour == of).count();

@@ -5,19 +5,6 @@ use skiagraph_compare::records::results::{AreaReference, Run};
 use skiagraph_compare::wording::thousands;
 use skiagraph_reference::Graded;
 
-/// The runs of a view and viewport as tables have them, each table's with a title where there are
-/// several: hard answers are held against a hard light by counts, all else by grades.
-pub fn by_answer(runs: &[Run]) -> Vec<(Option<&'static str>, Vec<&Run>)> {
-    let (hard, graded): (Vec<&Run>, Vec<&Run>) = runs.iter().partition(|run| run.is_hard());
-    if hard.is_empty() || graded.is_empty() {
-        return vec![(None, runs.iter().collect())];
-    }
-    vec![
-        (Some("Hard answers against the hard reference"), hard),
-        (Some("Graded answers against the hard reference"), graded),
-    ]
-}
-
 /// How the reference of a light with extent was made.
 pub fn area_reference(area: &AreaReference, band: u64) -> String {
     format!(
@@ -37,10 +24,12 @@ pub fn area_reference(area: &AreaReference, band: u64) -> String {
 pub fn graded(runs: &[Run]) -> Vec<String> {
     let mut notes: Vec<String> = ranks(runs).into_iter().collect();
     notes.extend(runs.iter().filter_map(no_shares));
-    if runs.iter().any(|run| errors(run).is_some()) {
+    if runs.iter().any(|run| !run.is_hard()) {
         notes.push(
-            "errors are over PFL; error pictures of grades: blue too light, red too dark, full \
-             colour where off by 1/4 and more, magenta NaN"
+            "RMSE is over PFL; *light in umbra* is the mean share that pixels show too much which \
+             see less than a tenth of the light, *dark in light* that which pixels lack that see \
+             more than nine tenths, *penumbra* is in between; error pictures of grades: blue too \
+             light, red too dark, full colour where off by 1/4 and more, magenta NaN"
                 .into(),
         );
     }
@@ -48,7 +37,7 @@ pub fn graded(runs: &[Run]) -> Vec<String> {
 }
 
 fn errors(run: &Run) -> Option<Graded> {
-    run.measured.as_ref()?.graded
+    Some(run.measured.as_ref()?.graded)
 }
 
 /// Warns of a method whose visibility is not a share of light.
@@ -97,28 +86,11 @@ mod tests {
         let mut run = sample().runs.remove(0);
         let measured = run.measured.as_mut().unwrap();
         measured.answer = answer;
-        measured.graded = Some(Graded {
+        measured.graded = Graded {
             rmse,
             ..Graded::default()
-        });
-        run
-    }
-
-    #[test]
-    fn a_table_for_each_kind_of_answer_and_one_under_an_area() {
-        let hard = || sample().runs.remove(0);
-        let titles = |runs: &[Run]| -> Vec<(bool, usize)> {
-            let tables = by_answer(runs).into_iter();
-            tables
-                .map(|(title, runs)| (title.is_some(), runs.len()))
-                .collect()
         };
-        assert_eq!(titles(&[hard(), hard()]), [(false, 2)]);
-        let mixed = [hard(), run(0.1, Answer::Graded), hard()];
-        assert_eq!(titles(&mixed), [(true, 2), (true, 1)]);
-        let mut area = [run(0.2, Answer::Hard), run(0.1, Answer::Graded)];
-        area.iter_mut().for_each(|run| run.area = Some(reference()));
-        assert_eq!(titles(&area), [(false, 2)]);
+        run
     }
 
     fn reference() -> AreaReference {
@@ -133,9 +105,10 @@ mod tests {
     #[test]
     fn ranks_say_what_the_reference_cannot_tell() {
         let mut runs = [run(0.2, Answer::Hard), run(0.01, Answer::Graded)];
-        assert_eq!(
-            graded(&runs).len(),
-            1,
+        assert!(graded(&runs[..1]).is_empty());
+        let notes = graded(&runs);
+        assert!(
+            notes[0].starts_with("RMSE is over PFL"),
             "no rank under a light without extent"
         );
         runs.iter_mut().for_each(|run| run.area = Some(reference()));
@@ -147,7 +120,7 @@ mod tests {
             outside: 1_000,
         };
         let measured = runs[1].measured.as_mut().unwrap();
-        measured.graded.as_mut().unwrap().invalid = invalid;
+        measured.graded.invalid = invalid;
         let expected = [
             "by RMSE: soft 1024 0.01000, nsm 1024 0.20000; the reference's own error is more than \
              a tenth of that of soft 1024",

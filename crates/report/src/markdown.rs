@@ -1,7 +1,7 @@
 //! Results as a document: a header, then for every view and viewport one table of errors and of the
 //! times of steps.
 
-use crate::graded::{area_reference, by_answer};
+use crate::graded::area_reference;
 use crate::notes::{band_warning, of_runs, surface_warning};
 use skiagraph_compare::lists::{entry, place, unique};
 use skiagraph_compare::records::columns::{self, Column, STEPS};
@@ -81,49 +81,7 @@ pub fn viewport(results: &Results, runs: &[Run]) -> String {
     };
     let mut footnotes = Footnotes::default();
     let mut text = format!("\n{}\n", pixels(first, &mut footnotes));
-    for (title, runs) in by_answer(runs) {
-        let is_hard = runs.iter().all(|run| run.is_hard());
-        let are_paths = columns::are_paths(runs.iter().copied());
-        let measured = runs.into_iter();
-        let measured: Vec<(&Run, &Measured)> = measured
-            .filter_map(|run| Some((run, run.measured.as_ref()?)))
-            .collect();
-        if measured.is_empty() {
-            continue;
-        }
-        if let Some(title) = title {
-            text += &format!("\n{title}\n");
-        }
-        let is_published = |quantity: &str| {
-            let mut figures = measured.iter().flat_map(|(run, _)| &run.published);
-            figures.any(|figure| figure.quantity == quantity)
-        };
-        let columns = columns::document(is_hard, are_paths, is_published);
-        let steps = steps(&measured);
-        let heads = of_table(
-            &columns,
-            &steps,
-            |column| column.head.to_owned(),
-            columns::step_head,
-        );
-        let rows: Vec<Vec<String>> = measured
-            .iter()
-            .map(|(run, measured)| {
-                let figure = |column: &Column| {
-                    (column.cell(results, run, share), column.quantity.to_owned())
-                };
-                let time = |step: &str| {
-                    let ours = measured.step_ms(step).map_or_else(|| "–".to_owned(), ms);
-                    (ours, format!("ms.{step}"))
-                };
-                let cells = of_table(&columns, &steps, figure, time).into_iter();
-                cells
-                    .map(|(ours, quantity)| footnotes.with_published(ours, run, &quantity))
-                    .collect()
-            })
-            .collect();
-        text += &format!("\n{}", Table::new(heads, 1, rows).markdown());
-    }
+    text += &table(results, runs, &mut footnotes);
     let mut notes: Vec<String> = band_warning(first).into_iter().collect();
     notes.extend(surface_warning(first));
     notes.extend(of_runs(results, runs));
@@ -133,6 +91,40 @@ pub fn viewport(results: &Results, runs: &[Run]) -> String {
         text += &format!("\n{}", list(&notes));
     }
     text
+}
+
+/// The table of those runs that measured something.
+fn table<'a>(results: &Results, runs: &'a [Run], footnotes: &mut Footnotes<'a>) -> String {
+    let measured = runs.iter();
+    let measured: Vec<(&Run, &Measured)> = measured
+        .filter_map(|run| Some((run, run.measured.as_ref()?)))
+        .collect();
+    if measured.is_empty() {
+        return String::new();
+    }
+    let is_published = |quantity: &str| {
+        let mut figures = measured.iter().flat_map(|(run, _)| &run.published);
+        figures.any(|figure| figure.quantity == quantity)
+    };
+    let of_runs: Vec<&Run> = measured.iter().map(|(run, _)| *run).collect();
+    let columns = columns::document(&of_runs, is_published);
+    let steps = steps(&measured);
+    let head = |column: &Column| column.head.to_owned();
+    let heads = of_table(&columns, &steps, head, columns::step_head);
+    let row = |(run, measured): &(&'a Run, &'a Measured)| {
+        let figure =
+            |column: &Column| (column.cell(results, run, share), column.quantity.to_owned());
+        let time = |step: &str| {
+            let ours = measured.step_ms(step).map_or_else(|| "–".to_owned(), ms);
+            (ours, format!("ms.{step}"))
+        };
+        let cells = of_table(&columns, &steps, figure, time).into_iter();
+        cells
+            .map(|(ours, quantity)| footnotes.with_published(ours, run, &quantity))
+            .collect()
+    };
+    let rows: Vec<Vec<String>> = measured.iter().map(row).collect();
+    format!("\n{}", Table::new(heads, 1, rows).markdown())
 }
 
 fn pixels<'a>(run: &'a Run, footnotes: &mut Footnotes<'a>) -> String {

@@ -120,14 +120,14 @@ pub fn remembering(run: &Run) -> Option<String> {
             format!("{name} remembers: {state}, and is judged then")
         }
         Some(cycle) => {
-            let mean = match cycle.rmse_mean {
-                Some(rmse) => format!("RMSE in the mean {rmse:.5}"),
-                None => format!("wrong pixels in the mean {:.1}", cycle.wrong_mean),
-            };
             format!(
-                "{name} remembers: {state}; the counts are those of the worst of {} pictures then, \
-                 {mean}",
-                cycle.pictures
+                "{name} remembers: {state}; it is ranked by the mean of {} pictures then, {:.1} \
+                 wrong pixels and RMSE {:.5}; the worst has {} and {:.5}",
+                cycle.pictures,
+                cycle.wrong_mean,
+                cycle.rmse_mean,
+                thousands(measured.wrong.total),
+                measured.graded.rmse
             )
         }
     })
@@ -213,30 +213,30 @@ mod tests {
     fn what_was_judged_of_a_method_that_remembers_is_said() {
         let mut run = sample().runs.remove(0);
         assert_eq!(remembering(&run), None);
-        let mut said = |period, judged: Option<(u32, Option<f64>)>| {
-            let cycle = |(pictures, rmse_mean)| Cycle {
+        let mut said = |period, pictures: Option<u32>| {
+            let cycle = |pictures| Cycle {
                 pictures,
                 wrong_mean: 12.25,
-                rmse_mean,
+                rmse_mean: 0.5,
+                ..Cycle::default()
             };
             run.measured.as_mut().unwrap().steady = Some(Steady {
                 frames: 256,
                 period,
-                judged: judged.map(cycle),
+                judged: pictures.map(cycle),
             });
             let said = remembering(&run).unwrap();
             said.split_once(": ").unwrap().1.to_owned()
         };
         assert_eq!(
-            said(Some(1), Some((1, None))),
+            said(Some(1), Some(1)),
             "its picture stays the same after 256 frames, and is judged then"
         );
         assert_eq!(
-            said(None, Some((16, None))),
-            "its picture does not repeat within 256 frames; the counts are those of the worst of \
-             16 pictures then, wrong pixels in the mean 12.2"
+            said(None, Some(16)),
+            "its picture does not repeat within 256 frames; it is ranked by the mean of 16 \
+             pictures then, 12.2 wrong pixels and RMSE 0.50000; the worst has 503 and 0.07100"
         );
-        assert!(said(Some(3), Some((3, Some(0.5)))).ends_with("RMSE in the mean 0.50000"));
         assert_eq!(
             said(Some(3), None),
             "its picture repeats every 3 frames after 256 frames"

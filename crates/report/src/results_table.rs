@@ -1,6 +1,6 @@
 //! Results as tables for a terminal: speed beside error, then the time of each pass.
 
-use crate::graded::{area_reference, by_answer};
+use crate::graded::area_reference;
 use crate::notes::{band_warning, of_runs, surface_warning};
 use crate::table::terminal;
 use skiagraph_compare::records::columns::{self, Column, are_paths};
@@ -17,11 +17,8 @@ pub fn group(results: &Results, runs: &[Run]) -> String {
         return String::new();
     };
     let mut text = heading(results, first, runs);
-    let tables = by_answer(runs).into_iter().map(|(title, runs)| {
-        let title = title.map_or(String::new(), |title| format!("{title}\n"));
-        format!("{title}{}\n", comparison(results, &runs))
-    });
-    text += &tables.collect::<Vec<_>>().join("\n");
+    text += &comparison(results, runs);
+    text.push('\n');
     if runs.iter().any(|run| run.measured.is_some()) {
         text += &format!(
             "\nEach pass, ms: least, median and 95th percentile of {}\n",
@@ -92,9 +89,8 @@ pub fn timed_frames<'a>(results: &Results, runs: impl IntoIterator<Item = &'a Ru
     }
 }
 
-fn comparison(results: &Results, runs: &[&Run]) -> String {
-    let is_hard = runs.iter().all(|run| run.is_hard());
-    let columns = columns::terminal(is_hard, runs);
+fn comparison(results: &Results, runs: &[Run]) -> String {
+    let columns = columns::terminal(&runs.iter().collect::<Vec<_>>());
     let first = columns.iter().position(Column::is_measured);
     let row = |run: &Run| {
         let cells = columns
@@ -107,7 +103,7 @@ fn comparison(results: &Results, runs: &[&Run]) -> String {
         row
     };
     let heads = columns.iter().map(|column| column.head);
-    terminal(&Table::new(heads, 1, runs.iter().copied().map(row)))
+    terminal(&Table::new(heads, 1, runs.iter().map(row)))
 }
 
 fn passes(runs: &[Run]) -> String {

@@ -5,6 +5,7 @@ use skiagraph_compare::lists::entry;
 use skiagraph_compare::records::results::{Measured, Part, Run, step};
 use skiagraph_compare::records::sequence::SequenceFrame;
 use skiagraph_compare::records::statistics::FrameTimes;
+use skiagraph_compare::records::steady::Cycle;
 use skiagraph_reference::Shimmer;
 
 /// One method in one setting, over the views that it was measured on.
@@ -31,6 +32,8 @@ pub struct Wrong {
     pub in_band: u64,
     /// Number of pixels that face the light, of which these are.
     pub facing_light: u64,
+    /// Number of these in the band: which answer is right there hangs on rounding.
+    pub band: u64,
 }
 
 impl Wrong {
@@ -64,15 +67,49 @@ impl<'a> Row<'a> {
         self.runs.len()
     }
 
-    /// Wrong pixels, of hard answers.
+    /// Pixels that are wrong if shares are cut at one half; of a method that remembers the mean of
+    /// its steady state, rounded up.
     pub fn wrong(&self) -> Wrong {
-        self.runs
-            .iter()
-            .fold(Wrong::default(), |sum, (run, of)| Wrong {
-                outside_band: sum.outside_band + of.wrong_outside_band(),
-                in_band: sum.in_band + of.wrong.in_band,
+        self.runs.iter().fold(Wrong::default(), |sum, (run, of)| {
+            let (outside, in_band) = match cycle(of) {
+                Some(cycle) => {
+                    let outside = cycle.wrong_outside_band_mean;
+                    (
+                        outside.ceil() as u64,
+                        (cycle.wrong_mean - outside).ceil() as u64,
+                    )
+                }
+                None => (of.wrong_outside_band(), of.wrong.in_band),
+            };
+            Wrong {
+                outside_band: sum.outside_band + outside,
+                in_band: sum.in_band + in_band,
                 facing_light: sum.facing_light + run.pixels.facing_light,
-            })
+                band: sum.band + run.band,
+            }
+        })
+    }
+
+    /// True if no answer outside the band differs from the reference's, in any share.
+    pub fn is_exact(&self) -> bool {
+        let is_exact = |(_, of): &(&Run, &Measured)| {
+            of.wrong_outside_band() == 0 && of.graded.rmse_outside_band == 0.0
+        };
+        self.runs.iter().all(is_exact)
+    }
+
+    /// Wrong pixels of the worst picture as a share of those facing the light, of a method that
+    /// remembers and whose pictures differ in its steady state.
+    pub fn worst_of_cycle(&self) -> Option<Part> {
+        let pictures = |of: &Measured| cycle(of).map_or(1, |cycle| cycle.pictures);
+        let worst = self.runs.iter().filter(|(_, of)| pictures(of) > 1);
+        let part = |(run, of): &(&Run, &Measured)| Part {
+            count: of.wrong_outside_band(),
+            of: run.pixels.facing_light,
+        };
+        worst
+            .map(part)
+            .max_by(|one, other| (one.count * other.of.max(1)).cmp(&(other.count * one.of.max(1))))
     }
 
     /// The size of its map, where it has one.
@@ -92,14 +129,21 @@ impl<'a> Row<'a> {
         steps
     }
 
-    /// Root mean square error of graded answers, over all views.
+    /// Root mean square error of the shares of light, over all views; of a method that remembers in
+    /// the mean of its steady state.
     pub fn rmse(&self) -> Option<f64> {
-        let squares = self
-            .runs
-            .iter()
-            .map(|(_, of)| Some(of.graded?.rmse.powi(2)));
-        let sum: f64 = squares.sum::<Option<f64>>()?;
-        (self.views() > 0).then(|| (sum / self.views() as f64).sqrt())
+        let rmse = |of: &Measured| cycle(of).map_or(of.graded.rmse, |cycle| cycle.rmse_mean);
+        self.mean(|_, of| Some(rmse(of).powi(2))).map(f64::sqrt)
+    }
+
+    /// FLIP of the shaded pictures, the mean of the views.
+    pub fn flip(&self) -> Option<f64> {
+        self.mean(|_, of| Some(cycle(of).map_or(of.graded.flip, |cycle| cycle.flip_mean)))
+    }
+
+    /// True if the light has an extent: then shares are what is judged.
+    pub fn is_soft(&self) -> bool {
+        self.runs.iter().any(|(run, _)| run.area.is_some())
     }
 
     /// Milliseconds of a frame in which light or meshes have moved: every pass runs. The mean of
@@ -160,6 +204,11 @@ impl<'a> Row<'a> {
         let sum: f64 = values.sum::<Option<f64>>()?;
         (self.views() > 0).then(|| sum / self.views() as f64)
     }
+}
+
+/// The steady state of a method that remembers, as it was judged.
+fn cycle(of: &Measured) -> Option<Cycle> {
+    of.steady.as_ref()?.judged
 }
 
 /// Counts of a path are those of all its frames.

@@ -22,15 +22,7 @@ pub struct Summary<'a> {
     /// Its size in pixels.
     pub viewport: [u32; 2],
     runs: Vec<&'a Run>,
-    /// Rows of hard answers to hard light and of all others, each by itself.
-    pub groups: Vec<Group<'a>>,
-}
-
-/// Rows that are judged alike.
-pub struct Group<'a> {
-    /// By wrong pixels, not by how far shares of light are off.
-    pub is_hard: bool,
-    /// The fastest first.
+    /// A row per method and setting, the fastest first.
     pub rows: Vec<Row<'a>>,
 }
 
@@ -44,6 +36,9 @@ pub fn summaries(results: &Results) -> Vec<Summary<'_>> {
 /// Beginning of lines that warn; the page makes them stand out by it.
 const WARNING: &str = "warning: ";
 
+/// Head of the column of wrong pixels outside the band, of shares cut at one half.
+pub const WRONG: &str = "wrong outside band";
+
 /// Cell of a row that could not run.
 pub const NOT_THERE: &str = "n/a";
 
@@ -51,21 +46,22 @@ impl<'a> Summary<'a> {
     fn new(results: &'a Results, viewport: [u32; 2]) -> Self {
         let runs = results.runs.iter();
         let runs: Vec<&Run> = runs.filter(|run| run.viewport == viewport).collect();
-        let (hard, graded): (Vec<&Run>, Vec<&Run>) = runs.iter().partition(|run| run.is_hard());
-        let groups = [(true, hard), (false, graded)].into_iter();
-        let group = |(is_hard, runs): (bool, Vec<&'a Run>)| Group {
-            is_hard,
-            rows: rows(runs, viewport),
-        };
         Self {
             results,
             viewport,
+            rows: rows(runs.iter().copied(), viewport),
             runs,
-            groups: groups
-                .filter(|(_, runs)| !runs.is_empty())
-                .map(group)
-                .collect(),
         }
+    }
+
+    /// Which of its rows to take.
+    pub fn verdict(&self) -> Verdict {
+        verdict(&self.rows)
+    }
+
+    /// True if the light has an extent, so that shares are what is judged.
+    pub fn is_soft(&self) -> bool {
+        self.rows.iter().any(Row::is_soft)
     }
 
     fn views(&self) -> BTreeSet<&str> {
@@ -95,14 +91,8 @@ impl<'a> Summary<'a> {
             size(self.viewport)
         )];
         lines.extend(self.conditions());
-        for group in &self.groups {
-            if self.groups.len() > 1 {
-                lines.push(String::new());
-                lines.push(group.title().into());
-            }
-            lines.push(terminal(&self.table(group)));
-            lines.extend(group.verdict().sentences);
-        }
+        lines.push(terminal(&self.table()));
+        lines.extend(self.verdict().sentences);
         lines.extend(self.notes());
         lines.join("\n") + "\n"
     }
@@ -110,12 +100,10 @@ impl<'a> Summary<'a> {
     /// For a document.
     pub fn markdown(&self) -> String {
         let mut text = format!("\n## In short: {}, {}\n", self.what(), size(self.viewport));
-        for group in &self.groups {
-            text += &format!("\n{}", self.table(group).markdown());
-            let sentences = group.verdict().sentences;
-            if !sentences.is_empty() {
-                text += &format!("\n{}\n", sentences.join("\n"));
-            }
+        text += &format!("\n{}", self.table().markdown());
+        let sentences = self.verdict().sentences;
+        if !sentences.is_empty() {
+            text += &format!("\n{}\n", sentences.join("\n"));
         }
         text
     }
@@ -130,7 +118,7 @@ impl<'a> Summary<'a> {
             1 => "",
             _ => ", means of the views",
         };
-        let by_wall = self.groups.iter().any(|group| by_wall(&group.rows));
+        let by_wall = by_wall(&self.rows);
         let clock = if by_wall { "wall clock" } else { "GPU" };
         let mut lines = vec![
             self.results.adapter.to_string(),
@@ -157,21 +145,16 @@ impl<'a> Summary<'a> {
     }
 
     /// A row per method and setting, the fastest exact one with a star.
-    pub fn table(&self, group: &Group) -> Table {
+    pub fn table(&self) -> Table {
         let are_paths = are_paths(self.runs.iter().copied());
-        let by_wall = by_wall(&group.rows);
-        let mut heads = vec!["method"];
-        heads.extend(if group.is_hard {
-            &["wrong outside band", "%", "in band"][..]
-        } else {
-            &["RMSE"][..]
-        });
+        let by_wall = by_wall(&self.rows);
+        let mut heads = vec!["method", WRONG, "%", "in band", "RMSE", "FLIP"];
         if are_paths {
             heads.extend(["worst frame", "shimmer"]);
         }
         heads.extend(["frame ms", "map kept ms", "rays", "memory"]);
-        let best = group.verdict().fastest_exact;
-        let views = self.views().len();
+        let best = self.verdict().fastest_exact;
+        let (views, is_soft) = (self.views().len(), self.is_soft());
         let row = |(index, row): (usize, &Row)| {
             let mark = if best == Some(index) { " *" } else { "" };
             let few = match row.views() {
@@ -185,21 +168,19 @@ impl<'a> Summary<'a> {
                 return cells;
             }
             let wrong = row.wrong();
-            if group.is_hard {
-                cells.extend([
-                    thousands(wrong.outside_band),
-                    percent(wrong.outside_band, wrong.facing_light),
-                    thousands(wrong.in_band),
-                ])
-            } else {
-                cells.push(or_dash(row.rmse(), |rmse| format!("{rmse:.5}")))
-            }
+            cells.extend([
+                thousands(wrong.outside_band),
+                percent(wrong.outside_band, wrong.facing_light),
+                thousands(wrong.in_band),
+                or_dash(row.rmse(), |rmse| format!("{rmse:.4}")),
+                or_dash(row.flip(), |flip| format!("{flip:.4}")),
+            ]);
             if are_paths {
                 cells.push(or_dash(row.worst_frame(), |frame| {
-                    if group.is_hard {
-                        percent(frame.wrong, frame.facing_light)
+                    if is_soft {
+                        format!("{:.4}", frame.error())
                     } else {
-                        format!("{:.5}", frame.error())
+                        percent(frame.wrong, frame.facing_light)
                     }
                 }));
                 let shimmer = row.shimmer();
@@ -211,24 +192,19 @@ impl<'a> Summary<'a> {
             cells.push(bytes(row.bytes()));
             cells
         };
-        let rows: Vec<_> = group.rows.iter().enumerate().map(row).collect();
+        let rows: Vec<_> = self.rows.iter().enumerate().map(row).collect();
         Table::new(heads, 1, rows)
     }
 
     /// Lists all further remarks, a line each.
     pub fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
-        if self
-            .groups
-            .iter()
-            .any(|group| group.verdict().fastest_exact.is_some())
-        {
+        if self.verdict().fastest_exact.is_some() {
             notes.push("* the fastest with no wrong pixel outside the band".into());
         }
         notes.extend(self.open_parts());
         notes.extend(self.wrong_surfaces());
-        let all = self.groups.iter().flat_map(|group| &group.rows);
-        notes.extend(all.clone().filter_map(|row| {
+        notes.extend(self.rows.iter().filter_map(|row| {
             let why = row.unavailable?;
             Some(format!("{} is unavailable: {why}", row.label))
         }));
@@ -325,22 +301,6 @@ impl<'a> Summary<'a> {
         }
         let line = |(label, sum): (String, _)| format!("{label}: {}", blocked_by(&[sum]));
         sums.into_iter().map(line).collect()
-    }
-}
-
-impl Group<'_> {
-    /// Title: what is judged against what.
-    pub fn title(&self) -> &'static str {
-        if self.is_hard {
-            "Hard answers against the hard reference"
-        } else {
-            "Graded answers against the hard reference"
-        }
-    }
-
-    /// Which of its rows to take.
-    pub fn verdict(&self) -> Verdict {
-        verdict(&self.rows)
     }
 }
 

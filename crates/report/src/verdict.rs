@@ -6,10 +6,15 @@ use skiagraph_compare::wording::{ms, percent};
 /// Times that differ by less than this share are level: no adapter's are surer.
 const LEVEL: f64 = 0.03;
 
-/// Verdict of a table of hard answers: which rows are the best, and that in words.
+/// The share of pixels in the band beyond which a verdict holds of the others alone: the right
+/// answer of more than one pixel in a hundred hangs on rounding.
+const MAX_BAND: f64 = 0.01;
+
+/// Verdict of a table: which rows are the best, and that in words.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Verdict {
-    /// Index of the fastest row with 0 wrong pixels outside the band, while light or meshes move.
+    /// Index of the fastest row that is right wherever that can be judged, while light or meshes
+    /// move.
     pub fastest_exact: Option<usize>,
     /// One sentence each.
     pub sentences: Vec<String>,
@@ -26,13 +31,57 @@ pub fn verdict(rows: &[Row]) -> Verdict {
         .filter(|(_, row)| row.views() == most && most > 0)
         .filter_map(|(index, row)| Contender::new(index, row, by_wall))
         .collect();
-    if full.is_empty() {
+    let mut verdict = if full.is_empty() {
         Verdict::default()
-    } else if full.iter().all(|of| of.rmse.is_some()) {
+    } else if full.iter().any(|of| of.is_soft) {
         graded(&full, rows)
     } else {
         hard(&full)
+    };
+    if let Some(condition) = full.iter().find_map(|of| of.condition) {
+        verdict.sentences = conditioned(condition, verdict.sentences, &full);
     }
+    verdict
+}
+
+/// The pixels that a verdict is of, where it is not of nearly all that face the light.
+#[derive(Clone, Copy, Debug)]
+struct Condition {
+    /// Pixels in the band, and all that face the light.
+    band: u64,
+    facing_light: u64,
+}
+
+impl Condition {
+    fn new(wrong: Wrong) -> Option<Self> {
+        let Wrong {
+            band, facing_light, ..
+        } = wrong;
+        let share = band as f64 / facing_light.max(1) as f64;
+        (share > MAX_BAND).then_some(Self { band, facing_light })
+    }
+}
+
+/// The sentences with the pixels that they hold of, and how much methods differ on the others.
+fn conditioned(of: Condition, sentences: Vec<String>, all: &[Contender]) -> Vec<String> {
+    let Condition { band, facing_light } = of;
+    let judged = percent(facing_light.saturating_sub(band), facing_light);
+    let mut said: Vec<String> = sentences
+        .into_iter()
+        .map(|sentence| format!("Of the {judged} of the pixels that can be judged: {sentence}"))
+        .collect();
+    let mut others: Vec<&Contender> = all.iter().collect();
+    others.sort_by_key(|of| of.wrong.in_band);
+    let share = |of: &&Contender| format!("`{}` {}", of.label, percent(of.wrong.in_band, band));
+    let (least, most) = (others.first(), others.last().filter(|_| others.len() > 1));
+    let shares: Vec<String> = least.into_iter().chain(most).map(share).collect();
+    said.push(format!(
+        "On the other {} the right answer hangs on rounding: no method is right or wrong there. \
+         From the reference's choice differ {}.",
+        percent(band, facing_light),
+        shares.join(" (the least) and ") + if shares.len() > 1 { " (the most)" } else { "" }
+    ));
+    said
 }
 
 /// A row, with what decides.
@@ -42,7 +91,12 @@ struct Contender<'a> {
     label: &'a str,
     method: &'a str,
     wrong: Wrong,
-    rmse: Option<f64>,
+    is_exact: bool,
+    rmse: f64,
+    /// True if the light has an extent.
+    is_soft: bool,
+    /// Where much of what it shows cannot be judged.
+    condition: Option<Condition>,
     frame: f64,
     kept: f64,
 }
@@ -50,32 +104,50 @@ struct Contender<'a> {
 impl<'a> Contender<'a> {
     fn new(index: usize, row: &'a Row, by_wall: bool) -> Option<Self> {
         let frame = row.frame_ms(by_wall)?;
-        if row.rmse().is_none() && row.wrong().facing_light == 0 {
+        let wrong = row.wrong();
+        if wrong.facing_light == 0 {
             return None; // Nothing was judged.
         }
         Some(Self {
             index,
             label: &row.label,
             method: &row.method,
-            wrong: row.wrong(),
-            rmse: row.rmse(),
+            wrong,
+            is_exact: row.is_exact(),
+            rmse: row.rmse()?,
+            is_soft: row.is_soft(),
+            condition: Condition::new(wrong),
             frame,
             kept: row.kept_ms(by_wall).unwrap_or(frame),
         })
     }
 
-    fn is_exact(&self) -> bool {
-        self.wrong.outside_band == 0
+    fn error(&self) -> String {
+        if self.is_soft {
+            format!("RMSE {:.4}", self.rmse)
+        } else if self.is_exact {
+            self.right().into()
+        } else {
+            let Wrong {
+                outside_band,
+                band,
+                facing_light,
+                ..
+            } = self.wrong;
+            // Of all, or of those that can be judged.
+            let judged = match self.condition {
+                Some(_) => facing_light.saturating_sub(band),
+                None => facing_light,
+            };
+            format!("{} wrong", percent(outside_band, judged))
+        }
     }
 
-    fn error(&self) -> String {
-        match self.rmse {
-            Some(rmse) => format!("RMSE {rmse:.4}"),
-            None if self.is_exact() => "exact".into(),
-            None => format!(
-                "{} wrong",
-                percent(self.wrong.outside_band, self.wrong.facing_light)
-            ),
+    /// That no pixel is wrong, as far as that can be judged.
+    fn right(&self) -> &'static str {
+        match self.condition {
+            Some(_) => "none wrong",
+            None => "exact",
         }
     }
 
@@ -100,7 +172,7 @@ fn least<'c, 'a>(
 }
 
 fn hard(all: &[Contender]) -> Verdict {
-    let exact: Vec<Contender> = all.iter().filter(|of| of.is_exact()).cloned().collect();
+    let exact: Vec<Contender> = all.iter().filter(|of| of.is_exact).cloned().collect();
     let Some(best) = least(&exact, TIMES[0].1) else {
         return Verdict {
             fastest_exact: None,
@@ -143,8 +215,13 @@ fn sentence(
         None => String::new(),
     };
     text += &format!(
-        "{}: exact here, {} ms",
+        "{}: {}, {} ms",
         names.join(", level with "),
+        if best.condition.is_some() {
+            best.right()
+        } else {
+            "exact here"
+        },
         ms(time(best))
     );
     if when.is_none() && best.kept < best.frame * (1.0 - LEVEL) {
@@ -160,10 +237,17 @@ fn sentence(
     let next = exact.iter().filter(other_method);
     if let Some(of) = least(next, time) {
         let times = ratio(time(best) / time(of));
-        text += &format!(", {times} x `{}`, the next exact method", of.label);
+        let next = match best.condition {
+            Some(_) => "the next one with none wrong",
+            None => "the next exact method",
+        };
+        text += &format!(", {times} x `{}`, {next}", of.label);
     }
     if all_exact && all.len() > 1 {
-        text += "; all are exact here";
+        text += match best.condition {
+            Some(_) => "; none of the methods is wrong there",
+            None => "; all are exact here",
+        };
     }
     text + "."
 }
@@ -177,16 +261,20 @@ fn none_exact(all: &[Contender]) -> Vec<String> {
         return Vec::new();
     };
     let (wrong, quick) = (right.figures(), fastest.figures());
+    let none = match right.condition {
+        Some(_) => "Each method is wrong on some",
+        None => "None is exact here",
+    };
     vec![if right.index == fastest.index {
-        format!("None is exact here; the least wrong and the fastest is {wrong}.")
+        format!("{none}; the least wrong and the fastest is {wrong}.")
     } else {
-        format!("None is exact here; the least wrong is {wrong}, the fastest {quick}.")
+        format!("{none}; the least wrong is {wrong}, the fastest {quick}.")
     }]
 }
 
 /// Judges errors of shares: the least one, and the fastest.
 fn graded(all: &[Contender], rows: &[Row]) -> Verdict {
-    let rmse = |of: &Contender| of.rmse.unwrap_or(f64::INFINITY);
+    let rmse = |of: &Contender| of.rmse;
     let (Some(right), Some(fastest)) = (least(all, rmse), least(all, TIMES[0].1)) else {
         return Verdict::default();
     };
@@ -245,11 +333,13 @@ mod tests {
 
     fn graded(method: &str, rmse: f64, frame: f64) -> Run {
         let mut run = run(method, 0, frame, frame);
-        let measured = run.measured.as_mut().unwrap();
-        measured.graded = Some(skiagraph_reference::Graded {
-            rmse,
-            ..Default::default()
+        run.area = Some(skiagraph_compare::records::results::AreaReference {
+            samples: 512,
+            standard_error_rms: 0.0005,
+            standard_error_worst: 0.05,
+            penumbra: 900,
         });
+        run.measured.as_mut().unwrap().graded.rmse = rmse;
         run
     }
 
@@ -332,6 +422,53 @@ mod tests {
         let mut dark = run("rt", 0, 10.0, 10.0);
         dark.pixels.facing_light = 0;
         assert_eq!(outcome(&[dark]), (None, Vec::new()), "nothing to judge");
+    }
+
+    #[test]
+    fn pixels_that_cannot_be_judged_never_vanish() {
+        let doubtful = |method, wrong, in_band, ms| {
+            let mut run = run(method, wrong, ms, ms);
+            run.band = 57_900;
+            let measured = run.measured.as_mut().unwrap();
+            (measured.wrong.total, measured.wrong.in_band) = (wrong + in_band, in_band);
+            run
+        };
+        let runs = [
+            doubtful("hybrid_pcf", 0, 1_200, 30.0),
+            doubtful("nsm", 51, 16_675, 9.0),
+        ];
+        let (marked, said) = outcome(&runs);
+        assert_eq!(marked.as_deref(), Some("hybrid_pcf"));
+        assert_eq!(
+            said,
+            [
+                "Of the 42.100 % of the pixels that can be judged: `hybrid_pcf`: none wrong, 30.0 \
+                 ms, 3.3 x `nsm` (0.121 % wrong).",
+                "On the other 57.900 % the right answer hangs on rounding: no method is right or \
+                 wrong there. From the reference's choice differ `hybrid_pcf` 2.073 % (the least) \
+                 and `nsm` 28.800 % (the most).",
+            ]
+        );
+        for runs in [
+            &runs[..1],
+            &[doubtful("a", 4, 9, 1.0), doubtful("b", 3, 9, 1.0)],
+        ] {
+            let (_, said) = outcome(runs);
+            assert!(said.iter().all(|line| !line.contains("exact")), "{said:?}");
+            assert!(
+                said[0].starts_with("Of the 42.100 %") && said.len() == 2,
+                "{said:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_share_that_is_off_is_not_exact_though_it_is_right_at_one_half() {
+        let mut soft = run("pcf", 0, 5.0, 5.0);
+        soft.measured.as_mut().unwrap().graded.rmse_outside_band = 0.02;
+        let (marked, said) = outcome(&[soft, run("rt", 0, 50.0, 50.0)]);
+        assert_eq!(marked.as_deref(), Some("rt"));
+        assert!(said[0].contains("10 x `pcf` (0 % wrong)"), "{said:?}");
     }
 
     #[test]

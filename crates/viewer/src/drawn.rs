@@ -153,9 +153,10 @@ fn difference(
     let wrong = |error: skiagraph_reference::Error| error.to_string();
     let judgement = Judgement::new(&outputs, ground_truth).map_err(wrong)?;
     let truth = &ground_truth.pixels;
-    let image = match judgement.graded {
-        Some(_) => Image::difference(&outputs.shown(), &ground_truth.shares(), truth),
-        None => Image::error(&outputs.visibility, &outputs.status, truth),
+    let image = if judgement.is_hard {
+        Image::error(&outputs.visibility, &outputs.status, truth)
+    } else {
+        Image::difference(&outputs.shown(), &ground_truth.shares(), truth)
     };
     Ok(Drawn {
         image: Some(image.map_err(wrong)?),
@@ -184,7 +185,8 @@ fn facing_light(truth: &GroundTruthPixels) -> u64 {
 }
 
 fn verdict(judgement: &Judgement, truth: &GroundTruthPixels) -> String {
-    if let Some(graded) = &judgement.graded {
+    let graded = &judgement.graded;
+    if !judgement.is_hard {
         return format!(
             "blue too light, red too dark; RMSE {:.4}, mean {:.4}, FLIP {:.4}",
             graded.rmse, graded.mean_absolute_error, graded.flip
@@ -194,8 +196,8 @@ fn verdict(judgement: &Judgement, truth: &GroundTruthPixels) -> String {
     let wrong = &judgement.counts.wrong;
     let outside = wrong.total - wrong.in_band;
     format!(
-        "blue wrongly lit, red wrongly in shadow, paler in the band, rings around lone ones; {} \
-         wrong outside the band ({}), {} in it",
+        "blue wrongly lit, red wrongly in shadow, paler in the band; {} wrong outside the band \
+         ({}), {} in it",
         thousands(outside),
         percent(outside, facing_light(truth)),
         thousands(wrong.in_band)

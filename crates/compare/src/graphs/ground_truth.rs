@@ -26,8 +26,10 @@ use skiagraph_reference::{Graded, GroundTruth, Statistics};
 pub struct Judgement {
     /// Its pixels counted; of shares as if they were cut at one half.
     pub counts: Statistics,
-    /// Where the answer or the light is graded.
-    pub graded: Option<Graded>,
+    /// How far the shares of light that it shows are off.
+    pub graded: Graded,
+    /// True if answer and light are hard, so that pixels are right or wrong.
+    pub is_hard: bool,
 }
 
 impl Judgement {
@@ -41,17 +43,19 @@ impl Judgement {
     ) -> Result<Self, skiagraph_reference::Error> {
         let truth = &ground_truth.pixels;
         let counts = Statistics::judged(&outputs.visibility, &outputs.status, truth)?;
-        let graded = (outputs.shares.is_some() || ground_truth.area.is_some())
-            .then(|| Graded::judged(&outputs.shown(), &ground_truth.shares(), truth))
-            .transpose()?;
-        Ok(Self { counts, graded })
+        Ok(Self {
+            counts,
+            graded: Graded::judged(&outputs.shown(), &ground_truth.shares(), truth)?,
+            is_hard: outputs.shares.is_none() && ground_truth.area.is_none(),
+        })
     }
 
-    /// Compares two pictures of a still view: by grades where there are any, else by wrong pixels.
+    /// Compares two pictures of a still view: of hard answers by wrong pixels, else by grades.
     pub fn is_worse_than(&self, other: &Self) -> bool {
-        match (&self.graded, &other.graded) {
-            (Some(one), Some(other)) => one.rmse > other.rmse,
-            _ => self.counts.wrong.total > other.counts.wrong.total,
+        if self.is_hard {
+            self.counts.wrong.total > other.counts.wrong.total
+        } else {
+            self.graded.rmse > other.graded.rmse
         }
     }
 }
@@ -102,15 +106,15 @@ mod tests {
             let pixels = pixels.clone();
             let ground_truth = GroundTruth { pixels, area };
             let (_, judgement) = judged(&presets[0], Ok(outputs), &ground_truth).unwrap();
-            judgement.graded.map(|graded| graded.mean_absolute_error)
+            (judgement.is_hard, judgement.graded.mean_absolute_error)
         };
         let area = AreaVisibility {
             samples: 4,
             shares: vec![0.5, 1.0, 0.0, 0.0],
             standard_errors: vec![0.0; 4],
         };
-        assert_eq!(error(None, None), None);
-        assert_eq!(error(Some(vec![0.0, 1.0, 0.1, 0.1]), None), Some(0.0));
-        assert_eq!(error(None, Some(area)), Some(0.25));
+        assert_eq!(error(None, None), (true, 0.0));
+        assert_eq!(error(Some(vec![0.0, 1.0, 0.1, 0.1]), None), (false, 0.0));
+        assert_eq!(error(None, Some(area)), (false, 0.25));
     }
 }

@@ -30,8 +30,8 @@ use skiagraph_gpu::{Content, Provider};
 use skiagraph_graph::{Graph, Plan, Sources};
 use skiagraph_passes::registry;
 use skiagraph_reference::{
-    BlockerCounts, Error, GroundTruth, GroundTruthPixels, Oracle, OracleMode, Progress, Statistics,
-    area, shimmer::Seen,
+    BlockerCounts, EdgeDistances, Error, GroundTruth, GroundTruthPixels, Oracle, OracleMode,
+    Progress, Statistics, area, shimmer::Seen,
 };
 use skiagraph_scene::{Camera, LightKind};
 use std::rc::Rc;
@@ -207,6 +207,17 @@ impl<'a> GroundTruthView<'a> {
             skiagraph_reference::blockers(oracle, camera, light, primitives, self.mode, &pixels)
         });
         blockers.map_err(|error| CompareError::Input(format!("no blockers: {error}")))
+    }
+
+    /// Measures how far a method's wrong pixels lie from the edges of the reference's shadows.
+    ///
+    /// # Errors
+    /// Outputs that do not fit the reference.
+    pub fn edges(&self, outputs: &Outputs) -> Result<EdgeDistances, CompareError> {
+        let (visibility, status) = (&outputs.visibility, &outputs.status);
+        let truth = &self.ground_truth.pixels;
+        let edges = EdgeDistances::measured(self.seen(), visibility, status, truth);
+        edges.map_err(|error| CompareError::Input(format!("no distances from edges: {error}")))
     }
 }
 

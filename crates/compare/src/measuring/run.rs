@@ -143,17 +143,14 @@ impl MeasureContext<'_> {
             // Only now: a readback would be timed, too.
             None => judge(frame::read(self.session, executor, &names)?)?,
         };
-        let Judgement { counts, graded } = &judgement;
-        let blockers = match counts.wrong.certain {
-            0 => None,
-            // Which pixels are wrong is a question of grades.
-            _ if graded.is_some() => None,
-            _ => Some(self.truth_view.blockers(&outputs)?),
-        };
+        let counts = &judgement.counts;
+        let has_blockers = judgement.is_hard && counts.wrong.certain > 0;
+        let blockers = has_blockers.then(|| self.truth_view.blockers(&outputs));
         Ok(Measured {
             rays: outputs.rays,
-            certain_wrong_blockers: blockers,
-            graded: *graded,
+            certain_wrong_blockers: blockers.transpose()?,
+            graded: judgement.graded,
+            edges: self.truth_view.edges(&outputs)?,
             cached,
             images: self.draw(method, None, ground_truth, (&outputs, &judgement))?,
             ..self.measured(prepared, times, counts, outputs.shares.is_some())
@@ -208,7 +205,8 @@ impl MeasureContext<'_> {
             } else {
                 Answer::Hard
             },
-            graded: None,
+            graded: Default::default(),
+            edges: Default::default(),
             passes: times.passes,
             frame: times.frame,
             cached: None,

@@ -20,7 +20,7 @@ use skiagraph_gpu::{Executor, Frame, FrameReport};
 use skiagraph_graph::Plan;
 use skiagraph_passes::{Built, How, SceneProvider};
 use skiagraph_reference::{
-    BlockerCounts, Graded, JudgedPixels, Shimmer, Statistics,
+    BlockerCounts, EdgeDistances, Graded, JudgedPixels, Shimmer, Statistics,
     shimmer::{same_receivers, shimmer},
 };
 use std::time::Duration;
@@ -141,8 +141,9 @@ struct Account {
     timed: Vec<TimedFrame>,
     /// Shares of light that the frame before showed.
     before: Option<Vec<f32>>,
-    /// Where answers or the light are graded: of each frame.
+    /// Errors of each frame's shares.
     graded: Vec<(Graded, JudgedPixels)>,
+    edges: EdgeDistances,
     /// True if the method answers in shares.
     shares: bool,
     /// The worst frame that was seen yet, for its pictures.
@@ -187,7 +188,8 @@ pub fn follow(
     Ok(Measured {
         rays: account.rays,
         certain_wrong_blockers: account.blockers,
-        graded: (!account.graded.is_empty()).then(|| Graded::together(account.graded)),
+        graded: Graded::together(account.graded),
+        edges: account.edges,
         images,
         sequence: Some(Sequence {
             frames: account.frames,
@@ -303,7 +305,8 @@ fn add(
     let outputs = context.decode(contents, truth_view);
     let (outputs, judgement) = judged(&method.preset, outputs, &truth_view.ground_truth)?;
     let counts = judgement.counts;
-    if counts.wrong.certain > 0 && judgement.graded.is_none() {
+    account.edges = account.edges.with(truth_view.edges(&outputs)?);
+    if counts.wrong.certain > 0 && judgement.is_hard {
         *account.blockers.get_or_insert_default() += truth_view.blockers(&outputs)?;
     }
     let shown = outputs.shown().into_owned();
@@ -342,8 +345,7 @@ fn add(
         facing_light: counts.pixels.facing_light,
         in_band: counts.band,
     };
-    let graded = judgement.graded.map(|graded| (graded, pixels));
-    account.graded.extend(graded);
+    account.graded.push((judgement.graded, pixels));
     // Only a frame that is worse than all before it: of equal ones the first counts.
     let error = account.frames[index].error();
     let worst = account.worst.as_ref();

@@ -69,7 +69,7 @@ pub fn draw_pictures(
     outputs: &Outputs,
     judgement: &Judgement,
 ) -> Result<(Images, Vec<PictureFile>), CompareError> {
-    let Judgement { counts, graded } = judgement;
+    let counts = &judgement.counts;
     let (truth, visibility, status) = (&ground_truth.pixels, &outputs.shown(), &outputs.status);
     let of_reference = draw_reference(place.view, place.frame, ground_truth)?;
     let mut files = Vec::new();
@@ -79,9 +79,10 @@ pub fn draw_pictures(
         files.push(file);
         Ok(name)
     };
-    let error = match graded {
-        None => Image::error(&outputs.visibility, status, truth),
-        Some(_) => Image::difference(visibility, &ground_truth.shares(), truth),
+    let error = if judgement.is_hard {
+        Image::error(&outputs.visibility, status, truth)
+    } else {
+        Image::difference(visibility, &ground_truth.shares(), truth)
     };
     let images = Images {
         frame: place.frame,

@@ -10,7 +10,7 @@
 //! # std::fs::write(out.path().join("results.json"), &pinned[pinned.find('{').unwrap_or(0)..])?;
 //! let results = read_back::kept(out.path())?;
 //! let runs: Vec<_> = results.runs.iter().collect();
-//! for column in columns::terminal(true, &runs) {
+//! for column in columns::terminal(&runs) {
 //!     println!("{}: {}", column.head, column.cell(&results, runs[0], wording::percent));
 //! }
 //! assert_eq!(columns::figure("wrong_percent", &results, runs[0]), Some(0.503));
@@ -24,7 +24,7 @@ use crate::records::steady::Steady;
 use crate::wording::{ms, thousands};
 use Source::{Always, Measure};
 use Value::{Count, OfPicture, Rate, Real, Share, Text, Time, Unknown};
-use skiagraph_reference::{BlockerCounts, Graded};
+use skiagraph_reference::{BlockerCounts, Distances, SoftErrors};
 
 /// A name, and where the figure of that name comes from.
 type Figure = (&'static str, Source);
@@ -114,16 +114,16 @@ const CSV: &[Figure] = &[
     ("reference_error_rms", Always(|_, run| area(run, |of| Real(of.standard_error_rms)))),
     ("reference_error_worst", Always(|_, run| area(run, |of| Real(of.standard_error_worst)))),
     ("penumbra", Always(|_, run| area(run, |of| Count(of.penumbra)))),
-    ("rmse", Measure(|of| graded(of, |by| Real(by.rmse)))),
-    ("rmse_outside_band", Measure(|of| graded(of, |by| Real(by.rmse_outside_band)))),
-    ("mean_absolute_error", Measure(|of| graded(of, |by| Real(by.mean_absolute_error)))),
-    ("off_over_1_255", Measure(|of| graded(of, |by| Share(by.off.over_1_255)))),
-    ("off_over_1_16", Measure(|of| graded(of, |by| Share(by.off.over_1_16)))),
-    ("off_over_1_4", Measure(|of| graded(of, |by| Share(by.off.over_1_4)))),
-    ("flip", Measure(|of| graded(of, |by| Real(by.flip)))),
-    ("nan", Measure(|of| graded(of, |by| Count(by.invalid.nan)))),
-    ("infinite", Measure(|of| graded(of, |by| Count(by.invalid.infinite)))),
-    ("outside", Measure(|of| graded(of, |by| Count(by.invalid.outside)))),
+    ("rmse", Measure(|of| Real(of.graded.rmse))),
+    ("rmse_outside_band", Measure(|of| Real(of.graded.rmse_outside_band))),
+    ("mean_absolute_error", Measure(|of| Real(of.graded.mean_absolute_error))),
+    ("off_over_1_255", Measure(|of| Share(of.graded.off.over_1_255))),
+    ("off_over_1_16", Measure(|of| Share(of.graded.off.over_1_16))),
+    ("off_over_1_4", Measure(|of| Share(of.graded.off.over_1_4))),
+    ("flip", Measure(|of| Real(of.graded.flip))),
+    ("nan", Measure(|of| Count(of.graded.invalid.nan))),
+    ("infinite", Measure(|of| Count(of.graded.invalid.infinite))),
+    ("outside", Measure(|of| Count(of.graded.invalid.outside))),
     ("steady_frames", Measure(|of| steady(of, |by| Some(by.frames)))),
     ("steady_period", Measure(|of| steady(of, |by| by.period))),
     ("slowest_frame", Measure(|of| path(of, |by| Some(Count(by.slowest()?.0 as u64))))),
@@ -136,8 +136,17 @@ const CSV: &[Figure] = &[
         Measure(|of| path(of, |by| Some(Count(by.slowest_with_every_pass()?.0 as u64))))),
     ("every_pass_slowest_frame_ms",
         Measure(|of| path(of, |by| Some(Time(by.slowest_with_every_pass()?.1.ms()))))),
-    ("worst_frame_rmse", Measure(|of| path(of, |by| Some(Real(by.worst()?.1.graded?.rmse))))),
+    ("worst_frame_rmse", Measure(|of| path(of, |by| Some(Real(by.worst()?.1.graded.rmse))))),
     ("wrong_surface", Always(|_, run| Count(run.wrong_surface))),
+    ("light_in_umbra", Measure(|of| Real(of.graded.soft.light_in_umbra))),
+    ("dark_in_light", Measure(|of| Real(of.graded.soft.dark_in_light))),
+    ("penumbra_rmse", Measure(|of| penumbra(of, |soft| soft.penumbra_rmse))),
+    ("penumbra_bias", Measure(|of| penumbra(of, |soft| soft.penumbra_bias))),
+    ("edge_near", Measure(|of| Count(of.edges.all().near))),
+    ("edge_mean_pixels", Measure(|of| edge(of, |all| all.mean_pixels))),
+    ("edge_max_pixels", Measure(|of| edge(of, |all| all.max_pixels))),
+    ("edge_mean_world", Measure(|of| edge(of, |all| all.mean_world))),
+    ("edge_max_world", Measure(|of| edge(of, |all| all.max_world))),
 ];
 
 /// Figures that only tables show.
@@ -149,68 +158,36 @@ const IN_TABLES: &[Figure] = &[
     ("wrong_shadow_percent", Always(|_, run| run.wrong_shadow().map_or(Unknown, OfPicture))),
     ("steps_ms", Measure(|of| of.steps_ms().map_or(Unknown, Time))),
     ("fps", Measure(|of| of.fps().map_or(Unknown, Rate))),
-    ("no_share", Measure(|of| graded(of, |by| Count(by.invalid.total())))),
+    ("no_share", Measure(|of| Count(of.graded.invalid.total()))),
 ];
 
 /// A column: its figure, its head, and what published figures of it are called, if there are any.
 type Entry = (&'static str, &'static str, &'static str);
 
 /// The terminal's table.
-const TERMINAL: [Entry; 13] = [
+const TERMINAL: [Entry; 22] = [
     ("preset", "method", ""),
     (MAP_SIZE, "map", ""),
+    ("answer", "answer", ""),
     ("gpu_ms", "GPU ms", ""),
     ("wall_ms", "wall ms", ""),
     ("wrong_total", "wrong", ""),
     ("wrong_lit", "wrong lit", ""),
     ("wrong_shadow", "wrong shadow", ""),
     ("wrong_in_band", "in band", ""),
+    ("rmse", "RMSE", ""),
+    ("flip", "FLIP", ""),
+    ("light_in_umbra", "light in umbra", ""),
+    ("dark_in_light", "dark in light", ""),
+    ("penumbra_rmse", "penumbra RMSE", ""),
+    ("penumbra_bias", "penumbra bias", ""),
+    ("edge_mean_pixels", "px from edge", ""),
+    ("no_share", "no share", ""),
     ("uncertain", "uncertain", ""),
     ("certain_wrong", "certain wrong", ""),
     ("rays", "rays", ""),
     ("worst_frame_wrong", "worst frame", ""),
     ("shimmer", "shimmer", ""),
-];
-
-/// The terminal's table of answers that are graded, or judged by the shares of a light with extent.
-const GRADED: [Entry; 17] = [
-    ("preset", "method", ""),
-    (MAP_SIZE, "map", ""),
-    ("answer", "answer", ""),
-    ("gpu_ms", "GPU ms", ""),
-    ("wall_ms", "wall ms", ""),
-    ("rmse", "RMSE", ""),
-    ("rmse_outside_band", "outside band", ""),
-    ("mean_absolute_error", "mean error", ""),
-    ("off_over_1_255", "> 1/255", ""),
-    ("off_over_1_16", "> 1/16", ""),
-    ("off_over_1_4", "> 1/4", ""),
-    ("flip", "FLIP", ""),
-    ("no_share", "no share", ""),
-    ("uncertain", "uncertain", ""),
-    ("rays", "rays", ""),
-    ("worst_frame_rmse", "worst frame", ""),
-    ("shimmer", "shimmer", ""),
-];
-
-/// The same of a document.
-const GRADED_DOCUMENT: [Entry; 16] = [
-    ("preset", "method", ""),
-    (MAP_SIZE, "map", ""),
-    ("answer", "answer", ""),
-    ("rmse", "RMSE", ""),
-    ("rmse_outside_band", "outside band", ""),
-    ("mean_absolute_error", "mean error", ""),
-    ("off_over_1_255", "> 1/255 %", ""),
-    ("off_over_1_16", "> 1/16 %", ""),
-    ("off_over_1_4", "> 1/4 %", ""),
-    ("flip", "FLIP", ""),
-    ("no_share", "no share", ""),
-    ("uncertain", "uncertain %", "uncertain_percent"),
-    ("worst_frame_rmse", "worst frame RMSE", ""),
-    ("shimmer", "shimmer %", ""),
-    ("rays", "rays", "rays"),
-    ("gpu_ms", "frame ms", "ms.frame"),
 ];
 
 /// The column that only stands in the terminal's table if there are maps.
@@ -219,10 +196,22 @@ const MAP_SIZE: &str = "map_size";
 /// Columns that only stand in a table of camera paths.
 const OF_PATHS: [&str; 3] = ["worst_frame_wrong", "worst_frame_rmse", "shimmer"];
 
+/// Columns that only stand in a table with a graded answer, or under a light with extent.
+const OF_GRADES: [&str; 7] = [
+    "answer",
+    "light_in_umbra",
+    "dark_in_light",
+    "penumbra_rmse",
+    "penumbra_bias",
+    "no_share",
+    "worst_frame_rmse",
+];
+
 /// A document's table, but for the times of steps, which stand behind the rays.
-const DOCUMENT: [Entry; 20] = [
+const DOCUMENT: [Entry; 30] = [
     ("preset", "method", ""),
     (MAP_SIZE, "map", ""),
+    ("answer", "answer", ""),
     ("certain_right", "certain right %", "certain_right_percent"),
     ("uncertain", "uncertain %", "uncertain_percent"),
     ("certain_wrong", "certain wrong %", "certain_wrong_percent"),
@@ -239,7 +228,16 @@ const DOCUMENT: [Entry; 20] = [
     ("certain_shadow", "certain shadow", "certain_shadow"),
     ("lit_uncertain", "uncertain lit", "lit_uncertain"),
     ("shadow_uncertain", "uncertain shadow", "shadow_uncertain"),
+    ("rmse", "RMSE", ""),
+    ("flip", "FLIP", ""),
+    ("light_in_umbra", "light in umbra", ""),
+    ("dark_in_light", "dark in light", ""),
+    ("penumbra_rmse", "penumbra RMSE", ""),
+    ("penumbra_bias", "penumbra bias", ""),
+    ("edge_mean_pixels", "px from edge", ""),
+    ("no_share", "no share", ""),
     ("worst_frame_wrong", "worst frame wrong %", ""),
+    ("worst_frame_rmse", "worst frame RMSE", ""),
     ("shimmer", "shimmer %", ""),
     ("rays", "rays", "rays"),
     ("steps_ms", "sum of steps ms", "ms.steps"),
@@ -328,9 +326,20 @@ fn path(measured: &Measured, figure: fn(&Sequence) -> Option<Value>) -> Value {
         .unwrap_or(Unknown)
 }
 
-/// A figure of how far shares are off; pixels that are right or wrong have none.
-fn graded(measured: &Measured, figure: fn(&Graded) -> Value) -> Value {
-    measured.graded.as_ref().map_or(Unknown, figure)
+/// An error of the penumbra, where there is one.
+fn penumbra(measured: &Measured, figure: fn(&SoftErrors) -> f64) -> Value {
+    match measured.graded.soft.penumbra {
+        0 => Unknown,
+        _ => Real(figure(&measured.graded.soft)),
+    }
+}
+
+/// A distance of wrong pixels from the edges of shadows, where there are any.
+fn edge(measured: &Measured, figure: fn(&Distances) -> f64) -> Value {
+    match measured.edges.all() {
+        all if all.count == 0 => Unknown,
+        all => Real(figure(&all)),
+    }
 }
 
 /// A figure of the reference of a light with extent.
@@ -402,17 +411,19 @@ pub fn csv() -> Vec<Column> {
     entries.filter_map(Column::new).collect()
 }
 
-/// The columns of the terminal's table for some runs, of hard answers to hard light or of any
-/// others: what none of them has is left out.
-pub fn terminal(is_hard: bool, runs: &[&Run]) -> Vec<Column> {
+/// The columns of the terminal's table for some runs: those that none of them has are left out.
+pub fn terminal(runs: &[&Run]) -> Vec<Column> {
     let has_maps = runs.iter().any(|run| run.map_size.is_some());
-    let are_paths = are_paths(runs.iter().copied());
-    let shown = |(name, ..): &&Entry| {
-        (has_maps || *name != MAP_SIZE) && (are_paths || !OF_PATHS.contains(name))
-    };
-    let entries: &[Entry] = if is_hard { &TERMINAL } else { &GRADED };
-    let entries = entries.iter().filter(shown).copied();
-    entries.filter_map(Column::new).collect()
+    let entries = TERMINAL.iter().filter(|(name, ..)| {
+        (has_maps || *name != MAP_SIZE) && is_shown(name, runs.iter().copied())
+    });
+    entries.copied().filter_map(Column::new).collect()
+}
+
+/// True unless the column says something of other runs alone.
+fn is_shown<'a>(name: &str, runs: impl Iterator<Item = &'a Run> + Clone) -> bool {
+    (!OF_PATHS.contains(&name) || are_paths(runs.clone()))
+        && (!OF_GRADES.contains(&name) || runs.clone().any(|run| !run.is_hard()))
 }
 
 /// True if any run is of a camera path.
@@ -421,21 +432,15 @@ pub fn are_paths<'a>(runs: impl IntoIterator<Item = &'a Run>) -> bool {
     measured.any(|of| of.sequence.is_some())
 }
 
-/// The columns of a document's table but for the times of steps, of which two parts stand before
-/// and behind them, of hard answers to hard light or of any others, `are_paths` if they are of
-/// camera paths. `published` says of which quantities there are published figures in it.
-pub fn document(
-    is_hard: bool,
-    are_paths: bool,
-    published: impl Fn(&str) -> bool,
-) -> [Vec<Column>; 2] {
+/// The columns of a document's table for some runs but for the times of steps, of which two parts
+/// stand before and behind them. `published` says of which quantities there are published figures.
+pub fn document(runs: &[&Run], published: impl Fn(&str) -> bool) -> [Vec<Column>; 2] {
     let shown = |(name, _, quantity): &Entry| {
         (!IF_PUBLISHED.contains(name) || published(quantity))
-            && (are_paths || !OF_PATHS.contains(name))
+            && is_shown(name, runs.iter().copied())
     };
-    let entries: &[Entry] = if is_hard { &DOCUMENT } else { &GRADED_DOCUMENT };
-    let rays = entries.iter().position(|(name, ..)| *name == "rays");
-    let (front, back) = entries.split_at(rays.map_or(entries.len(), |rays| rays + 1));
+    let rays = DOCUMENT.iter().position(|(name, ..)| *name == "rays");
+    let (front, back) = DOCUMENT.split_at(rays.map_or(DOCUMENT.len(), |rays| rays + 1));
     [front, back].map(|part| {
         let entries = part.iter().copied().filter(shown);
         entries.filter_map(Column::new).collect()
@@ -488,36 +493,35 @@ pub fn figure(quantity: &str, results: &Results, run: &Run) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::records::results::tests::sample;
+    use crate::records::results::{Answer, tests::sample};
 
     #[test]
     fn every_column_of_a_table_has_its_figure() {
         assert_eq!(csv().len(), CSV.len());
         let runs = sample().runs;
         let all: Vec<&Run> = runs.iter().collect();
-        let of_paths = |entries: &[Entry]| {
-            let of_paths = entries.iter().filter(|(name, ..)| OF_PATHS.contains(name));
-            of_paths.count()
+        let of = |entries: &[Entry], names: &[&str]| {
+            let of = entries.iter().filter(|(name, ..)| names.contains(name));
+            of.count()
         };
-        let with_maps = TERMINAL.len() - of_paths(&TERMINAL);
-        assert_eq!(terminal(true, &all).len(), with_maps);
+        let hidden = |entries: &[Entry]| of(entries, &[&OF_PATHS[..], &OF_GRADES].concat());
+        let with_maps = TERMINAL.len() - hidden(&TERMINAL);
+        assert_eq!(terminal(&all).len(), with_maps);
         let without: Vec<&Run> = runs.iter().filter(|run| run.map_size.is_none()).collect();
-        assert_eq!(terminal(true, &without).len(), with_maps - 1);
+        assert_eq!(terminal(&without).len(), with_maps - 1);
+        let mut graded = runs.clone();
+        graded[0].measured.as_mut().unwrap().answer = Answer::Graded;
+        let graded: Vec<&Run> = graded.iter().collect();
         assert_eq!(
-            terminal(false, &all).len(),
-            GRADED.len() - of_paths(&GRADED)
+            terminal(&graded).len(),
+            TERMINAL.len() - of(&TERMINAL, &OF_PATHS)
         );
-        let parts = document(false, true, |_| true).map(|part| part.len());
-        assert_eq!(parts, [GRADED_DOCUMENT.len() - 1, 1]);
-        let parts = |paths, published| document(true, paths, |_| published).map(|part| part.len());
-        assert_eq!(parts(true, true).iter().sum::<usize>(), DOCUMENT.len());
-        let fewer = DOCUMENT.len() - IF_PUBLISHED.len();
-        assert_eq!(
-            parts(true, false),
-            [fewer - 1, 1],
-            "only the frame is behind the steps"
-        );
-        assert_eq!(parts(false, false), [fewer - 1 - of_paths(&DOCUMENT), 1]);
+        let parts = |runs, published| document(runs, |_| published).map(|part| part.len());
+        let whole = DOCUMENT.len() - of(&DOCUMENT, &OF_PATHS);
+        assert_eq!(parts(&graded, true).iter().sum::<usize>(), whole);
+        let fewer = DOCUMENT.len() - IF_PUBLISHED.len() - hidden(&DOCUMENT);
+        // Only the frame is behind the steps.
+        assert_eq!(parts(&all, false), [fewer - 1, 1]);
         let mut names: Vec<_> = CSV.iter().chain(IN_TABLES).map(|(name, _)| name).collect();
         names.sort();
         assert!(names.windows(2).all(|pair| pair[0] != pair[1]), "{names:?}");

@@ -24,8 +24,8 @@ use crate::records::steady::Steady;
 use crate::wording::{size, thousands};
 use serde::{Deserialize, Serialize};
 use skiagraph_reference::{
-    AreaVisibility, BlockerCounts, CertainCounts, Graded, GroundTruthPixels, PixelCounts, Split,
-    WrongCounts,
+    AreaVisibility, BlockerCounts, CertainCounts, EdgeDistances, Graded, GroundTruthPixels,
+    PixelCounts, Split, WrongCounts,
 };
 use std::{collections::BTreeMap, fmt};
 
@@ -180,8 +180,8 @@ pub struct Run {
 impl Run {
     /// True if answer and light are hard, so that pixels are right or wrong.
     pub fn is_hard(&self) -> bool {
-        let graded = self.measured.as_ref().and_then(|of| of.graded.as_ref());
-        self.area.is_none() && graded.is_none()
+        let measured = self.measured.as_ref();
+        self.area.is_none() && measured.is_none_or(|of| of.answer == Answer::Hard)
     }
 
     /// Method, view, viewport and map in words.
@@ -329,10 +329,11 @@ pub struct Measured {
     /// In what the method answers. Of shares, `certain`, `split` and `wrong` are counted as if they
     /// were cut at one half.
     pub answer: Answer,
-    /// How far the shares are from the reference's, where the answer is graded or the light has an
-    /// extent; absent where both are hard.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub graded: Option<Graded>,
+    /// How far the shares of light that it shows are from the reference's; a hard answer shows 0 or
+    /// 1.
+    pub graded: Graded,
+    /// How far wrong pixels lie from the edges of the reference's shadows.
+    pub edges: EdgeDistances,
     /// Times of each pass, in the order in which they ran.
     pub passes: Vec<Pass>,
     /// Times of whole frames.
@@ -450,8 +451,7 @@ pub struct Images {
     /// The output `visibility`.
     pub visibility: String,
     /// Blue where wrongly lit, red where wrongly in shadow, paler in the band, in as many pixels as
-    /// are wrong; dark rings point to lone ones outside the band, where they are few. Of grades the
-    /// stronger the farther off, in full from a quarter on.
+    /// are wrong. Of grades the stronger the farther off, in full from a quarter on.
     pub error: String,
     /// `shaded` with purple where uncertain; absent where the method calls no pixel certain or
     /// uncertain.
@@ -568,7 +568,12 @@ pub(crate) mod tests {
             }),
             facing_mismatch: 3,
             answer: Answer::Hard,
-            graded: None,
+            graded: Graded {
+                rmse: 0.071,
+                flip: 0.012,
+                ..Graded::default()
+            },
+            edges: EdgeDistances::default(),
             passes: ["gbuffer", name]
                 .map(|name| Pass {
                     name: name.into(),

@@ -6,10 +6,10 @@
 //! // As it stands under `sequence` of a run.
 //! let path: Sequence = serde_json::from_str(
 //!     r#"{"shimmer": {"compared": 900, "changed": 3}, "frames": [
-//!         {"facing_light": 900, "wrong": 2, "wrong_outside_band": 0, "rays": null,
-//!             "gpu_ms": null, "wall_ms": 3.5},
-//!         {"facing_light": 900, "wrong": 7, "wrong_outside_band": 1, "rays": null,
-//!             "gpu_ms": null, "wall_ms": 3.0}]}"#,
+//!         {"facing_light": 900, "wrong": 2, "wrong_outside_band": 0,
+//!             "graded": {"rmse": 0.05}, "rays": null, "gpu_ms": null, "wall_ms": 3.5},
+//!         {"facing_light": 900, "wrong": 7, "wrong_outside_band": 1,
+//!             "graded": {"rmse": 0.09}, "rays": null, "gpu_ms": null, "wall_ms": 3.0}]}"#,
 //! )?;
 //! let (worst, _) = path.worst().ok_or("a path has frames")?;
 //! let (slowest, cost) = path.slowest().ok_or("a path has frames")?;
@@ -45,9 +45,8 @@ pub struct SequenceFrame {
     pub wrong: u64,
     /// Number of these that are wrong outside the band.
     pub wrong_outside_band: u64,
-    /// How far the shown shares of light are off, where the answer or the light is graded.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub graded: Option<Graded>,
+    /// How far the shown shares of light are off.
+    pub graded: Graded,
     /// Rays traced; null where the graph does not count them.
     pub rays: Option<u64>,
     /// From the first pass's begin to the last one's end; null where it cannot be had or trusted.
@@ -98,11 +97,9 @@ impl FrameCost {
 }
 
 impl SequenceFrame {
-    /// By what frames are ranked: the root mean square error of shares where there is one, else the
-    /// share of wrong pixels.
+    /// By what frames are ranked: the root mean square error of shares.
     pub fn error(&self) -> f64 {
-        let wrong = || self.wrong as f64 / self.facing_light.max(1) as f64;
-        self.graded.map_or_else(wrong, |graded| graded.rmse)
+        self.graded.rmse
     }
 
     /// Its times as it is, with what is kept.

@@ -14,7 +14,7 @@ const HALF: u16 = 520;
 
 /// A figure in which each method looks the same as in all others of the page.
 fn figure(tables: &[Shown], panels: Vec<Panel>) -> Figure {
-    let rows = tables.iter().flat_map(|table| &table.group.rows);
+    let rows = tables.iter().flat_map(|table| &table.summary.rows);
     let methods: BTreeSet<&String> = rows.map(|row| &row.method).collect();
     Figure {
         looks: methods.into_iter().cloned().collect(),
@@ -55,7 +55,7 @@ fn front(table: &Shown, kept: bool) -> Panel {
             }],
         })
     };
-    let rows = table.group.rows.iter().enumerate();
+    let rows = table.summary.rows.iter().enumerate();
     let mut series: Vec<Series> = rows.filter_map(row).collect();
     series.sort_by(|one, other| one.marks[0].x.total_cmp(&other.marks[0].x));
     let clock = if table.by_wall { "wall clock" } else { "GPU" };
@@ -64,10 +64,10 @@ fn front(table: &Shown, kept: bool) -> Panel {
     } else {
         "every pass run"
     };
-    let error = if table.group.is_hard {
-        "wrong pixels, % of those facing the light"
-    } else {
+    let error = if table.summary.is_soft() {
         "RMSE of the shares of light"
+    } else {
+        "wrong pixels, % of those facing the light"
     };
     Panel {
         title: table.title.clone(),
@@ -83,7 +83,7 @@ fn about(table: &Shown, index: usize) -> String {
     let cells = table.table.heads.iter().zip(&table.table.rows[index]);
     let told = cells.skip(1).filter(|(_, cell)| *cell != "–");
     let told = told.map(|(head, cell)| format!("\n{head}: {cell}"));
-    table.group.rows[index].label.clone() + &told.collect::<String>()
+    table.summary.rows[index].label.clone() + &told.collect::<String>()
 }
 
 /// Buttons for the methods of each table, which show a method or not.
@@ -97,7 +97,7 @@ pub fn legends(tables: &[Shown]) -> String {
         )
     };
     let legend = |(index, table): (usize, &Shown)| {
-        let rows = table.group.rows.iter().filter(|row| row.views() > 0);
+        let rows = table.summary.rows.iter().filter(|row| row.views() > 0);
         let methods = unique(rows.map(|row| &row.method));
         let buttons: String = methods.into_iter().map(button).collect();
         part("legend", &[index], None, &buttons)
@@ -109,14 +109,14 @@ pub fn legends(tables: &[Shown]) -> String {
 pub fn growths(tables: &[Shown]) -> String {
     let mut html = String::new();
     for (index, table) in tables.iter().enumerate() {
-        let key = |table: &Shown| (table.source, table.group.is_hard, table.summary.what());
+        let key = |table: &Shown| (table.source, table.summary.what());
         let alike = (0..tables.len()).filter(|other| key(&tables[*other]) == key(table));
         let alike: Vec<usize> = alike.collect();
         let viewport = size(table.summary.viewport);
         let mut add = |of: &[usize], [title, x]: [&str; 2], kept, place: Place| {
             let rows = of.iter().flat_map(|index| {
                 let table = &tables[*index];
-                table.group.rows.iter().map(move |row| (table, row))
+                table.summary.rows.iter().map(move |row| (table, row))
             });
             let (panel, ticks) = growth(rows, [title, x], kept, place);
             if !panel.series.is_empty() {
@@ -142,7 +142,7 @@ type Place = for<'a> fn(&Shown, &'a Row) -> Option<(&'a str, f64, String)>;
 fn by_viewport<'a>(table: &Shown, row: &'a Row) -> Option<(&'a str, f64, String)> {
     // A method may choose its map by the viewport: then rows differ in it and are one method all
     // the same.
-    let rows = table.group.rows.iter();
+    let rows = table.summary.rows.iter();
     let maps = rows.filter(|other| other.method == row.method).count();
     let line = if maps > 1 { &row.label } else { &row.method };
     let viewport = table.summary.viewport;

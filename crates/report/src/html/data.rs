@@ -35,16 +35,13 @@ struct Conditions<'a> {
     folders: Vec<String>,
 }
 
-/// Rows that are judged alike, of one source and viewport.
+/// All rows of one source and viewport.
 #[derive(Serialize)]
 struct Table<'a> {
     source: usize,
     viewport: [u32; 2],
     /// Source and viewport in words.
     of: &'a str,
-    title: &'a str,
-    /// By wrong pixels; else by the root mean square error of shares.
-    hard: bool,
     sentences: Vec<String>,
     conditions: Vec<String>,
     notes: Vec<String>,
@@ -100,11 +97,9 @@ fn table<'a>(of: &'a Shown) -> Table<'a> {
         source: of.source,
         viewport: of.summary.viewport,
         of: &of.title,
-        title: of.group.title(),
-        hard: of.group.is_hard,
-        sentences: of.group.verdict().sentences,
+        sentences: of.summary.verdict().sentences,
         conditions: of.summary.conditions(),
         notes: of.summary.notes(),
-        rows: of.group.rows.iter().map(line).collect(),
+        rows: of.summary.rows.iter().map(line).collect(),
     }
 }

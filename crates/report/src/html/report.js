@@ -17,8 +17,7 @@ function drawHead() {
 const lineClass = (text) => (text.startsWith('warning: ') ? 'warning' : 'quiet');
 
 function headControls() {
-  const names = data.tables.map((of) => (data.tables.some((other) => other.hard !== of.hard)
-    ? `${of.of}: ${of.title.toLowerCase()}` : of.of));
+  const names = data.tables.map((of) => of.of);
   if (names.length > 1) {
     byId('choice').replaceChildren(choice('table-choice', 'Shown', names, state.table, (chosen) => {
       state.table = chosen;

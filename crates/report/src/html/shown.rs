@@ -3,20 +3,18 @@
 
 use crate::html::sources::Source;
 use crate::summary::{Row, by_wall};
-use crate::summary_table::{Group, Summary};
+use crate::summary_table::Summary;
 use itertools::Itertools;
 use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::size;
 use std::collections::BTreeSet;
 
-/// Rows that are judged alike, of one source and viewport.
+/// All rows of one source and viewport.
 pub struct Shown<'a> {
     /// Index of its source.
     pub source: usize,
     /// All of the source in that viewport.
     pub summary: &'a Summary<'a>,
-    /// Its rows.
-    pub group: &'a Group<'a>,
     /// The same as the terminal shows them.
     pub table: Table,
     /// True if times are the wall clock's.
@@ -29,7 +27,7 @@ pub struct Shown<'a> {
 pub fn shown<'a>(sources: &[Source], all: &'a [(usize, Summary<'a>)]) -> Vec<Shown<'a>> {
     let adapters = sources.iter().map(|source| &source.results.adapter);
     let adapters: BTreeSet<String> = adapters.map(ToString::to_string).collect();
-    let table = |source: usize, summary: &'a Summary, group: &'a Group| {
+    let table = |source: usize, summary: &'a Summary| {
         let results = &sources[source].results;
         let mut title = format!(
             "{}, {}, {}",
@@ -43,29 +41,29 @@ pub fn shown<'a>(sources: &[Source], all: &'a [(usize, Summary<'a>)]) -> Vec<Sho
         Shown {
             source,
             summary,
-            group,
-            table: summary.table(group),
-            by_wall: by_wall(&group.rows),
+            table: summary.table(),
+            by_wall: by_wall(&summary.rows),
             title,
         }
     };
-    let tables = all.iter().flat_map(|(source, summary)| {
-        let groups = summary.groups.iter();
-        groups.map(move |group| table(*source, summary, group))
-    });
-    tables.collect()
+    let tables = all.iter();
+    tables
+        .map(|(source, summary)| table(*source, summary))
+        .collect()
 }
 
 impl Shown<'_> {
     /// The error of a row that was judged: the percentage of wrong pixels outside the band of those
-    /// that face the light, or the root mean square error of shares.
+    /// that face the light; under a light with extent the root mean square error of shares.
     pub fn error(&self, row: &Row) -> Option<f64> {
-        if self.group.is_hard {
-            let wrong = row.wrong();
-            (wrong.facing_light > 0).then(|| 100.0 * wrong.share())
-        } else {
-            row.rmse()
+        if self.summary.is_soft() {
+            return row.rmse();
         }
+        let wrong = row.wrong();
+        // Right at one half and off in its shares is not exact, but less than a pixel wrong.
+        let least = if row.is_exact() { 0.0 } else { 0.5 };
+        let pixels = (wrong.outside_band as f64).max(least);
+        (wrong.facing_light > 0).then(|| 100.0 * pixels / wrong.facing_light as f64)
     }
 
     /// Milliseconds of a frame of a row that may stand on an axis; if `kept` of one in which only
@@ -80,7 +78,7 @@ impl Shown<'_> {
 /// Which times the tables' rows have: true stands for those with what is kept.
 pub fn times(tables: &[Shown]) -> &'static [bool] {
     let keeps = |table: &Shown| {
-        let mut rows = table.group.rows.iter();
+        let mut rows = table.summary.rows.iter();
         rows.any(|row| row.kept_ms(table.by_wall).is_some())
     };
     if tables.iter().any(keeps) {

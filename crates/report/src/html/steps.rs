@@ -11,7 +11,7 @@ const COLOURS: usize = 7;
 /// The bars of each table with GPU times.
 pub fn bars(tables: &[Shown]) -> String {
     let of_table = |(index, table): (usize, &Shown)| {
-        let rows = table.group.rows.iter().map(|row| (row, row.steps()));
+        let rows = table.summary.rows.iter().map(|row| (row, row.steps()));
         let rows: Vec<_> = rows.filter(|(_, steps)| !steps.is_empty()).collect();
         let sum = |steps: &[(&str, f64)]| steps.iter().map(|(_, ms)| ms).sum::<f64>();
         let most = rows

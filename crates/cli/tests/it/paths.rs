@@ -38,10 +38,7 @@ fn figures_lines_and_pictures_say_of_which_path_and_frame_they_are() {
     for (run, cells) in runs.iter().zip(lines.records()) {
         let cells = cells.unwrap();
         let frames = run["sequence"]["frames"].as_array().unwrap();
-        let error = |frame: &Value| match frame["graded"]["rmse"].as_f64() {
-            Some(rmse) => rmse,
-            None => count(&frame["wrong"]) as f64 / count(&frame["facing_light"]) as f64,
-        };
+        let error = |frame: &Value| frame["graded"]["rmse"].as_f64().unwrap();
         let worst = (0..frames.len()).fold(0, |worst, index| {
             if error(&frames[index]) > error(&frames[worst]) {
                 index
@@ -53,15 +50,11 @@ fn figures_lines_and_pictures_say_of_which_path_and_frame_they_are() {
         assert_eq!(cells[column("worst_frame")], worst.to_string(), "{name}");
         let graded = &run["graded"]["rmse_outside_band"];
         let in_csv = &cells[column("rmse_outside_band")];
-        if run["preset"] == "pcf" {
-            let (graded, expected) = (graded.as_f64().unwrap(), outside_band(frames));
-            assert!((graded - expected).abs() < 0.01, "{name}: {graded}");
-            assert!(graded > 0.1 && in_csv.parse::<f64>().unwrap() > 0.1);
-            let rmse: f64 = cells[column("worst_frame_rmse")].parse().unwrap();
-            assert!((rmse - error(&frames[worst])).abs() < 1e-8, "{name}");
-        } else {
-            assert!(graded.is_null() && in_csv.is_empty(), "{name}")
-        }
+        let (graded, expected) = (graded.as_f64().unwrap(), outside_band(frames));
+        assert!((graded - expected).abs() < 0.01, "{name}: {graded}");
+        assert!(graded > 0.1 && in_csv.parse::<f64>().unwrap() > 0.1);
+        let rmse: f64 = cells[column("worst_frame_rmse")].parse().unwrap();
+        assert!((rmse - error(&frames[worst])).abs() < 1e-8, "{name}");
         let images = run["images"].as_object().unwrap();
         assert_eq!(count(&images["frame"]), worst as u64, "{name}");
         for (kind, file) in images.iter().filter(|(kind, _)| *kind != "frame") {

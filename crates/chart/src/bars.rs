@@ -65,8 +65,8 @@ pub(crate) fn draw(
     Ok(())
 }
 
-/// The upper end of the axis.
-fn top(fitted: &[Panel]) -> f64 {
+/// The upper end of a linear axis.
+pub(crate) fn top(fitted: &[Panel]) -> f64 {
     let marks = |series: &Series| series.marks.iter().map(|mark| mark.y).fold(0.0, f64::max);
     let series = fitted.iter().flat_map(|panel| &panel.series);
     let highest = series.map(marks).fold(0.0, f64::max);
@@ -85,7 +85,7 @@ fn label_step(groups: &[String], wide: f64) -> usize {
 }
 
 /// A tick's number without what f64 adds to it.
-fn tick(value: &f64) -> String {
+pub(crate) fn tick(value: &f64) -> String {
     let rounded: f64 = format!("{value:.9e}").parse().unwrap_or(*value);
     rounded.to_string()
 }

@@ -1,6 +1,6 @@
 //! Parts of a chart.
 
-/// One pair of axes: logarithmic, or those of [`Kind::Bars`].
+/// One pair of axes: logarithmic, or linear in [`Kind::Bars`] and [`Kind::Frames`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
     /// Heading above it.
@@ -25,6 +25,9 @@ pub enum Kind {
     Growth,
     /// A bar for each mark, in groups of these names, upwards from 0 on a linear axis.
     Bars(Vec<String>),
+    /// The frames of a path to the right and a figure of each upwards, both on linear axes from 0:
+    /// the marks of a series are joined.
+    Frames,
 }
 
 /// Marks of one colour and shape.
@@ -39,9 +42,10 @@ pub struct Series {
 /// A measurement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mark {
-    /// To the right: finite and above 0; in [`Kind::Bars`] the index of the group.
+    /// To the right: finite and above 0; in [`Kind::Bars`] the index of the group, in
+    /// [`Kind::Frames`] that of the frame.
     pub x: f64,
-    /// Upwards: finite and above 0; in a [`Kind::Front`] and in [`Kind::Bars`] also 0.
+    /// Upwards: finite and above 0; in all kinds but [`Kind::Growth`] also 0.
     pub y: f64,
     /// Index into [`Figure::sizes`](crate::Figure::sizes); 0 where these are empty.
     pub size: usize,

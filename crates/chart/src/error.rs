@@ -12,10 +12,10 @@ pub enum Error {
         /// The panel's title.
         panel: String,
     },
-    /// A value that a logarithmic axis has no place for.
+    /// A value that an axis has no place for.
     #[error(
-        "panel {panel:?}, series {series:?}: ({x}, {y}) has no place on logarithmic axes; values \
-         must be finite and above 0, upwards in a front at least 0"
+        "panel {panel:?}, series {series:?}: ({x}, {y}) has no place on the axes; values must be \
+         finite and above 0, upwards in a front at least 0, over frames both at least 0"
     )]
     Value {
         /// The panel's title.

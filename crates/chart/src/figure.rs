@@ -5,6 +5,7 @@ use crate::{
     canvas::{Canvas, WIDTH, words},
     data::{Kind, Panel},
     error::Error,
+    frames,
     legend::{Entry, Legend, Sign},
     marker::Look,
     panel,
@@ -141,6 +142,7 @@ impl Figure {
                     Kind::Bars(groups) => {
                         canvas.draw(|root| bars::draw(panel, groups, fitted, root, place, look))?;
                     }
+                    Kind::Frames => frames::draw(panel, fitted, canvas, place, look)?,
                     _ => panel::draw(panel, fitted, &self.ticks, canvas, place, look)?,
                 }
             }
@@ -222,10 +224,15 @@ fn check(panel: &Panel, sizes: usize) -> Result<(), Error> {
                 });
             }
         }
-        let zero = panel.kind == Kind::Front && mark.y == 0.0;
-        let is_in = |value: f64| value.is_finite() && value > 0.0;
-        let is_bar = matches!(panel.kind, Kind::Bars(_));
-        if !is_bar && (!is_in(mark.x) || !(zero || is_in(mark.y))) {
+        let is_in = |value: f64, or_zero: bool| {
+            value.is_finite() && (value > 0.0 || (or_zero && value == 0.0))
+        };
+        let zero = match panel.kind {
+            Kind::Front => [false, true],
+            Kind::Growth => [false, false],
+            Kind::Bars(_) | Kind::Frames => [true, true],
+        };
+        if !is_in(mark.x, zero[0]) || !is_in(mark.y, zero[1]) {
             return Err(Error::Value {
                 panel: panel.title.clone(),
                 series: series.name.clone(),

@@ -1,11 +1,12 @@
 //! Charts of measurements: plain data in, SVG out. The crate knows nothing of what was measured.
 //!
 //! A [`Figure`] is one picture of one or several [`Panel`]s that share a legend. Both axes of a
-//! panel are logarithmic, but those of bars. In a [`Kind::Front`], whose values may be 0, zero has
+//! panel are logarithmic, but those of bars and of frames. In a [`Kind::Front`], whose values may be 0, zero has
 //! a strip of its own below the axis, with a lane per series, so that exact methods stand beside
 //! each other instead of nowhere; the Pareto front is drawn, and what is on it is filled. A
 //! [`Kind::Growth`] joins the marks of a series and draws what linear growth would be.
-//! [`Kind::Bars`] stand in groups on a linear axis.
+//! [`Kind::Bars`] stand in groups on a linear axis; [`Kind::Frames`] show how a figure changes along
+//! a path.
 //!
 //! [`Figure::to_svg`] is for files. [`Figure::to_page_svg`] is for a page that has title and legend
 //! of its own: its colours are variables of the page's style, its series and marks are groups that
@@ -42,6 +43,7 @@ mod colours;
 mod data;
 mod error;
 mod figure;
+mod frames;
 mod front;
 mod legend;
 mod marker;

@@ -15,7 +15,7 @@ use plotters::{
 };
 use std::{cmp::Reverse, ops::Range};
 
-/// Height of the axes without strip, and of those of bars, pixels.
+/// Height of the axes without strip, and of linear ones, pixels.
 const AXES: i32 = 300;
 const BARS: i32 = 240;
 /// Above the axes: the title. Right of them: half a label.
@@ -49,7 +49,7 @@ fn scales(fitted: &[Panel]) -> (Scale, Scale) {
 /// Height of a panel whose axes are fitted to these, pixels.
 pub(crate) fn height(fitted: &[Panel]) -> i32 {
     match fitted.first().map(|panel| &panel.kind) {
-        Some(Kind::Bars(_)) => ABOVE + BARS + LABELS.1,
+        Some(Kind::Bars(_) | Kind::Frames) => ABOVE + BARS + LABELS.1,
         _ => ABOVE + AXES + scales(fitted).1.strip().ceil() as i32 + LABELS.1,
     }
 }
@@ -105,10 +105,7 @@ pub(crate) fn draw(
     })?;
     for (series, places) in panel.series.iter().zip(&places) {
         let opacity = if panel.kind == Kind::Growth { 1.0 } else { 0.4 };
-        let line = look(&series.name).colour.mix(opacity).stroke_width(2);
-        let of = format!("data-series=\"{}\"", xml(&series.name));
-        let line = PathElement::new(places.clone(), line);
-        canvas.group(&of, "", |root| Ok(root.draw(&line)?))?;
+        draw_line(canvas, series, places, look(&series.name), opacity)?;
     }
     let marks: Vec<(&Series, &Mark)> = panel
         .series
@@ -137,17 +134,40 @@ pub(crate) fn draw(
     order.sort_by_key(|index| (Reverse(marks[*index].1.size), is_full(index)));
     for index in order {
         let (series, mark) = marks[index];
-        let of = format!(
-            "class=\"mark\" data-series=\"{}\" data-name=\"{}\" aria-label=\"{}\"",
-            xml(&series.name),
-            xml(mark.name()),
-            xml(&mark.about)
-        );
-        canvas.group(&of, &names[index], |root| {
+        draw_mark(canvas, (series, mark), &names[index], |root| {
             look(&series.name).draw(root, places[index], mark.size + larger, is_full(&index))
         })?;
     }
     Ok(())
+}
+
+/// Joins the places of a series.
+pub(crate) fn draw_line(
+    canvas: &mut Canvas,
+    series: &Series,
+    places: &[(i32, i32)],
+    look: Look,
+    opacity: f64,
+) -> Result<(), Error> {
+    let line = PathElement::new(places.to_vec(), look.colour.mix(opacity).stroke_width(2));
+    let of = format!("data-series=\"{}\"", xml(&series.name));
+    canvas.group(&of, "", |root| Ok(root.draw(&line)?))
+}
+
+/// Draws a mark of a series as a group that a page's script finds, with its name as an element.
+pub(crate) fn draw_mark(
+    canvas: &mut Canvas,
+    (series, mark): (&Series, &Mark),
+    name: &str,
+    draw: impl FnOnce(&Root) -> Result<(), Error>,
+) -> Result<(), Error> {
+    let of = format!(
+        "class=\"mark\" data-series=\"{}\" data-name=\"{}\" aria-label=\"{}\"",
+        xml(&series.name),
+        xml(mark.name()),
+        xml(&mark.about)
+    );
+    canvas.group(&of, name, draw)
 }
 
 /// The name of each mark beside it, as an element; empty where there is no room. Those of the front

@@ -6,6 +6,7 @@ use skiagraph_compare::error::CompareError;
 use skiagraph_compare::lists::{entry, place, unique};
 use skiagraph_compare::records::read_back;
 use skiagraph_compare::records::results::{Measured, Results, Run};
+use skiagraph_compare::records::sequence::SequenceFrame;
 use skiagraph_compare::wording::{frames, size};
 use std::{
     collections::BTreeSet,
@@ -172,6 +173,87 @@ pub fn growth(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, Compa
     })
 }
 
+/// Errors over the frames of camera paths: a panel per folder, path and viewport, a line per method
+/// and map size.
+///
+/// # Errors
+/// None of the runs is of a path.
+pub fn frames_of_paths(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, CompareError> {
+    let mut panels = Vec::new();
+    for kept in kept {
+        for viewport in viewports(&kept.results, viewport) {
+            panels.extend(path_panels(
+                drawn(&kept.results, viewport),
+                Run::method_label,
+            ));
+        }
+    }
+    if panels.is_empty() {
+        return Err(CompareError::Input(
+            "there are no frames to draw: no run is of a camera path (compare --path)".into(),
+        ));
+    }
+    Ok(Figure {
+        title: "Errors along camera paths".into(),
+        notes: conditions(kept),
+        columns: panels.len().clamp(1, 2),
+        panels,
+        ..Figure::default()
+    })
+}
+
+/// The errors over the frames of each path of some runs of one viewport: wrong pixels outside the
+/// band, under a light with extent the root mean square error of shares. `name` is that of a run's
+/// series.
+pub fn path_panels<'a>(
+    runs: impl Iterator<Item = (&'a Run, &'a Measured)>,
+    name: impl Fn(&Run) -> String,
+) -> Vec<Panel> {
+    let mut paths: Vec<(&str, Panel)> = Vec::new();
+    for (run, measured) in runs {
+        let Some(sequence) = &measured.sequence else {
+            continue;
+        };
+        let is_soft = run.area.is_some();
+        let at = match paths.iter().position(|(path, _)| *path == run.view) {
+            Some(at) => at,
+            None => {
+                let y = if is_soft {
+                    "RMSE of the shares of light"
+                } else {
+                    "wrong pixels, %"
+                };
+                let panel = Panel {
+                    title: format!("path {}, {}", run.view, size(run.viewport)),
+                    kind: Kind::Frames,
+                    x: "frame".into(),
+                    y: y.into(),
+                    series: Vec::new(),
+                };
+                paths.push((&run.view, panel));
+                paths.len() - 1
+            }
+        };
+        let mark = |(index, frame): (usize, &SequenceFrame)| {
+            let wrong = 100.0 * frame.wrong_outside_band as f64;
+            let error = if is_soft {
+                frame.error()
+            } else {
+                wrong / frame.facing_light.max(1) as f64
+            };
+            Mark {
+                about: format!("{}\nframe {index}: {error:.4}", run.method_label()),
+                ..Mark::new(index as f64, error)
+            }
+        };
+        paths[at].1.series.push(Series {
+            name: name(run),
+            marks: sequence.frames.iter().enumerate().map(mark).collect(),
+        });
+    }
+    paths.into_iter().map(|(_, panel)| panel).collect()
+}
+
 /// A figure as a file.
 ///
 /// # Errors
@@ -244,6 +326,7 @@ pub fn conditions(kept: &[Kept]) -> Vec<String> {
 mod tests {
     use super::*;
     use crate::samples::results as sample;
+    use skiagraph_compare::records::sequence::Sequence;
 
     fn kept() -> Kept {
         let mut results = sample();
@@ -292,6 +375,47 @@ mod tests {
         };
         assert_eq!(at(time), [(55_000.0, 1.125), (1e6, 1.125)]);
         assert_eq!(at(memory)[0].1, 14.582_912);
+    }
+
+    #[test]
+    fn a_path_has_a_panel_and_a_method_a_line_of_its_frames() {
+        let mut kept = kept();
+        assert!(frames_of_paths(&[], None).is_err());
+        let frame = |wrong_outside_band: u64| SequenceFrame {
+            facing_light: 1_000,
+            wrong: wrong_outside_band + 5,
+            wrong_outside_band,
+            graded: Default::default(),
+            rays: None,
+            gpu_ms: None,
+            wall_ms: 1.0,
+            shimmer: None,
+            skipped: Vec::new(),
+            remade: Vec::new(),
+            every_pass: None,
+        };
+        let run = &mut kept.results.runs[0];
+        run.measured.as_mut().unwrap().sequence = Some(Sequence {
+            frames: [0, 30, 7].map(frame).to_vec(),
+            shimmer: Default::default(),
+            every_pass: None,
+        });
+        let mut other = run.clone();
+        other.preset = "pcf".into();
+        kept.results.runs.insert(1, other);
+        let figure = frames_of_paths(&[kept], None).unwrap();
+        let [panel] = &figure.panels[..] else {
+            panic!("{figure:?}")
+        };
+        assert_eq!(panel.title, "path main, 512x256");
+        let names: Vec<&str> = panel.series.iter().map(|line| line.name.as_str()).collect();
+        assert_eq!(names, ["nsm 1024", "pcf 1024"]);
+        let marks = panel.series[0].marks.iter().map(|mark| [mark.x, mark.y]);
+        assert_eq!(
+            marks.collect::<Vec<_>>(),
+            [[0.0, 0.0], [1.0, 3.0], [2.0, 0.7]]
+        );
+        assert!(svg(&figure).is_ok());
     }
 
     #[test]

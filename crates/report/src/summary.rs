@@ -62,6 +62,11 @@ impl<'a> Row<'a> {
         }
     }
 
+    /// Its runs that measured something, one per view.
+    pub fn runs(&self) -> impl Iterator<Item = (&'a Run, &'a Measured)> {
+        self.runs.iter().copied()
+    }
+
     /// On how many views it was measured.
     pub fn views(&self) -> usize {
         self.runs.len()

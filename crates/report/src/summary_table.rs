@@ -64,6 +64,11 @@ impl<'a> Summary<'a> {
         self.rows.iter().any(Row::is_soft)
     }
 
+    /// True if any run is of a camera path.
+    fn are_paths(&self) -> bool {
+        are_paths(self.runs.iter().copied())
+    }
+
     fn views(&self) -> BTreeSet<&str> {
         self.runs.iter().map(|run| run.view.as_str()).collect()
     }
@@ -71,7 +76,7 @@ impl<'a> Summary<'a> {
     /// `view main`, `path walk, 25 frames`, `9 views`.
     pub fn what(&self) -> String {
         let views = self.views();
-        let paths = are_paths(self.runs.iter().copied());
+        let paths = self.are_paths();
         match (views.first(), views.len()) {
             (Some(view), 1) if paths => {
                 let frames = timed_frames(self.results, self.runs.iter().copied());
@@ -146,7 +151,7 @@ impl<'a> Summary<'a> {
 
     /// A row per method and setting, the fastest exact one with a star.
     pub fn table(&self) -> Table {
-        let are_paths = are_paths(self.runs.iter().copied());
+        let are_paths = self.are_paths();
         let by_wall = by_wall(&self.rows);
         let mut heads = vec!["method", WRONG, "%", "in band", "RMSE", "FLIP"];
         if are_paths {

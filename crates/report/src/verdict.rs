@@ -65,10 +65,11 @@ impl Condition {
 /// The sentences with the pixels that they hold of, and how much methods differ on the others.
 fn conditioned(of: Condition, sentences: Vec<String>, all: &[Contender]) -> Vec<String> {
     let Condition { band, facing_light } = of;
-    let judged = percent(facing_light.saturating_sub(band), facing_light);
+    let whole = |count: u64| format!("{:.0} %", 100.0 * count as f64 / facing_light as f64);
+    let judged = whole(facing_light.saturating_sub(band));
     let mut said: Vec<String> = sentences
         .into_iter()
-        .map(|sentence| format!("Of the {judged} of the pixels that can be judged: {sentence}"))
+        .map(|sentence| format!("Of the {judged} that can be judged: {sentence}"))
         .collect();
     let mut others: Vec<&Contender> = all.iter().collect();
     others.sort_by_key(|of| of.wrong.in_band);
@@ -78,7 +79,7 @@ fn conditioned(of: Condition, sentences: Vec<String>, all: &[Contender]) -> Vec<
     said.push(format!(
         "On the other {} the right answer hangs on rounding: no method is right or wrong there. \
          From the reference's choice differ {}.",
-        percent(band, facing_light),
+        whole(band),
         shares.join(" (the least) and ") + if shares.len() > 1 { " (the most)" } else { "" }
     ));
     said
@@ -442,11 +443,11 @@ mod tests {
         assert_eq!(
             said,
             [
-                "Of the 42.100 % of the pixels that can be judged: `hybrid_pcf`: none wrong, 30.0 \
-                 ms, 3.3 x `nsm` (0.121 % wrong).",
-                "On the other 57.900 % the right answer hangs on rounding: no method is right or \
-                 wrong there. From the reference's choice differ `hybrid_pcf` 2.073 % (the least) \
-                 and `nsm` 28.800 % (the most).",
+                "Of the 42 % that can be judged: `hybrid_pcf`: none wrong, 30.0 ms, 3.3 x `nsm` \
+                 (0.121 % wrong).",
+                "On the other 58 % the right answer hangs on rounding: no method is right or wrong \
+                 there. From the reference's choice differ `hybrid_pcf` 2.073 % (the least) and \
+                 `nsm` 28.800 % (the most).",
             ]
         );
         for runs in [
@@ -456,7 +457,7 @@ mod tests {
             let (_, said) = outcome(runs);
             assert!(said.iter().all(|line| !line.contains("exact")), "{said:?}");
             assert!(
-                said[0].starts_with("Of the 42.100 %") && said.len() == 2,
+                said[0].starts_with("Of the 42 %") && said.len() == 2,
                 "{said:?}"
             );
         }

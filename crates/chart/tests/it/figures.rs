@@ -129,6 +129,47 @@ fn bars() -> Figure {
     }
 }
 
+#[test]
+fn marks_of_frames_stand_on_linear_axes_and_are_joined() {
+    let marks = [0.0, 10.0, 5.0].into_iter().enumerate();
+    let series = Series {
+        name: "nsm".into(),
+        marks: marks.map(|(frame, y)| Mark::new(frame as f64, y)).collect(),
+    };
+    let figure = Figure {
+        panels: vec![Panel {
+            title: "walk".into(),
+            kind: Kind::Frames,
+            x: "frame".into(),
+            y: "wrong pixels, %".into(),
+            series: vec![series],
+        }],
+        ..Figure::default()
+    };
+    let svg = figure.to_page_svg(520).unwrap();
+    let document = Document::parse(&svg).unwrap();
+    let is_circle = |node: &Node| node.has_tag_name("circle");
+    let circles = document.descendants().filter(is_circle);
+    let mut places: Vec<[f64; 2]> = circles
+        .map(|node| [number(node, "cx"), number(node, "cy")])
+        .collect();
+    places.dedup();
+    let [first, second, third] = places[..] else {
+        panic!("{places:?}")
+    };
+    // Alike steps to the right; half as high is half way up.
+    assert!(
+        (second[0] - first[0] - (third[0] - second[0])).abs() <= 1.0,
+        "{places:?}"
+    );
+    assert!(
+        ((first[1] + second[1]) / 2.0 - third[1]).abs() <= 1.0,
+        "{places:?}"
+    );
+    let joined = format!("{},{} {},{}", first[0], first[1], second[0], second[1]);
+    assert!(svg.contains(&joined), "no line through {joined}");
+}
+
 fn number(node: Node, name: &str) -> f64 {
     node.attribute(name).unwrap_or_default().parse().unwrap()
 }
@@ -502,6 +543,8 @@ fn what_has_no_place_is_refused_by_name() {
     let mut empty = growth();
     empty.panels[2].series.clear();
     assert!(told(empty.to_svg()).contains("\"forest\" has no marks"));
+    assert!(with(mark(0.0, 0.0, 0), Kind::Frames).is_ok());
+    assert!(with(mark(1.0, -0.5, 0), Kind::Frames).is_err());
     // A single mark still has axes around it.
     assert!(with(mark(7.0, 7.0, 0), Kind::Front).is_ok());
 }

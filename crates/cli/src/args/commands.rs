@@ -161,6 +161,9 @@ pub enum ChartKind {
     /// Time and memory against the number of triangles: two panels per scene, view and viewport, a
     /// line per method and map size; give a folder for each size of a scene.
     Growth,
+    /// Errors over the frames of camera paths: a panel per folder, path and viewport, a line per
+    /// method and map size.
+    Frames,
 }
 
 /// `skiagraph report`.

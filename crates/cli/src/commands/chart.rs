@@ -29,6 +29,7 @@ pub fn chart(args: &ChartArgs) -> Result<(), CliError> {
     let figure = match args.kind {
         ChartKind::Front => charts::front(&kept, viewport)?,
         ChartKind::Growth => charts::growth(&kept, viewport)?,
+        ChartKind::Frames => charts::frames_of_paths(&kept, viewport)?,
     };
     for line in charts::unavailable(&kept) {
         note(&line);

@@ -1,5 +1,6 @@
 //! Charts of the page, one for each choice that it offers.
 
+use crate::charts::path_panels;
 use crate::html::shown::{Shown, part, times};
 use crate::summary::Row;
 use skiagraph_chart::{Error, Figure, Kind, Mark, Panel, Series, xml};
@@ -41,6 +42,20 @@ pub fn fronts(tables: &[Shown]) -> String {
         }
     }
     html
+}
+
+/// Errors over the frames of the camera paths of each table. Lines look as their methods do.
+pub fn paths(tables: &[Shown]) -> String {
+    let of_table = |(index, table): (usize, &Shown)| {
+        let runs = table.summary.rows.iter().flat_map(Row::runs);
+        let panels = path_panels(runs, |run| run.preset.clone()).into_iter();
+        let chart = |panel| {
+            let svg = figure(tables, vec![panel]).to_page_svg(HALF);
+            part("path", &[index], None, &drawn(svg))
+        };
+        panels.map(chart).collect::<String>()
+    };
+    tables.iter().enumerate().map(of_table).collect()
 }
 
 /// Each row is a series, so that it has a lane of its own where it is exact.

@@ -70,6 +70,7 @@ fn page_within(sources: &[Source], reports: &[Report], limit: usize) -> Page {
         .replace("<!--TABLES-->", &rows::tables(&tables))
         .replace("<!--STEPS-->", &steps::bars(&tables))
         .replace("<!--GROWTHS-->", &charts::growths(&tables))
+        .replace("<!--PATHS-->", &charts::paths(&tables))
         .replace("<!--STRESS-->", &stress::matrices(reports));
     let filled = |pictures: &Pictures| {
         // Last, since anything may stand in it.

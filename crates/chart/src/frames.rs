@@ -1,0 +1,59 @@
+//! A panel over the frames of a path: linear from 0, the marks of a series joined.
+
+use crate::{
+    bars::{tick, top},
+    canvas::{Canvas, words},
+    data::Panel,
+    error::Error,
+    marker::Look,
+    panel::{ABOVE, builder, draw_line, draw_mark, label},
+    text::HEAD,
+};
+
+/// Draws a panel, its axes fitted to several, into a rectangle of the canvas: corner and size.
+pub(crate) fn draw(
+    panel: &Panel,
+    fitted: &[Panel],
+    canvas: &mut Canvas,
+    (corner, size): ((i32, i32), (i32, i32)),
+    look: impl Fn(&str) -> Look,
+) -> Result<(), Error> {
+    let series = fitted.iter().flat_map(|panel| &panel.series);
+    let marks = series.flat_map(|series| &series.marks);
+    let last = marks.map(|mark| mark.x).fold(1.0, f64::max);
+    let places: Vec<Vec<(i32, i32)>> = canvas.draw(|root| {
+        let mut axes = builder(&root.clone().shrink(corner, size))
+            .build_cartesian_2d(0.0..last, 0.0..top(fitted))?;
+        let (across, _) = axes.plotting_area().get_pixel_range();
+        words(
+            root,
+            (across.start, corner.1 + ABOVE / 2),
+            HEAD,
+            &panel.title,
+        )?;
+        let mut mesh = axes.configure_mesh();
+        mesh.y_labels(7)
+            .max_light_lines(2)
+            .x_label_formatter(&tick)
+            .y_label_formatter(&tick);
+        label(&mut mesh, panel).draw()?;
+        let series = panel.series.iter();
+        let places = series.map(|series| {
+            let marks = series.marks.iter();
+            marks
+                .map(|mark| axes.backend_coord(&(mark.x, mark.y)))
+                .collect()
+        });
+        Ok(places.collect())
+    })?;
+    for (series, places) in panel.series.iter().zip(&places) {
+        let look = look(&series.name);
+        draw_line(canvas, series, places, look, 1.0)?;
+        for (mark, &place) in series.marks.iter().zip(places) {
+            draw_mark(canvas, (series, mark), "", |root| {
+                look.draw(root, place, 0, true)
+            })?;
+        }
+    }
+    Ok(())
+}

@@ -5,8 +5,8 @@
 //! a strip of its own below the axis, with a lane per series, so that exact methods stand beside
 //! each other instead of nowhere; the Pareto front is drawn, and what is on it is filled. A
 //! [`Kind::Growth`] joins the marks of a series and draws what linear growth would be.
-//! [`Kind::Bars`] stand in groups on a linear axis; [`Kind::Frames`] show how a figure changes along
-//! a path.
+//! [`Kind::Bars`] stand in groups on a linear axis; [`Kind::Frames`] show how a figure changes
+//! along a path.
 //!
 //! [`Figure::to_svg`] is for files. [`Figure::to_page_svg`] is for a page that has title and legend
 //! of its own: its colours are variables of the page's style, its series and marks are groups that

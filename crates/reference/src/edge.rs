@@ -21,9 +21,9 @@ const NEAR: f64 = 2.0;
 /// the light beside another that does, where one is lit and the other in shadow.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct EdgeDistances {
-    /// Of the wrongly lit pixels.
+    /// Distances of the wrongly lit pixels.
     pub lit: Distances,
-    /// Of the pixels wrongly in shadow.
+    /// Distances of the pixels wrongly in shadow.
     pub shadow: Distances,
 }
 

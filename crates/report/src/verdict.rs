@@ -135,7 +135,7 @@ impl<'a> Contender<'a> {
                 facing_light,
                 ..
             } = self.wrong;
-            // Of all, or of those that can be judged.
+            // Where much lies in the band, the others are judged.
             let judged = match self.condition {
                 Some(_) => facing_light.saturating_sub(band),
                 None => facing_light,

@@ -1,10 +1,10 @@
 //! Charts of measurements: plain data in, SVG out. The crate knows nothing of what was measured.
 //!
 //! A [`Figure`] is one picture of one or several [`Panel`]s that share a legend. Both axes of a
-//! panel are logarithmic, but those of bars and of frames. In a [`Kind::Front`], whose values may be 0, zero has
-//! a strip of its own below the axis, with a lane per series, so that exact methods stand beside
-//! each other instead of nowhere; the Pareto front is drawn, and what is on it is filled. A
-//! [`Kind::Growth`] joins the marks of a series and draws what linear growth would be.
+//! panel are logarithmic, but those of bars and of frames. In a [`Kind::Front`], whose values may
+//! be 0, zero has a strip of its own below the axis, with a lane per series, so that exact methods
+//! stand beside each other instead of nowhere; the Pareto front is drawn, and what is on it is
+//! filled. A [`Kind::Growth`] joins the marks of a series and draws what linear growth would be.
 //! [`Kind::Bars`] stand in groups on a linear axis; [`Kind::Frames`] show how a figure changes
 //! along a path.
 //!

@@ -7,6 +7,7 @@
 mod args;
 mod commands;
 mod error;
+mod own_mesh;
 mod scene_selection;
 mod terminal;
 

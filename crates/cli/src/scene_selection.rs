@@ -1,17 +1,15 @@
 //! From the scene arguments to a loaded scene and the views to draw.
 
 use crate::args::shared::SceneArgs;
-use crate::args::values::LightArgument;
 use crate::error::CliError;
+use crate::own_mesh::{self, Chosen};
 use crate::terminal::console::note;
 use glam::DVec3;
-use itertools::Itertools;
 use skiagraph_compare::error::CompareError;
 use skiagraph_compare::measuring::view_or_path::{ViewOrPath, under_lights};
 use skiagraph_compare::wording::{did_you_mean, unknown};
 use skiagraph_scene::{
-    Concave, DirectionalLight, Light, MaterialUse, ObjSetup, QuadDiagonal, Scene, SceneError,
-    SceneLibrary, SceneRequest, View,
+    DirectionalLight, Light, MeshFile, Scene, SceneError, SceneLibrary, SceneRequest, View,
 };
 use std::path::Path;
 
@@ -30,11 +28,8 @@ impl SceneSelection {
     /// # Errors
     /// A scene that cannot be loaded, a view that it does not have, a camera that is none.
     pub fn load(args: &SceneArgs) -> Result<Self, CliError> {
-        let request = SceneRequest {
-            argument: args.scene.clone(),
-            obj: bare_setup(args),
-        };
-        if request.obj.is_none() && (args.materials.is_some() || args.concave.is_some()) {
+        let is_mesh = MeshFile::is_one(Path::new(&args.scene));
+        if !is_mesh && (args.materials.is_some() || args.concave.is_some()) {
             return Err(CliError::Usage(format!(
                 "--materials and --concave are of a mesh file (.obj, .gltf, .glb); a scene file \
                  says `materials` and `concave` itself, so leave them out with --scene {}",
@@ -49,8 +44,18 @@ impl SceneSelection {
                 args.scene
             ));
         }
-        let loaded = library.load(&request);
-        let (mut scene, report) = loaded.map_err(|error| explain(error, args, &library))?;
+        let loaded = if is_mesh {
+            own_mesh::load(args)
+        } else {
+            let request = SceneRequest {
+                argument: args.scene.clone(),
+                obj: None,
+            };
+            let loaded = library.load(&request);
+            loaded.map(|(scene, report)| (scene, report, Chosen::default()))
+        };
+        let loaded = loaded.map_err(|error| explain(error, args, &library));
+        let (scene, report, chosen) = loaded?;
         if report.has_warnings() {
             note(&format!(
                 "{}: {}",
@@ -58,12 +63,8 @@ impl SceneSelection {
                 report.to_string().trim_end().replace('\n', "; ")
             ));
         }
-        let is_bare = request.obj.is_some();
-        if is_bare {
-            look_at_all(&mut scene, args);
-        }
         let views = choose(&scene, args.view.as_deref())?;
-        let views = override_views(&scene, views, args, is_bare)?;
+        let views = override_views(&scene, views, args, chosen)?;
         let views = under_lights(&scene, views, args.light_name())?;
         if let Some(text) = from_below(&views, args) {
             note(&text);
@@ -74,7 +75,7 @@ impl SceneSelection {
 
 /// That a sun of one's own shines upwards, which most often is its direction turned round.
 fn from_below(views: &[View], args: &SceneArgs) -> Option<String> {
-    let direction = own_light(args)?;
+    let direction = args.own_light()?;
     let up = views.first()?.up;
     let three = |v: DVec3| format!("{},{},{}", v.x, v.y, v.z);
     (direction.dot(up) > 0.0).then(|| {
@@ -106,86 +107,8 @@ fn explain(error: SceneError, args: &SceneArgs, library: &SceneLibrary) -> CliEr
     }
 }
 
-/// Returns the parts that a bare mesh file lacks. Its view is put in place once its bounds are
-/// known.
-fn bare_setup(args: &SceneArgs) -> Option<ObjSetup> {
-    let extension = Path::new(&args.scene).extension()?;
-    let mut known = ["obj", "gltf", "glb"].into_iter();
-    known.find(|known| extension.eq_ignore_ascii_case(known))?;
-    Some(ObjSetup {
-        view: View {
-            name: "main".into(),
-            eye: DVec3::ZERO,
-            direction: DVec3::NEG_Z,
-            up: DVec3::Y,
-            fov_y_degrees: 60.0,
-            near: 1.0,
-            far: NEAR_TO_FAR,
-            light: None,
-        },
-        light: DirectionalLight::new(own_light(args).unwrap_or(FALLBACK_LIGHT)).into(),
-        quads: QuadDiagonal::default(),
-        concave: args.concave.map_or_else(Concave::default, Into::into),
-        materials: args.materials.map_or_else(MaterialUse::default, Into::into),
-    })
-}
-
-/// The direction in which light travels over a mesh by default: a high sun, from the side.
-const FALLBACK_LIGHT: DVec3 = DVec3::new(-0.4, -1.0, -0.55);
-
 /// A depth buffer of 32-bit floats tells depths apart well over this range.
 const NEAR_TO_FAR: f64 = 1e4;
-
-fn own_light(args: &SceneArgs) -> Option<DVec3> {
-    match &args.light {
-        Some(LightArgument::Direction(direction)) => Some(*direction),
-        Some(LightArgument::Name(_)) | None => None,
-    }
-}
-
-/// Looks at a bare mesh from where all of it is seen, as far as no argument says otherwise, and
-/// says so.
-fn look_at_all(scene: &mut Scene, args: &SceneArgs) {
-    let (Some((min, max)), Some(view)) = (scene.mesh.bounds(), scene.views.first_mut()) else {
-        return;
-    };
-    let (min, max) = (min.as_dvec3(), max.as_dvec3());
-    let centre = (min + max) * 0.5;
-    let radius = ((max - min).length() * 0.5).max(f64::MIN_POSITIVE);
-    let fov = args.fov.unwrap_or(view.fov_y_degrees).to_radians();
-    let distance = radius / (fov * 0.5).sin();
-    view.eye = centre + DVec3::new(0.5, 0.6, 1.0).normalize() * distance;
-    if let Some(eye) = args.eye {
-        view.eye = eye;
-    }
-    let towards = centre - view.eye;
-    view.direction = if towards == DVec3::ZERO {
-        DVec3::NEG_Z
-    } else {
-        towards
-    };
-    let given = [
-        args.eye.is_some(),
-        args.look.is_some(),
-        own_light(args).is_some(),
-    ];
-    if given == [true; 3] {
-        return;
-    }
-    let three = |v: DVec3| format!("{:.4},{:.4},{:.4}", v.x, v.y, v.z);
-    let chosen = [
-        ("--eye", three(view.eye)),
-        ("--look", three(view.direction.normalize())),
-        ("--light", three(FALLBACK_LIGHT)),
-    ];
-    let chosen = chosen.iter().zip(given).filter(|(_, given)| !given);
-    let mut chosen = chosen.map(|((flag, value), _)| format!("{flag} {value}"));
-    note(&format!(
-        "{}: a mesh file holds no view and no light; chosen: {}",
-        args.scene,
-        chosen.join(" ")
-    ));
-}
 
 /// The camera paths of a scene that `--path` names, under the lights that `light` does.
 ///
@@ -197,7 +120,7 @@ pub fn paths(
     name: &str,
     light: Option<&str>,
 ) -> Result<Vec<ViewOrPath>, CliError> {
-    if has_own_view(args) {
+    if args.has_own_camera() || args.own_light().is_some() {
         return Err(CliError::Usage(format!(
             "--path {name} brings its camera and its light: leave out --eye, --look, --up, --fov, \
              --near, --far and --light x,y,z"
@@ -208,24 +131,18 @@ pub fn paths(
     Ok(ViewOrPath::paths(scene, paths, name, light)?)
 }
 
-fn has_own_view(args: &SceneArgs) -> bool {
-    [args.eye, args.look, args.up].iter().any(Option::is_some)
-        || [args.fov, args.near, args.far].iter().any(Option::is_some)
-        || own_light(args).is_some()
-}
-
 /// Puts what the arguments say of the camera and the light into views, which are then called
-/// `own`; `is_bare` if the view was made here.
+/// `own`, but for one that was chosen.
 fn override_views(
     scene: &Scene,
     views: Vec<View>,
     args: &SceneArgs,
-    is_bare: bool,
+    chosen: Chosen,
 ) -> Result<Vec<View>, CliError> {
-    if !has_own_view(args) && !is_bare {
+    let light = args.own_light().filter(|_| !chosen.light);
+    if !args.has_own_camera() && light.is_none() && !chosen.view {
         return Ok(views);
     }
-    let light = own_light(args).filter(|_| !is_bare);
     if args.eye.is_some() && views.len() > 1 {
         return Err(CliError::Usage(
             "--eye is one view of your own: leave out --view all, or --eye".into(),
@@ -234,7 +151,7 @@ fn override_views(
     let several = views.len() > 1;
     let own = |view: View| {
         let mut own = View {
-            name: match (is_bare, several) {
+            name: match (chosen.view, several) {
                 (true, _) => view.name.clone(),
                 (_, true) => format!("{}-own", view.name),
                 (_, false) => "own".into(),
@@ -251,7 +168,7 @@ fn override_views(
                 kind: DirectionalLight::new(direction).into(),
             });
         }
-        if args.eye.is_some() || is_bare {
+        if args.eye.is_some() || chosen.view {
             fit_planes(&mut own, scene, args);
         } else {
             own.far = args.far.unwrap_or(own.far);

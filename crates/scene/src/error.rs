@@ -164,8 +164,9 @@ pub enum SceneError {
         /// Why it cannot be had.
         reason: String,
     },
-    /// A mesh file came without the view and the light that a scene file would hold.
-    #[error("{}: a mesh file holds no view and no light: give --eye x,y,z --look x,y,z \
+    /// A mesh file without cameras or without lights came without the view and the light that a
+    /// scene file would hold.
+    #[error("{}: it holds no camera or no light: give --eye x,y,z --look x,y,z \
         (direction) and --light x,y,z (the direction in which the light travels); --fov DEGREES, \
         --near and --far if the defaults do not suit it", path.display())]
     ObjNeedsView {

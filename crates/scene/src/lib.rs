@@ -32,6 +32,8 @@ pub mod material;
 #[cfg(feature = "files")]
 mod material_use;
 pub mod mesh;
+#[cfg(feature = "files")]
+pub mod mesh_file;
 pub mod motion;
 pub mod movable;
 #[cfg(feature = "files")]
@@ -74,6 +76,8 @@ pub use material::{Material, Surfaces};
 #[cfg(feature = "files")]
 pub use material_use::MaterialUse;
 pub use mesh::{Group, Mesh};
+#[cfg(feature = "files")]
+pub use mesh_file::{MeshFile, MeshFileOptions};
 pub use motion::{Motion, PartMotion, RigidKey};
 pub use movable::{Movable, MoveError, MovedPart, PartChange};
 #[cfg(feature = "files")]

@@ -7,6 +7,7 @@ use crate::{
     light_kind::Light,
     limit::Limit,
     material_use::MaterialUse,
+    mesh_file::{MeshFile, MeshFileOptions, has_extension},
     obj::{
         options::{Concave, ObjOptions, QuadDiagonal},
         read::load_obj,
@@ -49,8 +50,8 @@ pub struct SceneRequest {
     /// `.gltf` or `.glb` file. Behind a scene whose mesh is generated in any size may stand another
     /// one: `city:1000000`.
     pub argument: String,
-    /// View and light of a bare mesh file; must be absent for any other scene, which brings its
-    /// own.
+    /// View and light of a bare mesh file, instead of those of its cameras and lights, without
+    /// which it needs them; must be absent for any other scene, which brings its own.
     pub obj: Option<ObjSetup>,
 }
 
@@ -120,7 +121,7 @@ impl SceneLibrary {
     /// found (with every place searched), a bare `.obj` without view and light.
     pub fn load(&self, request: &SceneRequest) -> Result<(Scene, ImportReport), SceneError> {
         let path = Path::new(&request.argument);
-        if is_bare(path) {
+        if MeshFile::is_one(path) {
             return load_bare(path, request.obj.as_ref());
         }
         if request.obj.is_some() {
@@ -144,7 +145,7 @@ impl SceneLibrary {
     /// # Errors
     /// [`SceneError`]: no such scene, a broken scene file.
     pub fn paths(&self, argument: &str) -> Result<Vec<CameraPath>, SceneError> {
-        if is_bare(Path::new(argument)) {
+        if MeshFile::is_one(Path::new(argument)) {
             return Ok(Vec::new());
         }
         let (_, scene) = self.parse(sized(argument).0)?;
@@ -382,53 +383,37 @@ fn resize(scene: &mut SceneFile, size: &str) -> Result<(), String> {
 }
 
 fn load_bare(path: &Path, setup: Option<&ObjSetup>) -> Result<(Scene, ImportReport), SceneError> {
-    let Some(setup) = setup else {
-        return Err(SceneError::ObjNeedsView {
-            path: path.to_owned(),
-        });
+    let needs_view = || SceneError::ObjNeedsView {
+        path: path.to_owned(),
     };
-    setup
-        .view
-        .check()
-        .and_then(|()| setup.light.check())
-        .map_err(|reason| SceneError::BadView {
+    if setup.is_none() && has_extension(path, "obj") {
+        return Err(needs_view());
+    }
+    let options = setup.map_or_else(MeshFileOptions::default, |setup| MeshFileOptions {
+        quads: setup.quads,
+        concave: setup.concave,
+        materials: setup.materials,
+    });
+    if let Some(setup) = setup {
+        let checked = setup.view.check().and_then(|()| setup.light.check());
+        checked.map_err(|reason| SceneError::BadView {
             path: path.to_owned(),
             reason,
         })?;
-    let options = ObjOptions {
-        quads: setup.quads,
-        concave: setup.concave,
-        materials: setup.materials.into(),
-        ..ObjOptions::default()
+    }
+    let file = MeshFile::load(path, &options)?;
+    let (views, lights) = match setup {
+        Some(setup) => (vec![setup.view.clone()], vec![setup.light.clone()]),
+        None => (file.views, file.lights),
     };
-    let (mesh, report) = if has_extension(path, "obj") {
-        load_obj(path, &options)?
-    } else {
-        load_gltf(path, setup.materials)?
+    if views.is_empty() || lights.is_empty() {
+        return Err(needs_view());
+    }
+    let scene = Scene {
+        name: file.name,
+        mesh: file.mesh,
+        views,
+        lights,
     };
-    let name = path
-        .file_stem()
-        .map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-    Ok((
-        Scene {
-            name,
-            mesh,
-            views: vec![setup.view.clone()],
-            lights: vec![setup.light.clone()],
-        },
-        report,
-    ))
-}
-
-/// True for a mesh file that is named without a scene file.
-fn is_bare(path: &Path) -> bool {
-    let extensions = ["obj", "gltf", "glb"];
-    extensions
-        .iter()
-        .any(|extension| has_extension(path, extension))
-}
-
-fn has_extension(path: &Path, extension: &str) -> bool {
-    path.extension()
-        .is_some_and(|found| found.eq_ignore_ascii_case(extension))
+    Ok((scene, file.report))
 }

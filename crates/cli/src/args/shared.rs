@@ -10,7 +10,7 @@ use skiagraph_compare::graphs::preset::Preset;
 use skiagraph_compare::measuring::device::GpuRequest;
 use skiagraph_compare::size::Size;
 use skiagraph_graph::Sources;
-use skiagraph_scene::{Concave, MaterialUse};
+use skiagraph_scene::{Concave, MaterialUse, MeshFileOptions, QuadDiagonal};
 use std::{sync::Arc, time::Duration};
 
 /// The GPU, and how much of it and of our time a graph may take.
@@ -83,14 +83,16 @@ pub struct SceneArgs {
     /// Built-in scene, scene file (.ron), name in scenes/, or a mesh (.obj, .gltf, .glb).
     #[arg(long, default_value = "park", value_name = "SCENE")]
     pub scene: String,
-    /// A view of the scene, or `all`. Without it: the scene's first view.
+    /// A view of the scene, or `all`. Without it: the scene's first view. Cameras of a glTF file
+    /// are views.
     #[arg(long, value_name = "NAME")]
     pub view: Option<String>,
-    /// Eye position, instead of the view's. Without it, for a mesh: where all of it is seen.
+    /// Eye position, instead of the view's. Without it, for a mesh without cameras: where all of it
+    /// is seen.
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
     pub eye: Option<DVec3>,
-    /// Direction in which the eye looks, instead of the view's. Without it, for a mesh: at its
-    /// middle.
+    /// Direction in which the eye looks, instead of the view's. Without it, for a mesh without
+    /// cameras: at its middle.
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
     pub look: Option<DVec3>,
     /// A light of the scene, or `all`: each view under each. Without it: the scene's first light,
@@ -159,6 +161,29 @@ impl From<ConcavePolygons> for Concave {
 }
 
 impl SceneArgs {
+    /// How they have a mesh file read.
+    pub fn mesh_file_options(&self) -> MeshFileOptions {
+        MeshFileOptions {
+            quads: QuadDiagonal::default(),
+            concave: self.concave.map_or_else(Concave::default, Into::into),
+            materials: self.materials.map_or_else(MaterialUse::default, Into::into),
+        }
+    }
+
+    /// The direction in which a sun of one's own shines.
+    pub fn own_light(&self) -> Option<DVec3> {
+        match &self.light {
+            Some(LightArgument::Direction(direction)) => Some(*direction),
+            Some(LightArgument::Name(_)) | None => None,
+        }
+    }
+
+    /// Returns true if they say anything of the camera.
+    pub fn has_own_camera(&self) -> bool {
+        [self.eye, self.look, self.up].iter().any(Option::is_some)
+            || [self.fov, self.near, self.far].iter().any(Option::is_some)
+    }
+
     /// The name of the light that they ask for, if it is one of the scene's.
     pub fn light_name(&self) -> Option<&str> {
         match &self.light {

@@ -16,9 +16,10 @@ pub(super) enum Kind {
     Unknown,
 }
 
-const FOLLOWED: [&str; 6] = [
+const FOLLOWED: [&str; 7] = [
     "EXT_mesh_gpu_instancing",
     "EXT_mesh_primitive_restart",
+    "KHR_lights_punctual",
     "KHR_materials_pbrSpecularGlossiness",
     "KHR_mesh_quantization",
     "KHR_node_visibility",
@@ -131,7 +132,6 @@ mod tests {
             "FB_geometry_metadata",
             "KHR_animation_pointer",
             "KHR_audio_emitter",
-            "KHR_lights_punctual",
             "KHR_materials_dispersion",
             "KHR_materials_variants",
             "KHR_texture_basisu",

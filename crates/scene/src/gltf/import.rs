@@ -9,6 +9,7 @@ use super::{
     materials::Reader,
     nodes::Nodes,
     pose::{self, Vertices, of_normals, vectors},
+    scene::GltfScene,
     vertex_alpha::Materials,
 };
 use crate::{
@@ -33,11 +34,25 @@ const MOST_CORNERS: usize = 1 << 28;
 /// [`SceneError`]: what cannot be read, or is damaged; what the file requires and this program does
 /// not know; a file without triangles.
 pub fn load_gltf(path: &Path, materials: MaterialUse) -> Result<(Mesh, ImportReport), SceneError> {
-    let bytes = GLTF_FILE.read(path).map_err(|reason| SceneError::Read {
+    parse_gltf(&read(path)?, path, materials)
+}
+
+/// Reads such a file with its cameras and lights.
+///
+/// # Errors
+/// As [`load_gltf`].
+pub fn load_gltf_scene(
+    path: &Path,
+    materials: MaterialUse,
+) -> Result<(Mesh, GltfScene, ImportReport), SceneError> {
+    parse_gltf_scene(&read(path)?, path, materials)
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
+    GLTF_FILE.read(path).map_err(|reason| SceneError::Read {
         path: path.to_owned(),
         reason,
-    })?;
-    parse_gltf(&bytes, path, materials)
+    })
 }
 
 /// Reads the bytes of a `.gltf` or `.glb` file; other files that it names are looked for beside
@@ -50,6 +65,18 @@ pub fn parse_gltf(
     path: &Path,
     materials: MaterialUse,
 ) -> Result<(Mesh, ImportReport), SceneError> {
+    parse_gltf_scene(bytes, path, materials).map(|(mesh, _, report)| (mesh, report))
+}
+
+/// Reads the bytes of such a file with its cameras and lights.
+///
+/// # Errors
+/// As [`parse_gltf`].
+pub fn parse_gltf_scene(
+    bytes: &[u8],
+    path: &Path,
+    materials: MaterialUse,
+) -> Result<(Mesh, GltfScene, ImportReport), SceneError> {
     let fail = |(place, reason)| SceneError::Gltf {
         path: path.to_owned(),
         place,
@@ -83,10 +110,12 @@ pub fn parse_gltf(
         builder,
         corners: 0,
     };
-    import.read_nodes().map_err(fail)?;
+    let nodes = Nodes::new(&document, &beside).map_err(fail)?;
+    import.read_nodes(nodes.as_ref()).map_err(fail)?;
     let (mesh, report) = import.finish();
     check_read(&mesh, &report, path)?;
-    Ok((mesh, report))
+    let scene = GltfScene::new(&beside.placements, nodes.as_ref(), mesh.bounds());
+    Ok((mesh, scene, report))
 }
 
 fn read_materials(
@@ -150,8 +179,9 @@ impl<'a> Import<'a> {
         self.builder.finish(materials)
     }
 
-    fn read_nodes(&mut self) -> Result<(), Fault> {
-        let Some(nodes) = Nodes::new(self.document, self.beside)? else {
+    /// Those of the scene; of a document without scenes all meshes.
+    fn read_nodes(&mut self, nodes: Option<&Nodes<'a>>) -> Result<(), Fault> {
+        let Some(nodes) = nodes else {
             for mesh in self.document.meshes() {
                 let placing = Placing {
                     group: group(&mesh, None),
@@ -166,7 +196,7 @@ impl<'a> Import<'a> {
         };
         for node in &nodes.seen {
             let Some(mesh) = node.mesh() else { continue };
-            let placing = self.placing(node, &mesh, &nodes);
+            let placing = self.placing(node, &mesh, nodes);
             let placing = placing.map_err(|why| (format!("node {}", node.index()), why))?;
             self.read_mesh(&mesh, &placing)?;
         }

@@ -4,7 +4,8 @@
 //! with the transforms of their nodes and instances, morph targets by their weights, skins in the
 //! pose of their joints' nodes; animations stand still. `alphaMode: MASK` is a mask, which the
 //! alpha of vertices is a part of; `BLEND` counts as opaque. Primitives without normals are flat.
-//! Parts that are passed over stand in the report.
+//! Parts that are passed over stand in the report. Cameras and lights (KHR_lights_punctual) are a
+//! [`GltfScene`].
 
 mod accessor;
 mod beside;
@@ -15,11 +16,15 @@ mod extensions;
 mod fault;
 mod import;
 mod materials;
+mod names;
 mod nodes;
+mod placements;
 mod pose;
 mod prepare;
 mod prepare_looks;
 mod prepare_storage;
+mod scene;
 mod vertex_alpha;
 
-pub use import::{load_gltf, parse_gltf};
+pub use import::{load_gltf, load_gltf_scene, parse_gltf, parse_gltf_scene};
+pub use scene::GltfScene;

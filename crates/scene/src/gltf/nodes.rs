@@ -10,6 +10,8 @@ use std::collections::HashMap;
 pub(super) struct Nodes<'a> {
     /// Those that have a mesh and are not hidden, in the order of the file, depth first.
     pub seen: Vec<Node<'a>>,
+    /// All of the scene in that order, and whether they are seen.
+    pub in_scene: Vec<(usize, bool)>,
     /// Where nodes stand: those of the scene, and joints that are in none.
     pub worlds: HashMap<usize, DMat4>,
 }
@@ -61,6 +63,9 @@ impl<'a> Nodes<'a> {
                 return Err((place(), why.to_owned()));
             }
             let seen = seen && !beside.hidden.contains(&node.index());
+            if is_scene {
+                self.in_scene.push((node.index(), seen));
+            }
             let children: Vec<_> = node.children().collect();
             open.extend(
                 children

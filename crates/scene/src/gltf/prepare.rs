@@ -6,6 +6,7 @@ use super::{
     beside::{Beside, Instances, each, index, items, taken},
     extensions::{self, Kind},
     fault::Fault,
+    placements::Placements,
     prepare_looks, prepare_storage,
 };
 use crate::{error::beginning, material_use::MaterialUse};
@@ -16,9 +17,11 @@ use serde_json::Value;
 /// # Errors
 /// The place of what cannot be read without an extension, and the way out.
 pub(super) fn prepare(root: &mut Value, materials: MaterialUse) -> Result<Beside, Fault> {
-    let mut beside = Beside::default();
+    let mut beside = Beside {
+        placements: Placements::read(root),
+        ..Beside::default()
+    };
     required(root, &mut beside)?;
-    remark_lights(root, &mut beside);
     if let Some(fields) = root.as_object_mut() {
         for unused in [
             "animations",
@@ -70,16 +73,6 @@ fn required(root: &Value, beside: &mut Beside) -> Result<(), Fault> {
         beside.remarks.insert(text);
     }
     Ok(())
-}
-
-fn remark_lights(root: &Value, beside: &mut Beside) {
-    let lights = root.pointer("/extensions/KHR_lights_punctual/lights");
-    let count = lights.and_then(Value::as_array).map_or(0, Vec::len);
-    if count > 0 {
-        let lights = crate::error::plural(count, "light", "lights");
-        let text = format!("{lights} of the file (KHR_lights_punctual) not taken: give --light");
-        beside.remarks.insert(text);
-    }
 }
 
 fn nodes(root: &mut Value, beside: &mut Beside) {

@@ -464,8 +464,8 @@ fn a_bare_obj_needs_a_view_and_a_light() {
     let path = folder.path().join("T.OBJ");
     fs::write(&path, TRIANGLE).unwrap();
     let library = SceneLibrary::default();
-    assert_snapshot!(library.load(&request("t.obj")).unwrap_err(), @"t.obj: a mesh file holds no \
-        view and no light: give --eye x,y,z --look x,y,z (direction) and --light x,y,z (the \
+    assert_snapshot!(library.load(&request("t.obj")).unwrap_err(), @"t.obj: it holds no camera \
+        or no light: give --eye x,y,z --look x,y,z (direction) and --light x,y,z (the \
         direction in which the light travels); --fov DEGREES, --near and --far if the defaults do \
         not suit it");
     let (scene, report) = library

@@ -1,0 +1,307 @@
+//! Views and lights of a document: its cameras and those of KHR_lights_punctual, where nodes place
+//! them.
+
+use super::{names::Names, nodes::Nodes, placements::Placements};
+use crate::{
+    camera::View,
+    error::{beginning, plural},
+    light::DirectionalLight,
+    light_kind::{Light, LightKind, PointLight, SpotLight},
+};
+use glam::{DMat3, DMat4, DVec3, Vec3};
+use serde_json::Value;
+
+/// Views and lights of a glTF file, in the order of its scene's nodes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GltfScene {
+    /// One of each perspective camera that a node of the scene places. Names are those of nodes,
+    /// else of cameras, in small letters, digits and `_`, no two alike.
+    pub views: Vec<View>,
+    /// Those that light anything, named likewise.
+    pub lights: Vec<Light>,
+    /// Cameras and lights that were left out, and values that were chosen: a sentence each.
+    pub remarks: Vec<String>,
+}
+
+/// Reads cameras and lights one after the other.
+struct Reader<'a> {
+    placements: &'a Placements,
+    bounds: Option<(Vec3, Vec3)>,
+    names_of_views: Names,
+    names_of_lights: Names,
+    /// Lights that say how far they reach.
+    with_range: usize,
+    scene: GltfScene,
+}
+
+impl GltfScene {
+    /// Those of a document with a mesh of these bounds.
+    pub(super) fn new(
+        placements: &Placements,
+        nodes: Option<&Nodes<'_>>,
+        bounds: Option<(Vec3, Vec3)>,
+    ) -> Self {
+        let mut reader = Reader {
+            placements,
+            bounds,
+            names_of_views: Names::default(),
+            names_of_lights: Names::default(),
+            with_range: 0,
+            scene: Self::default(),
+        };
+        let in_scene = nodes.map_or(&[][..], |nodes| &nodes.in_scene);
+        let (mut cameras, mut lights) = (Vec::new(), Vec::new());
+        for (node, is_seen) in in_scene {
+            let Some(placement) = placements.nodes.get(node) else {
+                continue;
+            };
+            let world = nodes.and_then(|nodes| nodes.worlds.get(node));
+            let placed = Placed {
+                place: placement.place(*node),
+                node: *node,
+                world: world.copied().unwrap_or_default(),
+                name: placement.name.as_deref(),
+            };
+            if let Some(camera) = placement.camera {
+                cameras.push(camera);
+                reader.add_camera(camera, &placed);
+            }
+            if let Some(light) = placement.light {
+                lights.push(light);
+                reader.add_light(light, *is_seen, &placed);
+            }
+        }
+        reader.tell_unplaced("camera", &placements.cameras, &cameras);
+        reader.tell_unplaced("light", &placements.lights, &lights);
+        if reader.with_range > 0 {
+            let lights = plural(reader.with_range, "light", "lights");
+            reader.remark(format!(
+                "the range of {lights} is not followed: they light the whole mesh"
+            ));
+        }
+        reader.scene
+    }
+}
+
+/// Where a camera or a light is.
+struct Placed<'a> {
+    /// The node, for messages.
+    place: String,
+    node: usize,
+    world: DMat4,
+    name: Option<&'a str>,
+}
+
+impl Placed<'_> {
+    fn position(&self) -> DVec3 {
+        self.world.w_axis.truncate()
+    }
+
+    /// Cameras look and lights shine along −z of their node.
+    fn direction(&self) -> DVec3 {
+        (-self.world.z_axis.truncate()).normalize_or_zero()
+    }
+
+    /// Its name, else that of the camera or light, else a number.
+    fn name(&self, what: &str, of: &Value) -> String {
+        let own = of.get("name").and_then(Value::as_str);
+        let name = self.name.or(own).unwrap_or_default();
+        Names::plain(name, &format!("{what}_{}", self.node))
+    }
+}
+
+/// A number of the file; `None` if it is not there or is none.
+fn number(of: &Value, field: &str) -> Option<f64> {
+    of.get(field).and_then(Value::as_f64)
+}
+
+impl Reader<'_> {
+    fn remark(&mut self, text: String) {
+        self.scene.remarks.push(text);
+    }
+
+    fn tell_unplaced(&mut self, what: &str, all: &[Value], placed: &[usize]) {
+        for (number, of) in all.iter().enumerate() {
+            if !placed.contains(&number) {
+                let name = of.get("name").and_then(Value::as_str);
+                let name = name.map_or_else(String::new, |name| format!(" {:?}", beginning(name)));
+                self.remark(format!(
+                    "{what} {number}{name} is left out: no node of the scene places it"
+                ));
+            }
+        }
+    }
+
+    fn add_camera(&mut self, number: usize, placed: &Placed<'_>) {
+        let place = &placed.place;
+        match self.view(number, placed) {
+            Ok((view, remarks)) => {
+                let name = self.names_of_views.unlike(&view.name);
+                if name != view.name {
+                    self.remark(format!(
+                        "{place}: another camera has that name: its view is called {name}"
+                    ));
+                }
+                for remark in remarks {
+                    self.remark(format!("{place}: {remark}"));
+                }
+                self.scene.views.push(View { name, ..view });
+            }
+            Err(why) => self.remark(format!("{place}: its camera is left out: {why}")),
+        }
+    }
+
+    /// The view of a camera, with what was chosen.
+    fn view(&self, index: usize, placed: &Placed<'_>) -> Result<(View, Vec<String>), String> {
+        let count = self.placements.cameras.len();
+        let camera = self.placements.cameras.get(index);
+        let camera = camera.ok_or_else(|| named_wrongly(index, count, "camera", "cameras"))?;
+        match camera.get("type").and_then(Value::as_str) {
+            Some("perspective") => {}
+            Some("orthographic") => {
+                return Err("it is orthographic, and views are perspective (make it \
+                            perspective, or give --eye and --look)"
+                    .to_owned());
+            }
+            other => {
+                let of = other.map_or_else(|| "no type".to_owned(), |of| format!("type {of:?}"));
+                return Err(format!("it has {of}, expected perspective"));
+            }
+        }
+        let lens = camera.get("perspective").unwrap_or(&Value::Null);
+        let needed = |field| number(lens, field).ok_or_else(|| format!("it has no {field}"));
+        let mut remarks = Vec::new();
+        let (eye, near) = (placed.position(), needed("znear")?);
+        let far = match lens.get("zfar") {
+            Some(far) => far.as_f64().ok_or("its zfar is no number")?,
+            None => {
+                let far = self.farthest(eye).max(near * 2.0);
+                remarks.push(format!(
+                    "its camera has no zfar: far is {far:.6}, just behind the mesh"
+                ));
+                far
+            }
+        };
+        if DMat3::from_mat4(placed.world).determinant() < 0.0 {
+            remarks.push("it mirrors its camera, whose picture is not mirrored".to_owned());
+        }
+        let view = View {
+            name: placed.name("camera", camera),
+            eye,
+            direction: placed.direction(),
+            up: placed.world.y_axis.truncate().normalize_or_zero(),
+            fov_y_degrees: needed("yfov")?.to_degrees(),
+            near,
+            far,
+            light: None,
+        };
+        let mend = |why| format!("{why} (mend camera {index})");
+        view.check_parts().map_err(mend)?;
+        Ok((view, remarks))
+    }
+
+    /// Just behind the mesh, as seen from a place.
+    fn farthest(&self, eye: DVec3) -> f64 {
+        self.bounds.map_or(1.0, |(min, max)| {
+            let (min, max) = (min.as_dvec3(), max.as_dvec3());
+            (max - eye).abs().max((eye - min).abs()).length() * 1.01
+        })
+    }
+
+    fn add_light(&mut self, number: usize, is_seen: bool, placed: &Placed<'_>) {
+        let place = &placed.place;
+        let read = match self.light(number, placed) {
+            Ok(_) if !is_seen => Err("the node is hidden".to_owned()),
+            read => read,
+        };
+        match read {
+            Ok(light) => {
+                let name = self.names_of_lights.unlike(&light.name);
+                if name != light.name {
+                    self.remark(format!(
+                        "{place}: another light has that name: it is called {name}"
+                    ));
+                }
+                let range = self.placements.lights[number].get("range");
+                self.with_range += usize::from(range.is_some());
+                self.scene.lights.push(Light { name, ..light });
+            }
+            Err(why) => self.remark(format!("{place}: its light is left out: {why}")),
+        }
+    }
+
+    fn light(&self, index: usize, placed: &Placed<'_>) -> Result<Light, String> {
+        let count = self.placements.lights.len();
+        let light = self.placements.lights.get(index);
+        let light = light.ok_or_else(|| named_wrongly(index, count, "light", "lights"))?;
+        check_power(light)?;
+        let (position, direction) = (placed.position(), placed.direction());
+        let kind: LightKind = match light.get("type").and_then(Value::as_str) {
+            Some("directional") => DirectionalLight::new(direction).into(),
+            Some("spot") => {
+                let cone = light
+                    .get("spot")
+                    .and_then(|of| number(of, "outerConeAngle"));
+                let cone = cone.unwrap_or(std::f64::consts::FRAC_PI_4);
+                if !(cone > 0.0 && 2.0 * cone.to_degrees() < 180.0) {
+                    return Err(format!(
+                        "its outerConeAngle is {cone}, expected more than 0 and less than a right \
+                         angle, 1.57"
+                    ));
+                }
+                SpotLight {
+                    position,
+                    direction,
+                    cone_degrees: 2.0 * cone.to_degrees(),
+                    radius: 0.0,
+                }
+                .into()
+            }
+            Some("point") => PointLight {
+                position,
+                radius: 0.0,
+            }
+            .into(),
+            other => {
+                let of = other.map_or_else(|| "no type".to_owned(), |of| format!("type {of:?}"));
+                return Err(format!("it has {of}, expected directional, spot or point"));
+            }
+        };
+        let mend = |why| format!("{why} (mend light {index})");
+        kind.check().map_err(mend)?;
+        Ok(Light {
+            name: placed.name("light", light),
+            kind,
+        })
+    }
+}
+
+fn named_wrongly(index: usize, count: usize, one: &str, many: &str) -> String {
+    let there = plural(count, one, many);
+    if index == usize::MAX {
+        format!("its number is none, and the file has {there}")
+    } else {
+        format!("the node names {one} {index}, and the file has {there}, numbered from 0")
+    }
+}
+
+/// That a light lights anything.
+fn check_power(light: &Value) -> Result<(), String> {
+    let positive = |field: &str, way_out: &str| match light.get(field).map(Value::as_f64) {
+        None => Ok(()),
+        Some(Some(value)) if value > 0.0 => Ok(()),
+        Some(Some(value)) => Err(format!("its {field} is {value}: {way_out}")),
+        Some(None) => Err(format!("its {field} is no number")),
+    };
+    positive("intensity", "it lights nothing, give it more than 0")?;
+    positive(
+        "range",
+        "it reaches nothing, give it more than 0 or leave it out",
+    )?;
+    let channels = light.get("color").and_then(Value::as_array);
+    let is_black = |channels: &Vec<Value>| channels.iter().all(|of| of.as_f64() == Some(0.0));
+    if channels.is_some_and(is_black) {
+        return Err("its color is black, it lights nothing".to_owned());
+    }
+    Ok(())
+}

@@ -1,0 +1,91 @@
+//! Mesh files by themselves, without a scene file.
+
+use crate::{
+    camera::View,
+    error::SceneError,
+    gltf::load_gltf_scene,
+    light_kind::Light,
+    material_use::MaterialUse,
+    mesh::Mesh,
+    obj::{
+        options::{Concave, ObjOptions, QuadDiagonal},
+        read::load_obj,
+    },
+    report::ImportReport,
+};
+use std::path::Path;
+
+/// A mesh file with what else of a scene it holds.
+#[derive(Clone, Debug)]
+pub struct MeshFile {
+    /// The file's name without its extension.
+    pub name: String,
+    /// Its triangles.
+    pub mesh: Mesh,
+    /// Those of its cameras; none of an OBJ file.
+    pub views: Vec<View>,
+    /// Its lights; none of an OBJ file.
+    pub lights: Vec<Light>,
+    /// What the import changed or left out.
+    pub report: ImportReport,
+}
+
+/// How a mesh file is read.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct MeshFileOptions {
+    /// How polygons are split.
+    pub quads: QuadDiagonal,
+    /// How concave ones become triangles.
+    pub concave: Concave,
+    /// Materials of it that are read.
+    pub materials: MaterialUse,
+}
+
+impl MeshFile {
+    /// Reads an `.obj`, `.gltf` or `.glb` file.
+    ///
+    /// # Errors
+    /// [`SceneError`]: a file that cannot be read or holds no triangles.
+    pub fn load(path: &Path, options: &MeshFileOptions) -> Result<Self, SceneError> {
+        let stem = path.file_stem();
+        let name = stem.map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+        if has_extension(path, "obj") {
+            let options = ObjOptions {
+                quads: options.quads,
+                concave: options.concave,
+                materials: options.materials.into(),
+                ..ObjOptions::default()
+            };
+            let (mesh, report) = load_obj(path, &options)?;
+            return Ok(Self {
+                name,
+                mesh,
+                views: Vec::new(),
+                lights: Vec::new(),
+                report,
+            });
+        }
+        let (mesh, scene, mut report) = load_gltf_scene(path, options.materials)?;
+        for remark in scene.remarks {
+            report.remark(remark);
+        }
+        Ok(Self {
+            name,
+            mesh,
+            views: scene.views,
+            lights: scene.lights,
+            report,
+        })
+    }
+
+    /// Returns true for the path of a mesh file, by its extension.
+    pub fn is_one(path: &Path) -> bool {
+        let mut extensions = ["obj", "gltf", "glb"].iter();
+        extensions.any(|extension| has_extension(path, extension))
+    }
+}
+
+pub(crate) fn has_extension(path: &Path, extension: &str) -> bool {
+    path.extension()
+        .is_some_and(|found| found.eq_ignore_ascii_case(extension))
+}

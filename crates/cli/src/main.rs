@@ -10,6 +10,7 @@ mod error;
 mod own_mesh;
 mod scene_selection;
 mod terminal;
+mod write_scene;
 
 use args::cli::{Cli, Command};
 use clap::Parser;

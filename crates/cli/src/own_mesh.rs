@@ -4,8 +4,10 @@
 use crate::{args::shared::SceneArgs, terminal::console::note};
 use glam::DVec3;
 use itertools::Itertools;
+use skiagraph_compare::{default_view::from_inside, wording::thousands};
 use skiagraph_scene::{
-    DirectionalLight, ImportReport, Light, Mesh, MeshFile, Scene, SceneError, View,
+    DirectionalLight, ImportReport, Light, Mesh, MeshFile, PointLight, Scene, SceneError, View,
+    add_ground, has_ground,
 };
 use std::path::Path;
 
@@ -16,13 +18,15 @@ pub struct Chosen {
     pub view: bool,
     /// True if its only light was chosen here, or is that of the arguments.
     pub light: bool,
+    /// Direction up on the ground that was added.
+    pub ground: Option<DVec3>,
 }
 
 /// The direction in which light travels over a mesh by default: a high sun, from the side.
 const FALLBACK_LIGHT: DVec3 = DVec3::new(-0.4, -1.0, -0.55);
 
-/// Name of a view that is chosen.
-const CHOSEN_VIEW: &str = "main";
+/// Vertical field of view of a view that is chosen, degrees.
+const DEFAULT_FOV: f64 = 60.0;
 
 /// Loads a mesh file, and says which views and lights it holds and which were chosen.
 ///
@@ -32,7 +36,7 @@ pub fn load(args: &SceneArgs) -> Result<(Scene, ImportReport, Chosen), SceneErro
     let path = Path::new(&args.scene);
     let MeshFile {
         name,
-        mesh,
+        mut mesh,
         mut views,
         mut lights,
         report,
@@ -40,41 +44,42 @@ pub fn load(args: &SceneArgs) -> Result<(Scene, ImportReport, Chosen), SceneErro
     if let Some(text) = held(&views, &lights) {
         note(&format!("{}: {text}", args.scene));
     }
-    let chosen = Chosen {
+    let mut chosen = Chosen {
         view: views.is_empty(),
         light: lights.is_empty(),
+        ground: None,
     };
-    let mut said = Vec::new();
-    if chosen.view {
-        let view = outside(&mesh, args);
-        if args.eye.is_none() {
-            said.push(format!("--eye {}", three(view.eye)));
-        }
-        if args.look.is_none() {
-            said.push(format!("--look {}", three(view.direction.normalize())));
-        }
-        views.push(view);
+    if let Some(text) = extent(&mesh, args) {
+        note(&format!("{}: {text}", args.scene));
     }
     if chosen.light {
-        if args.own_light().is_none() {
-            said.push(format!("--light {}", three(FALLBACK_LIGHT)));
-        }
-        let direction = args.own_light().unwrap_or(FALLBACK_LIGHT);
-        let light = Light::from(DirectionalLight::new(direction));
-        light.check().map_err(|reason| SceneError::BadView {
-            path: path.to_owned(),
-            reason,
-        })?;
-        lights.push(light);
+        lights.push(sun(args)?);
     }
-    if !said.is_empty() {
-        let lacks = match (chosen.view, chosen.light) {
-            (true, true) => "no camera and no light",
-            (true, false) => "no camera",
-            (false, _) => "no light",
+    let mut is_inside = false;
+    if chosen.view {
+        let up = args.up.unwrap_or(DVec3::Y);
+        let fov = args.fov.unwrap_or(DEFAULT_FOV);
+        let inside = match (args.eye, lights.first()) {
+            (None, Some(light)) => from_inside(&mesh, &light.kind, up, fov),
+            _ => None,
         };
-        let said = said.join(" ");
-        note(&format!("{}: it holds {lacks}; chosen: {said}", args.scene));
+        is_inside = inside.is_some();
+        if let Some(inside) = &inside
+            && inside.is_dark
+            && chosen.light
+            && args.own_light().is_none()
+        {
+            let position = inside.lamp;
+            lights = vec![Light::only(PointLight {
+                position,
+                radius: 0.0,
+            })];
+        }
+        views.push(inside.map_or_else(|| outside(&mesh, args), |inside| inside.view));
+    }
+    tell_chosen(args, chosen, (&views, &lights), is_inside);
+    if args.ground {
+        chosen.ground = ground(&mut mesh, args);
     }
     let scene = Scene {
         name,
@@ -83,6 +88,117 @@ pub fn load(args: &SceneArgs) -> Result<(Scene, ImportReport, Chosen), SceneErro
         lights,
     };
     Ok((scene, report, chosen))
+}
+
+/// The sun of the arguments, or one that is chosen.
+fn sun(args: &SceneArgs) -> Result<Light, SceneError> {
+    let direction = args.own_light().unwrap_or(FALLBACK_LIGHT);
+    let light = Light::from(DirectionalLight::new(direction));
+    light.check().map_err(|reason| SceneError::BadView {
+        path: Path::new(&args.scene).to_owned(),
+        reason,
+    })?;
+    Ok(light)
+}
+
+/// Adds a ground, and says where; `None` if the mesh has one.
+fn ground(mesh: &mut Mesh, args: &SceneArgs) -> Option<DVec3> {
+    let up = args.up.unwrap_or(DVec3::Y);
+    if has_ground(mesh, up) {
+        note(&format!(
+            "{}: --ground adds none, for the mesh has a floor: half of its outline from above, in \
+             the lowest twentieth",
+            args.scene
+        ));
+        return None;
+    }
+    let ground = add_ground(mesh, up)?;
+    note(&format!(
+        "{}: a ground was added, a square of {} units at the height {}, just below the lowest \
+         point",
+        args.scene,
+        length(ground.edge),
+        ground.height as f32
+    ));
+    Some(up)
+}
+
+/// Says which options would choose what was chosen.
+fn tell_chosen(
+    args: &SceneArgs,
+    chosen: Chosen,
+    (views, lights): (&[View], &[Light]),
+    is_inside: bool,
+) {
+    let mut said = Vec::new();
+    if let Some(view) = views.first().filter(|_| chosen.view) {
+        if args.eye.is_none() {
+            said.push(format!("--eye {}", three(view.eye)));
+        }
+        if args.look.is_none() {
+            said.push(format!("--look {}", three(view.direction.normalize())));
+        }
+    }
+    if chosen.light && args.own_light().is_none() {
+        let lamp = lights.first().and_then(|light| light.kind.position());
+        said.push(lamp.map_or_else(
+            || format!("--light {}", three(FALLBACK_LIGHT)),
+            |lamp| format!("and a lamp at {}, for no sun comes in", three(lamp)),
+        ));
+    }
+    if said.is_empty() {
+        return;
+    }
+    let lacks = match (chosen.view, chosen.light) {
+        (true, true) => "no camera and no light",
+        (true, false) => "no camera",
+        (false, _) => "no light",
+    };
+    let inside = if is_inside {
+        ", from inside, for the mesh surrounds the camera"
+    } else {
+        ""
+    };
+    let (scene, said) = (&args.scene, said.join(" "));
+    note(&format!(
+        "{scene}: it holds {lacks}; chosen{inside}: {said}"
+    ));
+}
+
+/// How large a mesh is, and which way it stands.
+fn extent(mesh: &Mesh, args: &SceneArgs) -> Option<String> {
+    let (min, max) = mesh.bounds()?;
+    let size = (max.as_dvec3() - min.as_dvec3()).to_array().map(length);
+    let [x, y, z] = size;
+    let stands = match args.up {
+        None => format!(
+            "{x} units wide (x), {y} high (y) and {z} deep (z), right-handed; if z is up, give \
+             --up 0,0,1"
+        ),
+        Some(up) => format!(
+            "{x} × {y} × {z} units (x, y, z), right-handed, with {},{},{} up",
+            up.x, up.y, up.z
+        ),
+    };
+    Some(format!("the mesh is {stands}"))
+}
+
+/// A length as one says it: whole above 100, three digits below.
+fn length(length: f64) -> String {
+    if length >= 100.0 {
+        return thousands(length.round() as u64);
+    }
+    let digits = if length > 0.0 {
+        (2 - length.log10().floor() as i32).clamp(0, 15)
+    } else {
+        0
+    };
+    let text = format!("{length:.*}", digits as usize);
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
 }
 
 fn three(v: DVec3) -> String {
@@ -107,11 +223,11 @@ fn held(views: &[View], lights: &[Light]) -> Option<String> {
 /// are not fitted yet.
 fn outside(mesh: &Mesh, args: &SceneArgs) -> View {
     let mut view = View {
-        name: CHOSEN_VIEW.into(),
+        name: "main".into(),
         eye: DVec3::ZERO,
         direction: DVec3::NEG_Z,
         up: DVec3::Y,
-        fov_y_degrees: 60.0,
+        fov_y_degrees: DEFAULT_FOV,
         near: 1.0,
         far: 2.0,
         light: None,
@@ -135,4 +251,24 @@ fn outside(mesh: &Mesh, args: &SceneArgs) -> View {
         towards
     };
     view
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_are_said_with_three_digits() {
+        for (number, text) in [
+            (3199.7, "3,200"),
+            (8.0, "8"),
+            (0.012345, "0.0123"),
+            (12.34, "12.3"),
+            (99.96, "100"),
+            (0.0, "0"),
+            (1e12, "1,000,000,000,000"),
+        ] {
+            assert_eq!(length(number), text);
+        }
+    }
 }

@@ -4,6 +4,7 @@ use crate::args::shared::SceneArgs;
 use crate::error::CliError;
 use crate::own_mesh::{self, Chosen};
 use crate::terminal::console::note;
+use crate::write_scene;
 use glam::DVec3;
 use skiagraph_compare::error::CompareError;
 use skiagraph_compare::measuring::view_or_path::{ViewOrPath, under_lights};
@@ -29,10 +30,11 @@ impl SceneSelection {
     /// A scene that cannot be loaded, a view that it does not have, a camera that is none.
     pub fn load(args: &SceneArgs) -> Result<Self, CliError> {
         let is_mesh = MeshFile::is_one(Path::new(&args.scene));
-        if !is_mesh && (args.materials.is_some() || args.concave.is_some()) {
+        if !is_mesh && (args.materials.is_some() || args.concave.is_some() || args.ground) {
             return Err(CliError::Usage(format!(
-                "--materials and --concave are of a mesh file (.obj, .gltf, .glb); a scene file \
-                 says `materials` and `concave` itself, so leave them out with --scene {}",
+                "--materials, --concave and --ground are of a mesh file (.obj, .gltf, .glb); a \
+                 scene file says `materials`, `concave` and `ground` itself, so leave them out \
+                 with --scene {}",
                 args.scene
             )));
         }
@@ -65,6 +67,15 @@ impl SceneSelection {
         }
         let views = choose(&scene, args.view.as_deref())?;
         let views = override_views(&scene, views, args, chosen)?;
+        if let Some(path) = &args.write_scene {
+            let file = if is_mesh {
+                write_scene::of_mesh(args, &scene, chosen)
+            } else {
+                let file = library.scene_file(&args.scene);
+                file.map_err(|error| explain(error, args, &library))?
+            };
+            write_scene::write(path, file, &views)?;
+        }
         let views = under_lights(&scene, views, args.light_name())?;
         if let Some(text) = from_below(&views, args) {
             note(&text);

@@ -38,6 +38,7 @@
 //! - [`files`]: writing whole files, locks, watching.
 
 pub mod comparison;
+pub mod default_view;
 pub mod error;
 pub mod files;
 pub mod graphs;

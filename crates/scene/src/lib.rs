@@ -19,6 +19,8 @@ pub mod error;
 pub mod generate;
 #[cfg(feature = "files")]
 pub mod gltf;
+#[cfg(feature = "files")]
+pub mod ground;
 pub mod indexed;
 mod keys;
 #[cfg(feature = "files")]
@@ -48,6 +50,8 @@ pub mod report;
 mod scene;
 #[cfg(feature = "files")]
 pub mod scene_file;
+#[cfg(feature = "files")]
+pub mod scene_writer;
 #[cfg(feature = "schema")]
 mod schema;
 pub mod texels;
@@ -64,6 +68,8 @@ pub use camera::{Camera, LEAST_DEPTH, View};
 pub use error::SceneError;
 #[cfg(feature = "files")]
 pub use gltf::load_gltf;
+#[cfg(feature = "files")]
+pub use ground::{Ground, add_ground, has_ground};
 pub use indexed::{Indexed, IndexedError};
 #[cfg(feature = "files")]
 pub use library::{ObjSetup, SceneLibrary, SceneListing, SceneRequest};
@@ -91,6 +97,8 @@ pub use report::ImportReport;
 pub use scene::Scene;
 #[cfg(feature = "files")]
 pub use scene_file::{MeshSource, SceneFile};
+#[cfg(feature = "files")]
+pub use scene_writer::scene_text;
 #[cfg(feature = "schema")]
 pub use schema::schema;
 pub use texture::{Texture, Wrap};

@@ -4,6 +4,7 @@ use crate::{
     camera::View,
     error::SceneError,
     gltf::load_gltf,
+    ground::add_ground,
     light_kind::Light,
     limit::Limit,
     material_use::MaterialUse,
@@ -129,15 +130,45 @@ impl SceneLibrary {
                 argument: request.argument.clone(),
             });
         }
-        let (argument, size) = sized(&request.argument);
-        let (file, mut scene) = self.parse(argument)?;
+        let (file, scene) = self.parse_sized(&request.argument)?;
+        self.assemble(scene, file.as_deref())
+    }
+
+    /// The content of the file of a scene, whose mesh has the path at which it was found, to be
+    /// changed and written.
+    ///
+    /// # Errors
+    /// As of [`load`](Self::load), but for the content of the mesh.
+    pub fn scene_file(&self, argument: &str) -> Result<SceneFile, SceneError> {
+        let (file, mut scene) = self.parse_sized(argument)?;
+        let found = match &scene.mesh {
+            MeshSource::Obj {
+                file: mesh, source, ..
+            }
+            | MeshSource::Gltf {
+                file: mesh, source, ..
+            } => Some(self.mesh_file(&scene, mesh, source, file.as_deref())?),
+            MeshSource::Generated(_) => None,
+        };
+        if let (Some(found), MeshSource::Obj { file, .. } | MeshSource::Gltf { file, .. }) =
+            (found, &mut scene.mesh)
+        {
+            *file = found.to_string_lossy().into_owned();
+        }
+        Ok(scene)
+    }
+
+    /// The scene of an argument that may name a size.
+    fn parse_sized(&self, argument: &str) -> Result<(Option<PathBuf>, SceneFile), SceneError> {
+        let (name, size) = sized(argument);
+        let (file, mut scene) = self.parse(name)?;
         if let Some(size) = size {
             resize(&mut scene, size).map_err(|reason| SceneError::Size {
-                argument: request.argument.clone(),
+                argument: argument.to_owned(),
                 reason,
             })?;
         }
-        self.assemble(scene, file.as_deref())
+        Ok((file, scene))
     }
 
     /// The camera paths of a scene's file, without loading its mesh; a bare mesh has none.
@@ -322,7 +353,7 @@ impl SceneLibrary {
         scene: SceneFile,
         file: Option<&Path>,
     ) -> Result<(Scene, ImportReport), SceneError> {
-        let (mesh, report) = match &scene.mesh {
+        let (mut mesh, report) = match &scene.mesh {
             MeshSource::Generated(generator) => (generator.build(), ImportReport::default()),
             MeshSource::Obj {
                 file: mesh,
@@ -346,6 +377,9 @@ impl SceneLibrary {
                 source,
             } => load_gltf(&self.mesh_file(&scene, mesh, source, file)?, *materials)?,
         };
+        if let Some(up) = scene.ground {
+            add_ground(&mut mesh, up);
+        }
         Ok((
             Scene {
                 name: scene.name,

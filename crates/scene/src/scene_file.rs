@@ -51,6 +51,8 @@ pub struct SceneFile {
     pub description: String,
     /// Where the triangles come from.
     pub mesh: MeshSource,
+    /// The direction up on a ground that is added below the mesh; none without.
+    pub ground: Option<DVec3>,
     /// The lights of all views that have none of their own: at least one, no two of the same name.
     pub lights: Vec<Light>,
     /// At least one view, no two of the same name.
@@ -74,6 +76,10 @@ pub(crate) struct SceneText {
     description: String,
     /// The triangles.
     mesh: MeshSource,
+    /// Adds a ground just below the mesh, with this direction up.
+    #[serde(default, deserialize_with = "ground")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<(f64, f64, f64)>"))]
+    ground: Option<DVec3>,
     /// One sun, in the place of `lights`.
     #[serde(default, deserialize_with = "light")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<LightText>"))]
@@ -187,6 +193,7 @@ impl SceneFile {
             name: head.name,
             description: head.description,
             mesh: head.mesh,
+            ground: head.ground,
             lights: head.light.into_iter().chain(lights).collect(),
             views: views??,
             paths: paths?,
@@ -605,6 +612,15 @@ impl<'de> Deserialize<'de> for CameraPath {
 fn generator<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Generator, D::Error> {
     let name = String::deserialize(deserializer)?;
     name.parse().map_err(D::Error::custom)
+}
+
+fn ground<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<DVec3>, D::Error> {
+    let up = DVec3::from(<(f64, f64, f64)>::deserialize(deserializer)?);
+    if up.try_normalize().is_none() {
+        let text = format!("ground is {up}, expected a direction up, such as (0, 1, 0)");
+        return Err(D::Error::custom(text));
+    }
+    Ok(Some(up))
 }
 
 fn light<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Light>, D::Error> {

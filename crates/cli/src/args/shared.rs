@@ -11,7 +11,7 @@ use skiagraph_compare::measuring::device::GpuRequest;
 use skiagraph_compare::size::Size;
 use skiagraph_graph::Sources;
 use skiagraph_scene::{Concave, MaterialUse, MeshFileOptions, QuadDiagonal};
-use std::{sync::Arc, time::Duration};
+use std::{path::PathBuf, sync::Arc, time::Duration};
 
 /// The GPU, and how much of it and of our time a graph may take.
 #[derive(Args, Clone, Debug)]
@@ -113,6 +113,12 @@ pub struct SceneArgs {
     /// Far plane distance. Without it, with --eye or for a mesh: just behind the whole mesh.
     #[arg(long, value_name = "LENGTH", value_parser = values::positive)]
     pub far: Option<f64>,
+    /// Add a ground below a mesh that stands on nothing: a square slab just below its lowest point.
+    #[arg(long)]
+    pub ground: bool,
+    /// Write the scene as it was chosen to a scene file, to be edited: mesh, lights, views, paths.
+    #[arg(long, value_name = "FILE.ron")]
+    pub write_scene: Option<PathBuf>,
     /// Materials of a mesh that are read; without it all.
     #[arg(long, value_name = "WHAT")]
     pub materials: Option<Materials>,

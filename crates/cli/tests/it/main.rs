@@ -11,6 +11,7 @@ mod faults;
 mod foreign_files;
 mod new;
 mod on_a_gpu;
+mod own_scene;
 mod paths;
 mod profile;
 mod recording;

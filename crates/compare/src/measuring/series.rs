@@ -451,7 +451,8 @@ fn planned(comparison: &Comparison, methods: &[Method], fingerprint: Fingerprint
     planned
 }
 
-/// That a view shows nothing, or nothing in light: its table would be one of zeros.
+/// That a view shows nothing, nothing in light or hardly any shadow: its table would be one of
+/// zeros.
 fn unlit(view: &str, pixels: &PixelCounts) -> Option<String> {
     let away = thousands(pixels.facing_away);
     let facing = thousands(pixels.facing_light);
@@ -467,10 +468,19 @@ fn unlit(view: &str, pixels: &PixelCounts) -> Option<String> {
             "has nothing in light: {away} pixels face away from it, and all {facing} that face it \
              are in shadow; the light's direction is the one in which it travels"
         ),
+        (..) if (pixels.shadow as f64) < HARDLY_ANY * pixels.facing_light as f64 => format!(
+            "shows hardly any shadow: {} of the {facing} pixels that face the light, so that \
+             methods differ little on it; look from another side, or move the light",
+            thousands(pixels.shadow)
+        ),
         _ => return None,
     };
     Some(format!("warning: view `{view}` {what}"))
 }
+
+/// Share of the pixels facing the light below which a view has hardly any shadow.
+const HARDLY_ANY: f64 = 0.05;
+
 /// Measures a method on a still view, or along the frames of a path.
 fn measured(
     context: &MeasureContext,

@@ -18,4 +18,5 @@ mod obj;
 mod park;
 mod polygons;
 mod scene_files;
+mod scene_writer;
 mod sponza;

@@ -1,0 +1,180 @@
+//! Mesh files of one's own, as the program takes them: their cameras and lights, and what is chosen
+//! for a file that has none.
+
+use crate::support::{results, skiagraph};
+use std::{fs, path::Path};
+use tempfile::TempDir;
+
+/// A folder with the files of `own_scene/`.
+fn folder() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let files = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/it/own_scene"));
+    for file in fs::read_dir(files).unwrap() {
+        let file = file.unwrap();
+        fs::copy(file.path(), folder.path().join(file.file_name())).unwrap();
+    }
+    folder
+}
+
+/// What the program says of a scene before it draws it.
+fn said(folder: &TempDir, arguments: &str) -> String {
+    let line = format!("run rt --size 32x32 --scene {arguments}");
+    let output = skiagraph(folder.path(), &line);
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{line}: {text}");
+    text
+}
+
+const COMPARE: &str = "compare rt --size 64x48 --frames 1 --warmup 0 --images none --out out";
+
+#[test]
+fn cameras_and_lights_of_a_file_are_taken_by_name() {
+    let folder = folder();
+    let expected = [
+        "room.gltf: its cameras, for --view: door_cam; its lights, for --light: ceiling_lamp, torch",
+        "room.gltf: the mesh is 8 units wide (x), 3 high (y) and 6 deep (z), right-handed; if z is \
+         up, give --up 0,0,1",
+        "room.gltf: node 4 \"Top\": its camera is left out: it is orthographic, and views are \
+         perspective (make it perspective, or give --eye and --look); node 7 \"Off\": its light is \
+         left out: its intensity is 0: it lights nothing, give it more than 0",
+    ];
+    assert_eq!(said(&folder, "room.gltf").trim_end(), expected.join("\n"));
+    let line = format!("{COMPARE} --scene room.gltf --view all --light all");
+    let (runs, _) = results(folder.path(), &line);
+    let views: Vec<&str> = runs
+        .iter()
+        .map(|run| run["view"].as_str().unwrap())
+        .collect();
+    assert_eq!(views, ["door_cam@ceiling_lamp", "door_cam@torch"]);
+    let output = skiagraph(
+        folder.path(),
+        "run rt --size 32x32 --scene room.gltf --view top",
+    );
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        text.contains("the scene `room` has no view `top`"),
+        "{text}"
+    );
+    // A camera of one's own beside the lights of the file.
+    let own = said(&folder, "room.gltf --eye 0,1,2 --light torch");
+    assert!(!own.contains("chosen"), "{own}");
+}
+
+#[test]
+fn a_room_without_a_camera_is_seen_from_inside() {
+    let folder = folder();
+    let line = format!("{COMPARE} --scene bare_room.gltf");
+    let (runs, _) = results(folder.path(), &line);
+    assert_eq!(runs[0]["view"], "inside");
+    let pixels = &runs[0]["pixels"];
+    assert_eq!(pixels["background"], 0);
+    assert!(pixels["lit"].as_u64() > Some(300), "{pixels}");
+    assert!(pixels["shadow"].as_u64() > Some(300), "{pixels}");
+    let text = said(&folder, "bare_room.gltf");
+    let chosen = "it holds no camera and no light; chosen, from inside, for the mesh surrounds \
+                  the camera: --eye ";
+    assert!(text.contains(chosen), "{text}");
+    assert!(text.contains(" and a lamp at "), "{text}");
+    // A sun that is asked for shines, though not into the room.
+    let sun = said(&folder, "bare_room.gltf --light 0,-1,0 --up 0,1,0");
+    assert!(!sun.contains("lamp"), "{sun}");
+    assert!(
+        sun.contains("the mesh is 8 × 3 × 6 units (x, y, z), right-handed, with 0,1,0 up"),
+        "{sun}"
+    );
+}
+
+#[test]
+fn a_view_with_hardly_any_shadow_is_told() {
+    let folder = folder();
+    let output = skiagraph(folder.path(), &format!("{COMPARE} --scene objects.gltf"));
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{text}");
+    assert!(
+        text.contains("warning: view `main` shows hardly any shadow: "),
+        "{text}"
+    );
+    assert!(
+        text.contains("look from another side, or move the light"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_chosen_scene_is_written_and_is_the_same_again() {
+    let folder = folder();
+    let line = format!("{COMPARE} --scene objects.gltf --ground --write-scene table.ron");
+    let output = skiagraph(folder.path(), &line);
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{text}");
+    let placed = "objects.gltf: a ground was added, a square of 7.12 units at the height \
+                  -0.00023748685, just below the lowest point";
+    assert!(text.contains(placed), "{text}");
+    let wrote = "wrote table.ron, to be edited (docs/scenes.md); use it with --scene table.ron";
+    assert!(text.contains(wrote), "{text}");
+    let (first, _) = results(folder.path(), &line);
+    let (again, _) = results(
+        folder.path(),
+        &format!("{COMPARE} --replace --scene table.ron"),
+    );
+    assert_eq!(first[0]["view"], again[0]["view"]);
+    assert_eq!(first[0]["pixels"], again[0]["pixels"]);
+    // The same once more is left as it is; another scene does not take its place.
+    said(&folder, "objects.gltf --ground --write-scene table.ron");
+    for (rest, expected) in [
+        (
+            "room.gltf --write-scene table.ron",
+            "--write-scene table.ron: it is there already and says something else; name another \
+             file, or delete it",
+        ),
+        (
+            "room.gltf --write-scene room.txt",
+            "--write-scene room.txt: a scene file is called NAME.ron",
+        ),
+        (
+            "room.gltf --write-scene no/folder/room.ron",
+            "--write-scene no/folder/room.ron: no/folder: ",
+        ),
+        ("park --ground", "so leave them out with --scene park"),
+    ] {
+        let output = skiagraph(
+            folder.path(),
+            &format!("run rt --size 32x32 --scene {rest}"),
+        );
+        let text = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{text}");
+        assert!(text.contains(expected), "{text}");
+    }
+    // A floor of one's own is enough.
+    let room = said(&folder, "bare_room.gltf --ground");
+    assert!(
+        room.contains("--ground adds none, for the mesh has a floor"),
+        "{room}"
+    );
+}
+
+#[test]
+fn a_written_scene_keeps_views_and_paths_and_names_its_mesh_from_its_folder() {
+    let folder = folder();
+    fs::create_dir(folder.path().join("scenes")).unwrap();
+    said(
+        &folder,
+        "park --view trees_side --fov 30 --write-scene mine.ron",
+    );
+    let text = fs::read_to_string(folder.path().join("mine.ron")).unwrap();
+    assert!(text.contains("mesh: Generated(\"park\")"), "{text}");
+    assert!(
+        text.contains("    views: [\n        (name: \"own\""),
+        "{text}"
+    );
+    assert!(text.contains("name: \"sunrise\""), "{text}");
+    said(&folder, "mine.ron --view bench_side");
+    // Beside the mesh, and elsewhere.
+    said(&folder, "room.gltf --write-scene room.ron");
+    let text = fs::read_to_string(folder.path().join("room.ron")).unwrap();
+    assert!(text.contains("Gltf(file: \"room.gltf\")"), "{text}");
+    said(&folder, "room.gltf --write-scene scenes/away.ron");
+    said(&folder, "scenes/away.ron --light torch");
+    said(&folder, "room.ron --light torch --write-scene again.ron");
+    said(&folder, "again.ron");
+}

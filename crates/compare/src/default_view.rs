@@ -1,0 +1,400 @@
+//! A view of a mesh that comes without one: from inside where the mesh surrounds the camera.
+//!
+//! ```
+//! use skiagraph_compare::default_view::from_inside;
+//! use skiagraph_scene::{DirectionalLight, Mesh};
+//! use glam::DVec3;
+//!
+//! let sun = DirectionalLight::new(DVec3::NEG_Y).into();
+//! // Nothing surrounds the camera here.
+//! assert!(from_inside(&Mesh::default(), &sun, DVec3::Y, 60.0).is_none());
+//! ```
+
+use glam::DVec3;
+use itertools::Itertools;
+use skiagraph_reference::{
+    BACKGROUND, Class, Oracle, OracleMode, Progress, sight::Sight, sight::sights,
+};
+use skiagraph_scene::{LightKind, Mesh, PointLight, View};
+use std::f64::consts::TAU;
+
+/// Columns of places that are tried along each of the two horizontal axes.
+const COLUMNS: u32 = 9;
+
+/// Floors that are looked at in a column, from the top.
+const FLOORS: usize = 8;
+
+/// The eye's height as a share of that to the ceiling, and the most of the mesh's width that it is.
+const EYE_HEIGHT: f64 = 0.4;
+const MOST_EYE_HEIGHT: f64 = 0.1;
+
+/// Rays around an eye, half of them a little upwards, half a little downwards.
+const AROUND: u32 = 24;
+const TILT: f64 = 0.15;
+
+/// Share of the rays around an eye that must meet fronts of surfaces: windows and a door are open.
+const SURROUNDED: f64 = 0.85;
+
+/// Share of the columns in which an eye must be surrounded: a cup is no room.
+const INSIDE: f64 = 0.25;
+
+/// Eyes and directions of each that are looked through, in small pictures.
+const EYES: usize = 16;
+const DIRECTIONS: u32 = 8;
+const PICTURE: [u32; 2] = [24, 16];
+
+/// Downward slope of the view.
+const SLOPE: f64 = 0.15;
+
+/// A place inside of a mesh.
+#[derive(Clone, Copy)]
+struct Eye {
+    place: DVec3,
+    /// Mean distance of the surfaces around it.
+    openness: f64,
+}
+
+/// A view from the inside of a mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Inside {
+    /// Its clip planes hold the whole mesh.
+    pub view: View,
+    /// True if nothing that it would show is lit: the view is then one under the lamp.
+    pub is_dark: bool,
+    /// A place for a lamp, before the eye and above it.
+    pub lamp: DVec3,
+}
+
+/// Looks around in a mesh, and returns a view from the inside if at a quarter of the places on its
+/// floors surfaces stand all around; of such views one that shows both light and shadow, far and
+/// wide.
+pub fn from_inside(
+    mesh: &Mesh,
+    light: &LightKind,
+    up: DVec3,
+    fov_y_degrees: f64,
+) -> Option<Inside> {
+    let (min, max) = mesh.bounds()?;
+    let (min, max) = (min.as_dvec3(), max.as_dvec3());
+    let up = up.try_normalize()?;
+    let room = Room {
+        oracle: Oracle::new(mesh),
+        middle: (min + max) * 0.5,
+        half: (max - min) * 0.5,
+        up,
+        across: up.any_orthonormal_pair().into(),
+    };
+    let eyes = room.eyes()?;
+    let diagonal = 2.0 * room.half.length();
+    let turns = (0..DIRECTIONS).map(|turn| TAU * f64::from(turn) / f64::from(DIRECTIONS));
+    let views = eyes.iter().cartesian_product(turns);
+    let views = views.map(|(eye, turn)| View {
+        name: "inside".into(),
+        eye: eye.place,
+        direction: room.around(turn) - up * SLOPE,
+        up,
+        fov_y_degrees,
+        near: diagonal * 1e-4,
+        far: diagonal * 1.01,
+        light: None,
+    });
+    let seen = |view: &View| room.worth(view, light);
+    let (is_dark, best) = match best(views.clone(), seen)? {
+        (Worth { lit: 0.0, .. }, _) => {
+            // Where no light comes in, that of the lamp tells the views apart.
+            let seen = |view: &View| room.worth(view, &bulb(room.lamp(view)));
+            (true, best(views, seen)?)
+        }
+        best => (false, best),
+    };
+    let view = best.1;
+    Some(Inside {
+        lamp: room.lamp(&view),
+        view,
+        is_dark,
+    })
+}
+
+fn bulb(position: DVec3) -> LightKind {
+    PointLight {
+        position,
+        radius: 0.0,
+    }
+    .into()
+}
+
+/// The first of the best views, so that the same mesh always gives the same one.
+fn best(
+    views: impl Iterator<Item = View>,
+    worth: impl Fn(&View) -> Option<Worth>,
+) -> Option<(Worth, View)> {
+    let views = views.filter_map(|view| Some((worth(&view)?, view)));
+    views.reduce(|best, other| {
+        if other.0.total() > best.0.total() {
+            other
+        } else {
+            best
+        }
+    })
+}
+
+/// What a view shows, as shares of its pixels.
+#[derive(Clone, Copy)]
+struct Worth {
+    surfaces: f64,
+    lit: f64,
+    shadow: f64,
+    /// Median distance of what it shows, as a share of the mesh, a half at most.
+    far: f64,
+}
+
+impl Worth {
+    /// Light beside shadow first, then how far it sees.
+    fn total(self) -> f64 {
+        (self.lit.min(self.shadow) + 0.02) * (0.1 + self.far) * self.surfaces
+    }
+}
+
+/// A mesh that is looked around in.
+struct Room<'a> {
+    oracle: Oracle<'a>,
+    middle: DVec3,
+    /// Half the extent of its box.
+    half: DVec3,
+    up: DVec3,
+    across: [DVec3; 2],
+}
+
+impl Room<'_> {
+    /// Half the extent of the box along an axis.
+    fn reach(&self, axis: DVec3) -> f64 {
+        axis.abs().dot(self.half)
+    }
+
+    fn around(&self, turn: f64) -> DVec3 {
+        let (sin, cos) = turn.sin_cos();
+        self.across[0] * cos + self.across[1] * sin
+    }
+
+    /// The most open of the surrounded eyes; `None` if the mesh surrounds too few.
+    fn eyes(&self) -> Option<Vec<Eye>> {
+        let columns = self.columns();
+        let count = columns.len();
+        let eyes = columns.iter().map(|column| {
+            let eyes = column.iter().filter_map(|&place| self.surrounded(place));
+            // One of a column: the most open one.
+            eyes.max_by(|a, b| a.openness.total_cmp(&b.openness))
+        });
+        let mut eyes: Vec<Eye> = eyes.flatten().collect();
+        if eyes.is_empty() || (eyes.len() as f64) < INSIDE * count as f64 {
+            return None;
+        }
+        eyes.sort_by(|a, b| b.openness.total_cmp(&a.openness));
+        eyes.truncate(EYES);
+        Some(eyes)
+    }
+
+    /// Places above the floors of each column that has one.
+    fn columns(&self) -> Vec<Vec<DVec3>> {
+        let [right, back] = self.across;
+        let share = |number: u32| (f64::from(number) + 0.5) / f64::from(COLUMNS) * 2.0 - 1.0;
+        let top = self.reach(self.up);
+        let numbers = (0..COLUMNS).cartesian_product(0..COLUMNS);
+        let columns = numbers.map(|(x, z)| {
+            let place = self.middle
+                + right * (share(x) * self.reach(right))
+                + back * (share(z) * self.reach(back));
+            self.above_floors(place + self.up * (top * 1.01))
+        });
+        columns.filter(|column| !column.is_empty()).collect()
+    }
+
+    /// Places above the floors below a place.
+    fn above_floors(&self, from: DVec3) -> Vec<DVec3> {
+        let [right, back] = self.across;
+        let most = MOST_EYE_HEIGHT * 2.0 * self.reach(right).min(self.reach(back));
+        let (mut from, mut eyes) = (from, Vec::new());
+        for _ in 0..FLOORS {
+            let Some(sight) = self.sight(from, -self.up) else {
+                break;
+            };
+            if sight.is_front {
+                let height = (EYE_HEIGHT * sight.distance).min(most);
+                eyes.push(from - self.up * (sight.distance - height));
+            }
+            // A hair further, for the next one below.
+            let step = sight.distance * (1.0 + 1e-9) + self.reach(self.up) * 1e-6;
+            from -= self.up * step;
+        }
+        eyes
+    }
+
+    fn sight(&self, from: DVec3, direction: DVec3) -> Option<Sight> {
+        sights(&self.oracle, &[(from, direction)])[0]
+    }
+
+    /// The eye at a place, if surfaces stand all around it.
+    fn surrounded(&self, place: DVec3) -> Option<Eye> {
+        let rays = (0..AROUND).map(|number| {
+            let tilt = if number % 2 == 0 { TILT } else { -TILT };
+            let turn = TAU * f64::from(number) / f64::from(AROUND);
+            (place, self.around(turn) + self.up * tilt)
+        });
+        let seen = sights(&self.oracle, &rays.collect_vec());
+        let walls = seen.iter().flatten().filter(|sight| sight.is_front);
+        let walls: Vec<f64> = walls.map(|sight| sight.distance).collect();
+        let share = walls.len() as f64 / f64::from(AROUND);
+        (share >= SURROUNDED).then(|| Eye {
+            place,
+            openness: walls.iter().sum::<f64>() / walls.len() as f64,
+        })
+    }
+
+    /// On the way from the eye to the ceiling in its middle distance.
+    fn lamp(&self, view: &View) -> DVec3 {
+        let way = view.direction.normalize() + self.up * 0.8;
+        let ceiling = self.sight(view.eye, way);
+        let distance = ceiling.map_or(self.half.length(), |sight| sight.distance);
+        view.eye + way * (0.7 * distance)
+    }
+
+    /// How much a view is worth; `None` of one that no camera has.
+    fn worth(&self, view: &View, light: &LightKind) -> Option<Worth> {
+        view.check().ok()?;
+        let camera = view.camera(PICTURE);
+        let progress = Progress::default();
+        let primitives = self.oracle.primary(&camera, progress).ok()?;
+        let shown = primitives.iter().filter(|&&it| it != BACKGROUND).count();
+        let mode = OracleMode::Exact;
+        let truth = self
+            .oracle
+            .shade(&camera, light, &primitives, mode, progress);
+        let classes = truth.ok()?.classes;
+        let share = |class: Class| {
+            let count = classes.iter().filter(|&&of| of == class).count();
+            count as f64 / classes.len() as f64
+        };
+        let [width, height] = PICTURE;
+        let pixels = (0..height).cartesian_product(0..width);
+        let rays = pixels.map(|(y, x)| (view.eye, camera.pixel_direction(x, y)));
+        let seen = sights(&self.oracle, &rays.collect_vec());
+        let distances = seen.iter().flatten().map(|sight| sight.distance);
+        let distances: Vec<f64> = distances.sorted_by(f64::total_cmp).collect();
+        let median = distances.get(distances.len() / 2).copied().unwrap_or(0.0);
+        Some(Worth {
+            surfaces: shown as f64 / classes.len() as f64,
+            lit: share(Class::Lit),
+            shadow: share(Class::Shadow),
+            far: (median / self.half.length()).min(0.5),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+    use skiagraph_scene::DirectionalLight;
+
+    /// Boxes, those that are turned inwards seen from inside; a face that is left out.
+    fn mesh(boxes: &[([f32; 3], [f32; 3], bool)], without: Option<usize>) -> Mesh {
+        let mut mesh = Mesh {
+            normals: vec![Vec3::Y],
+            ..Mesh::default()
+        };
+        for &(low, high, is_inward) in boxes {
+            let first = mesh.positions.len() as u32;
+            let corner = |at: u32| {
+                let pick = |axis: usize| {
+                    if at >> axis & 1 == 0 {
+                        low[axis]
+                    } else {
+                        high[axis]
+                    }
+                };
+                Vec3::new(pick(0), pick(1), pick(2))
+            };
+            mesh.positions.extend((0..8).map(corner));
+            let faces = [
+                [0, 2, 3, 1],
+                [4, 5, 7, 6],
+                [0, 1, 5, 4],
+                [2, 6, 7, 3],
+                [0, 4, 6, 2],
+                [1, 3, 7, 5],
+            ];
+            for (face, [a, b, c, d]) in faces.into_iter().enumerate() {
+                if is_inward && without == Some(face) {
+                    continue;
+                }
+                for [a, b, c] in [[a, b, c], [a, c, d]] {
+                    let corners = if is_inward { [a, c, b] } else { [a, b, c] };
+                    mesh.triangles.push(corners.map(|corner| first + corner));
+                    mesh.normal_indices.push([0; 3]);
+                }
+            }
+        }
+        mesh
+    }
+
+    const WALLS: ([f32; 3], [f32; 3], bool) = ([-4.0, 0.0, -3.0], [4.0, 3.0, 3.0], true);
+    const TABLE: ([f32; 3], [f32; 3], bool) = ([-1.0, 0.7, -0.5], [1.0, 0.9, 0.5], false);
+
+    fn view(mesh: &Mesh) -> Option<Inside> {
+        let sun = DirectionalLight::new(DVec3::new(-0.3, -1.0, -0.4)).into();
+        from_inside(mesh, &sun, DVec3::Y, 60.0)
+    }
+
+    #[test]
+    fn a_room_is_seen_from_inside_with_light_and_shadow() {
+        let without_ceiling = mesh(&[WALLS, TABLE], Some(3));
+        let inside = view(&without_ceiling).unwrap();
+        assert!(!inside.is_dark);
+        let seen = inside.view;
+        assert!(seen.eye.x.abs() < 4.0 && seen.eye.z.abs() < 3.0, "{seen:?}");
+        assert!(seen.eye.y > 0.2 && seen.eye.y < 3.0, "{seen:?}");
+        seen.check().unwrap();
+        let camera = seen.camera([32, 24]);
+        let oracle = Oracle::new(&without_ceiling);
+        let primitives = oracle.primary(&camera, Progress::default()).unwrap();
+        let sun = DirectionalLight::new(DVec3::new(-0.3, -1.0, -0.4));
+        let (mode, progress) = (OracleMode::Exact, Progress::default());
+        let truth = oracle.shade(&camera, &sun, &primitives, mode, progress);
+        let classes = truth.unwrap().classes;
+        let count = |class| classes.iter().filter(|&&of| of == class).count();
+        assert!(count(Class::Lit) > 30 && count(Class::Shadow) > 30);
+        // A closed one as well, though it is dark; a lamp hangs in it.
+        let closed = view(&mesh(&[WALLS, TABLE], None)).unwrap();
+        assert!(closed.is_dark);
+        let lamp = closed.lamp;
+        assert!(lamp.y > closed.view.eye.y && lamp.y < 3.0, "{lamp}");
+        assert!(lamp.x.abs() < 4.0 && lamp.z.abs() < 3.0, "{lamp}");
+    }
+
+    #[test]
+    fn what_surrounds_nothing_is_seen_from_outside() {
+        assert_eq!(view(&mesh(&[TABLE], None)), None);
+        // A yard with a wall on two sides only, and a cup on a large plate.
+        let plate = ([-9.0, -0.2, -9.0], [9.0, 0.0, 9.0], false);
+        let walls = ([-9.0, 0.0, -9.0], [-8.0, 5.0, 9.0], false);
+        assert_eq!(view(&mesh(&[plate, walls], None)), None);
+        let cup = ([-1.0, 0.1, -1.0], [1.0, 2.0, 1.0], true);
+        assert_eq!(view(&mesh(&[plate, cup], Some(3))), None);
+    }
+
+    #[test]
+    fn other_axes_may_be_up() {
+        let turned = |mesh: Mesh| Mesh {
+            positions: mesh
+                .positions
+                .iter()
+                .map(|p| Vec3::new(p.x, -p.z, p.y))
+                .collect(),
+            ..mesh
+        };
+        let room = turned(mesh(&[WALLS, TABLE], Some(3)));
+        let sun = DirectionalLight::new(DVec3::new(-0.3, 0.4, -1.0)).into();
+        let seen = from_inside(&room, &sun, DVec3::Z, 60.0).unwrap().view;
+        assert!(seen.eye.z > 0.2 && seen.eye.y.abs() < 3.0, "{seen:?}");
+    }
+}

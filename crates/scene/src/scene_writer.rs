@@ -1,0 +1,261 @@
+//! Writes scene files, as [`SceneFile::parse`] reads them.
+
+use crate::{
+    camera::View,
+    light_kind::{Light, LightKind, PointLight, SpotLight},
+    material_use::MaterialUse,
+    motion::{Motion, PartMotion},
+    obj::options::{Concave, ObjMaterials, QuadDiagonal},
+    path::{CameraPath, LightKey},
+    scene_file::{MeshSource, SceneFile},
+};
+use glam::DVec3;
+
+/// The text of a scene file that says all of this, one view and one key in a line.
+///
+/// # Errors
+/// A view or path with a lamp of its own, which scene files do not have.
+pub fn scene_text(scene: &SceneFile) -> Result<String, String> {
+    let mut text = format!("(\n    format: 1,\n    name: {:?},\n", scene.name);
+    if !scene.description.is_empty() {
+        text += &format!("    description: {:?},\n", scene.description);
+    }
+    text += &format!("    mesh: {},\n", mesh(&scene.mesh));
+    if let Some(up) = scene.ground {
+        text += &format!("    ground: {},\n", vector(up));
+    }
+    let lights = scene.lights.iter().map(light);
+    text += &list("lights", lights.collect());
+    let views = scene.views.iter().map(view);
+    text += &list("views", views.collect::<Result<_, _>>()?);
+    let paths = scene.paths.iter().map(path);
+    text += &list("paths", paths.collect::<Result<_, _>>()?);
+    Ok(text + ")\n")
+}
+
+/// A field that is a list; nothing for an empty one.
+fn list(name: &str, items: Vec<String>) -> String {
+    if items.is_empty() {
+        return String::new();
+    }
+    let items: String = items
+        .iter()
+        .map(|item| format!("        {item},\n"))
+        .collect();
+    format!("    {name}: [\n{items}    ],\n")
+}
+
+/// A number as short as it can be read again.
+fn number(value: f64) -> String {
+    let value = value + 0.0; // No −0.
+    if value != 0.0 && !(1e-6..1e16).contains(&value.abs()) {
+        format!("{value:e}")
+    } else {
+        value.to_string()
+    }
+}
+
+fn vector(of: DVec3) -> String {
+    format!("({}, {}, {})", number(of.x), number(of.y), number(of.z))
+}
+
+fn mesh(mesh: &MeshSource) -> String {
+    let (kind, mut fields) = match mesh {
+        MeshSource::Generated(generator) => return format!("Generated(\"{generator}\")"),
+        MeshSource::Obj {
+            file,
+            leave_out,
+            quads,
+            concave,
+            materials,
+            ..
+        } => {
+            let mut fields = vec![format!("file: {file:?}")];
+            if !leave_out.is_empty() {
+                fields.push(format!("leave_out: {leave_out:?}"));
+            }
+            if *quads != QuadDiagonal::default() {
+                fields.push(format!("quads: {quads:?}"));
+            }
+            if *concave != Concave::default() {
+                fields.push(format!("concave: {concave:?}"));
+            }
+            // `Made` with its map is written as in RON, too.
+            if *materials != ObjMaterials::default() {
+                fields.push(format!("materials: {materials:?}"));
+            }
+            ("Obj", fields)
+        }
+        MeshSource::Gltf {
+            file, materials, ..
+        } => {
+            let mut fields = vec![format!("file: {file:?}")];
+            if *materials != MaterialUse::default() {
+                fields.push(format!("materials: {materials:?}"));
+            }
+            ("Gltf", fields)
+        }
+    };
+    if let MeshSource::Obj {
+        source: Some(source),
+        ..
+    }
+    | MeshSource::Gltf {
+        source: Some(source),
+        ..
+    } = mesh
+    {
+        fields.push(format!("source: {source:?}"));
+    }
+    format!("{kind}({})", fields.join(", "))
+}
+
+fn light(light: &Light) -> String {
+    let name = &light.name;
+    let radius = |radius: f64| match radius {
+        0.0 => String::new(),
+        radius => format!(", radius: {}", number(radius)),
+    };
+    match light.kind {
+        LightKind::Directional(sun) => {
+            let (direction, angle) = (vector(sun.direction), angle(sun.angle_degrees));
+            format!("Directional(name: {name:?}, direction: {direction}{angle})")
+        }
+        LightKind::Spot(SpotLight {
+            position,
+            direction,
+            cone_degrees,
+            radius: of,
+        }) => format!(
+            "Spot(name: {name:?}, position: {}, direction: {}, cone_degrees: {}{})",
+            vector(position),
+            vector(direction),
+            number(cone_degrees),
+            radius(of)
+        ),
+        LightKind::Point(PointLight {
+            position,
+            radius: of,
+        }) => {
+            let (position, radius) = (vector(position), radius(of));
+            format!("Point(name: {name:?}, position: {position}{radius})")
+        }
+    }
+}
+
+fn angle(degrees: f64) -> String {
+    match degrees {
+        0.0 => String::new(),
+        degrees => format!(", angle_degrees: {}", number(degrees)),
+    }
+}
+
+fn view(view: &View) -> Result<String, String> {
+    let (eye, direction) = (vector(view.eye), vector(view.direction));
+    Ok(format!(
+        "(name: {:?}, eye: {eye}, direction: {direction}, {})",
+        view.name,
+        lens(view)?.join(", ")
+    ))
+}
+
+/// Fields that views and paths have in common.
+fn lens(view: &View) -> Result<Vec<String>, String> {
+    let mut fields = vec![
+        format!("fov_y_degrees: {}", number(view.fov_y_degrees)),
+        format!("near: {}", number(view.near)),
+        format!("far: {}", number(view.far)),
+    ];
+    if view.up != DVec3::Y {
+        fields.insert(0, format!("up: {}", vector(view.up)));
+    }
+    match view.light.as_ref().map(|light| light.kind) {
+        None => {}
+        Some(LightKind::Directional(sun)) => {
+            let (direction, angle) = (vector(sun.direction), angle(sun.angle_degrees));
+            fields.push(format!("light: (direction: {direction}{angle})"));
+        }
+        Some(lamp) => {
+            return Err(format!(
+                "{:?} has a {} light of its own, and a scene file has such lights for all views \
+                 only",
+                view.name,
+                lamp.word()
+            ));
+        }
+    }
+    Ok(fields)
+}
+
+fn path(path: &CameraPath) -> Result<String, String> {
+    const INDENT: &str = "            ";
+    let mut text = format!("(\n{INDENT}name: {:?},\n", path.view.name);
+    for field in lens(&path.view)? {
+        text += &format!("{INDENT}{field},\n");
+    }
+    let rate = number(path.frames_per_second);
+    text += &format!("{INDENT}frames_per_second: {rate},\n");
+    let keys = path.keys.iter().map(|key| {
+        let (at, eye) = (number(key.at), vector(key.eye));
+        format!(
+            "(at: {at}, eye: {eye}, direction: {})",
+            vector(key.direction)
+        )
+    });
+    text += &inner("keys", &keys.collect::<Vec<_>>());
+    text += &inner(
+        "light_keys",
+        &path.light_keys.iter().map(light_key).collect::<Vec<_>>(),
+    );
+    text += &inner("moves", &path.moves.iter().map(moves).collect::<Vec<_>>());
+    Ok(text + "        )")
+}
+
+/// A list within a path.
+fn inner(name: &str, items: &[String]) -> String {
+    if items.is_empty() {
+        return String::new();
+    }
+    let items: String = items
+        .iter()
+        .map(|item| format!("                {item},\n"))
+        .collect();
+    format!("            {name}: [\n{items}            ],\n")
+}
+
+fn light_key(key: &LightKey) -> String {
+    let mut text = format!("(at: {}", number(key.at));
+    for (field, of) in [("direction", key.direction), ("position", key.position)] {
+        if let Some(of) = of {
+            text += &format!(", {field}: {}", vector(of));
+        }
+    }
+    text + ")"
+}
+
+fn moves(of: &PartMotion) -> String {
+    let part = &of.part;
+    match &of.motion {
+        Motion::Rigid { pivot, axis, keys } => {
+            let keys = keys.iter().map(|key| {
+                let (at, shift) = (number(key.at), vector(key.translation));
+                let degrees = number(key.degrees);
+                format!("(at: {at}, translation: {shift}, degrees: {degrees})")
+            });
+            let keys: Vec<String> = keys.collect();
+            let (pivot, axis, keys) = (vector(*pivot), vector(*axis), keys.join(", "));
+            format!("Rigid(part: {part:?}, pivot: {pivot}, axis: {axis}, keys: [{keys}])")
+        }
+        Motion::Sway {
+            axis,
+            degrees,
+            seconds,
+            ..
+        } => format!(
+            "Sway(part: {part:?}, axis: {}, degrees: {}, seconds: {})",
+            vector(*axis),
+            number(*degrees),
+            number(*seconds)
+        ),
+    }
+}

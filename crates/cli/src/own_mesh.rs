@@ -5,9 +5,10 @@ use crate::{args::shared::SceneArgs, terminal::console::note};
 use glam::DVec3;
 use itertools::Itertools;
 use skiagraph_compare::{default_view::from_inside, wording::thousands};
+use skiagraph_scene::gltf::Clip;
 use skiagraph_scene::{
-    DirectionalLight, ImportReport, Light, Mesh, MeshFile, PointLight, Scene, SceneError, View,
-    add_ground, has_ground,
+    CameraPath, DirectionalLight, ImportReport, Light, Mesh, MeshFile, PointLight, Scene,
+    SceneError, View, add_ground, has_ground,
 };
 use std::path::Path;
 
@@ -22,6 +23,53 @@ pub struct Chosen {
     pub ground: Option<DVec3>,
 }
 
+/// A scene, most often a mesh file as one.
+#[derive(Debug)]
+pub struct OwnMesh {
+    /// The scene.
+    pub scene: Scene,
+    /// What the import changed or left out.
+    pub report: ImportReport,
+    /// Parts that were chosen.
+    pub chosen: Chosen,
+    /// Animations of the file.
+    pub clips: Vec<Clip>,
+}
+
+impl From<(Scene, ImportReport)> for OwnMesh {
+    /// A scene whose file holds all of it.
+    fn from((scene, report): (Scene, ImportReport)) -> Self {
+        Self {
+            scene,
+            report,
+            chosen: Chosen::default(),
+            clips: Vec::new(),
+        }
+    }
+}
+
+impl OwnMesh {
+    /// The paths of its animations, seen from a view where no camera moves; says which are none.
+    pub fn paths(&self, args: &SceneArgs, standing: &View) -> Vec<CameraPath> {
+        let Scene { views, lights, .. } = &self.scene;
+        let clips = self.clips.iter();
+        let paths = clips.flat_map(|clip| clip.paths(views, lights, standing));
+        let (paths, failed): (Vec<CameraPath>, Vec<String>) = paths.partition_result();
+        for text in failed {
+            note(&format!("{}: {text}: left out", args.scene));
+        }
+        if !paths.is_empty() {
+            let names = paths.iter().map(|path| path.view.name.as_str());
+            let names = names.collect::<Vec<_>>().join(", ");
+            note(&format!(
+                "{}: its animations, for --path: {names}",
+                args.scene
+            ));
+        }
+        paths
+    }
+}
+
 /// The direction in which light travels over a mesh by default: a high sun, from the side.
 const FALLBACK_LIGHT: DVec3 = DVec3::new(-0.4, -1.0, -0.55);
 
@@ -32,13 +80,14 @@ const DEFAULT_FOV: f64 = 60.0;
 ///
 /// # Errors
 /// A file that cannot be read, a sun that is none.
-pub fn load(args: &SceneArgs) -> Result<(Scene, ImportReport, Chosen), SceneError> {
+pub fn load(args: &SceneArgs) -> Result<OwnMesh, SceneError> {
     let path = Path::new(&args.scene);
     let MeshFile {
         name,
         mut mesh,
         mut views,
         mut lights,
+        clips,
         report,
     } = MeshFile::load(path, &args.mesh_file_options())?;
     if let Some(text) = held(&views, &lights) {
@@ -87,7 +136,12 @@ pub fn load(args: &SceneArgs) -> Result<(Scene, ImportReport, Chosen), SceneErro
         views,
         lights,
     };
-    Ok((scene, report, chosen))
+    Ok(OwnMesh {
+        scene,
+        report,
+        chosen,
+        clips,
+    })
 }
 
 /// The sun of the arguments, or one that is chosen.

@@ -2,7 +2,7 @@
 
 use crate::args::shared::SceneArgs;
 use crate::error::CliError;
-use crate::own_mesh::{self, Chosen};
+use crate::own_mesh::{self, Chosen, OwnMesh};
 use crate::terminal::console::note;
 use crate::write_scene;
 use glam::DVec3;
@@ -10,7 +10,8 @@ use skiagraph_compare::error::CompareError;
 use skiagraph_compare::measuring::view_or_path::{ViewOrPath, under_lights};
 use skiagraph_compare::wording::{did_you_mean, unknown};
 use skiagraph_scene::{
-    DirectionalLight, Light, MeshFile, Scene, SceneError, SceneLibrary, SceneRequest, View,
+    CameraPath, DirectionalLight, Light, MeshFile, Scene, SceneError, SceneLibrary, SceneRequest,
+    View,
 };
 use std::path::Path;
 
@@ -21,6 +22,8 @@ pub struct SceneSelection {
     pub scene: Scene,
     /// The views to draw.
     pub views: Vec<View>,
+    /// The camera paths of a mesh file: its animations. Those of other scenes stand in their file.
+    pub paths: Vec<CameraPath>,
 }
 
 impl SceneSelection {
@@ -49,15 +52,10 @@ impl SceneSelection {
         let loaded = if is_mesh {
             own_mesh::load(args)
         } else {
-            let request = SceneRequest {
-                argument: args.scene.clone(),
-                obj: None,
-            };
-            let loaded = library.load(&request);
-            loaded.map(|(scene, report)| (scene, report, Chosen::default()))
+            library.load(&request(args)).map(OwnMesh::from)
         };
-        let loaded = loaded.map_err(|error| explain(error, args, &library));
-        let (scene, report, chosen) = loaded?;
+        let own = loaded.map_err(|error| explain(error, args, &library))?;
+        let OwnMesh { scene, report, .. } = &own;
         if report.has_warnings() {
             note(&format!(
                 "{}: {}",
@@ -65,22 +63,36 @@ impl SceneSelection {
                 report.to_string().trim_end().replace('\n', "; ")
             ));
         }
-        let views = choose(&scene, args.view.as_deref())?;
-        let views = override_views(&scene, views, args, chosen)?;
+        let views = choose(scene, args.view.as_deref())?;
+        let views = override_views(scene, views, args, own.chosen)?;
+        let paths = views
+            .first()
+            .map_or_else(Vec::new, |view| own.paths(args, view));
         if let Some(path) = &args.write_scene {
             let file = if is_mesh {
-                write_scene::of_mesh(args, &scene, chosen)
+                write_scene::of_mesh(args, scene, own.chosen, &paths)
             } else {
                 let file = library.scene_file(&args.scene);
                 file.map_err(|error| explain(error, args, &library))?
             };
             write_scene::write(path, file, &views)?;
         }
-        let views = under_lights(&scene, views, args.light_name())?;
+        let views = under_lights(scene, views, args.light_name())?;
         if let Some(text) = from_below(&views, args) {
             note(&text);
         }
-        Ok(Self { scene, views })
+        Ok(Self {
+            scene: own.scene,
+            views,
+            paths,
+        })
+    }
+}
+
+fn request(args: &SceneArgs) -> SceneRequest {
+    SceneRequest {
+        argument: args.scene.clone(),
+        obj: None,
     }
 }
 
@@ -121,13 +133,15 @@ fn explain(error: SceneError, args: &SceneArgs, library: &SceneLibrary) -> CliEr
 /// A depth buffer of 32-bit floats tells depths apart well over this range.
 const NEAR_TO_FAR: f64 = 1e4;
 
-/// The camera paths of a scene that `--path` names, under the lights that `light` does.
+/// The camera paths of a scene that `--path` names, under the lights that `light` does; `own` are
+/// those of a mesh file.
 ///
 /// # Errors
 /// A view or a light of one's own beside it, no such path or light.
 pub fn paths(
     args: &SceneArgs,
     scene: &Scene,
+    own: &[CameraPath],
     name: &str,
     light: Option<&str>,
 ) -> Result<Vec<ViewOrPath>, CliError> {
@@ -137,8 +151,12 @@ pub fn paths(
              --near, --far and --light x,y,z"
         )));
     }
-    let paths = SceneLibrary::from_environment().paths(&args.scene);
-    let paths = paths.map_err(|error| CliError::Input(error.to_string()))?;
+    let paths = if MeshFile::is_one(Path::new(&args.scene)) {
+        own.to_vec()
+    } else {
+        let paths = SceneLibrary::from_environment().paths(&args.scene);
+        paths.map_err(|error| CliError::Input(error.to_string()))?
+    };
     Ok(ViewOrPath::paths(scene, paths, name, light)?)
 }
 

@@ -1,14 +1,16 @@
 //! `--write-scene`: the chosen scene as a file, to be edited.
 
 use crate::{args::shared::SceneArgs, error::CliError, own_mesh::Chosen, terminal::console::note};
-use skiagraph_scene::{MeshFileOptions, MeshSource, Scene, SceneFile, View, scene_text};
+use skiagraph_scene::{
+    CameraPath, MeshFileOptions, MeshSource, Scene, SceneFile, View, scene_text,
+};
 use std::{
     fs,
     path::{Path, PathBuf},
 };
 
 /// The scene file of a mesh file that was taken by itself.
-pub fn of_mesh(args: &SceneArgs, scene: &Scene, chosen: Chosen) -> SceneFile {
+pub fn of_mesh(args: &SceneArgs, scene: &Scene, chosen: Chosen, paths: &[CameraPath]) -> SceneFile {
     let MeshFileOptions {
         quads,
         concave,
@@ -41,7 +43,7 @@ pub fn of_mesh(args: &SceneArgs, scene: &Scene, chosen: Chosen) -> SceneFile {
         ground: chosen.ground,
         lights: scene.lights.clone(),
         views: scene.views.clone(),
-        paths: Vec::new(),
+        paths: paths.to_vec(),
     }
 }
 

@@ -43,6 +43,9 @@ const EYES: usize = 16;
 const DIRECTIONS: u32 = 8;
 const PICTURE: [u32; 2] = [24, 16];
 
+/// Share of a picture that is lit below which it is dark: pixels on an edge may be by rounding.
+const DARK: f64 = 0.01;
+
 /// Downward slope of the view.
 const SLOPE: f64 = 0.15;
 
@@ -100,7 +103,7 @@ pub fn from_inside(
     });
     let seen = |view: &View| room.worth(view, light);
     let (is_dark, best) = match best(views.clone(), seen)? {
-        (Worth { lit: 0.0, .. }, _) => {
+        (worth, _) if worth.lit < DARK => {
             // Where no light comes in, that of the lamp tells the views apart.
             let seen = |view: &View| room.worth(view, &bulb(room.lamp(view)));
             (true, best(views, seen)?)

@@ -84,7 +84,7 @@ pub use material_use::MaterialUse;
 pub use mesh::{Group, Mesh};
 #[cfg(feature = "files")]
 pub use mesh_file::{MeshFile, MeshFileOptions};
-pub use motion::{Motion, PartMotion, RigidKey};
+pub use motion::{Motion, PartMotion, PoseKey, RigidKey};
 pub use movable::{Movable, MoveError, MovedPart, PartChange};
 #[cfg(feature = "files")]
 pub use obj::{Concave, ObjMaterials, ObjOptions, QuadDiagonal, load_obj};

@@ -3,7 +3,7 @@
 use crate::{
     camera::View,
     error::SceneError,
-    gltf::load_gltf_scene,
+    gltf::{Clip, load_gltf_scene},
     light_kind::Light,
     material_use::MaterialUse,
     mesh::Mesh,
@@ -26,6 +26,8 @@ pub struct MeshFile {
     pub views: Vec<View>,
     /// Its lights; none of an OBJ file.
     pub lights: Vec<Light>,
+    /// Its animations; none of an OBJ file.
+    pub clips: Vec<Clip>,
     /// What the import changed or left out.
     pub report: ImportReport,
 }
@@ -62,6 +64,7 @@ impl MeshFile {
                 mesh,
                 views: Vec::new(),
                 lights: Vec::new(),
+                clips: Vec::new(),
                 report,
             });
         }
@@ -74,6 +77,7 @@ impl MeshFile {
             mesh,
             views: scene.views,
             lights: scene.lights,
+            clips: scene.clips,
             report,
         })
     }

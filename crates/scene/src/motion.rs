@@ -29,6 +29,11 @@ pub enum Motion {
         /// At least one, in the order of times. Before the first and behind the last it stands.
         keys: Vec<RigidKey>,
     },
+    /// Turned and shifted from pose to pose: in a straight line, and by the shortest turn.
+    Posed {
+        /// At least one, in the order of times. Before the first and behind the last it stands.
+        keys: Vec<PoseKey>,
+    },
     /// Bent as by wind: what is at height h of a part as high as H is shifted by
     /// `H (h / H)² tan(a)`, where the angle a swings as a sine. The foot stands.
     Sway {
@@ -54,6 +59,35 @@ pub struct RigidKey {
     pub degrees: f64,
 }
 
+/// A pose of a part at a time: turned about the origin, then shifted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PoseKey {
+    /// Seconds, as of the camera's keys.
+    pub at: f64,
+    /// After the turn.
+    pub translation: DVec3,
+    /// Unit quaternion; about an axis through the origin, from where the part rests.
+    pub rotation: DQuat,
+}
+
+/// The map of poses at a time.
+fn posed(keys: &[PoseKey], at: f64) -> DAffine3 {
+    let passed = keys.partition_point(|key| key.at <= at);
+    let (from, to) = (passed.saturating_sub(1), passed.min(keys.len().max(1) - 1));
+    let (Some(from), Some(to)) = (keys.get(from), keys.get(to)) else {
+        return DAffine3::IDENTITY;
+    };
+    // At a key it is the key, to the last bit.
+    if at <= from.at || to.at <= from.at {
+        return DAffine3::from_rotation_translation(from.rotation, from.translation);
+    }
+    let share = ((at - from.at) / (to.at - from.at)).min(1.0);
+    DAffine3::from_rotation_translation(
+        from.rotation.slerp(to.rotation, share),
+        from.translation.lerp(to.translation, share),
+    )
+}
+
 impl PartMotion {
     /// Checks that it is a motion.
     ///
@@ -77,6 +111,23 @@ impl PartMotion {
                     Some(late) => wrong(late),
                     None if !pivot.is_finite() || !keys.iter().all(is_finite) => {
                         wrong("pivot and keys must be finite".into())
+                    }
+                    None => Ok(()),
+                }
+            }
+            Motion::Posed { keys } if keys.is_empty() => {
+                wrong("it has none of the keys, of which it needs one at least".into())
+            }
+            Motion::Posed { keys } => {
+                let is_pose = |key: &PoseKey| {
+                    key.at.is_finite()
+                        && key.translation.is_finite()
+                        && key.rotation.is_normalized()
+                };
+                match not_later(keys, |key| key.at) {
+                    Some(late) => wrong(late),
+                    None if !keys.iter().all(is_pose) => {
+                        wrong("keys must be finite, and each rotation a unit quaternion".into())
                     }
                     None => Ok(()),
                 }
@@ -123,6 +174,10 @@ impl PartMotion {
                 };
                 Box::new(move |place| (map.transform_point3(place), map.matrix3))
             }
+            Motion::Posed { keys } => {
+                let map = posed(keys, at);
+                Box::new(move |place| (map.transform_point3(place), map.matrix3))
+            }
             Motion::Sway {
                 axis,
                 up,
@@ -147,7 +202,7 @@ impl PartMotion {
 
     fn up(&self) -> DVec3 {
         match &self.motion {
-            Motion::Rigid { .. } => DVec3::ZERO,
+            Motion::Rigid { .. } | Motion::Posed { .. } => DVec3::ZERO,
             Motion::Sway { up, .. } => up.normalize(),
         }
     }

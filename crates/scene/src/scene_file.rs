@@ -26,11 +26,11 @@ use crate::{
     light::DirectionalLight,
     light_kind::{Light, LightKind, PointLight, SpotLight},
     material_use::MaterialUse,
-    motion::{Motion, PartMotion, RigidKey},
+    motion::{Motion, PartMotion, PoseKey, RigidKey},
     obj::options::{Concave, ObjMaterials, QuadDiagonal},
     path::{CameraKey, CameraPath, LightKey},
 };
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use serde::{
     Deserialize, Deserializer,
     de::{DeserializeOwned, Error},
@@ -473,6 +473,12 @@ enum MotionText {
         axis: (f64, f64, f64),
         keys: Vec<RigidKeyText>,
     },
+    /// The part is turned about the origin and shifted from key to key, in a straight line.
+    Posed {
+        /// Name of the part.
+        part: String,
+        keys: Vec<PoseKeyText>,
+    },
     /// The part bends along the axis as by wind; its foot stands.
     Sway {
         /// Name of the part.
@@ -507,6 +513,15 @@ impl MotionText {
                 };
                 (part, motion)
             }
+            Self::Posed { part, keys } => {
+                let keys = keys.iter().map(|key| PoseKey {
+                    at: key.at,
+                    translation: key.translation.into(),
+                    rotation: key.rotation(),
+                });
+                let keys = keys.collect();
+                (part, Motion::Posed { keys })
+            }
             Self::Sway {
                 part,
                 axis,
@@ -536,6 +551,36 @@ struct RigidKeyText {
     translation: (f64, f64, f64),
     #[serde(default)]
     degrees: f64,
+}
+
+#[derive(Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields, rename = "PoseKey")]
+struct PoseKeyText {
+    /// Time in seconds.
+    at: f64,
+    #[serde(default)]
+    translation: (f64, f64, f64),
+    /// Quaternion x, y, z, w.
+    #[serde(default = "no_turn")]
+    rotation: (f64, f64, f64, f64),
+}
+
+impl PoseKeyText {
+    /// Of length 1, unless it is so already or has none.
+    fn rotation(&self) -> DQuat {
+        let (x, y, z, w) = self.rotation;
+        let rotation = DQuat::from_xyzw(x, y, z, w);
+        if rotation.is_normalized() || rotation.length_squared() == 0.0 {
+            rotation
+        } else {
+            rotation.normalize()
+        }
+    }
+}
+
+fn no_turn() -> (f64, f64, f64, f64) {
+    (0.0, 0.0, 0.0, 1.0)
 }
 
 #[derive(Deserialize)]

@@ -28,7 +28,7 @@ pub fn scene_text(scene: &SceneFile) -> Result<String, String> {
     text += &list("lights", lights.collect());
     let views = scene.views.iter().map(view);
     text += &list("views", views.collect::<Result<_, _>>()?);
-    let paths = scene.paths.iter().map(path);
+    let paths = scene.paths.iter().map(|it| path(it, &scene.lights));
     text += &list("paths", paths.collect::<Result<_, _>>()?);
     Ok(text + ")\n")
 }
@@ -187,10 +187,17 @@ fn lens(view: &View) -> Result<Vec<String>, String> {
     Ok(fields)
 }
 
-fn path(path: &CameraPath) -> Result<String, String> {
+/// A path under a lamp of the scene is drawn under it with `--light`, as a comment says.
+fn path(path: &CameraPath, lights: &[Light]) -> Result<String, String> {
     const INDENT: &str = "            ";
-    let mut text = format!("(\n{INDENT}name: {:?},\n", path.view.name);
-    for field in lens(&path.view)? {
+    let mut view = path.view.clone();
+    let is_lamp = |light: &Light| light.kind.directional().is_none() && lights.contains(light);
+    let mut text = match view.light.take_if(|light| is_lamp(light)) {
+        Some(lamp) => format!("// Under its light: --light {}\n        (\n", lamp.name),
+        None => "(\n".to_owned(),
+    };
+    text += &format!("{INDENT}name: {:?},\n", view.name);
+    for field in lens(&view)? {
         text += &format!("{INDENT}{field},\n");
     }
     let rate = number(path.frames_per_second);
@@ -245,6 +252,18 @@ fn moves(of: &PartMotion) -> String {
             let keys: Vec<String> = keys.collect();
             let (pivot, axis, keys) = (vector(*pivot), vector(*axis), keys.join(", "));
             format!("Rigid(part: {part:?}, pivot: {pivot}, axis: {axis}, keys: [{keys}])")
+        }
+        Motion::Posed { keys } => {
+            let keys = keys.iter().map(|key| {
+                let (at, shift) = (number(key.at), vector(key.translation));
+                let turn = key.rotation.to_array().map(number).join(", ");
+                format!("(at: {at}, translation: {shift}, rotation: ({turn}))")
+            });
+            let keys: Vec<String> = keys.collect();
+            let keys = keys.join(",\n                    ");
+            format!(
+                "Posed(part: {part:?}, keys: [\n                    {keys},\n                ])"
+            )
         }
         Motion::Sway {
             axis,

@@ -11,7 +11,17 @@ pub struct Welder {
     by_bits: HashMap<[u32; 3], u32>,
 }
 
+/// Vectors to which others are welded.
+#[derive(Clone, Debug, Default)]
+pub struct Known(HashMap<[u32; 3], u32>);
+
 impl Welder {
+    /// Welds to other vectors from now on, and returns those that were known before: a part that
+    /// moves by itself shares none with others.
+    pub fn weld_to(&mut self, known: Known) -> Known {
+        Known(std::mem::replace(&mut self.by_bits, known.0))
+    }
+
     /// Index of a vector; −0 counts (and is stored) as 0.
     pub fn index(&mut self, value: Vec3) -> u32 {
         let value = value + Vec3::ZERO; // −0 + 0 = 0

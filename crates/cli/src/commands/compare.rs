@@ -54,11 +54,15 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let loaded = methods.iter().map(|method| &method.preset.graph);
     let gpu = device::open(&gpu.request(), loaded)?;
     let session = Session::new(&gpu, &Terminal);
-    let SceneSelection { scene, views } = SceneSelection::load(&args.scene)?;
+    let SceneSelection {
+        scene,
+        views,
+        paths: own,
+    } = SceneSelection::load(&args.scene)?;
     let scene = Arc::new(scene);
     let light = light_name(args, &methods, &scene, session);
     let views = match (&args.path, &args.scene.light) {
-        (Some(name), _) => paths(&args.scene, &scene, name, light)?,
+        (Some(name), _) => paths(&args.scene, &scene, &own, name, light)?,
         (None, Some(_)) => views.into_iter().map(ViewOrPath::Still).collect(),
         (None, None) => {
             let views = under_lights(&scene, views, light)?.into_iter();

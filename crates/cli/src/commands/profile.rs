@@ -42,7 +42,7 @@ pub fn profile(args: &ProfileArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let graphs = methods.iter().map(|method| &method.preset.graph);
     let gpu = device::open(&gpu.request(), graphs)?;
     let session = Session::new(&gpu, &Terminal);
-    let SceneSelection { scene, views } = SceneSelection::load(&args.scene)?;
+    let SceneSelection { scene, views, .. } = SceneSelection::load(&args.scene)?;
     let viewports = unique(args.size.iter().map(|Size(size)| *size));
     let planned = methods.len() * views.len() * viewports.len();
     check_single(args, planned)?;

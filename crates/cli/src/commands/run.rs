@@ -49,8 +49,12 @@ pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     check_writable(&files.collect::<Vec<_>>())?;
     let gpu = device::open(&gpu.request(), [&preset.graph])?;
     let session = Session::new(&gpu, &Terminal);
-    let SceneSelection { scene, mut views } = SceneSelection::load(&args.scene)?;
-    let poses = PoseSequence::new(args, &scene, &views)?;
+    let SceneSelection {
+        scene,
+        mut views,
+        paths,
+    } = SceneSelection::load(&args.scene)?;
+    let poses = PoseSequence::new(args, &scene, &views, &paths)?;
     if let Some(first) = poses.as_ref().and_then(PoseSequence::first) {
         views = vec![first.clone()];
     }

@@ -18,7 +18,7 @@ use skiagraph_compare::wording::frames;
 use skiagraph_gpu::{Executor, Frame};
 use skiagraph_graph::Plan;
 use skiagraph_passes::SceneProvider;
-use skiagraph_scene::{Scene, View};
+use skiagraph_scene::{CameraPath, Scene, View};
 
 /// The file in which a frame is saved.
 pub fn of_frame(save: &Save, index: usize) -> Save {
@@ -42,13 +42,18 @@ impl PoseSequence {
     ///
     /// # Errors
     /// No such path, or one that has fewer frames.
-    pub fn new(args: &RunArgs, scene: &Scene, views: &[View]) -> Result<Option<Self>, CliError> {
+    pub fn new(
+        args: &RunArgs,
+        scene: &Scene,
+        views: &[View],
+        own: &[CameraPath],
+    ) -> Result<Option<Self>, CliError> {
         let view_or_path = match (&args.path, args.frames, views) {
             (None, None, _) if args.jitter.is_some() => {
                 return Err(CliError::Usage("--jitter needs --frames or --path".into()));
             }
             (None, None, _) => return Ok(None),
-            (Some(name), ..) => Self::path(args, scene, name)?,
+            (Some(name), ..) => Self::path(args, scene, own, name)?,
             (None, Some(_), [view]) => ViewOrPath::Still(view.clone()),
             (None, Some(_), _) => {
                 return Err(CliError::Usage(
@@ -80,8 +85,14 @@ impl PoseSequence {
         }))
     }
 
-    fn path(args: &RunArgs, scene: &Scene, name: &str) -> Result<ViewOrPath, CliError> {
-        let mut found = paths(&args.scene, scene, name, args.scene.light_name())?.into_iter();
+    fn path(
+        args: &RunArgs,
+        scene: &Scene,
+        own: &[CameraPath],
+        name: &str,
+    ) -> Result<ViewOrPath, CliError> {
+        let light = args.scene.light_name();
+        let mut found = paths(&args.scene, scene, own, name, light)?.into_iter();
         match (found.next(), found.next()) {
             (Some(path), None) => Ok(path),
             _ => Err(CliError::Usage(

@@ -31,7 +31,7 @@ pub fn view(args: &ViewArgs, gpu: &GpuArgs) -> Result<(), CliError> {
                     ..SceneArgs::default()
                 })
             };
-            let SceneSelection { scene, views } = loaded?;
+            let SceneSelection { scene, views, .. } = loaded?;
             Ok((scene, views))
         }),
         gpu: gpu.request(),

@@ -2,8 +2,10 @@
 
 use super::{
     accessor,
+    animations::Bytes,
     beside::Beside,
     buffers::{self, Buffers, GLTF_FILE},
+    clips,
     document::{self, Parsed},
     fault::Fault,
     materials::Reader,
@@ -20,6 +22,7 @@ use crate::{
     mesh::Mesh,
     obj::read::check_read,
     report::ImportReport,
+    weld::Known,
 };
 use glam::{DMat3, DMat4, DVec3, Vec2};
 use gltf::{Document, Semantic, accessor::DataType, mesh::Mode};
@@ -114,7 +117,19 @@ pub fn parse_gltf_scene(
     import.read_nodes(nodes.as_ref()).map_err(fail)?;
     let (mesh, report) = import.finish();
     check_read(&mesh, &report, path)?;
-    let scene = GltfScene::new(&beside.placements, nodes.as_ref(), mesh.bounds());
+    let mut scene = GltfScene::new(&beside.placements, nodes.as_ref(), mesh.bounds());
+    if let Some(nodes) = &nodes {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        scene.add_clips(&clips::Source {
+            document: &document,
+            placements: &beside.placements,
+            nodes,
+            bytes: Bytes {
+                read: &buffers,
+                folder,
+            },
+        });
+    }
     Ok((mesh, scene, report))
 }
 
@@ -198,7 +213,13 @@ impl<'a> Import<'a> {
             let Some(mesh) = node.mesh() else { continue };
             let placing = self.placing(node, &mesh, nodes);
             let placing = placing.map_err(|why| (format!("node {}", node.index()), why))?;
-            self.read_mesh(&mesh, &placing)?;
+            if nodes.moved.contains(&node.index()) {
+                let others = self.builder.positions.weld_to(Known::default());
+                self.read_mesh(&mesh, &placing)?;
+                self.builder.positions.weld_to(others);
+            } else {
+                self.read_mesh(&mesh, &placing)?;
+            }
         }
         Ok(())
     }
@@ -462,6 +483,11 @@ fn strip(indices: &[u32]) -> impl Iterator<Item = [u32; 3]> {
 fn fan(indices: &[u32]) -> impl Iterator<Item = [u32; 3]> {
     let rim = indices.get(1..).unwrap_or_default();
     rim.windows(2).map(|of| [of[0], of[1], indices[0]])
+}
+
+/// Name of the group that the triangles of a node are in, if it has any.
+pub(super) fn part(node: &gltf::Node<'_>) -> Option<String> {
+    node.mesh().map(|mesh| group(&mesh, node.name()))
 }
 
 /// Name of the group that a mesh's triangles are in.

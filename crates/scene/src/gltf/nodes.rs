@@ -3,7 +3,7 @@
 use super::{beside::Beside, fault::Fault};
 use glam::{DMat4, Mat4};
 use gltf::{Document, Node};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// The nodes of a document's scene.
 #[derive(Default)]
@@ -12,6 +12,8 @@ pub(super) struct Nodes<'a> {
     pub seen: Vec<Node<'a>>,
     /// All of the scene in that order, and whether they are seen.
     pub in_scene: Vec<(usize, bool)>,
+    /// Nodes of the scene that an animation moves, themselves or with one above them.
+    pub moved: HashSet<usize>,
     /// Where nodes stand: those of the scene, and joints that are in none.
     pub worlds: HashMap<usize, DMat4>,
 }
@@ -26,7 +28,10 @@ impl<'a> Nodes<'a> {
         let Some(scene) = document.default_scene().or_else(|| scenes.next()) else {
             return Ok(None);
         };
-        let mut nodes = Self::default();
+        let mut nodes = Self {
+            moved: beside.placements.animations.nodes(),
+            ..Self::default()
+        };
         nodes.walk(scene.nodes().collect(), beside, true)?;
         // A joint may stand outside of the scene.
         let joints = document
@@ -67,6 +72,9 @@ impl<'a> Nodes<'a> {
                 self.in_scene.push((node.index(), seen));
             }
             let children: Vec<_> = node.children().collect();
+            if self.moved.contains(&node.index()) {
+                self.moved.extend(children.iter().map(Node::index));
+            }
             open.extend(
                 children
                     .into_iter()

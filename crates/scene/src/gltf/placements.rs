@@ -1,7 +1,10 @@
-//! Cameras and lights of a document, and the nodes that place them, read before `prepare` takes
+//! Cameras, lights and animations of a document, and the nodes that place them, read before `prepare` takes
 //! them out.
 
-use super::beside::{index, items};
+use super::{
+    animations::Animations,
+    beside::{index, items},
+};
 use crate::error::beginning;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -13,6 +16,7 @@ pub(super) struct Placements {
     pub cameras: Vec<Value>,
     /// Those of KHR_lights_punctual.
     pub lights: Vec<Value>,
+    pub animations: Animations,
     /// By the number of the node.
     pub nodes: BTreeMap<usize, Placement>,
 }
@@ -53,6 +57,7 @@ impl Placements {
         }
         let lights = root.pointer("/extensions/KHR_lights_punctual");
         Self {
+            animations: Animations::read(root),
             cameras: items(root, "cameras").cloned().collect(),
             lights: lights.map_or_else(Vec::new, |of| items(of, "lights").cloned().collect()),
             nodes,

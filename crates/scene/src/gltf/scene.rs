@@ -1,7 +1,12 @@
 //! Views and lights of a document: its cameras and those of KHR_lights_punctual, where nodes place
 //! them.
 
-use super::{names::Names, nodes::Nodes, placements::Placements};
+use super::{
+    clips::{self, Clip},
+    names::Names,
+    nodes::Nodes,
+    placements::Placements,
+};
 use crate::{
     camera::View,
     error::{beginning, plural},
@@ -19,6 +24,11 @@ pub struct GltfScene {
     pub views: Vec<View>,
     /// Those that light anything, named likewise.
     pub lights: Vec<Light>,
+    /// Its animations of nodes.
+    pub clips: Vec<Clip>,
+    /// The node of each view, and of each light.
+    nodes_of_views: Vec<usize>,
+    nodes_of_lights: Vec<usize>,
     /// Cameras and lights that were left out, and values that were chosen: a sentence each.
     pub remarks: Vec<String>,
 }
@@ -80,6 +90,18 @@ impl GltfScene {
             ));
         }
         reader.scene
+    }
+
+    /// Adds the animations of the document.
+    pub(super) fn add_clips(&mut self, source: &clips::Source<'_>) {
+        let placed = clips::Placed {
+            views: &self.nodes_of_views,
+            lights: &self.nodes_of_lights,
+            kinds: self.lights.iter().map(|light| light.kind).collect(),
+        };
+        let (clips, remarks) = clips::clips(source, &placed);
+        self.clips = clips;
+        self.remarks.extend(remarks);
     }
 }
 
@@ -145,6 +167,7 @@ impl Reader<'_> {
                 for remark in remarks {
                     self.remark(format!("{place}: {remark}"));
                 }
+                self.scene.nodes_of_views.push(placed.node);
                 self.scene.views.push(View { name, ..view });
             }
             Err(why) => self.remark(format!("{place}: its camera is left out: {why}")),
@@ -224,6 +247,7 @@ impl Reader<'_> {
                 }
                 let range = self.placements.lights[number].get("range");
                 self.with_range += usize::from(range.is_some());
+                self.scene.nodes_of_lights.push(placed.node);
                 self.scene.lights.push(Light { name, ..light });
             }
             Err(why) => self.remark(format!("{place}: its light is left out: {why}")),

@@ -1,0 +1,419 @@
+//! Animations as camera paths: where cameras, lights and meshes are in each frame.
+
+use super::{
+    animations::{Bytes, Track, Values},
+    names::Names,
+    nodes::Nodes,
+    placements::Placements,
+};
+use crate::{
+    camera::View,
+    error::beginning,
+    light_kind::{Light, LightKind},
+    motion::{Motion, PartMotion, PoseKey},
+    path::{CameraKey, CameraPath, LightKey},
+};
+use glam::{DMat3, DMat4, DQuat, DVec3, Mat4};
+use gltf::Document;
+use serde_json::Value;
+use std::collections::HashMap;
+
+/// Frames in a second of an animation's time: each is a key.
+const RATE: f64 = 30.0;
+
+/// Most keys of all moving nodes of an animation together.
+const MOST_KEYS: f64 = 1e6;
+
+/// How far a map may be from a rigid one, and a camera from upright (in degrees).
+const NEARLY_RIGID: f64 = 1e-3;
+const NEARLY_UPRIGHT: f64 = 1.0;
+
+/// An animation of a glTF file, frame by frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Clip {
+    /// Small letters, digits and `_`, unlike those of the others.
+    pub name: String,
+    frames: u32,
+    /// The view that moves, and its direction up.
+    cameras: Vec<(usize, DVec3, Vec<CameraKey>)>,
+    lights: Vec<(usize, Vec<LightKey>)>,
+    moves: Vec<PartMotion>,
+}
+
+impl Clip {
+    /// The paths of an animation, of a scene with these views and lights: one for each camera that
+    /// moves, or of `standing` if none does; where lights move, one under each light.
+    ///
+    /// # Errors
+    /// For each that is none, why.
+    pub fn paths(
+        &self,
+        views: &[View],
+        lights: &[Light],
+        standing: &View,
+    ) -> Vec<Result<CameraPath, String>> {
+        let last = f64::from(self.frames.saturating_sub(1)) / RATE;
+        let stand = |at| CameraKey {
+            at,
+            eye: standing.eye,
+            direction: standing.direction,
+        };
+        let mut cameras: Vec<(View, Vec<CameraKey>)> = Vec::new();
+        for (view, up, keys) in &self.cameras {
+            if let Some(view) = views.get(*view) {
+                let view = View {
+                    up: *up,
+                    ..view.clone()
+                };
+                cameras.push((view, keys.clone()));
+            }
+        }
+        if cameras.is_empty() {
+            cameras.push((standing.clone(), vec![stand(0.0), stand(last)]));
+        }
+        let of_lights: Vec<Option<usize>> = if self.lights.is_empty() {
+            vec![None]
+        } else {
+            (0..lights.len()).map(Some).collect()
+        };
+        let (several_cameras, several_lights) = (cameras.len() > 1, lights.len() > 1);
+        let mut paths = Vec::new();
+        for (view, keys) in &cameras {
+            for &number in &of_lights {
+                let light = number.and_then(|number| lights.get(number));
+                let moved = self.lights.iter().find(|(of, _)| Some(*of) == number);
+                let mut name = self.name.clone();
+                if several_cameras {
+                    name += &format!("_{}", view.name);
+                }
+                if let Some(light) = light.filter(|_| several_lights) {
+                    name += &format!("_{}", light.name);
+                }
+                let path = CameraPath {
+                    view: View {
+                        name,
+                        light: light.cloned(),
+                        ..view.clone()
+                    },
+                    frames_per_second: RATE,
+                    keys: keys.clone(),
+                    light_keys: moved.map_or_else(Vec::new, |(_, keys)| keys.clone()),
+                    moves: self.moves.clone(),
+                };
+                paths.push(path.check().map(|()| path));
+            }
+        }
+        paths
+    }
+}
+
+/// A document with what its nodes became.
+pub(super) struct Source<'a> {
+    pub document: &'a Document,
+    pub placements: &'a Placements,
+    pub nodes: &'a Nodes<'a>,
+    pub bytes: Bytes<'a>,
+}
+
+/// The nodes of views and lights.
+pub(super) struct Placed<'a> {
+    pub views: &'a [usize],
+    pub lights: &'a [usize],
+    /// What each light is.
+    pub kinds: Vec<LightKind>,
+}
+
+/// The clips of a document, and what is said of its animations.
+pub(super) fn clips(source: &Source<'_>, placed: &Placed<'_>) -> (Vec<Clip>, Vec<String>) {
+    let (mut clips, mut remarks, mut names) = (Vec::new(), Vec::new(), Names::default());
+    let animations = &source.placements.animations;
+    for (number, animation) in animations.list.iter().enumerate() {
+        let name = animation.get("name").and_then(Value::as_str);
+        let place = match name {
+            Some(name) => format!("animation {number} {:?}", beginning(name)),
+            None => format!("animation {number}"),
+        };
+        let fallback = format!("animation_{number}");
+        let plain = Names::plain(name.unwrap_or_default(), &fallback);
+        let mut said = Vec::new();
+        let clip = animations
+            .tracks(animation, source.bytes)
+            .and_then(|(tracks, more)| {
+                said.extend(more);
+                Poses::new(source, &tracks).clip(source, placed, &mut said)
+            });
+        let said = said.into_iter().map(|text| format!("{place}: {text}"));
+        remarks.extend(said);
+        match clip {
+            Ok(clip) => {
+                let name = names.unlike(&plain);
+                if name != plain {
+                    remarks.push(format!(
+                        "{place}: another animation has that name: its path is called {name}"
+                    ));
+                }
+                clips.push(Clip { name, ..clip });
+            }
+            Err(why) => remarks.push(format!("{place} is left out: {why}")),
+        }
+    }
+    (clips, remarks)
+}
+
+/// Where nodes are at a time.
+struct Poses<'a> {
+    tracks: HashMap<usize, Vec<&'a Track>>,
+    end: f64,
+    /// Nodes from the root to each node that is moved, itself or by one above it.
+    ways: HashMap<usize, Vec<usize>>,
+    /// The transform of a node at rest, apart and as a whole.
+    parts: HashMap<usize, (DVec3, DQuat, DVec3)>,
+    locals: HashMap<usize, DMat4>,
+}
+
+impl<'a> Poses<'a> {
+    fn new(source: &Source<'_>, tracks: &'a [Track]) -> Self {
+        let mut poses = Self {
+            tracks: HashMap::new(),
+            end: tracks.iter().map(Track::end).fold(0.0, f64::max),
+            ways: HashMap::new(),
+            parts: HashMap::new(),
+            locals: HashMap::new(),
+        };
+        for track in tracks {
+            poses.tracks.entry(track.node).or_default().push(track);
+        }
+        let mut parents = HashMap::new();
+        for node in source.document.nodes() {
+            for child in node.children() {
+                parents.insert(child.index(), node.index());
+            }
+            let matrix = Mat4::from_cols_array_2d(&node.transform().matrix()).as_dmat4();
+            poses.locals.insert(node.index(), matrix);
+            let (shift, turn, scale) = node.transform().decomposed();
+            let turn = DQuat::from_array(turn.map(f64::from));
+            let parts = (
+                DVec3::from(shift.map(f64::from)),
+                turn,
+                DVec3::from(scale.map(f64::from)),
+            );
+            poses.parts.insert(node.index(), parts);
+        }
+        // Nodes that stand somewhere have one parent each, and no circles.
+        for &node in source.nodes.worlds.keys() {
+            let way = std::iter::successors(Some(node), |node| parents.get(node).copied());
+            let mut way: Vec<usize> = way.collect();
+            way.reverse();
+            if way.iter().any(|node| poses.tracks.contains_key(node)) {
+                poses.ways.insert(node, way);
+            }
+        }
+        poses
+    }
+
+    fn local(&self, node: usize, at: f64) -> DMat4 {
+        let Some(tracks) = self.tracks.get(&node) else {
+            return self.locals.get(&node).copied().unwrap_or_default();
+        };
+        let parts = self.parts.get(&node).copied();
+        let (mut shift, mut turn, mut scale) =
+            parts.unwrap_or((DVec3::ZERO, DQuat::IDENTITY, DVec3::ONE));
+        for track in tracks {
+            let (from, to, share) = track.around(at);
+            match &track.values {
+                Values::Translation(values) => shift = values[from].lerp(values[to], share),
+                Values::Scale(values) => scale = values[from].lerp(values[to], share),
+                Values::Rotation(values) => turn = values[from].slerp(values[to], share),
+            }
+        }
+        DMat4::from_scale_rotation_translation(scale, turn, shift)
+    }
+
+    /// The transforms of a node in each frame; `None` of one that stands.
+    fn frames(&self, node: usize, frames: u32) -> Option<Vec<DMat4>> {
+        let way = self.ways.get(&node)?;
+        let world = |frame: u32| {
+            let at = f64::from(frame) / RATE;
+            way.iter()
+                .fold(DMat4::IDENTITY, |above, &node| above * self.local(node, at))
+        };
+        Some((0..frames).map(world).collect())
+    }
+
+    fn clip(
+        &self,
+        source: &Source<'_>,
+        placed: &Placed<'_>,
+        said: &mut Vec<String>,
+    ) -> Result<Clip, String> {
+        if self.ways.is_empty() {
+            return Err("it moves no node of the scene".to_owned());
+        }
+        let frames = (self.end * RATE + 1e-6).floor() + 1.0;
+        if frames < 2.0 {
+            return Err(format!(
+                "it lasts {} s, less than a frame, which is a thirtieth",
+                self.end
+            ));
+        }
+        if frames * self.ways.len() as f64 > MOST_KEYS {
+            return Err(format!(
+                "{frames} frames of {} moving nodes are too many: shorten it",
+                self.ways.len()
+            ));
+        }
+        let frames = frames as u32;
+        let mut clip = Clip {
+            name: String::new(),
+            frames,
+            cameras: Vec::new(),
+            lights: Vec::new(),
+            moves: Vec::new(),
+        };
+        for (view, &node) in placed.views.iter().enumerate() {
+            if let Some(worlds) = self.frames(node, frames) {
+                let (up, keys) = camera_keys(&worlds, node, said);
+                clip.cameras.push((view, up, keys));
+            }
+        }
+        for (light, &node) in placed.lights.iter().enumerate() {
+            if let Some(worlds) = self.frames(node, frames) {
+                let keys = light_keys(&worlds, &placed.kinds[light]);
+                clip.lights.push((light, keys));
+            }
+        }
+        self.moves(source, frames, &mut clip, said);
+        if clip.cameras.is_empty() && clip.lights.is_empty() && clip.moves.is_empty() {
+            return Err("it moves no camera, no light and no mesh".to_owned());
+        }
+        Ok(clip)
+    }
+
+    fn moves(&self, source: &Source<'_>, frames: u32, clip: &mut Clip, said: &mut Vec<String>) {
+        let names: Vec<String> = source
+            .nodes
+            .seen
+            .iter()
+            .filter_map(super::import::part)
+            .collect();
+        for node in &source.nodes.seen {
+            let (number, Some(part)) = (node.index(), super::import::part(node)) else {
+                continue;
+            };
+            let place = format!("node {number} {:?}", beginning(&part));
+            if let Some(skin) = node.skin() {
+                let mut joints = skin.joints().map(|joint| joint.index());
+                if joints.any(|joint| self.ways.contains_key(&joint)) {
+                    said.push(format!(
+                        "{place}: its skin moves, which is not followed: it keeps its pose"
+                    ));
+                }
+                continue;
+            }
+            let Some(worlds) = self.frames(number, frames) else {
+                continue;
+            };
+            let rest = source
+                .nodes
+                .worlds
+                .get(&number)
+                .copied()
+                .unwrap_or_default();
+            let maps = worlds.iter().map(|world| *world * rest.inverse());
+            let Some(keys) = maps.enumerate().map(pose_key).collect::<Option<Vec<_>>>() else {
+                said.push(format!(
+                    "{place}: its size or shape changes, and only rigid motions are followed: it \
+                     stands still"
+                ));
+                continue;
+            };
+            if names.iter().filter(|name| **name == part).count() > 1 {
+                said.push(format!(
+                    "{place}: another node has that name, so that it cannot move by itself: it \
+                     stands still, rename it"
+                ));
+                continue;
+            }
+            let motion = Motion::Posed { keys };
+            clip.moves.push(PartMotion { part, motion });
+        }
+    }
+}
+
+/// The key of a frame of a part; `None` if its map is not rigid.
+fn pose_key((frame, map): (usize, DMat4)) -> Option<PoseKey> {
+    let linear = DMat3::from_mat4(map);
+    let error = linear.transpose() * linear - DMat3::IDENTITY;
+    let error = error
+        .to_cols_array()
+        .into_iter()
+        .fold(0.0, |most: f64, of| most.max(of.abs()));
+    (error < NEARLY_RIGID && linear.determinant() > 0.0).then(|| PoseKey {
+        at: frame as f64 / RATE,
+        translation: map.w_axis.truncate(),
+        rotation: DQuat::from_mat3(&linear).normalize(),
+    })
+}
+
+fn at(frame: usize) -> f64 {
+    frame as f64 / RATE
+}
+
+/// The way of a camera, with the direction up that suits all of it best.
+fn camera_keys(worlds: &[DMat4], node: usize, said: &mut Vec<String>) -> (DVec3, Vec<CameraKey>) {
+    let keys = worlds.iter().enumerate().map(|(frame, world)| CameraKey {
+        at: at(frame),
+        eye: world.w_axis.truncate(),
+        direction: (-world.z_axis.truncate()).normalize_or_zero(),
+    });
+    let keys: Vec<CameraKey> = keys.collect();
+    let ups = worlds
+        .iter()
+        .map(|world| world.y_axis.truncate().normalize_or_zero());
+    let ups: Vec<DVec3> = ups.collect();
+    // How far the pictures are rolled with a constant direction up.
+    let roll = |up: DVec3| {
+        let rolls = keys.iter().zip(&ups).map(|(key, own)| {
+            let up = up - key.direction * up.dot(key.direction);
+            if up.length() < 1e-6 {
+                180.0
+            } else {
+                up.angle_between(*own).to_degrees()
+            }
+        });
+        rolls.fold(0.0, f64::max)
+    };
+    let first = ups.first().copied().unwrap_or(DVec3::Y);
+    let up = if roll(DVec3::Y) <= roll(first) + 1e-3 {
+        DVec3::Y
+    } else {
+        first
+    };
+    if roll(up) > NEARLY_UPRIGHT {
+        said.push(format!(
+            "node {node}: its camera rolls by up to {:.0} degrees, which paths do not: up stays \
+             {}",
+            roll(up),
+            up
+        ));
+    }
+    (up, keys)
+}
+
+fn light_keys(worlds: &[DMat4], kind: &LightKind) -> Vec<LightKey> {
+    let keys = worlds.iter().enumerate().map(|(frame, world)| {
+        let direction = (-world.z_axis.truncate()).normalize_or_zero();
+        let position = world.w_axis.truncate();
+        let (direction, position) = match kind {
+            LightKind::Directional(_) => (Some(direction), None),
+            LightKind::Spot(_) => (Some(direction), Some(position)),
+            LightKind::Point(_) => (None, Some(position)),
+        };
+        LightKey {
+            at: at(frame),
+            direction,
+            position,
+        }
+    });
+    keys.collect()
+}

@@ -171,7 +171,8 @@ impl SceneLibrary {
         Ok((file, scene))
     }
 
-    /// The camera paths of a scene's file, without loading its mesh; a bare mesh has none.
+    /// The camera paths of a scene's file, without loading its mesh; none of a mesh file, whose
+    /// animations come with its mesh ([`MeshFile::clips`]).
     ///
     /// # Errors
     /// [`SceneError`]: no such scene, a broken scene file.

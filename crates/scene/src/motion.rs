@@ -281,6 +281,46 @@ mod tests {
     }
 
     #[test]
+    fn poses_are_met_and_between_them_the_way_is_straight() {
+        let key = |at, translation, degrees: f64| PoseKey {
+            at,
+            translation,
+            rotation: DQuat::from_rotation_z(degrees.to_radians()),
+        };
+        let keys = vec![
+            key(1.0, DVec3::ZERO, 0.0),
+            key(2.0, DVec3::X * 2.0, 90.0),
+            key(4.0, DVec3::X * 2.0, 90.0),
+        ];
+        let part = "door".to_owned();
+        let motion = PartMotion {
+            part: part.clone(),
+            motion: Motion::Posed { keys: keys.clone() },
+        };
+        motion.check().unwrap();
+        let place = |at| motion.map([0.0; 2], at)(DVec3::Y).0;
+        assert_eq!([place(0.0), place(1.0)], [DVec3::Y; 2]);
+        let half = DVec3::new(1.0 - 0.5f64.sqrt(), 0.5f64.sqrt(), 0.0);
+        assert!((place(1.5) - half).length() < 1e-12, "{}", place(1.5));
+        for at in [2.0, 3.0, 4.0, 9.0] {
+            assert!((place(at) - DVec3::X).length() < 1e-12, "{}", place(at));
+        }
+        let told = |change: fn(&mut Vec<PoseKey>)| {
+            let mut keys = keys.clone();
+            change(&mut keys);
+            let motion = Motion::Posed { keys };
+            let part = part.clone();
+            PartMotion { part, motion }.check().unwrap_err()
+        };
+        let none = told(Vec::clear);
+        assert!(none.contains("none of the keys"), "{none}");
+        let late = told(|keys| keys[1].at = 0.5);
+        assert!(late.contains("expected a later time"), "{late}");
+        let no_turn = told(|keys| keys[1].rotation = DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0));
+        assert!(no_turn.contains("unit quaternion"), "{no_turn}");
+    }
+
+    #[test]
     fn what_is_no_motion_is_named() {
         let upright = sway(DVec3::Y, 5.0).check().unwrap_err();
         assert!(

@@ -178,3 +178,39 @@ fn a_written_scene_keeps_views_and_paths_and_names_its_mesh_from_its_folder() {
     said(&folder, "room.ron --light torch --write-scene again.ron");
     said(&folder, "again.ron");
 }
+
+#[test]
+fn animations_of_a_file_are_paths() {
+    let folder = folder();
+    let text = said(&folder, "moving.gltf --write-scene moving.ron");
+    let paths = "moving.gltf: its animations, for --path: walk, lamp_swings_lamp, lamp_swings_sun";
+    assert!(text.contains(paths), "{text}");
+    assert!(
+        text.contains("export them sampled, with linear keys"),
+        "{text}"
+    );
+    // The camera goes through the room while the door turns, in front of a knob that goes with it.
+    let walk = |scene: &str| {
+        let (runs, _) = results(
+            folder.path(),
+            &format!("{COMPARE} --replace --scene {scene} --path walk"),
+        );
+        assert_eq!(runs[0]["view"], "walk");
+        runs[0]["sequence"].clone()
+    };
+    let own = walk("moving.gltf");
+    assert_eq!(own["frames"].as_array().map(Vec::len), Some(61), "{own}");
+    assert_eq!(own["frames"], walk("moving.ron")["frames"]);
+    let output = skiagraph(
+        folder.path(),
+        &format!("{COMPARE} --replace --scene moving.gltf --path lamp_swings_lamp"),
+    );
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{text}");
+    let output = skiagraph(
+        folder.path(),
+        &format!("{COMPARE} --replace --scene moving.gltf --path lamp"),
+    );
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(text.contains("has no path `lamp`"), "{text}");
+}

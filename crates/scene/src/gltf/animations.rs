@@ -80,7 +80,7 @@ impl Animations {
             .collect()
     }
 
-    /// The tracks of an animation, and what of it is not followed.
+    /// The tracks of an animation, and what of it is not followed; `name` names nodes.
     ///
     /// # Errors
     /// Why it cannot be followed, with the node or the accessor.
@@ -88,6 +88,7 @@ impl Animations {
         &self,
         animation: &Value,
         bytes: Bytes<'_>,
+        name: &dyn Fn(usize) -> String,
     ) -> Result<(Vec<Track>, Vec<String>), String> {
         let samplers = animation.get("samplers").and_then(Value::as_array);
         let (mut tracks, mut remarks) = (Vec::new(), Vec::new());
@@ -101,11 +102,12 @@ impl Animations {
             if !["translation", "rotation", "scale"].contains(&path) {
                 let path = beginning(path);
                 remarks.push(format!(
-                    "{path} of node {node} stand still: nodes are moved, nothing else"
+                    "{}: its {path} stand still: nodes are moved, nothing else",
+                    name(node)
                 ));
                 continue;
             }
-            let place = |why: String| format!("node {node}, {path}: {why}");
+            let place = |why: String| format!("{}, {path}: {why}", name(node));
             let sampler = index(channel.get("sampler"));
             let sampler = sampler.and_then(|at| samplers?.get(at));
             let sampler = sampler.ok_or_else(|| place("it has no sampler".to_owned()))?;
@@ -280,6 +282,8 @@ impl Track {
 
     /// The keys around a time, and how far it is from the first to the second.
     pub fn around(&self, at: f64) -> (usize, usize, f64) {
+        // The times of a file are rounded to f32: a step is not to be a frame late by that.
+        let at = if self.is_step { at + 1e-6 } else { at };
         let passed = self.times.partition_point(|&time| time <= at);
         let from = passed.saturating_sub(1);
         let to = passed.min(self.times.len() - 1);

@@ -14,7 +14,7 @@ use crate::{
     path::{CameraKey, CameraPath, LightKey},
 };
 use glam::{DMat3, DMat4, DQuat, DVec3, Mat4};
-use gltf::Document;
+use gltf::{Document, Node};
 use serde_json::Value;
 use std::collections::HashMap;
 
@@ -115,6 +115,17 @@ pub(super) struct Source<'a> {
     pub bytes: Bytes<'a>,
 }
 
+impl Source<'_> {
+    /// A node, for messages.
+    fn place(&self, node: usize) -> String {
+        let named = self.document.nodes().nth(node);
+        match named.as_ref().and_then(Node::name) {
+            Some(name) => format!("node {node} {:?}", beginning(name)),
+            None => format!("node {node}"),
+        }
+    }
+}
+
 /// The nodes of views and lights.
 pub(super) struct Placed<'a> {
     pub views: &'a [usize],
@@ -137,7 +148,7 @@ pub(super) fn clips(source: &Source<'_>, placed: &Placed<'_>) -> (Vec<Clip>, Vec
         let plain = Names::plain(name.unwrap_or_default(), &fallback);
         let mut said = Vec::new();
         let clip = animations
-            .tracks(animation, source.bytes)
+            .tracks(animation, source.bytes, &|node| source.place(node))
             .and_then(|(tracks, more)| {
                 said.extend(more);
                 Poses::new(source, &tracks).clip(source, placed, &mut said)
@@ -272,7 +283,7 @@ impl<'a> Poses<'a> {
         };
         for (view, &node) in placed.views.iter().enumerate() {
             if let Some(worlds) = self.frames(node, frames) {
-                let (up, keys) = camera_keys(&worlds, node, said);
+                let (up, keys) = camera_keys(&worlds, &source.place(node), said);
                 clip.cameras.push((view, up, keys));
             }
         }
@@ -300,7 +311,7 @@ impl<'a> Poses<'a> {
             let (number, Some(part)) = (node.index(), super::import::part(node)) else {
                 continue;
             };
-            let place = format!("node {number} {:?}", beginning(&part));
+            let place = source.place(number);
             if let Some(skin) = node.skin() {
                 let mut joints = skin.joints().map(|joint| joint.index());
                 if joints.any(|joint| self.ways.contains_key(&joint)) {
@@ -360,7 +371,7 @@ fn at(frame: usize) -> f64 {
 }
 
 /// The way of a camera, with the direction up that suits all of it best.
-fn camera_keys(worlds: &[DMat4], node: usize, said: &mut Vec<String>) -> (DVec3, Vec<CameraKey>) {
+fn camera_keys(worlds: &[DMat4], place: &str, said: &mut Vec<String>) -> (DVec3, Vec<CameraKey>) {
     let keys = worlds.iter().enumerate().map(|(frame, world)| CameraKey {
         at: at(frame),
         eye: world.w_axis.truncate(),
@@ -391,7 +402,7 @@ fn camera_keys(worlds: &[DMat4], node: usize, said: &mut Vec<String>) -> (DVec3,
     };
     if roll(up) > NEARLY_UPRIGHT {
         said.push(format!(
-            "node {node}: its camera rolls by up to {:.0} degrees, which paths do not: up stays \
+            "{place}: its camera rolls by up to {:.0} degrees, which paths do not: up stays \
              {}",
             roll(up),
             up

@@ -11,6 +11,7 @@ mod bvh;
 mod foreign_files;
 mod generated;
 mod gltf;
+mod gltf_animations;
 mod gltf_scene;
 mod hostile;
 mod materials;

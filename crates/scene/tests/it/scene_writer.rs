@@ -56,6 +56,10 @@ const TABLE: &str = r#"(
             ],
             moves: [
                 Rigid(part: "leg", pivot: (0, 0, 0), axis: (0, 1, 0), keys: [(at: 0.5, translation: (0, 0, 0), degrees: 30)]),
+                Posed(part: "top", keys: [
+                    (at: 0, translation: (0, 0, 0.5), rotation: (0, 0, 0, 1)),
+                    (at: 1, translation: (0, 1, 0.5), rotation: (0, 0, 0.6, 0.8)),
+                ]),
             ],
         ),
     ],
@@ -66,6 +70,16 @@ const TABLE: &str = r#"(
 fn a_written_file_is_laid_out_for_an_editor() {
     let scene = SceneFile::parse(TABLE, "table.ron").unwrap();
     assert_eq!(scene_text(&scene).unwrap(), TABLE);
+}
+
+#[test]
+fn a_path_under_a_lamp_of_the_scene_says_the_option() {
+    let mut scene = SceneFile::parse(TABLE, "table.ron").unwrap();
+    scene.paths[0].view.light = scene.lights.first().cloned();
+    let text = scene_text(&scene).unwrap();
+    let comment = "        // Under its light: --light bulb\n        (\n";
+    assert!(text.contains(comment), "{text}");
+    SceneFile::parse(&text, "table.ron").unwrap();
 }
 
 #[test]

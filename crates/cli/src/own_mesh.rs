@@ -28,7 +28,7 @@ pub struct Chosen {
 pub struct OwnMesh {
     /// The scene.
     pub scene: Scene,
-    /// What the import changed or left out.
+    /// Changes by the import, and parts left out.
     pub report: ImportReport,
     /// Parts that were chosen.
     pub chosen: Chosen,

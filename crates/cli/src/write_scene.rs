@@ -99,9 +99,12 @@ fn mesh_beside(scene: &Path, mesh: &str) -> Result<String, String> {
     let (folder, mesh) = (absolute(folder)?, absolute(Path::new(mesh))?);
     let below = mesh.strip_prefix(&folder).map(PathBuf::from);
     let path = below.unwrap_or(mesh);
-    let text = path
-        .to_str()
-        .ok_or_else(|| format!("the path of the mesh is no UTF-8: {}", path.display()))?;
+    let text = path.to_str().ok_or_else(|| {
+        format!(
+            "the path of the mesh has bytes that are not UTF-8: {}",
+            path.display()
+        )
+    })?;
     Ok(if cfg!(windows) {
         text.replace('\\', "/")
     } else {

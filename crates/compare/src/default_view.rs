@@ -141,7 +141,7 @@ fn best(
     })
 }
 
-/// What a view shows, as shares of its pixels.
+/// The shares of light and shadow in a view, as shares of its pixels.
 #[derive(Clone, Copy)]
 struct Worth {
     surfaces: f64,
@@ -362,7 +362,7 @@ mod tests {
         let primitives = oracle.primary(&camera, Progress::default()).unwrap();
         let sun = DirectionalLight::new(DVec3::new(-0.3, -1.0, -0.4));
         let (mode, progress) = (OracleMode::Exact, Progress::default());
-        let truth = oracle.shade(&camera, &sun, &primitives, mode, progress);
+        let truth = oracle.shade(&camera, sun, &primitives, mode, progress);
         let classes = truth.unwrap().classes;
         let count = |class| classes.iter().filter(|&&of| of == class).count();
         assert!(count(Class::Lit) > 30 && count(Class::Shadow) > 30);

@@ -1,4 +1,4 @@
-//! What rays meet first, from either side, for whatever looks around in a mesh.
+//! The surfaces that rays meet first, from either side, for looking around in a mesh.
 
 use crate::{oracle::Oracle, ray::Ray};
 use glam::DVec3;

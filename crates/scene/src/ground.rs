@@ -24,7 +24,7 @@ const COVERED: f64 = 0.5;
 /// Where a ground is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ground {
-    /// Of its upper side, along the direction up.
+    /// Height of its upper side, along the direction up.
     pub height: f64,
     /// Length of its edges.
     pub edge: f64,

@@ -28,7 +28,7 @@ pub struct MeshFile {
     pub lights: Vec<Light>,
     /// Its animations; none of an OBJ file.
     pub clips: Vec<Clip>,
-    /// What the import changed or left out.
+    /// Changes by the import, and parts left out.
     pub report: ImportReport,
 }
 

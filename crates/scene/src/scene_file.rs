@@ -567,7 +567,7 @@ struct PoseKeyText {
 }
 
 impl PoseKeyText {
-    /// Of length 1, unless it is so already or has none.
+    /// Brings it to length 1, unless it has that already or has none.
     fn rotation(&self) -> DQuat {
         let (x, y, z, w) = self.rotation;
         let rotation = DQuat::from_xyzw(x, y, z, w);

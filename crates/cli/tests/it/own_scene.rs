@@ -16,7 +16,7 @@ fn folder() -> TempDir {
     folder
 }
 
-/// What the program says of a scene before it draws it.
+/// Notes of the program on a scene before it is drawn.
 fn said(folder: &TempDir, arguments: &str) -> String {
     let line = format!("run rt --size 32x32 --scene {arguments}");
     let output = skiagraph(folder.path(), &line);
@@ -31,7 +31,8 @@ const COMPARE: &str = "compare rt --size 64x48 --frames 1 --warmup 0 --images no
 fn cameras_and_lights_of_a_file_are_taken_by_name() {
     let folder = folder();
     let expected = [
-        "room.gltf: its cameras, for --view: door_cam; its lights, for --light: ceiling_lamp, torch",
+        "room.gltf: its cameras, for --view: door_cam; its lights, for --light: ceiling_lamp, \
+         torch",
         "room.gltf: the mesh is 8 units wide (x), 3 high (y) and 6 deep (z), right-handed; if z is \
          up, give --up 0,0,1",
         "room.gltf: node 4 \"Top\": its camera is left out: it is orthographic, and views are \

@@ -15,7 +15,7 @@ use std::{
     sync::Arc,
 };
 
-/// What a document says of animations, with the accessors, views and buffers of their keys.
+/// Animations as a document says them, with the accessors, views and buffers of their keys.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Animations {
     pub list: Vec<Value>,

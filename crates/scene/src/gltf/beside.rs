@@ -1,9 +1,6 @@
 //! The part of a document's JSON that the `gltf` crate does not read, and how it is read.
 
-use super::{
-    extensions::{self, Kind},
-    placements::Placements,
-};
+use super::extensions::{self, Kind};
 use crate::error::beginning;
 use serde_json::{Map, Value};
 use std::collections::{BTreeSet, HashMap, HashSet};
@@ -21,8 +18,6 @@ pub(super) struct Beside {
     pub strides: HashMap<usize, usize>,
     /// Buffers that are needed.
     pub buffers: HashSet<usize>,
-    /// Cameras and lights.
-    pub placements: Placements,
     /// Parts that were passed over.
     pub remarks: BTreeSet<String>,
 }

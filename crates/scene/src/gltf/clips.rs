@@ -3,7 +3,7 @@
 use super::{
     animations::{Bytes, Track, Values},
     names::Names,
-    nodes::Nodes,
+    nodes::{Nodes, part},
     placements::Placements,
 };
 use crate::{
@@ -130,7 +130,7 @@ impl Source<'_> {
 pub(super) struct Placed<'a> {
     pub views: &'a [usize],
     pub lights: &'a [usize],
-    /// What each light is.
+    /// The kind of each light.
     pub kinds: Vec<LightKind>,
 }
 
@@ -301,14 +301,9 @@ impl<'a> Poses<'a> {
     }
 
     fn moves(&self, source: &Source<'_>, frames: u32, clip: &mut Clip, said: &mut Vec<String>) {
-        let names: Vec<String> = source
-            .nodes
-            .seen
-            .iter()
-            .filter_map(super::import::part)
-            .collect();
+        let names: Vec<String> = source.nodes.seen.iter().filter_map(part).collect();
         for node in &source.nodes.seen {
-            let (number, Some(part)) = (node.index(), super::import::part(node)) else {
+            let (number, Some(part)) = (node.index(), part(node)) else {
                 continue;
             };
             let place = source.place(number);

@@ -5,6 +5,7 @@ use super::{
     beside::Beside,
     container,
     fault::{Fault, of_another_version},
+    placements::Placements,
     prepare::prepare,
 };
 use crate::{border::caught, material_use::MaterialUse};
@@ -23,6 +24,7 @@ pub(super) struct Parsed {
     /// The buffer in a binary file.
     pub blob: Option<Vec<u8>>,
     pub beside: Beside,
+    pub placements: Placements,
 }
 
 /// The document of a file's bytes.
@@ -38,6 +40,7 @@ pub(super) fn parse(bytes: &[u8], materials: MaterialUse) -> Result<Parsed, Faul
     }
     let mut value: Value = deserialize::from_slice(&text).map_err(|why| in_json(&why))?;
     check_version(&mut value)?;
+    let placements = Placements::read(&value);
     let beside = prepare(&mut value, materials)?;
     let root: Root = deserialize::from_value(value).map_err(|why| {
         // The text of the file tells the line, where it has the same mistake.
@@ -51,6 +54,7 @@ pub(super) fn parse(bytes: &[u8], materials: MaterialUse) -> Result<Parsed, Faul
         document: document.map_err(|why| refusal(&why))?,
         blob: blob.map(<[u8]>::to_vec),
         beside,
+        placements,
     })
 }
 

@@ -9,7 +9,7 @@ use super::{
     document::{self, Parsed},
     fault::Fault,
     materials::Reader,
-    nodes::Nodes,
+    nodes::{Nodes, group},
     pose::{self, Vertices, of_normals, vectors},
     scene::GltfScene,
     vertex_alpha::Materials,
@@ -89,6 +89,7 @@ pub fn parse_gltf_scene(
         document,
         blob,
         beside,
+        placements,
     } = document::parse(bytes, materials).map_err(fail)?;
     let buffers = buffers::read(&document, blob, &beside, path).map_err(fail)?;
     let mut builder = MeshBuilder::default();
@@ -113,16 +114,16 @@ pub fn parse_gltf_scene(
         builder,
         corners: 0,
     };
-    let nodes = Nodes::new(&document, &beside).map_err(fail)?;
+    let nodes = Nodes::new(&document, &beside, placements.animations.nodes()).map_err(fail)?;
     import.read_nodes(nodes.as_ref()).map_err(fail)?;
     let (mesh, report) = import.finish();
     check_read(&mesh, &report, path)?;
-    let mut scene = GltfScene::new(&beside.placements, nodes.as_ref(), mesh.bounds());
+    let mut scene = GltfScene::new(&placements, nodes.as_ref(), mesh.bounds());
     if let Some(nodes) = &nodes {
         let folder = path.parent().unwrap_or(Path::new(""));
         scene.add_clips(&clips::Source {
             document: &document,
-            placements: &beside.placements,
+            placements: &placements,
             nodes,
             bytes: Bytes {
                 read: &buffers,
@@ -483,15 +484,4 @@ fn strip(indices: &[u32]) -> impl Iterator<Item = [u32; 3]> {
 fn fan(indices: &[u32]) -> impl Iterator<Item = [u32; 3]> {
     let rim = indices.get(1..).unwrap_or_default();
     rim.windows(2).map(|of| [of[0], of[1], indices[0]])
-}
-
-/// Name of the group that the triangles of a node are in, if it has any.
-pub(super) fn part(node: &gltf::Node<'_>) -> Option<String> {
-    node.mesh().map(|mesh| group(&mesh, node.name()))
-}
-
-/// Name of the group that a mesh's triangles are in.
-fn group(mesh: &gltf::Mesh<'_>, node: Option<&str>) -> String {
-    let name = node.or(mesh.name());
-    name.map_or_else(|| format!("mesh {}", mesh.index()), str::to_owned)
 }

@@ -4,8 +4,8 @@
 //! with the transforms of their nodes and instances, morph targets by their weights, skins in the
 //! pose of their joints' nodes, all of it at rest. `alphaMode: MASK` is a mask, which the
 //! alpha of vertices is a part of; `BLEND` counts as opaque. Primitives without normals are flat.
-//! Parts that are passed over stand in the report. Cameras, lights (KHR_lights_punctual) and animations of
-//! nodes are a [`GltfScene`].
+//! Parts that are passed over stand in the report. Cameras, lights (KHR_lights_punctual) and
+//! animations of nodes are a [`GltfScene`].
 
 mod accessor;
 mod animations;

@@ -19,17 +19,22 @@ pub(super) struct Nodes<'a> {
 }
 
 impl<'a> Nodes<'a> {
-    /// Those of the default scene, else of the first; `None` in a document without scenes.
+    /// Those of the default scene, else of the first; `None` in a document without scenes. `moved`:
+    /// nodes that an animation names.
     ///
     /// # Errors
     /// A node with two parents, or a transform that is not finite.
-    pub fn new(document: &'a Document, beside: &Beside) -> Result<Option<Self>, Fault> {
+    pub fn new(
+        document: &'a Document,
+        beside: &Beside,
+        moved: HashSet<usize>,
+    ) -> Result<Option<Self>, Fault> {
         let mut scenes = document.scenes();
         let Some(scene) = document.default_scene().or_else(|| scenes.next()) else {
             return Ok(None);
         };
         let mut nodes = Self {
-            moved: beside.placements.animations.nodes(),
+            moved,
             ..Self::default()
         };
         nodes.walk(scene.nodes().collect(), beside, true)?;
@@ -87,4 +92,15 @@ impl<'a> Nodes<'a> {
         }
         Ok(())
     }
+}
+
+/// Name of the group that the triangles of a node are in, if it has any.
+pub(super) fn part(node: &gltf::Node<'_>) -> Option<String> {
+    node.mesh().map(|mesh| group(&mesh, node.name()))
+}
+
+/// Name of the group that a mesh's triangles are in.
+pub(super) fn group(mesh: &gltf::Mesh<'_>, node: Option<&str>) -> String {
+    let name = node.or(mesh.name());
+    name.map_or_else(|| format!("mesh {}", mesh.index()), str::to_owned)
 }

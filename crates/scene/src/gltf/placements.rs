@@ -1,5 +1,5 @@
-//! Cameras, lights and animations of a document, and the nodes that place them, read before `prepare` takes
-//! them out.
+//! Cameras, lights and animations of a document, and the nodes that place them, read before
+//! `prepare` takes them out.
 
 use super::{
     animations::Animations,
@@ -9,7 +9,7 @@ use crate::error::beginning;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// What a document says of cameras and lights.
+/// Cameras and lights as a document says them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Placements {
     /// `cameras` as they are in the file.

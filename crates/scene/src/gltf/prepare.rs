@@ -6,7 +6,6 @@ use super::{
     beside::{Beside, Instances, each, index, items, taken},
     extensions::{self, Kind},
     fault::Fault,
-    placements::Placements,
     prepare_looks, prepare_storage,
 };
 use crate::{error::beginning, material_use::MaterialUse};
@@ -17,10 +16,7 @@ use serde_json::Value;
 /// # Errors
 /// The place of what cannot be read without an extension, and the way out.
 pub(super) fn prepare(root: &mut Value, materials: MaterialUse) -> Result<Beside, Fault> {
-    let mut beside = Beside {
-        placements: Placements::read(root),
-        ..Beside::default()
-    };
+    let mut beside = Beside::default();
     required(root, &mut beside)?;
     if let Some(fields) = root.as_object_mut() {
         for unused in [

@@ -196,7 +196,7 @@ impl Reader<'_> {
         let mut remarks = Vec::new();
         let (eye, near) = (placed.position(), needed("znear")?);
         let far = match lens.get("zfar") {
-            Some(far) => far.as_f64().ok_or("its zfar is no number")?,
+            Some(far) => far.as_f64().ok_or("its zfar has no number")?,
             None => {
                 let far = self.farthest(eye).max(near * 2.0);
                 remarks.push(format!(
@@ -315,7 +315,7 @@ fn check_power(light: &Value) -> Result<(), String> {
         None => Ok(()),
         Some(Some(value)) if value > 0.0 => Ok(()),
         Some(Some(value)) => Err(format!("its {field} is {value}: {way_out}")),
-        Some(None) => Err(format!("its {field} is no number")),
+        Some(None) => Err(format!("its {field} has no number")),
     };
     positive("intensity", "it lights nothing, give it more than 0")?;
     positive(

@@ -8,6 +8,7 @@ use skiagraph_scene::{
     CameraPath, Mesh,
     gltf::{GltfScene, parse_gltf_scene},
 };
+use std::f64::consts::FRAC_1_SQRT_2 as HALF;
 use std::path::Path;
 
 /// The file that the program is tested with: a room, a door with a knob, a camera, a lamp, a sun.
@@ -107,7 +108,7 @@ fn channel(node: usize, path: &str, keys: [usize; 2], interpolation: &str) -> Va
     })
 }
 
-/// What is said of a document's animations.
+/// Remarks on a document's animations, and the clips of it.
 fn told(document: &Value) -> String {
     let (_, scene) = read(document);
     let names: Vec<&str> = scene.clips.iter().map(|clip| clip.name.as_str()).collect();
@@ -148,7 +149,7 @@ fn nodes_of_one_name_and_rolling_cameras_are_told() {
     ]));
     document["nodes"][2]["name"] = "Door".into();
     // The turn about y is a roll of a camera that looks down, by what is above it.
-    document["nodes"][3]["rotation"] = json!([-0.70710678, 0, 0, 0.70710678]);
+    document["nodes"][3]["rotation"] = json!([-HALF, 0, 0, HALF]);
     document["nodes"][5] = json!({"name": "crane", "children": [3]});
     document["scenes"][0]["nodes"] = json!([0, 1, 4, 5]);
     document["animations"][1]["channels"][0]["target"]["node"] = 5.into();

@@ -64,12 +64,13 @@ const PERSPECTIVE: &str =
 
 #[test]
 fn cameras_are_views_and_lights_are_lights_where_their_nodes_are() {
+    let lamp = r#""extensions": {"KHR_lights_punctual": {"light": 1}}"#;
     let nodes = format!(
         r#",
         {{"name": "Cam.001", "translation": [1, 2, 3], "camera": 0}},
         {{"translation": [0, 5, 0], {DOWN}, "camera": 1, "scale": [3, 3, 3]}},
         {{"name": "Sun", {DOWN}, "extensions": {{"KHR_lights_punctual": {{"light": 0}}}}}},
-        {{"name": "Lamp", "translation": [0, 4, 1], {DOWN}, "extensions": {{"KHR_lights_punctual": {{"light": 1}}}}}},
+        {{"name": "Lamp", "translation": [0, 4, 1], {DOWN}, {lamp}}},
         {{"translation": [1, 1, 1], "extensions": {{"KHR_lights_punctual": {{"light": 2}}}}}}"#
     );
     let cameras = format!(r#"{PERSPECTIVE}, {}"#, PERSPECTIVE.replace("0.8", "1.6"));
@@ -107,7 +108,7 @@ fn cameras_are_views_and_lights_are_lights_where_their_nodes_are() {
     assert_eq!(scene.lights[2].kind.position(), Some(DVec3::ONE));
 }
 
-/// What is said of a file.
+/// Remarks on a file, and the names of its views and lights.
 fn told(nodes: &str, cameras: &str, lights: &str) -> String {
     let scene = scene(nodes, cameras, lights);
     let views = scene.views.iter().map(|view| view.name.as_str());
@@ -128,8 +129,9 @@ fn cameras_that_are_no_views_are_told() {
         {"name": "fish", "camera": 5},
         {"name": "no lens", "camera": 6},
         {"name": "squashed", "camera": 2, "scale": [1, 1, 0]}"#;
+    let flat = r#"{"xmag": 1, "ymag": 1, "znear": 0, "zfar": 9}"#;
     let cameras = format!(
-        r#"{{"type": "orthographic", "orthographic": {{"xmag": 1, "ymag": 1, "znear": 0, "zfar": 9}}}},
+        r#"{{"type": "orthographic", "orthographic": {flat}}},
         {{"type": "perspective", "perspective": {{"yfov": 0.8, "znear": 0.1}}}},
         {PERSPECTIVE},
         {{"type": "perspective", "perspective": {{"yfov": 0.8, "znear": 0, "zfar": 50}}}},
@@ -157,10 +159,8 @@ fn lights_that_light_nothing_are_told() {
     ] {
         nodes += &format!(",\n{{\"name\": \"{name}\", {}}}", light(number));
     }
-    nodes += &format!(
-        ",\n{{\"name\": \"hidden\", \"extensions\": {{\"KHR_lights_punctual\": {{\"light\": 3}}, \
-         \"KHR_node_visibility\": {{\"visible\": false}}}}}}"
-    );
+    nodes += ",\n{\"name\": \"hidden\", \"extensions\": {\"KHR_lights_punctual\": {\"light\": 3}, \
+              \"KHR_node_visibility\": {\"visible\": false}}}";
     nodes += &format!(
         ",\n{{\"name\": \"flat\", \"scale\": [1, 1, 0], {}}}",
         light(6)

@@ -27,44 +27,7 @@ fn every_built_in_scene_is_the_same_after_it_was_written() {
     );
 }
 
-const TABLE: &str = r#"(
-    format: 1,
-    name: "table",
-    description: "a \"table\", ü",
-    mesh: Gltf(file: "a folder/table.glb", materials: Color),
-    ground: (0, 0, 1),
-    lights: [
-        Point(name: "bulb", position: (1, 2, 3), radius: 0.25),
-    ],
-    views: [
-        (name: "main", eye: (0, -4, 2), direction: (0, 1, -0.5), up: (0, 0, 1), fov_y_degrees: 50, near: 0.01, far: 90, light: (direction: (0, 0, -1), angle_degrees: 0.5)),
-    ],
-    paths: [
-        (
-            name: "round",
-            up: (0, 0, 1),
-            fov_y_degrees: 50,
-            near: 0.01,
-            far: 90,
-            frames_per_second: 12.5,
-            keys: [
-                (at: 0, eye: (0, -4, 2), direction: (0, 1, -0.5)),
-                (at: 1.5, eye: (1, -4, 2), direction: (0, 1, -0.5)),
-            ],
-            light_keys: [
-                (at: 0, position: (0, 0, 2)),
-            ],
-            moves: [
-                Rigid(part: "leg", pivot: (0, 0, 0), axis: (0, 1, 0), keys: [(at: 0.5, translation: (0, 0, 0), degrees: 30)]),
-                Posed(part: "top", keys: [
-                    (at: 0, translation: (0, 0, 0.5), rotation: (0, 0, 0, 1)),
-                    (at: 1, translation: (0, 1, 0.5), rotation: (0, 0, 0.6, 0.8)),
-                ]),
-            ],
-        ),
-    ],
-)
-"#;
+const TABLE: &str = include_str!("scene_writer/table.ron");
 
 #[test]
 fn a_written_file_is_laid_out_for_an_editor() {

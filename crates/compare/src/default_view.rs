@@ -301,8 +301,9 @@ mod tests {
 
     /// Boxes, those that are turned inwards seen from inside; a face that is left out.
     fn mesh(boxes: &[([f32; 3], [f32; 3], bool)], without: Option<usize>) -> Mesh {
+        let axes = [Vec3::Z, Vec3::Y, Vec3::X];
         let mut mesh = Mesh {
-            normals: vec![Vec3::Y],
+            normals: axes.iter().flat_map(|&axis| [-axis, axis]).collect(),
             ..Mesh::default()
         };
         for &(low, high, is_inward) in boxes {
@@ -333,7 +334,9 @@ mod tests {
                 for [a, b, c] in [[a, b, c], [a, c, d]] {
                     let corners = if is_inward { [a, c, b] } else { [a, b, c] };
                     mesh.triangles.push(corners.map(|corner| first + corner));
-                    mesh.normal_indices.push([0; 3]);
+                    // The other one of its axis.
+                    let normal = if is_inward { face ^ 1 } else { face };
+                    mesh.normal_indices.push([normal as u32; 3]);
                 }
             }
         }

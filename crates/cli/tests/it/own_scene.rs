@@ -2,6 +2,7 @@
 //! for a file that has none.
 
 use crate::support::{results, skiagraph};
+use serde_json::Value;
 use std::{fs, path::Path};
 use tempfile::TempDir;
 
@@ -197,11 +198,18 @@ fn animations_of_a_file_are_paths() {
             &format!("{COMPARE} --replace --scene {scene} --path walk"),
         );
         assert_eq!(runs[0]["view"], "walk");
-        runs[0]["sequence"].clone()
+        let frames = runs[0]["sequence"]["frames"].as_array().unwrap();
+        let counts = frames.iter().map(|frame| {
+            assert_eq!(frame["wrong"], 0, "{frame}");
+            [&frame["facing_light"], &frame["graded"]["soft"]["umbra"]].map(Value::as_u64)
+        });
+        counts.collect::<Vec<_>>()
     };
     let own = walk("moving.gltf");
-    assert_eq!(own["frames"].as_array().map(Vec::len), Some(61), "{own}");
-    assert_eq!(own["frames"], walk("moving.ron")["frames"]);
+    assert_eq!(own.len(), 61);
+    // The door's shadow changes with its turn.
+    assert_ne!(own[0][1], own[30][1]);
+    assert_eq!(own, walk("moving.ron"));
     let output = skiagraph(
         folder.path(),
         &format!("{COMPARE} --replace --scene moving.gltf --path lamp_swings_lamp"),

@@ -57,10 +57,14 @@ impl SceneSelection {
         let own = loaded.map_err(|error| explain(error, args, &library))?;
         let OwnMesh { scene, report, .. } = &own;
         if report.has_warnings() {
+            let text = report.to_string();
+            let text = text.trim_end();
+            // Several stand below each other.
+            let begin = if text.contains('\n') { "\n  " } else { " " };
             note(&format!(
-                "{}: {}",
+                "{}:{begin}{}",
                 args.scene,
-                report.to_string().trim_end().replace('\n', "; ")
+                text.replace('\n', "\n  ")
             ));
         }
         let views = choose(scene, args.view.as_deref())?;

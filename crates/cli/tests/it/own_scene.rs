@@ -36,9 +36,11 @@ fn cameras_and_lights_of_a_file_are_taken_by_name() {
          torch",
         "room.gltf: the mesh is 8 units wide (x), 3 high (y) and 6 deep (z), right-handed; if z is \
          up, give --up 0,0,1",
-        "room.gltf: node 4 \"Top\": its camera is left out: it is orthographic, and views are \
-         perspective (make it perspective, or give --eye and --look); node 7 \"Off\": its light is \
-         left out: its intensity is 0: it lights nothing, give it more than 0",
+        "room.gltf:",
+        "  node 4 \"Top\": its camera is left out: it is orthographic, and views are perspective \
+         (make it perspective, or give --eye and --look)",
+        "  node 7 \"Off\": its light is left out: its intensity is 0: it lights nothing, give it \
+         more than 0",
     ];
     assert_eq!(said(&folder, "room.gltf").trim_end(), expected.join("\n"));
     let line = format!("{COMPARE} --scene room.gltf --view all --light all");

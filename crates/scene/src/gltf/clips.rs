@@ -10,6 +10,7 @@ use crate::{
     camera::View,
     error::beginning,
     light_kind::{Light, LightKind},
+    mesh::Mesh,
     motion::{Motion, PartMotion, PoseKey},
     path::{CameraKey, CameraPath, LightKey},
 };
@@ -113,6 +114,7 @@ pub(super) struct Source<'a> {
     pub placements: &'a Placements,
     pub nodes: &'a Nodes<'a>,
     pub bytes: Bytes<'a>,
+    pub mesh: &'a Mesh,
 }
 
 impl Source<'_> {
@@ -319,6 +321,10 @@ impl<'a> Poses<'a> {
             let Some(worlds) = self.frames(number, frames) else {
                 continue;
             };
+            // One of points and lines only has nothing that casts a shadow.
+            if !source.mesh.groups.iter().any(|group| group.name == part) {
+                continue;
+            }
             let rest = source
                 .nodes
                 .worlds

@@ -129,6 +129,7 @@ pub fn parse_gltf_scene(
                 read: &buffers,
                 folder,
             },
+            mesh: &mesh,
         });
     }
     Ok((mesh, scene, report))

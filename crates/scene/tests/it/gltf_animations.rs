@@ -3,9 +3,10 @@
 
 use glam::DVec3;
 use insta::assert_snapshot;
+use proptest::prelude::*;
 use serde_json::{Value, json};
 use skiagraph_scene::{
-    CameraPath, Mesh,
+    CameraPath, Mesh, View,
     gltf::{GltfScene, parse_gltf_scene},
 };
 use std::f64::consts::FRAC_1_SQRT_2 as HALF;
@@ -179,5 +180,83 @@ fn damaged_keys_leave_the_mesh_as_it_is() {
         document[list][number][field] = value.clone();
         let (mesh, _) = read(&document);
         assert_eq!(mesh.triangles, plain.triangles, "{list} {field} {value}");
+    }
+}
+
+/// Numbers that a damaged file may hold in the place of any value.
+fn odd() -> impl Strategy<Value = Value> {
+    prop_oneof![
+        Just(Value::Null),
+        Just(json!([])),
+        Just(json!({})),
+        Just(json!("x")),
+        Just(json!(-1)),
+        Just(json!(0)),
+        Just(json!(1e308)),
+        Just(json!(u64::MAX)),
+        (0u32..12).prop_map(|number| json!(number)),
+        proptest::num::f32::NORMAL.prop_map(|number| json!(number)),
+    ]
+}
+
+/// The value at a place counted through all of a document but its buffers.
+fn place<'v>(value: &'v mut Value, at: &mut usize) -> Option<&'v mut Value> {
+    if *at == 0 {
+        return Some(value);
+    }
+    *at -= 1;
+    match value {
+        Value::Array(items) => items.iter_mut().find_map(|item| place(item, at)),
+        Value::Object(fields) => {
+            let mut fields = fields.iter_mut().filter(|(name, _)| *name != "buffers");
+            fields.find_map(|(_, item)| place(item, at))
+        }
+        _ => None,
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+    #[test]
+    fn any_value_is_refused_told_or_harmless(at in 1usize..420, value in odd()) {
+        let mut document = moving();
+        let mut at = at;
+        if let Some(there) = place(&mut document, &mut at) {
+            *there = value;
+        }
+        let text = document.to_string();
+        let read = parse_gltf_scene(text.as_bytes(), Path::new("moving.gltf"), Default::default());
+        if let Ok((mesh, scene, _)) = read {
+            for view in &scene.views {
+                prop_assert!(view.check().is_ok());
+            }
+            for light in &scene.lights {
+                prop_assert!(light.check().is_ok());
+            }
+            let standing = scene.views.first().cloned().unwrap_or_else(|| view(&mesh));
+            for clip in &scene.clips {
+                let paths = clip.paths(&scene.views, &scene.lights, &standing);
+                for path in paths.into_iter().flatten() {
+                    let movable = path.movable(&mesh).unwrap();
+                    if let Some(movable) = movable {
+                        let _ = path.shape(&movable, path.frames() - 1);
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn view(mesh: &Mesh) -> View {
+    let (min, max) = mesh.bounds().unwrap();
+    View {
+        name: "main".into(),
+        eye: max.as_dvec3(),
+        direction: (min - max).as_dvec3(),
+        up: DVec3::Y,
+        fov_y_degrees: 60.0,
+        near: 0.1,
+        far: 100.0,
+        light: None,
     }
 }

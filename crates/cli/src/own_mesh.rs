@@ -4,7 +4,7 @@
 use crate::{args::shared::SceneArgs, terminal::console::note};
 use glam::DVec3;
 use itertools::Itertools;
-use skiagraph_compare::{default_view::from_inside, wording::thousands};
+use skiagraph_compare::{default_view::default_view, wording::thousands};
 use skiagraph_scene::gltf::Clip;
 use skiagraph_scene::{
     CameraPath, DirectionalLight, ImportReport, Light, Mesh, MeshFile, PointLight, Scene,
@@ -108,27 +108,31 @@ pub fn load(args: &SceneArgs) -> Result<OwnMesh, SceneError> {
     if chosen.view {
         let up = args.up.unwrap_or(DVec3::Y);
         let fov = args.fov.unwrap_or(DEFAULT_FOV);
-        let inside = match (args.eye, lights.first()) {
-            (None, Some(light)) => from_inside(&mesh, &light.kind, up, fov),
+        let found = match (args.eye, lights.first()) {
+            (None, Some(light)) => default_view(&mesh, &light.kind, up, fov),
             _ => None,
         };
-        is_inside = inside.is_some();
-        if let Some(inside) = &inside
-            && inside.is_dark
-            && chosen.light
-            && args.own_light().is_none()
-        {
-            let position = inside.lamp;
-            lights = vec![Light::only(PointLight {
-                position,
-                radius: 0.0,
-            })];
+        if let Some(found) = &found {
+            is_inside = found.is_inside;
+            if found.is_dark && chosen.light && args.own_light().is_none() {
+                let position = found.lamp;
+                lights = vec![Light::only(PointLight {
+                    position,
+                    radius: 0.0,
+                })];
+            }
         }
-        views.push(inside.map_or_else(|| outside(&mesh, args), |inside| inside.view));
+        views.push(found.map_or_else(|| towards(&mesh, args), |found| found.view));
     }
     tell_chosen(args, chosen, (&views, &lights), is_inside);
+    let up = args.up.unwrap_or(DVec3::Y);
     if args.ground {
-        chosen.ground = ground(&mut mesh, args);
+        chosen.ground = ground(&mut mesh, up, args);
+    } else if chosen.view && !is_inside && !has_ground(&mesh, up) {
+        note(&format!(
+            "{}: it has no floor for its shadow to fall on; --ground adds one",
+            args.scene
+        ));
     }
     let scene = Scene {
         name,
@@ -156,8 +160,7 @@ fn sun(args: &SceneArgs) -> Result<Light, SceneError> {
 }
 
 /// Adds a ground, and says where; `None` if the mesh has one.
-fn ground(mesh: &mut Mesh, args: &SceneArgs) -> Option<DVec3> {
-    let up = args.up.unwrap_or(DVec3::Y);
+fn ground(mesh: &mut Mesh, up: DVec3, args: &SceneArgs) -> Option<DVec3> {
     if has_ground(mesh, up) {
         note(&format!(
             "{}: --ground adds none, for the mesh has a floor: half of its outline from above, in \
@@ -273,38 +276,26 @@ fn held(views: &[View], lights: &[Light]) -> Option<String> {
     }
 }
 
-/// A view from where all of a mesh is seen, as far as no argument says otherwise. Its clip planes
-/// are not fitted yet.
-fn outside(mesh: &Mesh, args: &SceneArgs) -> View {
-    let mut view = View {
+/// A view from the eye of the arguments to the middle of a mesh. Its clip planes are not fitted.
+fn towards(mesh: &Mesh, args: &SceneArgs) -> View {
+    let eye = args.eye.unwrap_or_default();
+    let bounds = mesh.bounds();
+    let middle = bounds.map(|(min, max)| (min.as_dvec3() + max.as_dvec3()) * 0.5);
+    let direction = middle.unwrap_or_default() - eye;
+    View {
         name: "main".into(),
-        eye: DVec3::ZERO,
-        direction: DVec3::NEG_Z,
+        eye,
+        direction: if direction == DVec3::ZERO {
+            DVec3::NEG_Z
+        } else {
+            direction
+        },
         up: DVec3::Y,
         fov_y_degrees: DEFAULT_FOV,
         near: 1.0,
         far: 2.0,
         light: None,
-    };
-    let Some((min, max)) = mesh.bounds() else {
-        return view;
-    };
-    let (min, max) = (min.as_dvec3(), max.as_dvec3());
-    let centre = (min + max) * 0.5;
-    let radius = ((max - min).length() * 0.5).max(f64::MIN_POSITIVE);
-    let fov = args.fov.unwrap_or(view.fov_y_degrees).to_radians();
-    let distance = radius / (fov * 0.5).sin();
-    view.eye = centre + DVec3::new(0.5, 0.6, 1.0).normalize() * distance;
-    if let Some(eye) = args.eye {
-        view.eye = eye;
     }
-    let towards = centre - view.eye;
-    view.direction = if towards == DVec3::ZERO {
-        DVec3::NEG_Z
-    } else {
-        towards
-    };
-    view
 }
 
 #[cfg(test)]

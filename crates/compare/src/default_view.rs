@@ -1,13 +1,14 @@
-//! A view of a mesh that comes without one: from inside where the mesh surrounds the camera.
+//! A view of a mesh that comes without one: from inside where the mesh surrounds the camera, else
+//! from the side on which most shadow is seen.
 //!
 //! ```
-//! use skiagraph_compare::default_view::from_inside;
+//! use skiagraph_compare::default_view::default_view;
 //! use skiagraph_scene::{DirectionalLight, Mesh};
 //! use glam::DVec3;
 //!
 //! let sun = DirectionalLight::new(DVec3::NEG_Y).into();
-//! // Nothing surrounds the camera here.
-//! assert!(from_inside(&Mesh::default(), &sun, DVec3::Y, 60.0).is_none());
+//! // There is nothing to be seen here.
+//! assert!(default_view(&Mesh::default(), &sun, DVec3::Y, 60.0).is_none());
 //! ```
 
 use glam::DVec3;
@@ -46,7 +47,10 @@ const PICTURE: [u32; 2] = [24, 16];
 /// Share of a picture that is lit below which it is dark: pixels on an edge may be by rounding.
 const DARK: f64 = 0.01;
 
-/// Downward slope of the view.
+/// Upward slope of the way to an eye outside.
+const ABOVE: f64 = 0.55;
+
+/// Downward slope of a view inside.
 const SLOPE: f64 = 0.15;
 
 /// A place inside of a mesh.
@@ -57,26 +61,28 @@ struct Eye {
     openness: f64,
 }
 
-/// A view from the inside of a mesh.
+/// A view of a mesh.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Inside {
+pub struct DefaultView {
     /// Its clip planes hold the whole mesh.
     pub view: View,
-    /// True if nothing that it would show is lit: the view is then one under the lamp.
+    /// True if the mesh surrounds the eye.
+    pub is_inside: bool,
+    /// True if nothing that it would show is lit, inside: the view is then one under the lamp.
     pub is_dark: bool,
     /// A place for a lamp, before the eye and above it.
     pub lamp: DVec3,
 }
 
 /// Looks around in a mesh, and returns a view from the inside if at a quarter of the places on its
-/// floors surfaces stand all around; of such views one that shows both light and shadow, far and
-/// wide.
-pub fn from_inside(
+/// floors surfaces stand all around; else one from outside that holds all of it. Of such views it
+/// is one that shows both light and shadow, far and wide. `None` of an empty mesh.
+pub fn default_view(
     mesh: &Mesh,
     light: &LightKind,
     up: DVec3,
     fov_y_degrees: f64,
-) -> Option<Inside> {
+) -> Option<DefaultView> {
     let (min, max) = mesh.bounds()?;
     let (min, max) = (min.as_dvec3(), max.as_dvec3());
     let up = up.try_normalize()?;
@@ -87,35 +93,27 @@ pub fn from_inside(
         up,
         across: up.any_orthonormal_pair().into(),
     };
-    let eyes = room.eyes()?;
-    let diagonal = 2.0 * room.half.length();
-    let turns = (0..DIRECTIONS).map(|turn| TAU * f64::from(turn) / f64::from(DIRECTIONS));
-    let views = eyes.iter().cartesian_product(turns);
-    let views = views.map(|(eye, turn)| View {
-        name: "inside".into(),
-        eye: eye.place,
-        direction: room.around(turn) - up * SLOPE,
-        up,
-        fov_y_degrees,
-        near: diagonal * 1e-4,
-        far: diagonal * 1.01,
-        light: None,
-    });
     let seen = |view: &View| room.worth(view, light);
-    let (is_dark, best) = match best(views.clone(), seen)? {
+    let turns = (0..DIRECTIONS).map(|turn| TAU * f64::from(turn) / f64::from(DIRECTIONS));
+    let Some(eyes) = room.eyes() else {
+        let views = turns.map(|turn| room.outside(turn, fov_y_degrees));
+        let (_, view) = best(views, seen)?;
+        return Some(room.chosen(view, false, false));
+    };
+    let views = eyes.iter().cartesian_product(turns);
+    let views = views.map(|(eye, turn)| {
+        let direction = room.around(turn) - up * SLOPE;
+        room.view(eye.place, direction, fov_y_degrees)
+    });
+    match best(views.clone(), seen)? {
         (worth, _) if worth.lit < DARK => {
             // Where no light comes in, that of the lamp tells the views apart.
             let seen = |view: &View| room.worth(view, &bulb(room.lamp(view)));
-            (true, best(views, seen)?)
+            let (_, view) = best(views, seen)?;
+            Some(room.chosen(view, true, true))
         }
-        best => (false, best),
-    };
-    let view = best.1;
-    Some(Inside {
-        lamp: room.lamp(&view),
-        view,
-        is_dark,
-    })
+        (_, view) => Some(room.chosen(view, true, false)),
+    }
 }
 
 fn bulb(position: DVec3) -> LightKind {
@@ -177,6 +175,41 @@ impl Room<'_> {
     fn around(&self, turn: f64) -> DVec3 {
         let (sin, cos) = turn.sin_cos();
         self.across[0] * cos + self.across[1] * sin
+    }
+
+    fn view(&self, eye: DVec3, direction: DVec3, fov_y_degrees: f64) -> View {
+        let far = ((eye - self.middle).length() + self.half.length()) * 1.01;
+        View {
+            name: String::new(),
+            eye,
+            direction,
+            up: self.up,
+            fov_y_degrees,
+            near: far * 1e-4,
+            far,
+            light: None,
+        }
+    }
+
+    /// From above one side, as far away as all of it is seen.
+    fn outside(&self, turn: f64, fov_y_degrees: f64) -> View {
+        let radius = self.half.length().max(f64::MIN_POSITIVE);
+        let distance = radius / (fov_y_degrees.to_radians() * 0.5).sin();
+        let way = (self.around(turn) + self.up * ABOVE).normalize();
+        self.view(self.middle + way * distance, -way, fov_y_degrees)
+    }
+
+    fn chosen(&self, view: View, is_inside: bool, is_dark: bool) -> DefaultView {
+        let name = if is_inside { "inside" } else { "main" };
+        DefaultView {
+            lamp: self.lamp(&view),
+            view: View {
+                name: name.into(),
+                ..view
+            },
+            is_inside,
+            is_dark,
+        }
     }
 
     /// The most open of the surrounded eyes; `None` if the mesh surrounds too few.
@@ -346,16 +379,20 @@ mod tests {
     const WALLS: ([f32; 3], [f32; 3], bool) = ([-4.0, 0.0, -3.0], [4.0, 3.0, 3.0], true);
     const TABLE: ([f32; 3], [f32; 3], bool) = ([-1.0, 0.7, -0.5], [1.0, 0.9, 0.5], false);
 
-    fn view(mesh: &Mesh) -> Option<Inside> {
+    fn view(mesh: &Mesh) -> Option<DefaultView> {
         let sun = DirectionalLight::new(DVec3::new(-0.3, -1.0, -0.4)).into();
-        from_inside(mesh, &sun, DVec3::Y, 60.0)
+        default_view(mesh, &sun, DVec3::Y, 60.0)
+    }
+
+    fn is_inside(mesh: &Mesh) -> bool {
+        view(mesh).unwrap().is_inside
     }
 
     #[test]
     fn a_room_is_seen_from_inside_with_light_and_shadow() {
         let without_ceiling = mesh(&[WALLS, TABLE], Some(3));
         let inside = view(&without_ceiling).unwrap();
-        assert!(!inside.is_dark);
+        assert!(inside.is_inside && !inside.is_dark);
         let seen = inside.view;
         assert!(seen.eye.x.abs() < 4.0 && seen.eye.z.abs() < 3.0, "{seen:?}");
         assert!(seen.eye.y > 0.2 && seen.eye.y < 3.0, "{seen:?}");
@@ -379,13 +416,23 @@ mod tests {
 
     #[test]
     fn what_surrounds_nothing_is_seen_from_outside() {
-        assert_eq!(view(&mesh(&[TABLE], None)), None);
+        assert!(!is_inside(&mesh(&[TABLE], None)));
         // A yard with a wall on two sides only, and a cup on a large plate.
         let plate = ([-9.0, -0.2, -9.0], [9.0, 0.0, 9.0], false);
         let walls = ([-9.0, 0.0, -9.0], [-8.0, 5.0, 9.0], false);
-        assert_eq!(view(&mesh(&[plate, walls], None)), None);
+        assert!(!is_inside(&mesh(&[plate, walls], None)));
         let cup = ([-1.0, 0.1, -1.0], [1.0, 2.0, 1.0], true);
-        assert_eq!(view(&mesh(&[plate, cup], Some(3))), None);
+        assert!(!is_inside(&mesh(&[plate, cup], Some(3))));
+    }
+
+    #[test]
+    fn from_outside_the_side_with_the_shadow_is_seen() {
+        // A wall on a plate: its shadow lies on the side away from the sun, which is behind it.
+        let plate = ([-9.0, -0.2, -9.0], [9.0, 0.0, 9.0], false);
+        let wall = ([-6.0, 0.01, -0.2], [6.0, 6.0, 0.2], false);
+        let seen = view(&mesh(&[plate, wall], None)).unwrap();
+        assert_eq!((seen.is_inside, seen.view.name.as_str()), (false, "main"));
+        assert!(seen.view.eye.z < 0.0 && seen.view.eye.y > 0.0, "{seen:?}");
     }
 
     #[test]
@@ -400,7 +447,7 @@ mod tests {
         };
         let room = turned(mesh(&[WALLS, TABLE], Some(3)));
         let sun = DirectionalLight::new(DVec3::new(-0.3, 0.4, -1.0)).into();
-        let seen = from_inside(&room, &sun, DVec3::Z, 60.0).unwrap().view;
+        let seen = default_view(&room, &sun, DVec3::Z, 60.0).unwrap().view;
         assert!(seen.eye.z > 0.2 && seen.eye.y.abs() < 3.0, "{seen:?}");
     }
 }

@@ -87,8 +87,8 @@ pub struct SceneArgs {
     /// are views.
     #[arg(long, value_name = "NAME")]
     pub view: Option<String>,
-    /// Eye position, instead of the view's. Without it, for a mesh without cameras: where all of it
-    /// is seen.
+    /// Eye position, instead of the view's. Without it, for a mesh without cameras: inside, if it
+    /// surrounds the camera, else where all of it is seen.
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
     pub eye: Option<DVec3>,
     /// Direction in which the eye looks, instead of the view's. Without it, for a mesh without

@@ -91,13 +91,16 @@ fn a_room_without_a_camera_is_seen_from_inside() {
 #[test]
 fn a_view_with_hardly_any_shadow_is_told() {
     let folder = folder();
-    let output = skiagraph(folder.path(), &format!("{COMPARE} --scene objects.gltf"));
+    let line = format!("{COMPARE} --scene objects.gltf --light 0,-1,0");
+    let output = skiagraph(folder.path(), &line);
     let text = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{text}");
     assert!(
-        text.contains("warning: view `main` shows hardly any shadow: "),
+        text.contains("warning: view `main` shows hardly any shadow: 0 of the "),
         "{text}"
     );
+    let floor = "objects.gltf: it has no floor for its shadow to fall on; --ground adds one";
+    assert!(text.contains(floor), "{text}");
     assert!(
         text.contains("look from another side, or move the light"),
         "{text}"

@@ -2,9 +2,9 @@
 
 use crate::graded::graded;
 use itertools::Itertools;
-use skiagraph_compare::records::results::{Results, Run};
+use skiagraph_compare::records::results::{Machine, Results, Run};
 use skiagraph_compare::records::sequence::{FrameCost, Sequence};
-use skiagraph_compare::wording::{frames, ms, thousands};
+use skiagraph_compare::wording::{frames, ms, plural, thousands};
 use skiagraph_reference::BlockerCounts;
 
 /// A band of more than one pixel in so many of those facing the light leaves too much open.
@@ -15,6 +15,16 @@ pub fn band_warning(run: &Run) -> Option<String> {
     let is_large = u128::from(run.band) * MAX_BAND > u128::from(run.pixels.facing_light);
     let text = "warning: the band is larger than 0.1 % of PFL; what lies in it is not proven";
     is_large.then(|| text.to_owned())
+}
+
+/// That others used the machine when the comparison began, if they took much of it.
+pub fn load_warning(machine: &Machine) -> Option<String> {
+    let load = machine.load.filter(|_| machine.is_loaded())?;
+    let cores = plural(machine.cores as usize, "core");
+    Some(format!(
+        "warning: the machine was busy when this began (load {load:.1} on {cores}): times have a \
+         wide spread; ratios of methods that took turns suffer the least"
+    ))
 }
 
 /// That pixels of a view and viewport show what is not seen there, if any do. No method is to blame
@@ -207,6 +217,19 @@ mod tests {
             "warning: 1,234 of 131,072 pixels show a surface that another one hides, or none where \
              there is one; every method is judged on the surface that is shown"
         );
+    }
+
+    #[test]
+    fn a_busy_machine_is_told() {
+        let mut machine = sample().machine;
+        assert_eq!(load_warning(&machine), None);
+        machine.load = Some(4.0);
+        let told = load_warning(&machine).unwrap();
+        assert!(
+            told.starts_with("warning: the machine was busy when this began (load 4.0 on 8 cores)")
+        );
+        machine.load = None;
+        assert_eq!(load_warning(&machine), None);
     }
 
     #[test]

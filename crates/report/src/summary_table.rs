@@ -2,7 +2,7 @@
 //! setting over all views, the fastest first.
 
 use crate::notes::{
-    band_warning, blocked_by, path_costs, remembering, surface_warning, times_missing,
+    band_warning, blocked_by, load_warning, path_costs, remembering, surface_warning, times_missing,
 };
 use crate::summary::{Row, by_wall, rows};
 use crate::verdict::{Verdict, verdict};
@@ -144,6 +144,7 @@ impl<'a> Summary<'a> {
             ),
         ];
         let area = |run: &Run| Some(graded::area_reference(&run.area?, run.band));
+        lines.extend(load_warning(&self.results.machine));
         lines.extend(self.told(&each, band_warning));
         lines.extend(self.told(&each, area));
         lines
@@ -157,7 +158,14 @@ impl<'a> Summary<'a> {
         if are_paths {
             heads.extend(["worst frame", "shimmer"]);
         }
-        heads.extend(["frame ms", "map kept ms", "rays", "memory"]);
+        heads.extend([
+            "frame ms",
+            "quartiles",
+            "less G-buffer",
+            "map kept ms",
+            "rays",
+            "memory",
+        ]);
         let best = self.verdict().fastest_exact;
         let (views, is_soft) = (self.views().len(), self.is_soft());
         let row = |(index, row): (usize, &Row)| {
@@ -192,6 +200,11 @@ impl<'a> Summary<'a> {
                 cells.push(or_dash(shimmer, |part| percent(part.count, part.of)));
             }
             cells.push(or_dash(row.frame_ms(by_wall), ms));
+            let quartiles = row.quartiles(by_wall, false);
+            cells.push(or_dash(quartiles, |[q1, q3]| {
+                format!("{}–{}", ms(q1), ms(q3))
+            }));
+            cells.push(or_dash(row.own_ms(), ms));
             cells.push(or_dash(row.kept_ms(by_wall), ms));
             cells.push(or_dash(row.rays(), |rays| thousands(rays.round() as u64)));
             cells.push(bytes(row.bytes()));
@@ -214,6 +227,7 @@ impl<'a> Summary<'a> {
             Some(format!("{} is unavailable: {why}", row.label))
         }));
         notes.extend(self.certain_wrong());
+        notes.extend(self.dearer_when_kept());
         notes.extend(self.told(&self.runs, graded::no_shares));
         notes.extend(self.told(&self.runs, remembering));
         notes.extend(self.told(&self.runs, path_costs));
@@ -291,6 +305,26 @@ impl<'a> Summary<'a> {
                 _ => format!("{}: {note}", run.view),
             })
             .collect()
+    }
+
+    /// Says which methods take longer with what they keep than with every pass run.
+    fn dearer_when_kept(&self) -> Vec<String> {
+        let by_wall = by_wall(&self.rows);
+        let line = |row: &Row| {
+            let [low, _] = row.quartiles(by_wall, true)?;
+            let [_, high] = row.quartiles(by_wall, false)?;
+            let (kept, frame) = (row.kept_ms(by_wall)?, row.frame_ms(by_wall)?);
+            (low > high).then(|| {
+                format!(
+                    "warning: {} takes longer while only the camera moves ({} ms) than with every \
+                     pass run ({} ms): these times are not to be relied on",
+                    row.label,
+                    ms(kept),
+                    ms(frame)
+                )
+            })
+        };
+        self.rows.iter().filter_map(line).collect()
     }
 
     /// Says what blocks the pixels of which a method was certain and wrong, over all views.

@@ -20,11 +20,12 @@ use crate::pictures::run_pictures::{PictureFile, PicturePlace, conditions, draw_
 use crate::records::results::{Answer, AreaReference, Images, Measured, Run};
 use crate::records::statistics::FrameTimes;
 use crate::records::steady::Steady;
+use crate::records::turns::Turns;
 use crate::sink::{Session, Step};
 use skiagraph_gpu::{ExecuteError, Executor, Provider};
 use skiagraph_graph::Plan;
 use skiagraph_passes::SceneProvider;
-use skiagraph_reference::{GroundTruth, Statistics};
+use skiagraph_reference::{BlockerCounts, EdgeDistances, GroundTruth, Statistics};
 use std::cell::RefCell;
 
 /// Context shared by all methods on one view and viewport.
@@ -55,6 +56,28 @@ pub struct MeasureContext<'a> {
     pub pictures: Option<RefCell<Vec<PictureFile>>>,
 }
 
+/// A method that was judged on a view, and not timed yet.
+pub struct Judged {
+    /// The method.
+    pub method: Method,
+    prepared: Prepared,
+    judgement: Judgement,
+    edges: EdgeDistances,
+    rays: Option<u64>,
+    answers_in_shares: bool,
+    blockers: Option<BlockerCounts>,
+    images: Option<Images>,
+    /// Its pictures, to be written with its run.
+    pub pictures: Vec<PictureFile>,
+}
+
+impl Judged {
+    /// Bytes of its own materials.
+    pub fn bytes(&self) -> u64 {
+        self.prepared.memory[0]
+    }
+}
+
 /// A method whose buffers have grown, in its steady state where it remembers.
 pub struct Prepared {
     /// Runs it.
@@ -66,53 +89,58 @@ pub struct Prepared {
 }
 
 impl MeasureContext<'_> {
-    /// Plans and runs a method by `run`: [`still`](Self::still), or
+    /// Plans and runs a method by `run`: [`judge`](Self::judge), or
     /// [`follow`](crate::measuring::sequence). One that this adapter cannot run yields a [`Run`]
-    /// that says why.
+    /// that says why. `frames` are heard of as those of its step.
     ///
     /// # Errors
     /// Ctrl-C, a lost device, a picture that cannot be written, outputs that are not a shadow
     /// method's ([`CompareError::InvalidOutputs`]).
-    pub fn measure(
+    pub fn measure<T>(
         &self,
         method: &Method,
         provider: &mut SceneProvider,
-        run: impl FnOnce(&Method, Plan, &mut SceneProvider, &Step) -> Result<Measured, Stop>,
-    ) -> Result<Run, CompareError> {
+        frames: u64,
+        run: impl FnOnce(&Method, Plan, &mut SceneProvider, &Step) -> Result<T, Stop>,
+    ) -> Result<Result<T, Box<Run>>, CompareError> {
         let viewport = self.truth_view.ground_truth.pixels.viewport;
         let plan = match method.plan(viewport, Capabilities::new(self.session.gpu), provider) {
             Ok(plan) => plan,
             // The graph itself is sound: that was checked before anything ran.
-            Err(diagnostics) => return Ok(self.unavailable(method, reasons(&diagnostics))),
+            Err(diagnostics) => {
+                let run = self.unavailable(method, reasons(&diagnostics));
+                return Ok(Err(run.into()));
+            }
         };
         let name = conditions(method, self.view, viewport);
         let name = format!("{}, {name}", method.name);
-        let frames = u64::from(self.warmup) + self.frames;
         let step = Step::begin(self.session.sink, &name, frames, "frames");
         let came = run(method, plan, provider, &step);
-        let run = match attempt(self.session, method, came)? {
-            Ok(measured) => Run {
-                measured: Some(measured),
-                ..self.empty(method)
-            },
-            Err(reason) => self.unavailable(method, reason),
-        };
+        let came = attempt(self.session, method, came)?;
         step.end();
-        Ok(run)
+        Ok(came.map_err(|reason| self.unavailable(method, reason).into()))
     }
 
-    /// Runs, times and judges a method on one view. A method that remembers is judged first, in its
-    /// steady state: what is timed behind that does not change what it shows.
+    /// The run of a method with its measurements.
+    pub fn run(&self, method: &Method, measured: Measured) -> Run {
+        Run {
+            measured: Some(measured),
+            ..self.empty(method)
+        }
+    }
+
+    /// Runs and judges a method on one view; [`times`](Self::times) it together with others. A method
+    /// that remembers is judged in its steady state: what is timed behind that does not change what
+    /// it shows.
     ///
     /// # Errors
     /// A method that the device refuses, and those of [`measure`](Self::measure).
-    pub fn still(
+    pub fn judge(
         &self,
         method: &Method,
         plan: Plan,
         provider: &mut dyn Provider,
-        step: &Step,
-    ) -> Result<Measured, Stop> {
+    ) -> Result<Judged, Stop> {
         let mut prepared = self.prepare(plan, provider)?;
         let executor = &mut prepared.executor;
         let ground_truth = &self.truth_view.ground_truth;
@@ -121,40 +149,90 @@ impl MeasureContext<'_> {
             let outputs = self.decode(contents, self.truth_view);
             judged(&method.preset, outputs, ground_truth)
         };
-        let worst = match &mut prepared.steady {
-            Some(steady) => Some(steady::judge(
-                self.session,
-                executor,
-                &names,
-                steady,
-                judge,
-            )?),
-            None => None,
-        };
-        let (count, all) = ([self.warmup, self.frames as u32], FrameMode::AllPasses);
-        let set_done = |frames| step.set_done(frames);
-        let times = timing::times(self.session, executor, all, count, set_done)?;
-        let mut cached = timing::cached(self.session, executor, self.cached_frames)?;
-        if let Some(cached) = &mut cached {
-            self.distrust(&mut cached.frame);
-        }
-        let (outputs, judgement) = match worst {
-            Some(worst) => worst,
-            // Only now: a readback would be timed, too.
+        let (outputs, judgement) = match &mut prepared.steady {
+            Some(steady) => steady::judge(self.session, executor, &names, steady, judge)?,
             None => judge(frame::read(self.session, executor, &names)?)?,
         };
-        let counts = &judgement.counts;
-        let has_blockers = judgement.is_hard && counts.wrong.certain > 0;
+        let has_blockers = judgement.is_hard && judgement.counts.wrong.certain > 0;
         let blockers = has_blockers.then(|| self.truth_view.blockers(&outputs));
-        Ok(Measured {
-            rays: outputs.rays,
-            certain_wrong_blockers: blockers.transpose()?,
-            graded: judgement.graded,
+        let images = self.draw(method, None, ground_truth, (&outputs, &judgement))?;
+        Ok(Judged {
+            method: method.clone(),
+            prepared,
             edges: self.truth_view.edges(&outputs)?,
-            cached,
-            images: self.draw(method, None, ground_truth, (&outputs, &judgement))?,
-            ..self.measured(prepared, times, counts, outputs.shares.is_some())
+            rays: outputs.rays,
+            answers_in_shares: outputs.shares.is_some(),
+            blockers: blockers.transpose()?,
+            pictures: self
+                .pictures
+                .as_ref()
+                .map(RefCell::take)
+                .unwrap_or_default(),
+            images,
+            judgement,
         })
+    }
+
+    /// Times judged methods in turns, and returns the run of each. `group` is their place among
+    /// those of the view and viewport, the first of them is their anchor. `done` hears how many
+    /// turns are over.
+    ///
+    /// # Errors
+    /// Ctrl-C, a lost device.
+    pub fn times(
+        &self,
+        methods: &mut [Judged],
+        (session, group): (&str, u32),
+        done: impl Fn(u64),
+    ) -> Result<Vec<Run>, CompareError> {
+        let executors = methods.iter_mut().map(|of| &mut of.prepared.executor);
+        let mut executors: Vec<&mut Executor> = executors.collect();
+        let (count, all) = ([self.warmup, self.frames as u32], FrameMode::AllPasses);
+        let timed = timing::in_turns(self.session, &mut executors, all, count, done)?;
+        let cached = timing::cached(self.session, &mut executors, self.cached_frames)?;
+        let mut anchor = None;
+        let mut runs = Vec::new();
+        for ((of, timed), cached) in methods.iter().zip(timed).zip(cached) {
+            let times = timed
+                .map_err(Stop::from)
+                .and_then(|timed| Ok(Times::new(timed)?));
+            let measured = times.and_then(|times| {
+                let mut measured = self.timed(of, times);
+                let anchor = anchor.get_or_insert_with(|| measured.frame.clone());
+                measured.turns = Some(Turns {
+                    session: session.to_owned(),
+                    group,
+                    anchor: anchor.clone(),
+                });
+                measured.cached = cached.transpose()?;
+                if let Some(cached) = &mut measured.cached {
+                    self.distrust(&mut cached.frame);
+                }
+                Ok(measured)
+            });
+            runs.push(match attempt(self.session, &of.method, measured)? {
+                Ok(measured) => self.run(&of.method, measured),
+                Err(reason) => self.unavailable(&of.method, reason),
+            });
+        }
+        Ok(runs)
+    }
+
+    /// The measurements of a judged method.
+    fn timed(&self, of: &Judged, times: Times) -> Measured {
+        Measured {
+            rays: of.rays,
+            certain_wrong_blockers: of.blockers,
+            graded: of.judgement.graded,
+            edges: of.edges,
+            images: of.images.clone(),
+            ..self.measured(
+                &of.prepared,
+                times,
+                &of.judgement.counts,
+                of.answers_in_shares,
+            )
+        }
     }
 
     /// Makes a method's executor, and lets it run until it is in its steady state where it
@@ -182,7 +260,7 @@ impl MeasureContext<'_> {
     /// The part of the measurements that a view and a path have alike.
     pub fn measured(
         &self,
-        prepared: Prepared,
+        prepared: &Prepared,
         mut times: Times,
         counts: &Statistics,
         answers_in_shares: bool,
@@ -213,7 +291,8 @@ impl MeasureContext<'_> {
             memory_bytes,
             saved_bytes,
             scene_bytes: prepared.scene_bytes,
-            steady: prepared.steady,
+            steady: prepared.steady.clone(),
+            turns: None,
             sequence: None,
             images: None,
         }
@@ -221,7 +300,9 @@ impl MeasureContext<'_> {
 
     /// Leaves out the GPU's time of a frame if timestamps are not true.
     pub fn distrust(&self, frame: &mut FrameTimes) {
-        frame.gpu_ms = frame.gpu_ms.filter(|_| self.timestamps);
+        if !self.timestamps {
+            frame.without_gpu();
+        }
     }
 
     /// A run that says why there are no measurements.

@@ -196,7 +196,7 @@ pub fn follow(
             shimmer: all,
             every_pass,
         }),
-        ..context.measured(prepared, times, &account.counts, account.shares)
+        ..context.measured(&prepared, times, &account.counts, account.shares)
     })
 }
 

@@ -31,20 +31,20 @@ use crate::graphs::faults::reasons;
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
 use crate::measuring::camera_pose::CameraPose;
-use crate::measuring::device;
 use crate::measuring::ground_truth::{GroundTruthView, Tracing};
 use crate::measuring::mesh_frames::MeshFrames;
 use crate::measuring::results_folder::ResultsFolder;
 use crate::measuring::resume::{Earlier, Kept, RunKey, earlier};
-use crate::measuring::run::MeasureContext;
+use crate::measuring::run::{Judged, MeasureContext};
 use crate::measuring::sequence;
 use crate::measuring::view_or_path::ViewOrPath;
+use crate::measuring::{date, device};
 use crate::pictures::run_pictures::PictureFile;
 use crate::records::published::attach;
 use crate::records::read_back;
 use crate::records::results::{PROGRAM, Results, Run};
 use crate::sink::{Runs, Session, Step};
-use crate::wording::{size, thousands};
+use crate::wording::{plural, size, thousands};
 use skiagraph_passes::SceneProvider;
 use skiagraph_reference::{Oracle, PixelCounts};
 use std::{
@@ -97,6 +97,9 @@ pub fn run(comparison: &Comparison, session: Session) -> Result<Results, Compare
     }
 }
 
+/// Bytes of methods that are timed in turns, where the device does not tell what it has.
+const ROOM: u64 = 1 << 30;
+
 enum RunState {
     Pending,
     /// The method could not run the last time; the reference's pixels are known from then.
@@ -122,11 +125,13 @@ impl<'a> Series<'a> {
             schema: 1,
             program: PROGRAM.into(),
             adapter: device::describe(session.gpu, device::timestamp_trust(session.gpu)),
+            machine: device::machine(),
             scene: (&*comparison.scene).into(),
             oracle: protocol.oracle.to_string(),
             frames: protocol.frames,
             warmup: protocol.warmup,
             cached_frames: protocol.cached_frames,
+            began: date::now(),
             commands: comparison.command.iter().cloned().collect(),
             runs: Vec::new(),
         };
@@ -264,24 +269,130 @@ impl<'a> Series<'a> {
             cached_frames: self.results.cached_frames,
             pictures: protocol.pictures.then(RefCell::default),
         };
-        for (place, method) in places.zip(&methods) {
-            if is_done(&self.states[place]) {
-                continue;
-            }
-            let run = match measured(&context, method, view, &frames, &mut self.provider) {
-                // The others are worth measuring all the same.
-                Err(CompareError::InvalidOutputs(reason)) => {
-                    let run = context.unavailable(method, reason.clone());
-                    self.broken.push(reason);
-                    run
-                }
-                run => run?,
+        let missing = places.zip(&methods);
+        let missing: Vec<(usize, &Method)> = missing
+            .filter(|(place, _)| !is_done(&self.states[*place]))
+            .collect();
+        match view {
+            ViewOrPath::Still(_) => self.measure_still(&context, &missing),
+            ViewOrPath::Path(_) => self.follow_path(&context, &missing, &frames),
+        }
+    }
+
+    /// Judges methods on a view one by one, and times them in turns: as many at once as fit the
+    /// memory, with the first of all in each group.
+    fn measure_still(
+        &mut self,
+        context: &MeasureContext,
+        missing: &[(usize, &Method)],
+    ) -> Result<(), CompareError> {
+        let room = self.session.gpu.memory.map_or(ROOM, |bytes| bytes / 2);
+        let (mut places, mut group): (Vec<usize>, Vec<Judged>) = Default::default();
+        let mut groups = 0;
+        for &(place, method) in missing {
+            let judge = |method: &Method, plan, provider: &mut SceneProvider, step: &Step| {
+                let judged = context.judge(method, plan, provider);
+                step.set_done(1);
+                judged
             };
-            self.done(place, run);
-            let pictures = context.pictures.as_ref().map(RefCell::take);
-            self.save(&pictures.unwrap_or_default())?;
+            let judged = context.measure(method, &mut self.provider, 1, judge);
+            match self.unless_broken(context, method, judged)? {
+                Err(run) => self.keep(place, *run, &[])?,
+                Ok(judged) => {
+                    let bytes: u64 = group.iter().map(Judged::bytes).sum();
+                    if group.len() > 1 && bytes + judged.bytes() > room {
+                        self.time(context, &places, &mut group, groups)?;
+                        // The anchor stays.
+                        places.truncate(1);
+                        group.truncate(1);
+                        groups += 1;
+                    }
+                    places.push(place);
+                    group.push(judged);
+                }
+            }
+        }
+        self.time(context, &places, &mut group, groups)
+    }
+
+    /// Times a group of methods in turns, and keeps their runs.
+    fn time(
+        &mut self,
+        context: &MeasureContext,
+        places: &[usize],
+        group: &mut [Judged],
+        index: u32,
+    ) -> Result<(), CompareError> {
+        if group.is_empty() {
+            return Ok(());
+        }
+        let turns = u64::from(context.warmup) + context.frames;
+        let viewport = size(context.truth_view.ground_truth.pixels.viewport);
+        let methods = plural(group.len(), "method");
+        let name = format!("{methods} in turns, {} {viewport}", context.view);
+        let step = Step::begin(self.session.sink, &name, turns, "turns");
+        let set_done = |turns| step.set_done(turns);
+        let runs = context.times(group, (&self.results.began, index), set_done)?;
+        step.end();
+        for ((place, of), run) in places.iter().zip(group).zip(runs) {
+            // The anchor's run is kept with its first group.
+            if !matches!(self.states[*place], RunState::Done) {
+                self.keep(*place, run, &std::mem::take(&mut of.pictures))?;
+            }
         }
         Ok(())
+    }
+
+    /// Measures methods along a camera path, one after the other.
+    fn follow_path(
+        &mut self,
+        context: &MeasureContext,
+        missing: &[(usize, &Method)],
+        path: &sequence::Path,
+    ) -> Result<(), CompareError> {
+        for &(place, method) in missing {
+            let frames = u64::from(context.warmup) + context.frames;
+            let follow = |method: &Method, plan, provider: &mut SceneProvider, step: &Step| {
+                sequence::follow(context, method, plan, path, provider, step)
+            };
+            let measured = context.measure(method, &mut self.provider, frames, follow);
+            let run = match self.unless_broken(context, method, measured)? {
+                Ok(measured) => context.run(method, measured),
+                Err(run) => *run,
+            };
+            let pictures = context.pictures.as_ref().map(RefCell::take);
+            self.keep(place, run, &pictures.unwrap_or_default())?;
+        }
+        Ok(())
+    }
+
+    /// Turns outputs that are not a shadow method's into a run that says so: the others are worth
+    /// measuring all the same.
+    fn unless_broken<T>(
+        &mut self,
+        context: &MeasureContext,
+        method: &Method,
+        came: Result<Result<T, Box<Run>>, CompareError>,
+    ) -> Result<Result<T, Box<Run>>, CompareError> {
+        match came {
+            Err(CompareError::InvalidOutputs(reason)) => {
+                let run = context.unavailable(method, reason.clone());
+                self.broken.push(reason);
+                Ok(Err(run.into()))
+            }
+            came => came,
+        }
+    }
+
+    /// Keeps a run, and writes what is done.
+    fn keep(
+        &mut self,
+        place: usize,
+        run: Run,
+        pictures: &[PictureFile],
+    ) -> Result<(), CompareError> {
+        self.done(place, run);
+        self.save(pictures)
     }
 
     /// The runs that are done, with those in the folder that stay.
@@ -470,21 +581,4 @@ fn unlit(view: &str, pixels: &PixelCounts) -> Option<String> {
         _ => return None,
     };
     Some(format!("warning: view `{view}` {what}"))
-}
-/// Measures a method on a still view, or along the frames of a path.
-fn measured(
-    context: &MeasureContext,
-    method: &Method,
-    view: &ViewOrPath,
-    frames: &sequence::Path,
-    provider: &mut SceneProvider,
-) -> Result<Run, CompareError> {
-    context.measure(
-        method,
-        provider,
-        |method, plan, provider, step| match view {
-            ViewOrPath::Still(_) => context.still(method, plan, provider, step),
-            ViewOrPath::Path(_) => sequence::follow(context, method, plan, frames, provider, step),
-        },
-    )
 }

@@ -34,3 +34,4 @@ pub mod statistics;
 pub mod steady;
 pub mod stress;
 pub mod table;
+pub mod turns;

@@ -21,6 +21,7 @@
 use crate::records::sequence::Sequence;
 use crate::records::statistics::{FrameTimes, Spread};
 use crate::records::steady::Steady;
+use crate::records::turns::Turns;
 use crate::wording::{size, thousands};
 use serde::{Deserialize, Serialize};
 use skiagraph_reference::{
@@ -39,8 +40,10 @@ pub struct Results {
     pub schema: u32,
     /// The program that measured, `skiagraph 0.1.0`.
     pub program: String,
-    /// Where it ran.
+    /// The GPU that it ran on.
     pub adapter: Adapter,
+    /// The machine that it ran on.
+    pub machine: Machine,
     /// The scene that was drawn.
     pub scene: Scene,
     /// The oracle's mode, `exact` or `offset:LENGTH`.
@@ -51,6 +54,8 @@ pub struct Results {
     pub warmup: u32,
     /// Timed frames in which only the camera moves, per run.
     pub cached_frames: u32,
+    /// When the comparison began that measured the newest runs, `2026-11-21T04:30:12Z`.
+    pub began: String,
     /// The commands that measured it, the first one first.
     pub commands: Vec<String>,
     /// One entry per view, viewport, preset and map size, in this order.
@@ -71,6 +76,28 @@ pub struct Adapter {
     /// Why all `gpu_ms` are null; absent where they are not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gpu_unavailable: Option<String>,
+}
+
+/// The machine, as it was when a comparison began.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Machine {
+    /// Its name in its network; null where the system does not say.
+    pub host: Option<String>,
+    /// Name of its processor; empty where the system does not say.
+    pub processor: String,
+    /// Logical processors.
+    pub cores: u32,
+    /// Mean number of processes that ran or waited to run over the minute before; null where the
+    /// system does not say.
+    pub load: Option<f64>,
+}
+
+impl Machine {
+    /// True if other processes took half of the processors and more: they slow down what is timed.
+    pub fn is_loaded(&self) -> bool {
+        self.load
+            .is_some_and(|load| load >= 0.5 * f64::from(self.cores))
+    }
 }
 
 /// The scene.
@@ -347,6 +374,10 @@ pub struct Measured {
     pub saved_bytes: u64,
     /// Bytes of the scene's resources: positions, indices, hierarchy …
     pub scene_bytes: u64,
+    /// The methods that it took turns with, frame by frame; absent of a camera path, which each
+    /// method follows by itself.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub turns: Option<Turns>,
     /// How a method that remembers came to its steady state; absent of one that does not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub steady: Option<Steady>,
@@ -495,8 +526,16 @@ pub(crate) mod tests {
     pub(crate) fn sample() -> Results {
         let spread = |ms: f64| Spread {
             min: ms,
+            q1: ms * 1.25,
             median: ms * 1.5,
+            q3: ms * 1.75,
             p95: ms * 2.0,
+        };
+        let times = |gpu: Option<f64>, wall: f64| FrameTimes {
+            gpu_ms: gpu.map(spread),
+            wall_ms: spread(wall),
+            gpu_frames: gpu.map(|ms| vec![ms * 2.0, ms, ms * 1.5]),
+            wall_frames: vec![wall * 2.0, wall, wall * 1.5],
         };
         let run = |preset: &str, map_size| Run {
             preset: preset.into(),
@@ -581,20 +620,15 @@ pub(crate) mod tests {
                     cpu_ms: spread(0.01),
                 })
                 .into(),
-            frame: FrameTimes {
-                gpu_ms: gpu.then(|| spread(1.0)),
-                wall_ms: spread(2.0),
-            },
+            frame: times(gpu.then_some(1.0), 2.0),
             cached: gpu.then(|| Cached {
-                frame: FrameTimes {
-                    gpu_ms: Some(spread(0.5)),
-                    wall_ms: spread(1.0),
-                },
+                frame: times(Some(0.5), 1.0),
                 skipped: vec!["create_shadow_map".into()],
             }),
             memory_bytes: 12_582_912,
             saved_bytes: 1_048_576,
             scene_bytes: 2_000_000,
+            turns: None,
             steady: None,
             sequence: None,
             images: gpu.then(|| Images {
@@ -610,11 +644,18 @@ pub(crate) mod tests {
             schema: 1,
             program: "skiagraph 0.1.0".into(),
             adapter: adapter(),
+            machine: Machine {
+                host: Some("bench".into()),
+                processor: "Some CPU".into(),
+                cores: 8,
+                load: Some(0.25),
+            },
             scene: scene(),
             oracle: "exact".into(),
             frames: 10,
             warmup: 2,
             cached_frames: 10,
+            began: "2026-11-20T04:30:12Z".into(),
             commands: vec!["skiagraph compare nsm rt rt_hw --size 512x256".into()],
             runs: vec![
                 Run {

@@ -96,6 +96,11 @@ impl<'a> Row<'a> {
         })
     }
 
+    /// True unless an early end left one of its runs with a single frame.
+    pub fn is_whole(&self) -> bool {
+        self.runs.iter().all(|(run, _)| run.is_whole())
+    }
+
     /// True if no answer outside the band differs from the reference's, in any share.
     pub fn is_exact(&self) -> bool {
         let is_exact = |(_, of): &(&Run, &Measured)| {

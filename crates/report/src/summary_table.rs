@@ -174,6 +174,11 @@ impl<'a> Summary<'a> {
                 some if some == views || some == 0 => String::new(),
                 some => format!(" ({some} of {})", plural(views, "view")),
             };
+            let few = if row.is_whole() {
+                few
+            } else {
+                few + " (1 frame)"
+            };
             let mut cells = vec![format!("{}{few}{mark}", row.label)];
             if row.views() == 0 {
                 cells.push(NOT_THERE.into());

@@ -17,15 +17,15 @@ pub struct Verdict {
     pub sentences: Vec<String>,
 }
 
-/// Judges rows that were measured on the same views, the fastest first; those on fewer views and
-/// those that could not run take no part.
+/// Judges rows that were measured on the same views, the fastest first; those on fewer views, those
+/// that an early end left without their frames and those that could not run take no part.
 pub fn verdict(rows: &[Row]) -> Verdict {
     let most = rows.iter().map(Row::views).max().unwrap_or_default();
     let by_wall = by_wall(rows);
     let full: Vec<Contender> = rows
         .iter()
         .enumerate()
-        .filter(|(_, row)| row.views() == most && most > 0)
+        .filter(|(_, row)| row.views() == most && most > 0 && row.is_whole())
         .filter_map(|(index, row)| Contender::new(index, row, by_wall))
         .collect();
     let mut verdict = if full.is_empty() {

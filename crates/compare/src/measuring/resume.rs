@@ -123,7 +123,8 @@ pub fn earlier(
     let total = runs.len();
     let take = |planned: &RunKey| {
         let mut known = runs.iter();
-        let index = known.position(|run| resumes && planned.is_of(run))?;
+        let is_kept = |run: &Run| planned.is_of(run) && run.is_whole();
+        let index = known.position(|run| resumes && is_kept(run))?;
         Some(runs.swap_remove(index))
     };
     let kept: Vec<Option<Run>> = planned.iter().map(take).collect();
@@ -135,7 +136,7 @@ pub fn earlier(
     if resumes && !runs.is_empty() {
         sink.note(&format!(
             "{} of the {total} in it are measured again: params, graph, shaders or \
-             scene have changed since",
+             scene have changed since, or frames are missing",
             runs.len()
         ));
     }

@@ -173,6 +173,30 @@ impl MeasureContext<'_> {
         })
     }
 
+    /// The run of a judged method with a single timed frame: what is kept of it if nothing follows.
+    ///
+    /// # Errors
+    /// Ctrl-C, a lost device.
+    pub fn first_frame(&self, of: &mut Judged) -> Result<Run, CompareError> {
+        let executors = &mut [&mut of.prepared.executor];
+        let timed = timing::in_turns(
+            self.session,
+            executors,
+            FrameMode::AllPasses,
+            [0, 1],
+            |_| (),
+        );
+        let timed = timed?.pop().unwrap_or_else(|| Ok(Vec::new()));
+        let times = timed
+            .map_err(Stop::from)
+            .and_then(|timed| Ok(Times::new(timed)?));
+        let measured = times.map(|times| self.timed(of, times));
+        Ok(match attempt(self.session, &of.method, measured)? {
+            Ok(measured) => self.run(&of.method, measured),
+            Err(reason) => self.unavailable(&of.method, reason),
+        })
+    }
+
     /// Times judged methods in turns, and returns the run of each. `group` is their place among
     /// those of the view and viewport, the first of them is their anchor. `done` hears how many
     /// turns are over.

@@ -279,8 +279,9 @@ impl<'a> Series<'a> {
         }
     }
 
-    /// Judges methods on a view one by one, and times them in turns: as many at once as fit the
-    /// memory, with the first of all in each group.
+    /// Judges methods on a view one by one, each with a frame timed by itself, so that an early end
+    /// keeps it; then times them in turns, as many at once as fit the memory, with the first of all
+    /// in each group.
     fn measure_still(
         &mut self,
         context: &MeasureContext,
@@ -307,8 +308,14 @@ impl<'a> Series<'a> {
                         group.truncate(1);
                         groups += 1;
                     }
-                    places.push(place);
-                    group.push(judged);
+                    let mut judged = judged;
+                    let run = context.first_frame(&mut judged)?;
+                    let is_measured = run.measured.is_some();
+                    self.keep(place, run, &std::mem::take(&mut judged.pictures))?;
+                    if is_measured {
+                        places.push(place);
+                        group.push(judged);
+                    }
                 }
             }
         }
@@ -334,13 +341,15 @@ impl<'a> Series<'a> {
         let set_done = |turns| step.set_done(turns);
         let runs = context.times(group, (&self.results.began, index), set_done)?;
         step.end();
-        for ((place, of), run) in places.iter().zip(group).zip(runs) {
-            // The anchor's run is kept with its first group.
-            if !matches!(self.states[*place], RunState::Done) {
-                self.keep(*place, run, &std::mem::take(&mut of.pictures))?;
-            }
+        // The anchor's run is that of its first group.
+        let anchors = usize::from(index > 0);
+        for (place, mut run) in places.iter().zip(runs).skip(anchors) {
+            let (published, scene) = (&self.comparison.published, &self.results.scene.name);
+            attach(published, scene, &mut run);
+            let kept = self.done_before(*place);
+            self.results.runs[kept] = run;
         }
-        Ok(())
+        self.save(&[])
     }
 
     /// Measures methods along a camera path, one after the other.

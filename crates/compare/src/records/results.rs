@@ -211,6 +211,12 @@ impl Run {
         self.area.is_none() && measured.is_none_or(|of| of.answer == Answer::Hard)
     }
 
+    /// True unless it was kept at an early end, with a single frame that was timed by itself.
+    pub fn is_whole(&self) -> bool {
+        let measured = self.measured.as_ref();
+        measured.is_none_or(|of| of.sequence.is_some() || of.turns.is_some())
+    }
+
     /// Method, view, viewport and map in words.
     pub fn label(&self) -> String {
         let map = self
@@ -628,7 +634,11 @@ pub(crate) mod tests {
             memory_bytes: 12_582_912,
             saved_bytes: 1_048_576,
             scene_bytes: 2_000_000,
-            turns: None,
+            turns: Some(Turns {
+                session: "2026-11-20T04:30:12Z".into(),
+                group: 0,
+                anchor: times(Some(1.0), 2.0),
+            }),
             steady: None,
             sequence: None,
             images: gpu.then(|| Images {

@@ -13,11 +13,11 @@ use crate::sink::Sink;
 use std::path::{Path, PathBuf};
 
 /// `results.json` of a folder, with what is written beside it.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct ResultsFolder {
     folder: PathBuf,
     /// Runs that were in it at the begin and do not stay.
-    dropped: Vec<Run>,
+    pub dropped: Vec<Run>,
     /// The file as this process has read or written it last; none if there was none, or one that
     /// cannot be read.
     known: Option<String>,
@@ -26,24 +26,19 @@ pub struct ResultsFolder {
     /// Runs of others that stay.
     pub others: Vec<Run>,
     /// The commands that measured them.
-    commands: Vec<String>,
+    pub commands: Vec<String>,
 }
 
 impl ResultsFolder {
-    /// A folder as it stands: the runs in it that are dropped, those that stay, and the commands
-    /// that measured these. A file that cannot be read is overwritten: where it must not be, that
-    /// was refused before.
-    pub fn new(folder: &Path, [dropped, others]: [Vec<Run>; 2], commands: Vec<String>) -> Self {
+    /// A folder as it stands, of which nothing stays yet. A file that cannot be read is overwritten:
+    /// where it must not be, that is refused besides.
+    pub fn new(folder: &Path) -> Self {
         let file = read_back::results_file(&folder.join("results.json"));
-        let is_unreadable = file.is_err();
-        let known = file.ok().flatten();
         Self {
             folder: folder.to_path_buf(),
-            dropped,
-            known: known.map(|file| file.text.to_string()),
-            is_unreadable,
-            others,
-            commands,
+            is_unreadable: file.is_err(),
+            known: file.ok().flatten().map(|file| file.text.to_string()),
+            ..Self::default()
         }
     }
 
@@ -125,7 +120,10 @@ mod tests {
     }
 
     fn begin(folder: &Path, dropped: Vec<Run>) -> ResultsFolder {
-        ResultsFolder::new(folder, [dropped, Vec::new()], Vec::new())
+        ResultsFolder {
+            dropped,
+            ..ResultsFolder::new(folder)
+        }
     }
 
     #[test]
@@ -166,7 +164,8 @@ mod tests {
         let folder = folder.path();
         save(&sample(), folder).unwrap();
         let mut replaces = begin(folder, sample().runs);
-        let mut adds = ResultsFolder::new(folder, [Vec::new(), sample().runs], Vec::new());
+        let mut adds = begin(folder, Vec::new());
+        adds.others = sample().runs;
         let mut own = only(0, "adds");
         own.runs[0].preset = "crsm".into();
         adds.save(&own, &[], &Silent).unwrap();

@@ -1,16 +1,18 @@
 //! One run: a method on one view, executed, timed, judged and pictured.
 
-use crate::error::CompareError;
-use crate::files::fingerprint::Fingerprint;
+use crate::comparison::Protocol;
+use crate::error::{CompareError, explain, is_fatal};
 use crate::graphs::faults::reasons;
 use crate::graphs::ground_truth::{Judgement, judged};
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
 use crate::graphs::shadow_method::Outputs;
 use crate::measuring::ground_truth::GroundTruthView;
+use crate::measuring::sequence::{Path, follow};
 use crate::measuring::steady;
-use crate::measuring::stop::{Stop, attempt};
+use crate::measuring::stop::Stop;
 use crate::measuring::timing::{self, FrameMode, Times};
+use crate::measuring::view_or_path::ViewOrPath;
 use crate::measuring::{
     date,
     frame::{self, Contents},
@@ -33,24 +35,18 @@ pub struct MeasureContext<'a> {
     pub session: Session<'a>,
     /// True if its timestamps are true.
     pub timestamps: bool,
-    /// Name of the view.
-    pub view: &'a str,
+    /// View or path on which it is measured.
+    pub view: &'a ViewOrPath,
+    /// Its frames with their ground truth.
+    pub path: &'a Path<'a>,
+    /// The ground truth of the first frame.
+    pub truth_view: &'a GroundTruthView<'a>,
     /// Which of the view's lights it is under.
     pub light: usize,
-    /// Hash of mesh, light and view.
-    pub fingerprint: Fingerprint,
-    /// The ground truth, and where it is from; of a path's first frame.
-    pub truth_view: &'a GroundTruthView<'a>,
-    /// The reference's own pixels, of all frames of a path.
+    /// The reference's own pixels, of all frames.
     pub own: Statistics,
-    /// Pixels that show a surface which is not seen there, of all frames of a path.
-    pub wrong_surfaces: u64,
-    /// Timed frames.
-    pub frames: u64,
-    /// Frames before them.
-    pub warmup: u32,
-    /// Timed frames in which only the camera moves.
-    pub cached_frames: u32,
+    /// How long it is measured.
+    pub protocol: Protocol,
     /// The pictures of the last run, if there are to be any.
     pub pictures: Option<RefCell<Vec<PictureFile>>>,
 }
@@ -66,9 +62,7 @@ pub struct Prepared {
 }
 
 impl MeasureContext<'_> {
-    /// Plans and runs a method by `run`: [`still`](Self::still), or
-    /// [`follow`](crate::measuring::sequence). One that this adapter cannot run yields a [`Run`]
-    /// that says why.
+    /// Plans and runs a method. One that this adapter cannot run yields a [`Run`] that says why.
     ///
     /// # Errors
     /// Ctrl-C, a lost device, a picture that cannot be written, outputs that are not a shadow
@@ -76,26 +70,39 @@ impl MeasureContext<'_> {
     pub fn measure(
         &self,
         method: &Method,
+        planned: &Run,
         provider: &mut SceneProvider,
-        run: impl FnOnce(&Method, Plan, &mut SceneProvider, &Step) -> Result<Measured, Stop>,
     ) -> Result<Run, CompareError> {
-        let viewport = self.truth_view.ground_truth.pixels.viewport;
+        let viewport = planned.viewport;
         let plan = match method.plan(viewport, Capabilities::new(self.session.gpu), provider) {
             Ok(plan) => plan,
             // The graph itself is sound: that was checked before anything ran.
-            Err(diagnostics) => return Ok(self.unavailable(method, reasons(&diagnostics))),
+            Err(diagnostics) => {
+                return Ok(self.unavailable(method, planned, reasons(&diagnostics)));
+            }
         };
-        let name = conditions(method, self.view, viewport);
+        let name = conditions(method, self.view.name(), viewport);
         let name = format!("{}, {name}", method.name);
-        let frames = u64::from(self.warmup) + self.frames;
+        let frames = match self.view {
+            ViewOrPath::Still(_) => self.protocol.frames.into(),
+            ViewOrPath::Path(_) => self.path.frames.poses.len() as u64,
+        };
+        let frames = u64::from(self.protocol.warmup) + frames;
         let step = Step::begin(self.session.sink, &name, frames, "frames");
-        let came = run(method, plan, provider, &step);
-        let run = match attempt(self.session, method, came)? {
+        let came = match self.view {
+            ViewOrPath::Still(_) => self.still(method, plan, provider, &step),
+            ViewOrPath::Path(_) => follow(self, method, plan, provider, &step),
+        };
+        let run = match came {
             Ok(measured) => Run {
                 measured: Some(measured),
-                ..self.empty(method)
+                ..self.empty(method, planned)
             },
-            Err(reason) => self.unavailable(method, reason),
+            // The box is an error, too, but not the one that is asked for.
+            Err(Stop::Refused(error)) if !is_fatal(&*error) => {
+                self.unavailable(method, planned, explain(&*error))
+            }
+            Err(stop) => return Err(stop.into_error(self.session, &method.name)),
         };
         step.end();
         Ok(run)
@@ -106,7 +113,7 @@ impl MeasureContext<'_> {
     ///
     /// # Errors
     /// A method that the device refuses, and those of [`measure`](Self::measure).
-    pub fn still(
+    fn still(
         &self,
         method: &Method,
         plan: Plan,
@@ -121,20 +128,16 @@ impl MeasureContext<'_> {
             let outputs = self.decode(contents, self.truth_view);
             judged(&method.preset, outputs, ground_truth)
         };
-        let worst = match &mut prepared.steady {
-            Some(steady) => Some(steady::judge(
-                self.session,
-                executor,
-                &names,
-                steady,
-                judge,
-            )?),
-            None => None,
-        };
-        let (count, all) = ([self.warmup, self.frames as u32], FrameMode::AllPasses);
+        let settled = prepared.steady.as_mut();
+        let worst = settled.map(|of| steady::judge(self.session, executor, &names, of, judge));
+        let worst = worst.transpose()?;
+        let (count, all) = (
+            [self.protocol.warmup, self.protocol.frames],
+            FrameMode::AllPasses,
+        );
         let set_done = |frames| step.set_done(frames);
         let times = timing::times(self.session, executor, all, count, set_done)?;
-        let mut cached = timing::cached(self.session, executor, self.cached_frames)?;
+        let mut cached = timing::cached(self.session, executor, self.protocol.cached_frames)?;
         if let Some(cached) = &mut cached {
             self.distrust(&mut cached.frame);
         }
@@ -227,10 +230,10 @@ impl MeasureContext<'_> {
     }
 
     /// A run that says why there are no measurements.
-    pub fn unavailable(&self, method: &Method, reason: String) -> Run {
+    pub fn unavailable(&self, method: &Method, planned: &Run, reason: String) -> Run {
         Run {
             unavailable: Some(reason),
-            ..self.empty(method)
+            ..self.empty(method, planned)
         }
     }
 
@@ -277,8 +280,8 @@ impl MeasureContext<'_> {
             return Ok(None);
         };
         let place = PicturePlace {
-            stem: stem(method, self.view, ground_truth.pixels.viewport),
-            view: self.view,
+            stem: stem(method, self.view.name(), ground_truth.pixels.viewport),
+            view: self.view.name(),
             frame,
         };
         let (images, files) = draw_pictures(&place, ground_truth, outputs, judgement)?;
@@ -287,26 +290,17 @@ impl MeasureContext<'_> {
     }
 
     /// The run with nothing measured.
-    fn empty(&self, method: &Method) -> Run {
+    fn empty(&self, method: &Method, planned: &Run) -> Run {
         let ground_truth = &self.truth_view.ground_truth;
         let (truth, area) = (&ground_truth.pixels, ground_truth.area.as_ref());
-        let counts = self.own;
         Run {
-            preset: method.name.clone(),
-            view: self.view.into(),
-            viewport: truth.viewport,
-            map_size: method.map_size,
-            params: method.all_params(),
-            fingerprint: method.fingerprint(self.fingerprint),
             date: date::today(),
             promise: guarantee::promise(method),
-            pixels: counts.pixels,
-            band: counts.band,
-            wrong_surface: self.wrong_surfaces,
+            pixels: self.own.pixels,
+            band: self.own.band,
+            wrong_surface: self.path.wrong_surfaces(),
             area: area.map(|area| AreaReference::new(area, truth)),
-            measured: None,
-            unavailable: None,
-            published: Vec::new(),
+            ..planned.clone()
         }
     }
 }

@@ -42,7 +42,7 @@ use crate::measuring::guarantee::{self, WITHOUT_CULLING};
 use crate::measuring::steady;
 use crate::measuring::stop::Stop;
 use crate::pictures::run_pictures::{PicturePlace, draw_pictures, stem, write_pictures};
-use crate::records::stress::{Case, Casters, Cell, Column, Counts, Guarantee, Verdict};
+use crate::records::stress::{Case, Casters, Cell, Column, Counts, Verdict};
 use crate::sink::{Session, Sink};
 use skiagraph_cases::HardCase;
 use skiagraph_passes::SceneProvider;
@@ -59,12 +59,10 @@ use std::{
 pub struct MethodRun {
     /// As the user wants it.
     pub method: Method,
-    /// Which pixels must be right, and why they will be.
-    pub guarantee: Option<(Guarantee, String)>,
     /// The same with all faces as casters, if it is not that one already.
     pub without_culling: Option<Method>,
-    /// Why it cannot run on this adapter.
-    pub unavailable: Option<String>,
+    /// Its column of the report: what is guaranteed of it, and why it cannot run here.
+    pub column: Column,
 }
 
 impl MethodRun {
@@ -74,24 +72,19 @@ impl MethodRun {
     /// # Errors
     /// Those of [`guarantee::find`].
     pub fn new(method: Method, exact: &[String]) -> Result<Self, CompareError> {
+        let (guarantee, because) = guarantee::find(&method, exact)?.unzip();
         Ok(Self {
-            guarantee: guarantee::find(&method, exact)?,
             without_culling: guarantee::without_culling(&method),
+            column: Column {
+                preset: method.name.clone(),
+                map_size: method.map_size,
+                params: method.all_params(),
+                guarantee,
+                because,
+                unavailable: None,
+            },
             method,
-            unavailable: None,
         })
-    }
-
-    /// As a column of the report.
-    pub fn column(&self) -> Column {
-        Column {
-            preset: self.method.name.clone(),
-            map_size: self.method.map_size,
-            params: self.method.all_params(),
-            guarantee: self.guarantee.as_ref().map(|(guarantee, _)| *guarantee),
-            because: self.guarantee.as_ref().map(|(_, reason)| reason.clone()),
-            unavailable: self.unavailable.clone(),
-        }
     }
 
     /// The ways in which it runs on such casters.
@@ -101,7 +94,7 @@ impl MethodRun {
             set: None,
             culls: self.without_culling.is_some(),
         };
-        let is_judged = casters == Casters::Open && self.guarantee.is_some();
+        let is_judged = casters == Casters::Open && self.column.guarantee.is_some();
         let judged = self.without_culling.iter().filter(|_| is_judged);
         let judged = judged.map(|method| Variant {
             method,
@@ -210,7 +203,7 @@ impl HardCaseContext<'_> {
         }
         let light = scene.light().word();
         let can_run = |run: &&MethodRun| {
-            run.unavailable.is_none() && light_kinds::takes(&run.method.preset.graph, light)
+            run.column.unavailable.is_none() && light_kinds::takes(&run.method.preset.graph, light)
         };
         for run in self.methods.iter().filter(can_run) {
             for variant in run.variants(case.casters) {
@@ -226,7 +219,7 @@ impl HardCaseContext<'_> {
                 };
                 match self.count(variant.method, &mut provider, ground_truth) {
                     Ok((outputs, whole, counts)) => {
-                        let guarantee = run.guarantee.as_ref().map(|(guarantee, _)| *guarantee);
+                        let guarantee = run.column.guarantee;
                         let certain = case.pixels.facing_light.saturating_sub(counts.uncertain);
                         let (culls, outside) = (variant.culls, &counts.outside_band);
                         cell.verdict =

@@ -2,7 +2,7 @@
 //! meanwhile stays.
 
 use crate::error::CompareError;
-use crate::files::lock::{self, Shared};
+use crate::files::lock;
 use crate::lists::unique;
 use crate::measuring::resume;
 use crate::pictures::run_pictures::{PictureFile, write_pictures};
@@ -64,7 +64,7 @@ impl ResultsFolder {
         pictures: &[PictureFile],
         sink: &dyn Sink,
     ) -> Result<(), CompareError> {
-        let _locked = lock::wait_for(&self.folder, Shared::Results, sink)?;
+        let _locked = lock::wait_for(&self.folder, lock::RESULTS, sink)?;
         self.merge(own)?;
         write_pictures(&self.folder, pictures)?;
         self.known = Some(save(&self.whole(own), &self.folder)?);

@@ -216,18 +216,13 @@ impl Counts {
     /// Counts a picture: `whole` counts all of its pixels, `settled` the same with the reference's
     /// answer wherever that is in the band.
     pub fn new(whole: &Statistics, settled: &Statistics, rays: Option<u64>) -> Self {
-        let WrongCounts {
-            lit,
-            shadow,
-            certain,
-            ..
-        } = settled.wrong;
+        let outside = settled.wrong;
         Self {
             wrong: whole.wrong,
             outside_band: OutsideBand {
-                lit,
-                shadow,
-                certain,
+                lit: outside.lit,
+                shadow: outside.shadow,
+                certain: outside.certain,
             },
             uncertain: whole.uncertain,
             uncertain_share: whole.uncertain_share(),

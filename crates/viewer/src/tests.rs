@@ -363,7 +363,15 @@ fn another_scene_and_a_scene_that_is_not_there() {
     desk.state_mut().viewer.choose_scene("forest:10000");
     settled(&mut desk);
     assert_eq!(desk.state().viewer.notice, None);
-    let scene = desk.state().viewer.snapshot.as_ref().unwrap().scene.clone();
+    let scene = desk
+        .state()
+        .viewer
+        .snapshot
+        .as_ref()
+        .unwrap()
+        .question
+        .scene
+        .clone();
     assert_eq!(scene.name, "forest");
 }
 

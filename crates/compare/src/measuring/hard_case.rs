@@ -106,7 +106,7 @@ impl MethodRun {
 
     /// Returns the beginnings of the names of its pictures of a case, and whose they are.
     pub fn stems(&self, case: &HardCase, viewport: [u32; 2]) -> Vec<(String, String)> {
-        let variants = self.variants(casters(case)).into_iter();
+        let variants = self.variants(case.casters).into_iter();
         let owner = format!("`{}` on `{}`", self.method.name, case.name);
         variants
             .map(|variant| (variant.stem(case, viewport), owner.clone()))
@@ -129,13 +129,6 @@ impl Variant<'_> {
         let with_set = |set| format!("{} {set}", case.name);
         let place = self.set.map_or(case.name.into(), with_set);
         stem(self.method, &place, viewport)
-    }
-}
-
-fn casters(case: &HardCase) -> Casters {
-    match case.casters {
-        skiagraph_cases::Casters::Closed => Casters::Closed,
-        skiagraph_cases::Casters::Open => Casters::Open,
     }
 }
 
@@ -177,7 +170,7 @@ impl HardCaseContext<'_> {
         let mut case = Case {
             name: hard.name.into(),
             reason: hard.reason.into(),
-            casters: casters(hard),
+            casters: hard.casters,
             band_cap: hard.indeterminate_cap,
             verdict: Verdict::Fail,
             failed: None,
@@ -343,7 +336,7 @@ fn right_in_band(visibility: &[u32], truth: &GroundTruthPixels) -> Vec<u32> {
 fn ends_all(error: &CompareError) -> bool {
     match error {
         CompareError::Interrupted { .. } => true,
-        CompareError::Gpu { source, .. } => is_fatal(source.as_ref()),
+        CompareError::Gpu { source, .. } => is_fatal(source),
         _ => false,
     }
 }

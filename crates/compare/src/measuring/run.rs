@@ -98,9 +98,8 @@ impl MeasureContext<'_> {
                 measured: Some(measured),
                 ..self.empty(method, planned)
             },
-            // The box is an error, too, but not the one that is asked for.
-            Err(Stop::Refused(error)) if !is_fatal(&*error) => {
-                self.unavailable(method, planned, explain(&*error))
+            Err(Stop::Refused(error)) if !is_fatal(&error) => {
+                self.unavailable(method, planned, explain(&error))
             }
             Err(stop) => return Err(stop.into_error(self.session, &method.name)),
         };

@@ -142,7 +142,7 @@ pub fn explain(error: &ExecuteError) -> String {
 
 /// An error and its causes in one line.
 pub fn with_causes(error: &(dyn Error + 'static)) -> String {
-    iter::successors(Some(error), |error| error.source()).join(": ")
+    iter::successors(Some(error), |&error| error.source()).join(": ")
 }
 
 #[cfg(test)]

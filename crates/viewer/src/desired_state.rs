@@ -62,7 +62,7 @@ pub struct Loaded {
 pub struct FrameSnapshot {
     /// The state that it shows.
     pub desired: DesiredState,
-    /// What is asked of the oracle about it: of this scene, camera, light and these primitives.
+    /// The question to the oracle about it: of this scene, camera, light and these primitives.
     pub question: Question,
     /// Which of the view's lights it is under.
     pub light_number: usize,

@@ -50,7 +50,7 @@ pub fn report(error: &CliError) -> ExitCode {
             _ => format!("{} {error}", style("error:", "1;31")),
         };
         let mut line = |line: &str| text += &format!("\n  {}", line.replace('\n', "\n  "));
-        for error in iter::successors(error.source(), |error| error.source()) {
+        for error in iter::successors(error.source(), |&error| error.source()) {
             line(&format!("because: {error}"));
             if let Some(way_out) = error.downcast_ref().and_then(io_advice) {
                 line(way_out);

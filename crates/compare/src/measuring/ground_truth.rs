@@ -21,13 +21,16 @@ use crate::graphs::faults::GraphFaults;
 use crate::graphs::planning::Capabilities;
 use crate::graphs::shadow_method::Outputs;
 use crate::measuring::frame;
+use crate::measuring::frame_sequence::FrameSequence;
 use crate::sink::{Session, Sink, Step};
 use skiagraph_gpu::{Content, Provider};
 use skiagraph_graph::{Graph, Plan, Sources};
 use skiagraph_passes::registry;
 use skiagraph_reference::{
     BlockerCounts, Error, GroundTruth, GroundTruthPixels, Oracle, OracleMode, Progress, Statistics,
-    area, shimmer::Seen, wrong_surfaces,
+    area,
+    shimmer::{Seen, same_receivers},
+    wrong_surfaces,
 };
 use skiagraph_scene::{Camera, LightKind};
 use std::rc::Rc;
@@ -189,6 +192,56 @@ impl<'a> GroundTruthView<'a> {
             skiagraph_reference::blockers(oracle, camera, light, primitives, self.mode, &pixels)
         });
         blockers.map_err(|error| CompareError::Input(format!("no blockers: {error}")))
+    }
+}
+
+/// The frames of a view or path with their ground truth.
+pub struct GroundTruthFrames<'a> {
+    /// From where each is seen, and its mesh.
+    pub frames: &'a FrameSequence,
+    /// The ground truth of each.
+    pub truth_views: Vec<GroundTruthView<'a>>,
+    /// For each frame but the first, where each pixel's receiver was in the frame before.
+    pub same: Vec<Vec<u32>>,
+}
+
+impl<'a> GroundTruthFrames<'a> {
+    /// Finds receivers that are seen in two frames one after the other.
+    ///
+    /// # Errors
+    /// Ctrl-C.
+    pub fn new(
+        frames: &'a FrameSequence,
+        truth_views: Vec<GroundTruthView<'a>>,
+        sink: &dyn Sink,
+    ) -> Result<Self, CompareError> {
+        let progress = heard(sink, &|_| ());
+        let pairs = truth_views.windows(2);
+        let same = pairs.map(|pair| same_receivers(pair[0].seen(), pair[1].seen(), progress));
+        let same = same.collect::<Result<_, _>>();
+        let same = same.map_err(|_| CompareError::interrupted())?;
+        Ok(Self {
+            frames,
+            truth_views,
+            same,
+        })
+    }
+
+    /// Pixels of all frames that show a surface which is not seen there.
+    pub fn wrong_surfaces(&self) -> u64 {
+        self.truth_views
+            .iter()
+            .map(|truth_view| truth_view.wrong_surfaces)
+            .sum()
+    }
+
+    /// The reference's pixels of all frames together.
+    pub fn own_counts(&self) -> Statistics {
+        let mut all = Statistics::default();
+        for truth_view in &self.truth_views {
+            all += own_counts(&truth_view.ground_truth.pixels);
+        }
+        all
     }
 }
 

@@ -4,9 +4,8 @@
 use crate::error::CompareError;
 use crate::files::lock;
 use crate::lists::unique;
-use crate::measuring::resume;
 use crate::pictures::run_pictures::{PictureFile, write_pictures};
-use crate::records::read_back;
+use crate::records::read_back::{self, WITHOUT_RESULTS};
 use crate::records::results::{Results, Run};
 use crate::records::results_csv::save;
 use crate::sink::Sink;
@@ -30,8 +29,8 @@ pub struct ResultsFolder {
 }
 
 impl ResultsFolder {
-    /// A folder as it stands, of which nothing stays yet. A file that cannot be read is overwritten:
-    /// where it must not be, that is refused besides.
+    /// A folder as it stands, of which nothing stays yet. A file that cannot be read is
+    /// overwritten: where it must not be, that is refused besides.
     pub fn new(folder: &Path) -> Self {
         let file = read_back::results_file(&folder.join("results.json"));
         Self {
@@ -84,7 +83,7 @@ impl ResultsFolder {
         };
         if self.known.as_deref() != Some(&*file.text) {
             let found = read_back::results_of(&file)?;
-            resume::check_alike(&path, &found, own)?;
+            check_alike(&path, &found, own)?;
             self.commands = unique([found.commands, self.commands.clone()].concat());
             self.others = found.runs;
             self.others.retain(|run| !self.dropped.contains(run));
@@ -94,6 +93,48 @@ impl ResultsFolder {
         self.others.retain(|run| !is_own(run));
         Ok(())
     }
+}
+
+/// Refuses earlier results that were measured under other conditions.
+///
+/// # Errors
+/// Lists how they differ.
+pub fn check_alike(path: &Path, earlier: &Results, now: &Results) -> Result<(), CompareError> {
+    match &differences(earlier, now)[..] {
+        [] => Ok(()),
+        lines => Err(CompareError::Input(format!(
+            "{} was measured under other conditions\n  {}\n  ask for the same, \
+             {WITHOUT_RESULTS}",
+            path.display(),
+            lines.join("\n  ")
+        ))),
+    }
+}
+
+/// Conditions in which both were not measured alike.
+fn differences(earlier: &Results, now: &Results) -> Vec<String> {
+    // Why timestamps are not trusted may hold figures of the check that found it out.
+    let trusted = |results: &Results| match results.adapter.gpu_unavailable {
+        None => "measured",
+        Some(_) => "not to be had",
+    };
+    let facts = |results: &Results| {
+        [
+            ("program", results.program.clone()),
+            ("adapter", results.adapter.to_string()),
+            ("GPU times", trusted(results).to_owned()),
+            ("scene", results.scene.to_string()),
+            ("oracle", results.oracle.clone()),
+            ("frames", results.frames.to_string()),
+            ("warmup", results.warmup.to_string()),
+            ("cached frames", results.cached_frames.to_string()),
+        ]
+    };
+    let pairs = facts(earlier).into_iter().zip(facts(now));
+    pairs
+        .filter(|((_, earlier), (_, now))| earlier != now)
+        .map(|((what, earlier), (_, now))| format!("{what}: there {earlier}, here {now}"))
+        .collect()
 }
 
 #[cfg(test)]

@@ -19,8 +19,8 @@
 //! ```
 
 use crate::error::CompareError;
-use crate::measuring::results_folder::ResultsFolder;
-use crate::records::read_back::{self, WITHOUT_RESULTS};
+use crate::measuring::results_folder::{ResultsFolder, check_alike};
+use crate::records::read_back;
 use crate::records::results::{Results, Run};
 use crate::sink::Sink;
 use crate::wording::plural;
@@ -37,8 +37,8 @@ pub enum Kept {
     All,
 }
 
-/// Opens a folder, and returns for each planned run the earlier one in it that is as this comparison
-/// would have it; only with [`Kept::All`] there are any.
+/// Opens a folder, and returns for each planned run the earlier one in it that is as this
+/// comparison would have it; only with [`Kept::All`] there are any.
 ///
 /// # Errors
 /// A file that cannot be read, is no results.json, or was measured under other conditions than
@@ -104,48 +104,6 @@ pub fn earlier(
     }
     opened.dropped = runs;
     Ok((opened, kept))
-}
-
-/// Refuses earlier results that were measured under other conditions.
-///
-/// # Errors
-/// Lists how they differ.
-pub fn check_alike(path: &Path, earlier: &Results, now: &Results) -> Result<(), CompareError> {
-    match &differences(earlier, now)[..] {
-        [] => Ok(()),
-        lines => Err(CompareError::Input(format!(
-            "{} was measured under other conditions\n  {}\n  ask for the same, \
-             {WITHOUT_RESULTS}",
-            path.display(),
-            lines.join("\n  ")
-        ))),
-    }
-}
-
-/// Conditions in which both were not measured alike.
-fn differences(earlier: &Results, now: &Results) -> Vec<String> {
-    // Why timestamps are not trusted may hold figures of the check that found it out.
-    let trusted = |results: &Results| match results.adapter.gpu_unavailable {
-        None => "measured",
-        Some(_) => "not to be had",
-    };
-    let facts = |results: &Results| {
-        [
-            ("program", results.program.clone()),
-            ("adapter", results.adapter.to_string()),
-            ("GPU times", trusted(results).to_owned()),
-            ("scene", results.scene.to_string()),
-            ("oracle", results.oracle.clone()),
-            ("frames", results.frames.to_string()),
-            ("warmup", results.warmup.to_string()),
-            ("cached frames", results.cached_frames.to_string()),
-        ]
-    };
-    let pairs = facts(earlier).into_iter().zip(facts(now));
-    pairs
-        .filter(|((_, earlier), (_, now))| earlier != now)
-        .map(|((what, earlier), (_, now))| format!("{what}: there {earlier}, here {now}"))
-        .collect()
 }
 
 #[cfg(test)]

@@ -1,14 +1,11 @@
 //! One run: a method on one view, executed, timed, judged and pictured.
 
 use crate::comparison::Protocol;
-use crate::error::{CompareError, explain, is_fatal};
-use crate::graphs::faults::reasons;
+use crate::error::CompareError;
 use crate::graphs::ground_truth::{Judgement, judged};
 use crate::graphs::method::Method;
-use crate::graphs::planning::Capabilities;
 use crate::graphs::shadow_method::Outputs;
-use crate::measuring::ground_truth::GroundTruthView;
-use crate::measuring::sequence::{Path, follow};
+use crate::measuring::ground_truth::{GroundTruthFrames, GroundTruthView};
 use crate::measuring::steady;
 use crate::measuring::stop::Stop;
 use crate::measuring::timing::{self, FrameMode, Times};
@@ -18,14 +15,13 @@ use crate::measuring::{
     frame::{self, Contents},
     guarantee,
 };
-use crate::pictures::run_pictures::{PictureFile, PicturePlace, conditions, draw_pictures, stem};
+use crate::pictures::run_pictures::{PictureFile, PicturePlace, draw_pictures, stem};
 use crate::records::results::{Answer, AreaReference, Images, Measured, Run};
 use crate::records::statistics::FrameTimes;
 use crate::records::steady::Steady;
 use crate::sink::{Session, Step};
 use skiagraph_gpu::{ExecuteError, Executor, Provider};
 use skiagraph_graph::Plan;
-use skiagraph_passes::SceneProvider;
 use skiagraph_reference::{GroundTruth, Statistics};
 use std::cell::RefCell;
 
@@ -38,7 +34,7 @@ pub struct MeasureContext<'a> {
     /// View or path on which it is measured.
     pub view: &'a ViewOrPath,
     /// Its frames with their ground truth.
-    pub path: &'a Path<'a>,
+    pub path: &'a GroundTruthFrames<'a>,
     /// The ground truth of the first frame.
     pub truth_view: &'a GroundTruthView<'a>,
     /// Which of the view's lights it is under.
@@ -62,57 +58,12 @@ pub struct Prepared {
 }
 
 impl MeasureContext<'_> {
-    /// Plans and runs a method. One that this adapter cannot run yields a [`Run`] that says why.
-    ///
-    /// # Errors
-    /// Ctrl-C, a lost device, a picture that cannot be written, outputs that are not a shadow
-    /// method's ([`CompareError::InvalidOutputs`]).
-    pub fn measure(
-        &self,
-        method: &Method,
-        planned: &Run,
-        provider: &mut SceneProvider,
-    ) -> Result<Run, CompareError> {
-        let viewport = planned.viewport;
-        let plan = match method.plan(viewport, Capabilities::new(self.session.gpu), provider) {
-            Ok(plan) => plan,
-            // The graph itself is sound: that was checked before anything ran.
-            Err(diagnostics) => {
-                return Ok(self.unavailable(method, planned, reasons(&diagnostics)));
-            }
-        };
-        let name = conditions(method, self.view.name(), viewport);
-        let name = format!("{}, {name}", method.name);
-        let frames = match self.view {
-            ViewOrPath::Still(_) => self.protocol.frames.into(),
-            ViewOrPath::Path(_) => self.path.frames.poses.len() as u64,
-        };
-        let frames = u64::from(self.protocol.warmup) + frames;
-        let step = Step::begin(self.session.sink, &name, frames, "frames");
-        let came = match self.view {
-            ViewOrPath::Still(_) => self.still(method, plan, provider, &step),
-            ViewOrPath::Path(_) => follow(self, method, plan, provider, &step),
-        };
-        let run = match came {
-            Ok(measured) => Run {
-                measured: Some(measured),
-                ..self.empty(method, planned)
-            },
-            Err(Stop::Refused(error)) if !is_fatal(&error) => {
-                self.unavailable(method, planned, explain(&error))
-            }
-            Err(stop) => return Err(stop.into_error(self.session, &method.name)),
-        };
-        step.end();
-        Ok(run)
-    }
-
     /// Runs, times and judges a method on one view. A method that remembers is judged first, in its
     /// steady state: what is timed behind that does not change what it shows.
     ///
     /// # Errors
     /// A method that the device refuses, and those of [`measure`](Self::measure).
-    fn still(
+    pub fn still(
         &self,
         method: &Method,
         plan: Plan,
@@ -289,7 +240,7 @@ impl MeasureContext<'_> {
     }
 
     /// The run with nothing measured.
-    fn empty(&self, method: &Method, planned: &Run) -> Run {
+    pub fn empty(&self, method: &Method, planned: &Run) -> Run {
         let ground_truth = &self.truth_view.ground_truth;
         let (truth, area) = (&ground_truth.pixels, ground_truth.area.as_ref());
         Run {

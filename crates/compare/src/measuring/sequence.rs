@@ -5,8 +5,6 @@ use crate::graphs::ground_truth::{Judgement, judged};
 use crate::graphs::method::Method;
 use crate::graphs::shadow_method::Outputs;
 use crate::measuring::frame::{self, Contents};
-use crate::measuring::frame_sequence::FrameSequence;
-use crate::measuring::ground_truth::{GroundTruthView, heard, own_counts};
 use crate::measuring::run::MeasureContext;
 use crate::measuring::stop::Stop;
 use crate::measuring::timing::{Times, timed_frame};
@@ -14,68 +12,17 @@ use crate::records::results::Measured;
 use crate::records::samples::TimedFrame;
 use crate::records::sequence::{FrameCost, Remade, Sequence, SequenceFrame};
 use crate::records::statistics::FrameTimes;
-use crate::sink::{Sink, Step};
+use crate::sink::Step;
 use skiagraph_gpu::{Executor, Frame};
 use skiagraph_graph::Plan;
 use skiagraph_passes::{Built, How, SceneProvider};
 use skiagraph_reference::{
-    BlockerCounts, Graded, JudgedPixels, Shimmer, Statistics,
-    shimmer::{same_receivers, shimmer},
+    BlockerCounts, Graded, JudgedPixels, Shimmer, Statistics, shimmer::shimmer,
 };
 use std::time::Duration;
 
 fn ms(time: Duration) -> f64 {
     time.as_secs_f64() * 1e3
-}
-
-/// The frames of a view or path with their ground truth.
-pub struct Path<'a> {
-    /// From where each is seen, and its mesh.
-    pub frames: &'a FrameSequence,
-    /// The ground truth of each.
-    pub truth_views: Vec<GroundTruthView<'a>>,
-    /// For each frame but the first, where each pixel's receiver was in the frame before.
-    same: Vec<Vec<u32>>,
-}
-
-impl<'a> Path<'a> {
-    /// Finds receivers that are seen in two frames one after the other.
-    ///
-    /// # Errors
-    /// Ctrl-C.
-    pub fn new(
-        frames: &'a FrameSequence,
-        truth_views: Vec<GroundTruthView<'a>>,
-        sink: &dyn Sink,
-    ) -> Result<Self, CompareError> {
-        let progress = heard(sink, &|_| ());
-        let pairs = truth_views.windows(2);
-        let same = pairs.map(|pair| same_receivers(pair[0].seen(), pair[1].seen(), progress));
-        let same = same.collect::<Result<_, _>>();
-        let same = same.map_err(|_| CompareError::interrupted())?;
-        Ok(Self {
-            frames,
-            truth_views,
-            same,
-        })
-    }
-
-    /// Pixels of all frames that show a surface which is not seen there.
-    pub fn wrong_surfaces(&self) -> u64 {
-        self.truth_views
-            .iter()
-            .map(|truth_view| truth_view.wrong_surfaces)
-            .sum()
-    }
-
-    /// The reference's pixels of all frames together.
-    pub fn own_counts(&self) -> Statistics {
-        let mut all = Statistics::default();
-        for truth_view in &self.truth_views {
-            all += own_counts(&truth_view.ground_truth.pixels);
-        }
-        all
-    }
 }
 
 /// Lists the resources that were made between two moments.

@@ -25,19 +25,21 @@
 //! ```
 
 use crate::comparison::{Comparison, Protocol};
-use crate::error::CompareError;
+use crate::error::{CompareError, explain, is_fatal};
 use crate::graphs::faults::reasons;
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
 use crate::measuring::camera_pose::CameraPose;
 use crate::measuring::device;
 use crate::measuring::frame_sequence::FrameSequence;
-use crate::measuring::ground_truth::GroundTruthView;
+use crate::measuring::ground_truth::{GroundTruthFrames, GroundTruthView};
 use crate::measuring::results_folder::ResultsFolder;
 use crate::measuring::resume::{Kept, earlier};
 use crate::measuring::run::MeasureContext;
-use crate::measuring::sequence::Path;
-use crate::pictures::run_pictures::PictureFile;
+use crate::measuring::sequence::follow;
+use crate::measuring::stop::Stop;
+use crate::measuring::view_or_path::ViewOrPath;
+use crate::pictures::run_pictures::{PictureFile, conditions};
 use crate::records::published::attach;
 use crate::records::results::{PROGRAM, Results, Run};
 use crate::sink::{Runs, Session, Step};
@@ -47,6 +49,7 @@ use skiagraph_reference::{Oracle, PixelCounts};
 use std::{
     cell::{OnceCell, RefCell},
     ops::Range,
+    path::Path,
     rc::Rc,
 };
 
@@ -108,7 +111,7 @@ impl<'a> Series<'a> {
     pub fn new(
         comparison: &'a Comparison,
         session: Session<'a>,
-        kept_in: Option<(&std::path::Path, Kept)>,
+        kept_in: Option<(&Path, Kept)>,
     ) -> Result<Self, CompareError> {
         let methods = comparison.settled(session);
         let planned = planned(comparison, &methods);
@@ -203,7 +206,7 @@ impl<'a> Series<'a> {
             return Ok(());
         }
         let truth_views = self.truth_views(&frames, viewport)?;
-        let path = Path::new(&frames, truth_views, self.session.sink)?;
+        let path = GroundTruthFrames::new(&frames, truth_views, self.session.sink)?;
         let Some(truth_view) = path.truth_views.first() else {
             return Ok(());
         };
@@ -227,7 +230,7 @@ impl<'a> Series<'a> {
                 continue;
             }
             let planned = &self.planned[place];
-            let run = match context.measure(method, planned, &mut self.provider) {
+            let run = match measured(&context, method, planned, &mut self.provider) {
                 // The others are worth measuring all the same.
                 Err(CompareError::InvalidOutputs(reason)) => {
                     let run = context.unavailable(method, planned, reason.clone());
@@ -377,6 +380,51 @@ fn planned(comparison: &Comparison, methods: &[Method]) -> Vec<Run> {
         }
     }
     planned
+}
+
+/// Plans and runs a method. One that this adapter cannot run yields a [`Run`] that says why.
+///
+/// # Errors
+/// Ctrl-C, a lost device, a picture that cannot be written, outputs that are not a shadow
+/// method's ([`CompareError::InvalidOutputs`]).
+fn measured(
+    context: &MeasureContext,
+    method: &Method,
+    planned: &Run,
+    provider: &mut SceneProvider,
+) -> Result<Run, CompareError> {
+    let viewport = planned.viewport;
+    let plan = match method.plan(viewport, Capabilities::new(context.session.gpu), provider) {
+        Ok(plan) => plan,
+        // The graph itself is sound: that was checked before anything ran.
+        Err(diagnostics) => {
+            return Ok(context.unavailable(method, planned, reasons(&diagnostics)));
+        }
+    };
+    let name = conditions(method, context.view.name(), viewport);
+    let name = format!("{}, {name}", method.name);
+    let frames = match context.view {
+        ViewOrPath::Still(_) => context.protocol.frames.into(),
+        ViewOrPath::Path(_) => context.path.frames.poses.len() as u64,
+    };
+    let frames = u64::from(context.protocol.warmup) + frames;
+    let step = Step::begin(context.session.sink, &name, frames, "frames");
+    let came = match context.view {
+        ViewOrPath::Still(_) => context.still(method, plan, provider, &step),
+        ViewOrPath::Path(_) => follow(context, method, plan, provider, &step),
+    };
+    let run = match came {
+        Ok(measured) => Run {
+            measured: Some(measured),
+            ..context.empty(method, planned)
+        },
+        Err(Stop::Refused(error)) if !is_fatal(&error) => {
+            context.unavailable(method, planned, explain(&error))
+        }
+        Err(stop) => return Err(stop.into_error(context.session, &method.name)),
+    };
+    step.end();
+    Ok(run)
 }
 
 /// That a view shows nothing, or nothing in light: its table would be one of zeros.

@@ -168,7 +168,7 @@ impl Worker {
     fn fill_slots(&mut self, desired: &DesiredState) -> Result<(), CompareError> {
         let mut before = std::mem::take(&mut self.slots);
         for method in &desired.methods {
-            let known = before.iter().position(|slot| slot.name() == method.name);
+            let known = before.iter().position(|slot| slot.name == method.name);
             self.slots.push(match known {
                 Some(known) => before.swap_remove(known),
                 None => {

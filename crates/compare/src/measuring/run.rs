@@ -250,6 +250,7 @@ impl MeasureContext<'_> {
             band: self.own.band,
             wrong_surface: self.path.wrong_surfaces(),
             area: area.map(|area| AreaReference::new(area, truth)),
+            unavailable: None,
             ..planned.clone()
         }
     }

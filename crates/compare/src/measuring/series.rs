@@ -64,10 +64,11 @@ pub struct Series<'a> {
     is_moved: bool,
     /// The oracle of the scene's own mesh; built when the first run needs it.
     oracle: OnceCell<Rc<Oracle<'a>>>,
-    /// Every run with nothing measured, in the order of the results.
+    /// Every run with nothing measured, in the order of the results. One that could not run the last
+    /// time says so: the reference's pixels are known from then.
     planned: Vec<Run>,
-    /// State of each.
-    states: Vec<RunState>,
+    /// Which of them are done.
+    is_done: Vec<bool>,
     /// Holds the runs that are done, in the order in which they were planned.
     pub results: Results,
     /// Where they are kept, with what is in the folder besides; `None` to keep them in memory.
@@ -94,13 +95,6 @@ pub fn run(comparison: &Comparison, session: Session) -> Result<Results, Compare
         [] => Ok(series.results),
         broken => Err(CompareError::InvalidOutputs(broken.join("\n"))),
     }
-}
-
-enum RunState {
-    Pending,
-    /// The method could not run the last time; the reference's pixels are known from then.
-    Unavailable(Box<Run>),
-    Done,
 }
 
 impl<'a> Series<'a> {
@@ -134,7 +128,7 @@ impl<'a> Series<'a> {
             provider: SceneProvider::new(comparison.scene.clone()),
             is_moved: false,
             oracle: OnceCell::new(),
-            states: planned.iter().map(|_| RunState::Pending).collect(),
+            is_done: vec![false; planned.len()],
             planned,
             results,
             folder: None,
@@ -149,7 +143,7 @@ impl<'a> Series<'a> {
             for (place, run) in kept.into_iter().enumerate() {
                 match run {
                     Some(run) if run.measured.is_some() => series.done(place, run),
-                    Some(run) => series.states[place] = RunState::Unavailable(run.into()),
+                    Some(run) => series.planned[place] = run,
                     None => {}
                 }
             }
@@ -161,7 +155,7 @@ impl<'a> Series<'a> {
 
     /// How many runs there are to be.
     pub fn planned(&self) -> usize {
-        self.states.len()
+        self.planned.len()
     }
 
     /// The runs that are done of a view and viewport, both by their index.
@@ -201,8 +195,7 @@ impl<'a> Series<'a> {
         for (place, method) in places.clone().zip(&methods) {
             self.plan_again(place, method, viewport)?;
         }
-        let is_done = |state: &RunState| matches!(state, RunState::Done);
-        if self.states[places.clone()].iter().all(is_done) {
+        if self.is_done[places.clone()].iter().all(|is_done| *is_done) {
             return Ok(());
         }
         let truth_views = self.truth_views(&frames, viewport)?;
@@ -226,7 +219,7 @@ impl<'a> Series<'a> {
             pictures: protocol.pictures.then(RefCell::default),
         };
         for (place, method) in places.zip(&methods) {
-            if is_done(&self.states[place]) {
+            if self.is_done[place] {
                 continue;
             }
             let planned = &self.planned[place];
@@ -274,14 +267,15 @@ impl<'a> Series<'a> {
         method: &Method,
         viewport: [u32; 2],
     ) -> Result<(), CompareError> {
-        let RunState::Unavailable(run) = &self.states[place] else {
+        let run = &self.planned[place];
+        if run.unavailable.is_none() || self.is_done[place] {
             return Ok(());
-        };
+        }
         let capabilities = Capabilities::new(self.session.gpu);
         if let Err(diagnostics) = method.plan(viewport, capabilities, &self.provider) {
             let run = Run {
                 unavailable: Some(reasons(&diagnostics)),
-                ..(**run).clone()
+                ..run.clone()
             };
             self.done(place, run);
             self.save(&[])?;
@@ -348,16 +342,14 @@ impl<'a> Series<'a> {
         );
         let index = self.done_before(place);
         self.results.runs.insert(index, run);
-        self.states[place] = RunState::Done;
+        self.is_done[place] = true;
         self.progress.count();
     }
 
     /// How many runs of earlier places are done.
     fn done_before(&self, place: usize) -> usize {
-        let states = self.states[..place].iter();
-        states
-            .filter(|state| matches!(state, RunState::Done))
-            .count()
+        let earlier = self.is_done[..place].iter();
+        earlier.filter(|is_done| **is_done).count()
     }
 }
 

@@ -64,8 +64,8 @@ pub struct Series<'a> {
     is_moved: bool,
     /// The oracle of the scene's own mesh; built when the first run needs it.
     oracle: OnceCell<Rc<Oracle<'a>>>,
-    /// Every run with nothing measured, in the order of the results. One that could not run the last
-    /// time says so: the reference's pixels are known from then.
+    /// Every run with nothing measured, in the order of the results. One that could not run the
+    /// last time says so: the reference's pixels are known from then.
     planned: Vec<Run>,
     /// Which of them are done.
     is_done: Vec<bool>,

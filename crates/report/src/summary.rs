@@ -228,16 +228,14 @@ impl<'a> Row<'a> {
     /// Counts, of camera paths, answers that changed though the right ones did not, of those
     /// compared.
     pub fn shimmer(&self) -> Option<Part> {
-        let shimmers = self
-            .runs
-            .iter()
-            .map(|(_, of)| Some(of.sequence.as_ref()?.shimmer));
-        let add = |sum: Part, of: Shimmer| Part {
-            count: sum.count + of.changed,
-            of: sum.of + of.compared,
-        };
-        let all: Vec<Shimmer> = shimmers.collect::<Option<_>>()?;
-        Some(all.into_iter().fold(Part { count: 0, of: 0 }, add))
+        let mut all = Shimmer::default();
+        for (_, of) in &self.runs {
+            all += of.sequence.as_ref()?.shimmer;
+        }
+        Some(Part {
+            count: all.changed,
+            of: all.compared,
+        })
     }
 
     /// Worst frame of all camera paths, by its error.

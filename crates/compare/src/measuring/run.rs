@@ -1,30 +1,28 @@
 //! One run: a method on one view, executed, timed, judged and pictured.
 
+use crate::comparison::Protocol;
 use crate::error::CompareError;
-use crate::files::fingerprint::Fingerprint;
-use crate::graphs::faults::reasons;
 use crate::graphs::ground_truth::{Judgement, judged};
 use crate::graphs::method::Method;
-use crate::graphs::planning::Capabilities;
 use crate::graphs::shadow_method::Outputs;
-use crate::measuring::ground_truth::GroundTruthView;
+use crate::measuring::ground_truth::{GroundTruthFrames, GroundTruthView};
 use crate::measuring::steady;
 use crate::measuring::stop::{Stop, attempt};
 use crate::measuring::timing::{self, FrameMode, Times};
+use crate::measuring::view_or_path::ViewOrPath;
 use crate::measuring::{
     date,
     frame::{self, Contents},
     guarantee,
 };
-use crate::pictures::run_pictures::{PictureFile, PicturePlace, conditions, draw_pictures, stem};
+use crate::pictures::run_pictures::{PictureFile, PicturePlace, draw_pictures, stem};
 use crate::records::results::{Answer, AreaReference, Images, Measured, Run};
 use crate::records::statistics::FrameTimes;
 use crate::records::steady::Steady;
 use crate::records::turns::Turns;
-use crate::sink::{Session, Step};
+use crate::sink::Session;
 use skiagraph_gpu::{ExecuteError, Executor, Provider};
 use skiagraph_graph::Plan;
-use skiagraph_passes::SceneProvider;
 use skiagraph_reference::{BlockerCounts, EdgeDistances, GroundTruth, Statistics};
 use std::cell::RefCell;
 
@@ -34,24 +32,18 @@ pub struct MeasureContext<'a> {
     pub session: Session<'a>,
     /// True if its timestamps are true.
     pub timestamps: bool,
-    /// Name of the view.
-    pub view: &'a str,
+    /// View or path on which it is measured.
+    pub view: &'a ViewOrPath,
+    /// Its frames with their ground truth.
+    pub path: &'a GroundTruthFrames<'a>,
+    /// The ground truth of the first frame.
+    pub truth_view: &'a GroundTruthView<'a>,
     /// Which of the view's lights it is under.
     pub light: usize,
-    /// Hash of mesh, light and view.
-    pub fingerprint: Fingerprint,
-    /// The ground truth, and where it is from; of a path's first frame.
-    pub truth_view: &'a GroundTruthView<'a>,
-    /// The reference's own pixels, of all frames of a path.
+    /// The reference's own pixels, of all frames.
     pub own: Statistics,
-    /// Pixels that show a surface which is not seen there, of all frames of a path.
-    pub wrong_surfaces: u64,
-    /// Timed frames.
-    pub frames: u64,
-    /// Frames before them.
-    pub warmup: u32,
-    /// Timed frames in which only the camera moves.
-    pub cached_frames: u32,
+    /// How long it is measured.
+    pub protocol: Protocol,
     /// The pictures of the last run, if there are to be any.
     pub pictures: Option<RefCell<Vec<PictureFile>>>,
 }
@@ -60,6 +52,7 @@ pub struct MeasureContext<'a> {
 pub struct Judged {
     /// The method.
     pub method: Method,
+    planned: Run,
     prepared: Prepared,
     judgement: Judgement,
     edges: EdgeDistances,
@@ -89,55 +82,16 @@ pub struct Prepared {
 }
 
 impl MeasureContext<'_> {
-    /// Plans and runs a method by `run`: [`judge`](Self::judge), or
-    /// [`follow`](crate::measuring::sequence). One that this adapter cannot run yields a [`Run`]
-    /// that says why. `frames` are heard of as those of its step.
-    ///
-    /// # Errors
-    /// Ctrl-C, a lost device, a picture that cannot be written, outputs that are not a shadow
-    /// method's ([`CompareError::InvalidOutputs`]).
-    pub fn measure<T>(
-        &self,
-        method: &Method,
-        provider: &mut SceneProvider,
-        frames: u64,
-        run: impl FnOnce(&Method, Plan, &mut SceneProvider, &Step) -> Result<T, Stop>,
-    ) -> Result<Result<T, Box<Run>>, CompareError> {
-        let viewport = self.truth_view.ground_truth.pixels.viewport;
-        let plan = match method.plan(viewport, Capabilities::new(self.session.gpu), provider) {
-            Ok(plan) => plan,
-            // The graph itself is sound: that was checked before anything ran.
-            Err(diagnostics) => {
-                let run = self.unavailable(method, reasons(&diagnostics));
-                return Ok(Err(run.into()));
-            }
-        };
-        let name = conditions(method, self.view, viewport);
-        let name = format!("{}, {name}", method.name);
-        let step = Step::begin(self.session.sink, &name, frames, "frames");
-        let came = run(method, plan, provider, &step);
-        let came = attempt(self.session, method, came)?;
-        step.end();
-        Ok(came.map_err(|reason| self.unavailable(method, reason).into()))
-    }
-
-    /// The run of a method with its measurements.
-    pub fn run(&self, method: &Method, measured: Measured) -> Run {
-        Run {
-            measured: Some(measured),
-            ..self.empty(method)
-        }
-    }
-
     /// Runs and judges a method on one view; [`times`](Self::times) it together with others. A method
     /// that remembers is judged in its steady state: what is timed behind that does not change what
     /// it shows.
     ///
     /// # Errors
-    /// A method that the device refuses, and those of [`measure`](Self::measure).
+    /// A method that the device refuses, outputs that are not a shadow method's
+    /// ([`CompareError::InvalidOutputs`]).
     pub fn judge(
         &self,
-        method: &Method,
+        (method, planned): (&Method, &Run),
         plan: Plan,
         provider: &mut dyn Provider,
     ) -> Result<Judged, Stop> {
@@ -158,6 +112,7 @@ impl MeasureContext<'_> {
         let images = self.draw(method, None, ground_truth, (&outputs, &judgement))?;
         Ok(Judged {
             method: method.clone(),
+            planned: planned.clone(),
             prepared,
             edges: self.truth_view.edges(&outputs)?,
             rays: outputs.rays,
@@ -192,8 +147,8 @@ impl MeasureContext<'_> {
             .and_then(|timed| Ok(Times::new(timed)?));
         let measured = times.map(|times| self.timed(of, times));
         Ok(match attempt(self.session, &of.method, measured)? {
-            Ok(measured) => self.run(&of.method, measured),
-            Err(reason) => self.unavailable(&of.method, reason),
+            Ok(measured) => self.run(&of.method, &of.planned, measured),
+            Err(reason) => self.unavailable(&of.method, &of.planned, reason),
         })
     }
 
@@ -211,9 +166,10 @@ impl MeasureContext<'_> {
     ) -> Result<Vec<Run>, CompareError> {
         let executors = methods.iter_mut().map(|of| &mut of.prepared.executor);
         let mut executors: Vec<&mut Executor> = executors.collect();
-        let (count, all) = ([self.warmup, self.frames as u32], FrameMode::AllPasses);
+        let (warmup, frames) = (self.protocol.warmup, self.protocol.frames);
+        let (count, all) = ([warmup, frames], FrameMode::AllPasses);
         let timed = timing::in_turns(self.session, &mut executors, all, count, done)?;
-        let cached = timing::cached(self.session, &mut executors, self.cached_frames)?;
+        let cached = timing::cached(self.session, &mut executors, self.protocol.cached_frames)?;
         let mut anchor = None;
         let mut runs = Vec::new();
         for ((of, timed), cached) in methods.iter().zip(timed).zip(cached) {
@@ -235,8 +191,8 @@ impl MeasureContext<'_> {
                 Ok(measured)
             });
             runs.push(match attempt(self.session, &of.method, measured)? {
-                Ok(measured) => self.run(&of.method, measured),
-                Err(reason) => self.unavailable(&of.method, reason),
+                Ok(measured) => self.run(&of.method, &of.planned, measured),
+                Err(reason) => self.unavailable(&of.method, &of.planned, reason),
             });
         }
         Ok(runs)
@@ -329,11 +285,19 @@ impl MeasureContext<'_> {
         }
     }
 
+    /// The run of a method with its measurements.
+    pub fn run(&self, method: &Method, planned: &Run, measured: Measured) -> Run {
+        Run {
+            measured: Some(measured),
+            ..self.empty(method, planned)
+        }
+    }
+
     /// A run that says why there are no measurements.
-    pub fn unavailable(&self, method: &Method, reason: String) -> Run {
+    pub fn unavailable(&self, method: &Method, planned: &Run, reason: String) -> Run {
         Run {
             unavailable: Some(reason),
-            ..self.empty(method)
+            ..self.empty(method, planned)
         }
     }
 
@@ -380,8 +344,8 @@ impl MeasureContext<'_> {
             return Ok(None);
         };
         let place = PicturePlace {
-            stem: stem(method, self.view, ground_truth.pixels.viewport),
-            view: self.view,
+            stem: stem(method, self.view.name(), ground_truth.pixels.viewport),
+            view: self.view.name(),
             frame,
         };
         let (images, files) = draw_pictures(&place, ground_truth, outputs, judgement)?;
@@ -390,26 +354,18 @@ impl MeasureContext<'_> {
     }
 
     /// The run with nothing measured.
-    fn empty(&self, method: &Method) -> Run {
+    fn empty(&self, method: &Method, planned: &Run) -> Run {
         let ground_truth = &self.truth_view.ground_truth;
         let (truth, area) = (&ground_truth.pixels, ground_truth.area.as_ref());
-        let counts = self.own;
         Run {
-            preset: method.name.clone(),
-            view: self.view.into(),
-            viewport: truth.viewport,
-            map_size: method.map_size,
-            params: method.all_params(),
-            fingerprint: method.fingerprint(self.fingerprint),
             date: date::today(),
             promise: guarantee::promise(method),
-            pixels: counts.pixels,
-            band: counts.band,
-            wrong_surface: self.wrong_surfaces,
+            pixels: self.own.pixels,
+            band: self.own.band,
+            wrong_surface: self.path.wrong_surfaces(),
             area: area.map(|area| AreaReference::new(area, truth)),
-            measured: None,
             unavailable: None,
-            published: Vec::new(),
+            ..planned.clone()
         }
     }
 }

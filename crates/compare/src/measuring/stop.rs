@@ -46,9 +46,8 @@ pub fn attempt<T>(
     came: Result<T, Stop>,
 ) -> Result<Result<T, String>, CompareError> {
     match came {
-        Ok(measured) => Ok(Ok(measured)),
-        // The box is an error, too, but not the one that is asked for.
-        Err(Stop::Refused(error)) if !is_fatal(&*error) => Ok(Err(explain(&*error))),
+        Ok(came) => Ok(Ok(came)),
+        Err(Stop::Refused(error)) if !is_fatal(&error) => Ok(Err(explain(&error))),
         Err(stop) => Err(stop.into_error(session, &method.name)),
     }
 }

@@ -4,7 +4,7 @@ use crate::{
     diagnostics::reports::Reports,
     document::{
         raw::Invalid,
-        typed::{Document, Entry, Include, What, each_entry},
+        typed::{Document, Entry, Include, What},
     },
     errors::compose::ComposeError,
     language::syntax::Leaf,
@@ -32,28 +32,22 @@ impl Used {
             Leaf::Material(of) => drop(used.materials.insert(of.segments[0].name.to_string())),
             Leaf::Constant(_) | Leaf::Has(_) => {}
         });
-        each_entry(&document.entries, &mut |entry| match &entry.what {
-            What::Pass(pass) => {
-                let variants = pass.shaders.iter();
-                for shader in variants.flat_map(|shader| shaders.variants(document, shader)) {
-                    used.params.extend(shader.params().map(str::to_owned));
-                    used.materials
-                        .extend(shader.global_names().map(str::to_owned));
-                    used.choices(document, shader);
-                }
+        for pass in document.passes() {
+            let variants = pass.shaders.iter();
+            for shader in variants.flat_map(|shader| shaders.variants(document, shader)) {
+                used.params.extend(shader.params().map(str::to_owned));
+                used.materials
+                    .extend(shader.global_names().map(str::to_owned));
+                used.choices(document, shader);
             }
-            What::Include(include) => {
-                let Some(inner) = include.document() else {
-                    return;
-                };
-                let inputs = inner.inputs.iter().map(|input| input.name.to_string());
-                used.materials.extend(inputs);
-                let asked = inner.params.iter().filter(|param| param.default.is_none());
-                used.params
-                    .extend(asked.map(|param| param.name.value.clone()));
-            }
-            What::Group(_) => {}
-        });
+        }
+        for (_, _, inner) in document.includes() {
+            let inputs = inner.inputs.iter().map(|input| input.name.to_string());
+            used.materials.extend(inputs);
+            let asked = inner.params.iter().filter(|param| param.default.is_none());
+            used.params
+                .extend(asked.map(|param| param.name.value.clone()));
+        }
         used
     }
 
@@ -91,7 +85,7 @@ pub(crate) fn drop_unused(
         }
         *inner = Arc::clone(&known[&path]);
         let is_there = |name: &Located<String>| inner.params.iter().any(|it| *it.name == **name);
-        include.expose.retain(is_there);
+        include.expose.names.retain(is_there);
         given.extend(inner.params.iter().map(|param| param.name.span.clone()));
     });
     let exposed = document.params.split_off(document.declared);

@@ -99,28 +99,24 @@ pub(crate) struct IncludeFields {
 }
 
 /// Params of an included document that are params of this one.
-#[derive(Debug)]
-enum Expose {
-    /// Those that neither the include nor a group around it sets.
-    All,
-    List(Vec<Located<String>>),
-}
-
-impl Default for Expose {
-    fn default() -> Self {
-        Self::List(Vec::new())
-    }
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Expose {
+    /// Those that neither the include nor a group around it sets: `names`, once the document is
+    /// read.
+    pub all: bool,
+    pub names: Vec<Located<String>>,
 }
 
 impl<'de> Deserialize<'de> for Expose {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let (text, span) = raw(deserializer)?;
-        if text == "All" {
-            Ok(Self::All)
-        } else if text.starts_with('[') {
-            read_text(text).map(Self::List)
-        } else {
-            Err(refuse(DocumentError::Expose(span)))
+        match text.chars().next() {
+            Some('[') => read_text(text).map(|names| Self { all: false, names }),
+            _ if text == "All" => Ok(Self {
+                all: true,
+                ..Self::default()
+            }),
+            _ => Err(refuse(DocumentError::Expose(span))),
         }
     }
 }
@@ -269,16 +265,11 @@ fn include(
             Located::new(name?, span)
         }
     };
-    let (exposes_all, expose) = match fields.expose {
-        Expose::All => (true, Vec::new()),
-        Expose::List(names) => (false, names),
-    };
     let include = Include {
         graph: fields.graph,
         open: fields.open,
         is_named,
-        expose,
-        exposes_all,
+        expose: fields.expose,
         document: None,
     };
     Ok((include, name))

@@ -48,7 +48,7 @@ impl Material {
             Self::Sampler(_) => None,
         };
         if let Some(grow) = grow {
-            each(Leaf::Material(&grow.counter));
+            grow.counter.visit(each);
             grow.max.visit(each);
         }
         let exprs = match self {
@@ -303,10 +303,10 @@ impl InputKind {
 #[serde(deny_unknown_fields)]
 pub(crate) struct TextureInput {
     /// Name of the input in this document.
-    name: Located<Name>,
+    pub name: Located<Name>,
     /// The format that it must have; any without it.
     #[serde(default)]
-    format: Option<FormatEntry>,
+    pub format: Option<FormatEntry>,
 }
 
 /// A buffer that the includer, or the host, gives.
@@ -315,7 +315,7 @@ pub(crate) struct TextureInput {
 #[serde(deny_unknown_fields)]
 pub(crate) struct BufferInput {
     /// Name of the input in this document.
-    name: Located<Name>,
+    pub name: Located<Name>,
 }
 
 /// A sampler that the includer, or the host, gives.
@@ -324,43 +324,8 @@ pub(crate) struct BufferInput {
 #[serde(deny_unknown_fields)]
 pub(crate) struct SamplerInput {
     /// Name of the input in this document.
-    name: Located<Name>,
+    pub name: Located<Name>,
     /// True for a comparison sampler.
     #[serde(default)]
-    compare: bool,
-}
-
-impl TryFrom<TextureInput> for Input {
-    type Error = DocumentError;
-    fn try_from(input: TextureInput) -> Result<Self, DocumentError> {
-        let format = match input.format {
-            None => None,
-            Some(FormatEntry::Named(format)) => Some(format),
-            Some(FormatEntry::Expr(expr)) => return Err(DocumentError::InputFormat(expr.span)),
-        };
-        Ok(Self {
-            name: input.name,
-            kind: InputKind::Texture(format),
-        })
-    }
-}
-
-impl From<BufferInput> for Input {
-    fn from(input: BufferInput) -> Self {
-        Self {
-            name: input.name,
-            kind: InputKind::Buffer,
-        }
-    }
-}
-
-impl From<SamplerInput> for Input {
-    fn from(input: SamplerInput) -> Self {
-        Self {
-            name: input.name,
-            kind: InputKind::Sampler {
-                compare: input.compare,
-            },
-        }
-    }
+    pub compare: bool,
 }

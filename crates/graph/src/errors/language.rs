@@ -22,7 +22,7 @@ mistakes! {
         Expression("the expression is too long")
         .at(place, "").help(format!("an expression has at most {most} words and signs"));
 
-    Unexpected { span: Span, found: String, expected: String } =>
+    Unexpected(span: Span, found: String, expected: String) =>
         Expression("{expected} is expected, not {found}").at(span, "here");
 
     Name(place: Span, fault: NameFault) =>

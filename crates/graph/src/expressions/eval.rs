@@ -106,11 +106,8 @@ fn of_viewport(expr: &Expr, attribute: Attribute, env: &mut dyn Environment) -> 
         Attribute::Count => Value::count(u64::from(width) * u64::from(height)),
         Attribute::Layers | Attribute::Mips | Attribute::Samples => Value::whole(1),
         Attribute::Format | Attribute::Kind | Attribute::Index => {
-            let error = EvaluationError::NoAttribute {
-                span: expr.span.clone(),
-                of: "the viewport".to_owned(),
-            };
-            return Err(env.report(error));
+            let of = "the viewport".to_owned();
+            return Err(env.report(EvaluationError::NoAttribute(expr.span.clone(), of)));
         }
     })
 }
@@ -121,11 +118,11 @@ fn wrong(
     found: &Value,
     env: &mut dyn Environment,
 ) -> ErrorGuaranteed {
-    env.report(EvaluationError::Type {
-        span: expr.span.clone(),
+    env.report(EvaluationError::Type(
+        expr.span.clone(),
         expected,
-        found: found.clone(),
-    })
+        found.clone(),
+    ))
 }
 
 pub(crate) fn boolean(expr: &Expr, env: &mut dyn Environment) -> Evaluated<bool> {
@@ -235,11 +232,8 @@ fn equal([left, right]: [&Expr; 2], env: &mut dyn Environment) -> Evaluated<bool
                 let known = Name::new(name)
                     .ok()
                     .and_then(|name| env.word_or_param(&name));
-                let unknown = || EvaluationError::NoSuchWord {
-                    span: right.span.clone(),
-                    word: name.to_owned(),
-                    words: words.to_vec(),
-                };
+                let (span, word) = (right.span.clone(), name.to_owned());
+                let unknown = || EvaluationError::NoSuchWord(span, word, words.to_vec());
                 known.ok_or_else(|| env.report(unknown()))?
             }
         },
@@ -296,10 +290,8 @@ fn each(
     let result = match &values {
         [Value::Scalar(a), Value::Scalar(b)] => apply(*a, *b).map(Value::Scalar),
         [Value::List(a), Value::List(b)] if a.len() != b.len() => {
-            return Err(env.report(EvaluationError::Lengths {
-                span: expr.span.clone(),
-                lengths: [a.len(), b.len()],
-            }));
+            let lengths = [a.len(), b.len()];
+            return Err(env.report(EvaluationError::Lengths(expr.span.clone(), lengths)));
         }
         [
             a @ (Value::Scalar(_) | Value::List(_)),

@@ -97,11 +97,7 @@ impl<'a> Parser<'a> {
             Token::Number(number) => format!("`{number}`"),
             Token::End => "the end".to_owned(),
         };
-        SyntaxFault::Unexpected {
-            span: self.file.span(self.range()),
-            found,
-            expected: expected.to_owned(),
-        }
+        SyntaxFault::Unexpected(self.file.span(self.range()), found, expected.to_owned())
     }
 
     fn span(&self, from: usize) -> Span {

@@ -230,7 +230,9 @@ impl Reference {
         names.join(".")
     }
 
+    /// Calls `each` with it, and with everything that its selections and conditions are made of.
     pub(crate) fn visit<'a>(&'a self, each: &mut dyn FnMut(Leaf<'a>)) {
+        each(Leaf::Material(self));
         let segments = self
             .segments
             .iter()
@@ -241,7 +243,6 @@ impl Reference {
         if let Some(otherwise) = &self.otherwise {
             let (condition, other) = &**otherwise;
             condition.visit(each);
-            each(Leaf::Material(other));
             other.visit(each);
         }
     }
@@ -298,10 +299,7 @@ impl Expr {
             ExprKind::Word(word) => each(Leaf::Word(word)),
             ExprKind::Constant(name) => each(Leaf::Constant(name)),
             ExprKind::Has(feature) => each(Leaf::Has(*feature)),
-            ExprKind::Attribute(Subject::Material(of), _) => {
-                each(Leaf::Material(of));
-                of.visit(each);
-            }
+            ExprKind::Attribute(Subject::Material(of), _) => of.visit(each),
             ExprKind::Literal(_) | ExprKind::Attribute(..) => {}
             ExprKind::Tuple(list) | ExprKind::Call(_, list) => {
                 list.iter().for_each(|expr| expr.visit(each));

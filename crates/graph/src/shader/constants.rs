@@ -38,11 +38,8 @@ impl ChoiceConstants {
                     declared: param.name.span.clone(),
                 };
                 if let Some(first) = constants.get(&name) {
-                    clashes.push(ShaderError::TwoWords {
-                        constant: name,
-                        first: first.declared.clone(),
-                        second: constant.declared,
-                    });
+                    let (first, second) = (first.declared.clone(), constant.declared);
+                    clashes.push(ShaderError::TwoWords(name, first, second));
                     continue;
                 }
                 constants.insert(name, constant);

@@ -170,11 +170,7 @@ impl Shader {
                 named.next().map(|(index, _)| *index).ok_or_else(error)
             }
             (None, [(index, _)]) => Ok(*index),
-            (None, []) => Err(ShaderError::NoEntry {
-                file,
-                stage,
-                at: wanted.clone(),
-            }),
+            (None, []) => Err(ShaderError::NoEntry(file, stage, wanted.clone())),
             (None, _) => Err(ShaderError::SeveralEntries {
                 file,
                 stage,

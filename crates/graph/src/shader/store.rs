@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     diagnostics::reports::{ErrorGuaranteed, Reports},
-    document::typed::{Document, What, each_entry},
+    document::typed::Document,
     errors::shader::ImportError,
     kinds::step::ShaderUse,
     source::{
@@ -191,21 +191,13 @@ impl Loader<'_> {
             let replaced: Replaced = in_effect
                 .map(|rule| (rule.of.clone(), rule.is.clone()))
                 .collect();
-            each_entry(&document.entries, &mut |entry| {
-                if let What::Pass(pass) = &entry.what {
-                    for shader in &pass.shaders {
-                        self.shader(document, shader, &constants, &replaced);
-                    }
-                }
-            });
-        }
-        each_entry(&document.entries, &mut |entry| {
-            if let What::Include(include) = &entry.what
-                && let Some(inner) = include.document()
-            {
-                self.document(inner, &rules);
+            for shader in document.passes().flat_map(|pass| &pass.shaders) {
+                self.shader(document, shader, &constants, &replaced);
             }
-        });
+        }
+        for (_, _, inner) in document.includes() {
+            self.document(inner, &rules);
+        }
     }
 
     fn shader(

@@ -65,10 +65,10 @@ fn text(span: &Span) -> &str {
 
 /// The attributes in a sentence.
 pub(crate) fn attributes() -> String {
-    let names: Vec<String> = Attribute::ALL
-        .iter()
-        .filter(|(_, attribute)| *attribute != Attribute::Index)
-        .map(|(name, _)| format!("`.{name}`"))
+    let all = Attribute::ALL.iter().map(|(_, of)| *of);
+    let of_materials = all.filter(|of| *of != Attribute::Index);
+    let names: Vec<String> = of_materials
+        .map(|of| format!("`.{}`", of.as_str()))
         .collect();
     names.join(", ")
 }

@@ -197,14 +197,11 @@ pub(super) fn params(
     }
     values_asked(include, document, &mut set, at);
     let outer = Arc::clone(&at.instance().params);
-    let exposed = include.expose.names.iter().map(|name| {
-        let own = if include.is_named {
-            format!("{}.{}", entry.name.value, **name)
-        } else {
-            name.value.clone()
-        };
-        (name.as_str(), own)
-    });
+    let exposed = include
+        .expose
+        .names
+        .iter()
+        .map(|name| (name.as_str(), entry.outer_name(include, name)));
     let given = Given {
         exposed: exposed.collect(),
         outer: &outer,

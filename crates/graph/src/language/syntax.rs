@@ -40,33 +40,41 @@ pub(crate) enum Subject {
     Material(Box<Reference>),
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Attribute {
-    Size,
-    Width,
-    Height,
-    Layers,
-    Mips,
-    Samples,
-    Count,
-    Format,
-    Kind,
-    Index,
+/// Declares what has a spelling, and a number that goes with it.
+macro_rules! spelt {
+    ($(#[$doc:meta])+ $enum:ident $($number:ty)?: $($name:ident = $text:literal $($of:literal)?,)+) => {
+        $(#[$doc])+
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub(crate) enum $enum { $($name),+ }
+
+        impl $enum {
+            /// Every one with its spelling and its number.
+            pub const ALL: &[(&str, Self $(, $number)?)] = &[$(($text, Self::$name $(, $of)?)),+];
+
+            pub fn named(text: &str) -> Option<&'static (&'static str, Self $(, $number)?)> {
+                Self::ALL.iter().find(|(known, ..)| *known == text)
+            }
+
+            pub fn as_str(self) -> &'static str {
+                match self { $(Self::$name => $text),+ }
+            }
+        }
+    };
 }
 
-impl Attribute {
-    pub const ALL: [(&str, Self); 10] = [
-        ("size", Self::Size),
-        ("width", Self::Width),
-        ("height", Self::Height),
-        ("layers", Self::Layers),
-        ("mips", Self::Mips),
-        ("samples", Self::Samples),
-        ("count", Self::Count),
-        ("format", Self::Format),
-        ("kind", Self::Kind),
-        ("index", Self::Index),
-    ];
+spelt! {
+    /// What is asked of a subject.
+    Attribute:
+    Size = "size",
+    Width = "width",
+    Height = "height",
+    Layers = "layers",
+    Mips = "mips",
+    Samples = "samples",
+    Count = "count",
+    Format = "format",
+    Kind = "kind",
+    Index = "index",
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,82 +83,36 @@ pub(crate) enum Unary {
     Not,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Binary {
-    Or,
-    And,
-    Equal,
-    NotEqual,
-    Less,
-    LessEqual,
-    Greater,
-    GreaterEqual,
-    Add,
-    Subtract,
-    Multiply,
-    Divide,
-    Remainder,
+spelt! {
+    /// An operator between two values, with its sign and how strongly it binds.
+    Binary u8:
+    Or = "||" 0,
+    And = "&&" 1,
+    Equal = "==" 2,
+    NotEqual = "!=" 2,
+    Less = "<" 2,
+    LessEqual = "<=" 2,
+    Greater = ">" 2,
+    GreaterEqual = ">=" 2,
+    Add = "+" 3,
+    Subtract = "-" 3,
+    Multiply = "*" 4,
+    Divide = "/" 4,
+    Remainder = "%" 4,
 }
 
-impl Binary {
-    /// Every operator with its sign and how strongly it binds.
-    pub const ALL: [(&str, Self, u8); 13] = [
-        ("||", Self::Or, 0),
-        ("&&", Self::And, 1),
-        ("==", Self::Equal, 2),
-        ("!=", Self::NotEqual, 2),
-        ("<", Self::Less, 2),
-        ("<=", Self::LessEqual, 2),
-        (">", Self::Greater, 2),
-        (">=", Self::GreaterEqual, 2),
-        ("+", Self::Add, 3),
-        ("-", Self::Subtract, 3),
-        ("*", Self::Multiply, 4),
-        ("/", Self::Divide, 4),
-        ("%", Self::Remainder, 4),
-    ];
-
-    pub fn as_str(self) -> &'static str {
-        let mut known = Self::ALL.iter();
-        known
-            .find(|(_, other, _)| *other == self)
-            .map_or("", |(sign, ..)| *sign)
-    }
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Function {
-    Min,
-    Max,
-    CeilDiv,
-    Floor,
-    Ceil,
-    Exp,
-    Log2,
-    Pow,
-    Sqrt,
-}
-
-impl Function {
-    /// Every function with its name and number of arguments.
-    pub const ALL: [(&str, Self, usize); 9] = [
-        ("min", Self::Min, 2),
-        ("max", Self::Max, 2),
-        ("ceil_div", Self::CeilDiv, 2),
-        ("floor", Self::Floor, 1),
-        ("ceil", Self::Ceil, 1),
-        ("exp", Self::Exp, 1),
-        ("log2", Self::Log2, 1),
-        ("pow", Self::Pow, 2),
-        ("sqrt", Self::Sqrt, 1),
-    ];
-
-    pub fn as_str(self) -> &'static str {
-        let mut known = Self::ALL.iter();
-        known
-            .find(|(_, other, _)| *other == self)
-            .map_or("", |(name, ..)| *name)
-    }
+spelt! {
+    /// A function, with its name and number of arguments.
+    Function usize:
+    Min = "min" 2,
+    Max = "max" 2,
+    CeilDiv = "ceil_div" 2,
+    Floor = "floor" 1,
+    Ceil = "ceil" 1,
+    Exp = "exp" 1,
+    Log2 = "log2" 1,
+    Pow = "pow" 2,
+    Sqrt = "sqrt" 1,
 }
 
 /// A material or a part of one: `maps[index].mip[0]`, `left.position`, `history.previous`; or one

@@ -10,7 +10,7 @@ use crate::{
     source::span::{SourceFile, Span},
 };
 use serde::{Deserialize, Deserializer, de::DeserializeOwned};
-use skiagraph_located_ron::reader::{Node, raw, read, refuse};
+use skiagraph_located_ron::reader::{raw, read, refuse};
 use std::{cell::RefCell, ops::Range};
 
 /// Reads a string of the language by its grammar; it must have no escapes.
@@ -81,7 +81,7 @@ impl<'de> Deserialize<'de> for Expr {
                 Ok(expr)
             }
             Some('(') => {
-                let parts = Node { span: span.clone() }.list();
+                let parts = span.list();
                 let parts = parts.map_err(|_| refuse(DocumentError::NoTuple(span.clone())))?;
                 let parts = parts.iter().map(|part| read(part.text()));
                 Ok(Expr::new(
@@ -173,8 +173,7 @@ impl<'de> Deserialize<'de> for Load {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let (text, span) = raw(deserializer)?;
         let unknown = || refuse(DocumentError::Load(span.clone()));
-        let node = Node { span: span.clone() };
-        let (tag, body) = node.variant().ok_or_else(unknown)?;
+        let (tag, body) = span.variant().ok_or_else(unknown)?;
         let is_bare = text.len() == tag.len();
         let values = (!is_bare).then(|| body.list()).transpose();
         match (tag.as_str(), values.map_err(|_| unknown())?.as_deref()) {

@@ -54,6 +54,11 @@ pub struct Span {
 }
 
 impl Span {
+    /// The text that stands there.
+    pub fn text(&self) -> &str {
+        self.file.text.get(self.range.clone()).unwrap_or("")
+    }
+
     /// Line and column of the start, counted from 1, columns in characters.
     pub fn line_column(&self) -> (usize, usize) {
         let before = self

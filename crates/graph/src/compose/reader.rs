@@ -11,7 +11,7 @@ use crate::{
         extend::extend,
         raw::{self, Invalid, RawDocument},
         read,
-        typed::{Document, Entry, Include, What},
+        typed::{Document, Entry, Include, What, each_include},
     },
     errors::compose::ComposeError,
     kinds::registry::Registry,
@@ -35,14 +35,8 @@ use std::{
 /// stack.
 const DEEPEST: usize = 64;
 
-/// Where a document is asked for: by an include or by `extends`.
-#[derive(Clone, Debug)]
-pub(crate) struct IncludeSite {
-    /// The path of the document.
-    pub path: String,
-    pub span: Span,
-    pub is_extended: bool,
-}
+/// Where a document is asked for: its path, the place, and what asks there in words.
+pub(crate) type IncludeSite = (String, Span, &'static str);
 
 /// Reads documents.
 pub(crate) struct Reader<'a> {
@@ -104,20 +98,16 @@ impl<'a> Reader<'a> {
     }
 
     fn file(&mut self, path: &str) -> Result<SourceFile, ErrorGuaranteed> {
-        let text = match sources::read(self.sources, path) {
-            Ok(Some(text)) => text,
+        let error = match sources::read(self.sources, path) {
+            Ok(Some(text)) => return Ok(SourceFile::new(path, text)),
             Ok(None) => {
                 let (folder, name) = path.rsplit_once('/').unwrap_or(("", path));
                 let known = self.documents_in(folder);
-                let error = ComposeError::NoDocument(path.to_owned(), likeness(name, known));
-                return Err(self.reports.report(error));
+                ComposeError::NoDocument(path.to_owned(), likeness(name, known))
             }
-            Err(why) => {
-                let error = ComposeError::Unreadable(path.to_owned(), why);
-                return Err(self.reports.report(error));
-            }
+            Err(why) => ComposeError::Unreadable(path.to_owned(), why),
         };
-        Ok(SourceFile::new(path, text))
+        Err(self.reports.report(error))
     }
 
     fn documents_in(&self, folder: &str) -> Vec<String> {
@@ -159,7 +149,7 @@ impl<'a> Reader<'a> {
         let Some(node) = own.extends.take() else {
             return Ok(own);
         };
-        let name = Located::new(self.reports.check(node.parse())?, node.span.clone());
+        let name = Located::new(self.reports.check(node.parse())?, node);
         let base = self.find(&name)?;
         let path = base.name.to_string();
         chain.push(own.file.name.to_string());
@@ -170,13 +160,9 @@ impl<'a> Reader<'a> {
             return Err(self.reports.report(error));
         }
         if chain.len() > DEEPEST {
-            return Err(self.reports.report(ComposeError::TooDeep(name, DEEPEST)));
+            return Err(self.too_deep(&name));
         }
-        self.include_sites.push(IncludeSite {
-            path,
-            span: name.span,
-            is_extended: true,
-        });
+        self.include_sites.push((path, name.span, "extended here"));
         let base = self.raw(base, chain)?;
         Ok(extend(base, own, self.reports))
     }
@@ -185,19 +171,12 @@ impl<'a> Reader<'a> {
     /// below it.
     fn attach(&mut self, entries: &mut [Result<Entry, Invalid>]) -> usize {
         let mut depth = 0;
-        for entry in entries.iter_mut().flatten() {
-            let below = match &mut entry.what {
-                What::Include(include) => {
-                    include.document = Some(self.include(include));
-                    let document = include.document();
-                    // A document that could not be read was reported; it counts as depth 0.
-                    document.map_or(0, |document| document.include_depth + 1)
-                }
-                What::Group(entries) => self.attach(entries),
-                What::Pass(_) => 0,
-            };
-            depth = depth.max(below);
-        }
+        each_include(entries, &mut |include| {
+            include.document = Some(self.include(include));
+            // A document that could not be read was reported; it counts as depth 0.
+            let document = include.document();
+            depth = depth.max(document.map_or(0, |document| document.include_depth + 1));
+        });
         depth
     }
 
@@ -216,14 +195,10 @@ impl<'a> Reader<'a> {
             let error = ComposeError::Cycle(include.graph.clone(), open);
             return Err(self.reports.report(error));
         }
-        self.include_sites.push(IncludeSite {
-            path: path.clone(),
-            span: span.clone(),
-            is_extended: false,
-        });
+        let site = (path.clone(), span.clone(), "included here");
+        self.include_sites.push(site);
         if self.open.len() > DEEPEST {
-            let graph = include.graph.clone();
-            return Err(self.reports.report(ComposeError::TooDeep(graph, DEEPEST)));
+            return Err(self.too_deep(&include.graph));
         }
         if !self.read.contains_key(&path) {
             // Without its params nothing of the document has a size.
@@ -234,10 +209,14 @@ impl<'a> Reader<'a> {
         }
         let document = self.read[&path].clone()?;
         if self.open.len() + document.include_depth > DEEPEST {
-            let graph = include.graph.clone();
-            return Err(self.reports.report(ComposeError::TooDeep(graph, DEEPEST)));
+            return Err(self.too_deep(&include.graph));
         }
         Ok(document)
+    }
+
+    fn too_deep(&mut self, graph: &Located<String>) -> ErrorGuaranteed {
+        let error = ComposeError::TooDeep(graph.clone(), DEEPEST);
+        self.reports.report(error)
     }
 
     /// The path of the document that was asked for in the place of an open include's own. Included
@@ -467,24 +446,12 @@ pub(crate) fn label(diagnostics: &mut [Diagnostic], root: &str, include_sites: &
         // A document may be included by one that is included itself.
         while let Some(label) = diagnostic.labels.get(at) {
             let file = label.span.file.name.clone();
-            let asking = include_sites
-                .iter()
-                .filter(|include_sites| *include_sites.path == *file)
-                .take(SHOWN);
-            for include_sites in asking {
-                if diagnostic
-                    .labels
-                    .iter()
-                    .all(|label| label.span != include_sites.span)
-                {
-                    let text = if include_sites.is_extended {
-                        "extended here"
-                    } else {
-                        "included here"
-                    };
+            let asking = include_sites.iter().filter(|(path, ..)| **path == *file);
+            for (_, span, text) in asking.take(SHOWN) {
+                if diagnostic.labels.iter().all(|label| label.span != *span) {
                     diagnostic.labels.push(Label {
-                        span: include_sites.span.clone(),
-                        text: text.to_owned(),
+                        span: span.clone(),
+                        text: (*text).to_owned(),
                     });
                 }
             }

@@ -2,10 +2,7 @@
 
 use crate::{
     diagnostics::reports::Reports,
-    document::{
-        raw::Invalid,
-        typed::{Document, Entry, Include, What},
-    },
+    document::typed::{Document, each_include},
     errors::compose::ComposeError,
     language::syntax::Leaf,
     shader::{reflect::Shader, store::Shaders},
@@ -128,15 +125,4 @@ pub(crate) fn drop_unused(
     document
         .params
         .extend(exposed.filter(|param| given.contains(&param.name.span)));
-}
-
-/// Calls `each` with every include, those in groups, too.
-fn each_include(entries: &mut [Result<Entry, Invalid>], each: &mut dyn FnMut(&mut Include)) {
-    for entry in entries.iter_mut().flatten() {
-        match &mut entry.what {
-            What::Include(include) => each(include),
-            What::Group(inner) => each_include(inner, each),
-            What::Pass(_) => {}
-        }
-    }
 }

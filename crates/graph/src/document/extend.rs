@@ -220,7 +220,7 @@ fn path_of(edit: &mut RawEntry, field: &'static str) -> Result<Located<String>, 
     let found = edit.take(field);
     let found = found.ok_or_else(|| EditError::NoPath(edit.tag.clone(), field))?;
     let path: Result<String, _> = found.node.parse();
-    let span = found.node.span;
+    let span = found.node;
     path.map(|path| Located::new(path, span.clone()))
         .map_err(|_| EditError::NoString(span))
 }

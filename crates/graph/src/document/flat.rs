@@ -13,7 +13,7 @@ pub(crate) fn flat(document: &RawDocument) -> String {
     flat.line(0, "(", &[]);
     flat.line(1, "format: 3,", &[]);
     if let Some(node) = &document.description {
-        flat.line(1, &format!("description: {},", node.text()), &[&node.span]);
+        flat.line(1, &format!("description: {},", node.text()), &[node]);
     }
     flat.list("requires", &document.requires, Flat::node);
     flat.list("params", &document.params, Flat::item);
@@ -85,7 +85,7 @@ impl Flat {
     }
 
     fn node(&mut self, node: &Node) {
-        self.line(2, &format!("{},", node.text()), &[&node.span]);
+        self.line(2, &format!("{},", node.text()), &[node]);
     }
 
     fn item(&mut self, item: &RawItem) {
@@ -99,7 +99,7 @@ impl Flat {
         }
         self.line(depth, &format!("{section}: {{"), &[]);
         for (key, value) in map {
-            let content = format!("{}: {},", Node::at(&key.span).text(), value.text());
+            let content = format!("{}: {},", key.span.text(), value.text());
             self.line(depth + 1, &content, &[&key.span]);
         }
         self.line(depth, "},", &[]);

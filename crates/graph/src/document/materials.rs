@@ -191,7 +191,7 @@ impl<'de> Deserialize<'de> for Data {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let (_, span) = raw(deserializer)?;
         let wrong = || refuse(DocumentError::Data(span.clone()));
-        let items = Node { span: span.clone() }.list().map_err(|_| wrong())?;
+        let items = span.list().map_err(|_| wrong())?;
         let mut data = Vec::new();
         for item in items {
             let mut numbers = Vec::new();

@@ -82,7 +82,7 @@ pub(crate) struct Invalid {
 fn name_of(fields: &[Field]) -> Option<Located<String>> {
     let field = fields.iter().find(|field| *field.name == "name")?;
     let name: String = field.node.parse().ok()?;
-    Some(Located::new(name, field.node.span.clone()))
+    Some(Located::new(name, field.node.clone()))
 }
 
 impl RawItem {
@@ -242,7 +242,7 @@ impl Sections<'_> {
             Ok(FORMAT) => Ok(()),
             // Everything else in it would be a mistake, too.
             Ok(other) => {
-                let place = node.span.clone();
+                let place = node.clone();
                 Err(self.reports.report(DocumentError::Format(place, other)))
             }
             Err(error) => {
@@ -301,7 +301,7 @@ impl Sections<'_> {
 }
 
 fn item(node: &Node, section: &'static str) -> Result<RawItem, crate::diagnostics::Diagnostic> {
-    let untagged = || DocumentError::Untagged(node.span.clone(), section);
+    let untagged = || DocumentError::Untagged(node.clone(), section);
     let (tag, body) = node.variant().ok_or_else(untagged)?;
     let fields = body.fields()?;
     Ok(RawItem { tag, fields })
@@ -309,7 +309,7 @@ fn item(node: &Node, section: &'static str) -> Result<RawItem, crate::diagnostic
 
 fn list(node: &Node, reports: &mut Reports) -> Result<Vec<Node>, ErrorGuaranteed> {
     let nodes = reports.check(node.list())?;
-    few("list", nodes, |node| &node.span, reports)
+    few("list", nodes, |node| node, reports)
 }
 
 /// The entries of a list or map, if they are not too many.

@@ -127,7 +127,7 @@ fn free<T>(name: Located<Name>, of: T) -> Result<T, Diagnostic> {
 }
 
 fn feature(node: &Node) -> Result<(Located<String>, wgt::Features), Diagnostic> {
-    let name = Located::new(node.parse::<String>()?, node.span.clone());
+    let name = Located::new(node.parse::<String>()?, node.clone());
     match wgt::Features::from_name(&name) {
         Some(flag) => Ok((name, flag)),
         None => Err(SyntaxFault::Feature(name).into()),

@@ -378,3 +378,17 @@ impl Entry {
         references.for_each(|reference| reference.visit(each));
     }
 }
+
+/// Calls `each` with every include, those in groups, too.
+pub(crate) fn each_include(
+    entries: &mut [Result<Entry, Invalid>],
+    each: &mut dyn FnMut(&mut Include),
+) {
+    for entry in entries.iter_mut().flatten() {
+        match &mut entry.what {
+            What::Include(include) => each(include),
+            What::Group(inner) => each_include(inner, each),
+            What::Pass(_) => {}
+        }
+    }
+}

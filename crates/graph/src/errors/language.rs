@@ -16,7 +16,7 @@ mistakes! {
         Expression("`{sign}` has no meaning here").at(place, "here");
 
     Number(place: Span) =>
-        Expression("`{}` is not a number", text(&place)).at(place, "here");
+        Expression("`{}` is not a number", place.text()).at(place, "here");
 
     TooLong(place: Span, most: usize) =>
         Expression("the expression is too long")
@@ -26,7 +26,7 @@ mistakes! {
         Expression("{expected} is expected, not {found}").at(span, "here");
 
     Name(place: Span, fault: NameFault) =>
-        Name("`{}` is not a name", text(&place)).at(place, fault.to_string());
+        Name("`{}` is not a name", place.text()).at(place, fault.to_string());
 
     Function(name: Located<String>) =>
         Expression("unknown function `{name}`")
@@ -43,7 +43,7 @@ mistakes! {
 
     /// End of a reference that stands elsewhere, or in an expression.
     Part(place: Span, part: &'static str) =>
-        Expression("`{}` does not stand here", text(&place))
+        Expression("`{}` does not stand here", place.text())
         .at(place, match part {
             "number" => "a part of a material is not a number",
             "attribute" => "an attribute, where a material is named",
@@ -57,10 +57,6 @@ mistakes! {
     Escape(place: Span) =>
         Expression("strings of the language have no escapes")
         .at(place, "`\\` here").help("write the signs themselves");
-}
-
-fn text(span: &Span) -> &str {
-    span.file.text.get(span.range.clone()).unwrap_or("")
 }
 
 /// The attributes in a sentence.

@@ -174,7 +174,7 @@ impl Reference {
 
     /// The reference as it is written.
     pub fn text(&self) -> &str {
-        text(&self.span)
+        self.span.text()
     }
 
     /// The reference as it is written, with its place.
@@ -220,10 +220,6 @@ pub(crate) enum Leaf<'a> {
     Has(wgt::Features),
 }
 
-fn text(span: &Span) -> &str {
-    span.file.text.get(span.range.clone()).unwrap_or("")
-}
-
 impl Expr {
     pub(crate) fn new(kind: ExprKind, span: Span) -> Self {
         Self { kind, span }
@@ -236,7 +232,7 @@ impl Expr {
 
     /// The expression as it is written.
     pub fn text(&self) -> &str {
-        text(&self.span)
+        self.span.text()
     }
 
     /// The param that the expression is, with nothing done to it.

@@ -140,12 +140,20 @@ impl<'a> ShaderFiles<'a> {
 
     /// The module that a document names, as an `#import` would.
     pub fn module(&mut self, name: &Located<String>) -> Result<SourceFile, ImportError> {
-        if escapes(name) {
-            return Err(ImportError::Leaves(name.clone()));
-        }
         let candidates = module_candidates(folder_of(&name.span.file.name), name);
+        self.imported(name, candidates)
+    }
+
+    fn imported(
+        &mut self,
+        path: &Located<String>,
+        candidates: Vec<String>,
+    ) -> Result<SourceFile, ImportError> {
+        if escapes(path) {
+            return Err(ImportError::Leaves(path.clone()));
+        }
         let (missing, unreadable) = (ImportError::NoFile, ImportError::UnreadableFile);
-        self.found(name, candidates, missing, unreadable)
+        self.found(path, candidates, missing, unreadable)
     }
 
     /// The first of the candidates that is there, or one of two errors: none is, or one cannot be
@@ -253,12 +261,7 @@ impl<'a> ShaderFiles<'a> {
         place: &Span,
     ) -> Result<SourceFile, ImportError> {
         let path = Located::new(path.to_owned(), place.clone());
-        if escapes(&path) {
-            return Err(ImportError::Leaves(path));
-        }
-        let candidates = import_candidates(&file.name, &path);
-        let (missing, unreadable) = (ImportError::NoFile, ImportError::UnreadableFile);
-        self.found(&path, candidates, missing, unreadable)
+        self.imported(&path, import_candidates(&file.name, &path))
     }
 }
 

@@ -2,13 +2,14 @@
 //! per entry point.
 
 use super::{
-    class::{Class, TextureClass, class_of, vector},
+    class::{Class, TextureClass, class_of},
     compiled::{compiled, specialised},
     expand::Expanded,
     footprint::Footprint,
     guard,
     items::{Item, item},
     text::words,
+    varyings::Varyings,
     wgsl_errors::function_span,
 };
 use crate::{
@@ -399,23 +400,12 @@ impl Shader {
     /// Scalar class and component count of each colour output of a fragment entry point, by
     /// location.
     pub(crate) fn fragment_outputs(&self, entry: usize) -> Vec<(u32, ScalarClass, u32)> {
-        let Some(result) = &self.module.entry_points[entry].function.result else {
-            return Vec::new();
-        };
-        let mut outputs = Vec::new();
-        let mut add = |binding: &Option<naga::Binding>, ty: Handle<naga::Type>| {
-            if let (Some(naga::Binding::Location { location, .. }), Some((scalar, width))) =
-                (binding, vector(&self.module, ty))
-            {
-                outputs.push((*location, scalar, width));
-            }
-        };
-        match &self.module.types[result.ty].inner {
-            TypeInner::Struct { members, .. } => members
-                .iter()
-                .for_each(|member| add(&member.binding, member.ty)),
-            _ => add(&result.binding, result.ty),
-        }
+        let outputs = Varyings::outputs(self, entry).locations.into_iter();
+        let outputs = outputs.filter_map(|output| {
+            let scalar = ScalarClass::from_kind(output.kind)?;
+            Some((output.location, scalar, output.width))
+        });
+        let mut outputs: Vec<_> = outputs.collect();
         outputs.sort_by_key(|(location, ..)| *location);
         outputs
     }

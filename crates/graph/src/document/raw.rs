@@ -238,16 +238,12 @@ impl Sections<'_> {
             self.reports.report(DocumentError::NoFormat(begin));
             return Ok(());
         };
-        match node.parse::<u32>() {
-            Ok(FORMAT) => Ok(()),
+        match self.reports.check(node.parse::<u32>()) {
+            Ok(FORMAT) | Err(_) => Ok(()),
             // Everything else in it would be a mistake, too.
             Ok(other) => {
                 let place = node.clone();
                 Err(self.reports.report(DocumentError::Format(place, other)))
-            }
-            Err(error) => {
-                self.reports.report(error);
-                Ok(())
             }
         }
     }

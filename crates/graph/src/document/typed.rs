@@ -127,11 +127,8 @@ impl<'de> Deserialize<'de> for ClaimEntry {
                 because: String::new(),
             });
         }
-        let long: ClaimFields = read(text)?;
-        Ok(Self {
-            condition: long.condition,
-            because: long.because,
-        })
+        let ClaimFields { condition, because } = read(text)?;
+        Ok(Self { condition, because })
     }
 }
 

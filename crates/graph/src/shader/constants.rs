@@ -51,9 +51,9 @@ impl ChoiceConstants {
     /// Appends those that the text uses and does not declare; returns those that it declares.
     pub fn append(&self, source: &mut Expanded) -> Vec<&str> {
         let mut used: HashMap<&str, bool> = HashMap::new();
-        for (word, is_declared) in identifiers(&source.text) {
+        for (word, before, is_outside) in identifiers(&source.text) {
             if let Some((name, _)) = self.0.get_key_value(word) {
-                *used.entry(name).or_default() |= is_declared;
+                *used.entry(name).or_default() |= is_outside && before == "const";
             }
         }
         let (declared, missing): (BTreeSet<_>, BTreeSet<_>) =

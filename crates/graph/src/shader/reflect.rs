@@ -153,12 +153,7 @@ impl Shader {
             .collect();
         let stage = format!("{stage:?}").to_lowercase();
         let file = self.source.file.name.to_string();
-        let known = || {
-            of_stage
-                .iter()
-                .map(|(_, known)| (*known).to_owned())
-                .collect()
-        };
+        let known = of_stage.iter().map(|(_, known)| (*known).to_owned());
         match (name, of_stage.as_slice()) {
             (Some(name), _) => {
                 let mut named = of_stage.iter().filter(|(_, known)| *known == name.as_str());
@@ -166,7 +161,7 @@ impl Shader {
                     file,
                     stage,
                     name: name.clone(),
-                    known: known(),
+                    known: known.collect(),
                 };
                 named.next().map(|(index, _)| *index).ok_or_else(error)
             }
@@ -176,7 +171,7 @@ impl Shader {
                 file,
                 stage,
                 at: wanted.clone(),
-                known: known(),
+                known: known.collect(),
             }),
         }
     }

@@ -3,7 +3,7 @@
 use super::{
     expand::{Expanded, ImportLine},
     reflect::Shader,
-    text::tokens,
+    text::identifiers,
     wgsl_errors::functions,
 };
 use crate::source::span::{Located, SourceFile};
@@ -29,31 +29,15 @@ struct Words<'t> {
 impl<'t> Words<'t> {
     fn new(text: &'t str) -> Self {
         let mut words = Self::default();
-        let (mut depth, mut before) = (0usize, "");
-        // Inside `<…>` behind `var`.
-        let mut is_template = false;
-        for (_, token) in tokens(text) {
-            match token {
-                "{" | "(" => depth += 1,
-                "}" | ")" => depth = depth.saturating_sub(1),
-                "<" if before == "var" => is_template = true,
-                ">" if is_template => {
-                    is_template = false;
-                    before = "var";
-                    continue;
-                }
-                "compute" | "vertex" | "fragment" if before == "@" => words.has_entry_point = true,
-                word if word.starts_with(|c: char| c.is_alphabetic() || c == '_') => {
-                    let declares = ["fn", "const", "override", "struct", "alias", "var"];
-                    if depth == 0 && !is_template && declares.contains(&before) {
-                        words.declared.insert(word);
-                    } else {
-                        words.mentioned.insert(word);
-                    }
-                }
-                _ => {}
+        for (word, before, is_outside) in identifiers(text) {
+            let declares = ["fn", "const", "override", "struct", "alias", "var"];
+            if before == "@" && matches!(word, "compute" | "vertex" | "fragment") {
+                words.has_entry_point = true;
+            } else if is_outside && declares.contains(&before) {
+                words.declared.insert(word);
+            } else {
+                words.mentioned.insert(word);
             }
-            before = token;
         }
         words
     }

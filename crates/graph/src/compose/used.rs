@@ -4,7 +4,7 @@ use crate::{
     diagnostics::reports::Reports,
     document::typed::{Document, each_include},
     errors::compose::ComposeError,
-    language::syntax::Leaf,
+    language::{name::Name, syntax::Leaf},
     shader::{reflect::Shader, store::Shaders},
     source::span::{Located, Span},
 };
@@ -91,19 +91,14 @@ pub(crate) fn drop_unused(
     loop {
         let used = Used::new(document, shaders);
         let is_used = |name: &str| used.params.contains(name) || used.materials.contains(name);
+        let is_kept = |name: &Located<Name>| is_own(&name.span) || is_used(name.as_str());
         let count = |it: &Document| {
             it.params.len() + it.values.len() + it.inputs.len() + it.materials.len()
         };
         let before = count(document);
-        document
-            .materials
-            .retain(|it| is_own(&it.name().span) || is_used(it.name().as_str()));
-        document
-            .inputs
-            .retain(|it| is_own(&it.name.span) || is_used(it.name.as_str()));
-        document
-            .values
-            .retain(|(name, _)| is_own(&name.span) || is_used(name.as_str()));
+        document.materials.retain(|it| is_kept(it.name()));
+        document.inputs.retain(|it| is_kept(&it.name));
+        document.values.retain(|(name, _)| is_kept(name));
         document.params.retain(|param| {
             let is_kept = is_own(&param.name.span) || used.params.contains(&param.name.value);
             let default = param

@@ -266,14 +266,13 @@ pub(crate) fn no_edits(entries: &mut Entries, reports: &mut Reports) {
             .fields
             .iter()
             .find(|field| PLACES.contains(&field.name.as_str()));
-        let mistake = match (entry.tag.as_str(), place) {
-            ("Change" | REMOVE, _) => Some(EditError::NotExtending(entry.tag.clone())),
-            (_, Some(place)) => Some(EditError::NotExtending(place.name.clone())),
-            _ => None,
+        let word = match (entry.tag.as_str(), place) {
+            ("Change" | REMOVE, _) => Some(&entry.tag),
+            (_, place) => place.map(|field| &field.name),
         };
-        if let Some(mistake) = mistake {
+        if let Some(word) = word {
             let is_include = *entry.tag == "Include";
-            let reported = reports.report(mistake);
+            let reported = reports.report(EditError::NotExtending(word.clone()));
             *slot = Err(Invalid {
                 is_include,
                 reported,

@@ -42,16 +42,7 @@ impl Material {
 
     /// Calls `each` with everything that its size and format are made of.
     pub fn visit<'a>(&'a self, each: &mut dyn FnMut(Leaf<'a>)) {
-        let grow = match self {
-            Self::Texture(texture) => texture.grow.as_deref(),
-            Self::Buffer(buffer) => buffer.grow.as_ref(),
-            Self::Sampler(_) => None,
-        };
-        if let Some(grow) = grow {
-            grow.counter.visit(each);
-            grow.max.visit(each);
-        }
-        let exprs = match self {
+        let (grow, exprs) = match self {
             Self::Texture(texture) => {
                 let format = match &texture.format {
                     FormatEntry::Expr(format) => Some(format),
@@ -62,11 +53,16 @@ impl Material {
                     Mips::One | Mips::All => None,
                 };
                 let (size, layers) = (texture.size.as_ref(), texture.layers.as_ref());
-                [format, mips, size, layers, texture.samples.as_ref()]
+                let exprs = vec![format, mips, size, layers, texture.samples.as_ref()];
+                (texture.grow.as_deref(), exprs)
             }
-            Self::Buffer(buffer) => [buffer.count.as_ref(), None, None, None, None],
-            Self::Sampler(_) => [None; 5],
+            Self::Buffer(buffer) => (buffer.grow.as_ref(), vec![buffer.count.as_ref()]),
+            Self::Sampler(_) => return,
         };
+        if let Some(grow) = grow {
+            grow.counter.visit(each);
+            grow.max.visit(each);
+        }
         exprs
             .into_iter()
             .flatten()

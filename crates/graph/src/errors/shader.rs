@@ -75,7 +75,7 @@ mistakes! {
 
     /// Message of naga, with its places. The file stands in backquotes, with the shader that
     /// imports it if it is not that itself.
-    Naga { file: String, what: String, places: Vec<(Span, String)>, notes: Vec<String> } =>
+    Naga(file: String, what: String, places: Vec<(Span, String)>, notes: Vec<String>) =>
         Shader("{file} {what}")
         .at_all(places).help_any((!notes.is_empty()).then(|| notes.join("\n")));
 
@@ -103,13 +103,12 @@ mistakes! {
         .help("leave the numbers out: the graph gives them");
 
     Choice {
-        constant: String, found: String, word: String, param: String, number: u32, at: Span,
-        declared: Span,
+        constant: String, found: String, word: String, param: Located<String>, number: u32, at: Span,
     } =>
         ChoiceConstant(
             "`{constant}` is {found} in the shader, and {word} of `{param}` is {number}"
         )
-        .at(at, "declared here").at(declared, "the words in their order")
+        .at(at, "declared here").at(param, "the words in their order")
         .help("leave the constant out: the words of a Choice bring it");
 
     TwoWords(constant: String, first: Span, second: Span) =>

@@ -2,7 +2,6 @@
 
 use super::{name::Name, value::Value};
 use crate::source::span::{Located, Span};
-use std::fmt::Write as _;
 
 /// A number, size, bool or word of a document: written out, or made of params and attributes, as in
 /// `"ceil_div(viewport.size, 2)"`. docs/authoring.md has the grammar.
@@ -282,17 +281,12 @@ impl Expr {
             ExprKind::Unary(Unary::Minus, of) => format!("-{}", of.canonical(leaf)),
             ExprKind::Unary(Unary::Not, of) => format!("!{}", of.canonical(leaf)),
             ExprKind::Binary(operator, of) => {
-                let [a, b] = &**of;
-                let (a, b) = (a.canonical(leaf), b.canonical(leaf));
+                let [a, b] = of.each_ref().map(|expr| expr.canonical(leaf));
                 format!("({a} {} {b})", operator.as_str())
             }
             ExprKind::Ternary(of) => {
-                let mut text = String::new();
-                for (expr, sign) in of.iter().zip(["?", ":", ""]) {
-                    // Writing to a String cannot fail.
-                    let _ = write!(text, "({}){sign}", expr.canonical(leaf));
-                }
-                text
+                let [condition, yes, no] = of.each_ref().map(|expr| expr.canonical(leaf));
+                format!("({condition})?({yes}):({no})")
             }
             _ => self.text().to_owned(),
         }

@@ -5,7 +5,7 @@ use super::{expand::Expanded, reflect::Shader, text::identifiers};
 use crate::{
     errors::shader::ShaderError,
     param::{Param, ParamType},
-    source::span::Span,
+    source::span::Located,
 };
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -16,9 +16,8 @@ pub(crate) struct ChoiceConstants(BTreeMap<String, ChoiceConstant>);
 #[derive(Debug)]
 struct ChoiceConstant {
     number: u32,
-    param: String,
+    param: Located<String>,
     word: String,
-    declared: Span,
 }
 
 impl ChoiceConstants {
@@ -33,12 +32,11 @@ impl ChoiceConstants {
                 let name = constant_name(&param.name, word);
                 let constant = ChoiceConstant {
                     number,
-                    param: param.name.value.clone(),
+                    param: param.name.clone(),
                     word: word.to_string(),
-                    declared: param.name.span.clone(),
                 };
                 if let Some(first) = constants.get(&name) {
-                    let (first, second) = (first.declared.clone(), constant.declared);
+                    let (first, second) = (first.param.span.clone(), constant.param.span);
                     clashes.push(ShaderError::TwoWords(name, first, second));
                     continue;
                 }
@@ -61,7 +59,7 @@ impl ChoiceConstants {
         for (name, _) in missing {
             let constant = &self.0[name];
             let text = format!("\nconst {name}: u32 = {}u;\n", constant.number);
-            source.push(&text, &constant.declared);
+            source.push(&text, &constant.param.span);
         }
         declared.into_iter().map(|(name, _)| name).collect()
     }
@@ -79,7 +77,6 @@ impl ChoiceConstants {
                 param: constant.param.clone(),
                 number: constant.number,
                 at: shader.constant_span(name),
-                declared: constant.declared.clone(),
             })
         })
     }

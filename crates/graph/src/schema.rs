@@ -125,11 +125,10 @@ written!(ClaimEntry, "Claim", generator => {
 /// a tuple is a list. The schema knows neither names nor values of expressions:
 /// `skiagraph check` does.
 pub fn schema(registry: &Registry) -> Value {
-    let kinds = registry.all();
     let mut generator = SchemaGenerator::default();
     let mut sections = Map::new();
     let mut kinds = Kinds {
-        kinds,
+        kinds: registry.all(),
         generator: &mut generator,
         entries: Map::new(),
     };

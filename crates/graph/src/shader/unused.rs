@@ -73,7 +73,7 @@ impl<'s> UnusedFinder<'s> {
         let words = &self.words;
         let is_used = |line: &ImportLine| {
             let imported = reached(source, &line.file.name);
-            let from = &*line.place.file.name;
+            let from = &*line.asked.span.file.name;
             let mut own = imported.iter().filter_map(|file| words.get(file));
             if line.replaces || own.clone().any(|own| own.has_entry_point) {
                 return true;
@@ -96,7 +96,7 @@ impl<'s> UnusedFinder<'s> {
         unused
             .map(|line| Unused {
                 what: "import",
-                name: Located::new(line.asked.clone(), line.place.clone()),
+                name: line.asked.clone(),
             })
             .collect()
     }
@@ -173,7 +173,7 @@ fn reached<'s>(source: &'s Expanded, file: &'s str) -> BTreeSet<&'s str> {
             let lines = source
                 .imports
                 .iter()
-                .filter(|line| *line.place.file.name == *file);
+                .filter(|line| *line.asked.span.file.name == *file);
             open.extend(lines.map(|line| &*line.file.name));
         }
     }

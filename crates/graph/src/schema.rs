@@ -10,7 +10,7 @@ use crate::{
         },
         params::ParamFields,
         raw::{FORMAT, SECTIONS},
-        typed::{ClaimEntry, ClaimFields, ImportEntry, Narrow, Output, OutputFields},
+        typed::{ClaimEntry, ClaimFields, Expose, ImportEntry, Narrow, Output, OutputFields},
     },
     errors::document::PARAM_TYPES,
     fields::{Chosen, Load},
@@ -19,6 +19,7 @@ use crate::{
         name::Name,
         syntax::{Expr, Reference},
     },
+    source::span::Located,
     written::{short_or_long, written},
 };
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -111,6 +112,14 @@ written!(Data, "Data", _generator => json_schema!({
     "type": "array",
     "items": { "type": ["number", "array"] },
 }));
+
+written!(Expose, "Expose", generator => {
+    let list = generator.subschema_for::<Vec<Located<String>>>();
+    json_schema!({
+        "description": "Names of params, or `All` that are not set.",
+        "anyOf": [list, {"const": "All"}],
+    })
+});
 
 short_or_long!(Output, "Output", OutputFields);
 

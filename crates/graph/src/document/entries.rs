@@ -2,7 +2,7 @@
 
 use super::{
     raw::{Invalid, RawEntry, RawMap, stem},
-    typed::{Entry, Include, Pass, Run, What},
+    typed::{Entry, Expose, Include, Pass, Run, What},
 };
 use crate::{
     diagnostics::{diagnostic::Diagnostic, reports::Reports},
@@ -19,10 +19,9 @@ use crate::{
     },
     source::span::Located,
 };
-use serde::{Deserialize, Deserializer};
+use serde::Deserialize;
 use skiagraph_located_ron::reader::{
-    Field, Node, from_fields, from_some_fields, missing_field, raw, read as read_text, refuse,
-    unknown_field,
+    Field, Node, from_fields, from_some_fields, missing_field, unknown_field,
 };
 
 /// The tags that are no pass kinds.
@@ -97,38 +96,6 @@ pub(crate) struct IncludeFields {
     #[serde(default)]
     expose: Expose,
 }
-
-/// Params of an included document that are params of this one.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Expose {
-    /// Those that neither the include nor a group around it sets: `names`, once the document is
-    /// read.
-    pub all: bool,
-    pub names: Vec<Located<String>>,
-}
-
-impl<'de> Deserialize<'de> for Expose {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let (text, span) = raw(deserializer)?;
-        match text.chars().next() {
-            Some('[') => read_text(text).map(|names| Self { all: false, names }),
-            _ if text == "All" => Ok(Self {
-                all: true,
-                ..Self::default()
-            }),
-            _ => Err(refuse(DocumentError::Expose(span))),
-        }
-    }
-}
-
-#[cfg(feature = "schema")]
-crate::written::written!(Expose, "Expose", generator => {
-    let list = generator.subschema_for::<Vec<Located<String>>>();
-    schemars::json_schema!({
-        "description": "Names of params, or `All` that are not set.",
-        "anyOf": [list, {"const": "All"}],
-    })
-});
 
 const HEADER: [&str; 4] = ["name", "if", "repeat", "run"];
 

@@ -84,7 +84,7 @@ pub(crate) fn document(raw: RawDocument, registry: &Registry, reports: &mut Repo
     document
 }
 
-/// What can be read of a list.
+/// The entries of a list that can be read.
 fn read_list<T>(
     list: &[Node],
     read: impl Fn(&Node) -> Result<T, Diagnostic>,
@@ -94,7 +94,7 @@ fn read_list<T>(
     list.iter().filter_map(read).collect()
 }
 
-/// What can be read of a map.
+/// The entries of a map that can be read.
 fn read_map<T: DeserializeOwned>(map: RawMap, reports: &mut Reports) -> Vec<(Located<String>, T)> {
     let read = |(name, node): (_, Node)| Some((name, reports.check(node.parse()).ok()?));
     map.into_iter().filter_map(read).collect()

@@ -1,12 +1,12 @@
 //! A document with everything in it read, and nothing looked up.
 
 use super::{
-    entries::Expose,
     materials::{Input, Material},
     raw::Invalid,
 };
 use crate::{
     diagnostics::reports::ErrorGuaranteed,
+    errors::document::DocumentError,
     fields::{Mentions, prose, short_or_long},
     kinds::{kind::PassKind, step::ShaderUse},
     language::{
@@ -17,7 +17,7 @@ use crate::{
     source::span::{Located, SourceFile, Span},
 };
 use serde::{Deserialize, Deserializer};
-use skiagraph_located_ron::reader::{raw, read};
+use skiagraph_located_ron::reader::{raw, read, refuse};
 use std::{collections::BTreeSet, sync::Arc};
 
 /// A document as its author wrote it.
@@ -234,6 +234,29 @@ impl Include {
     /// The included document, if it could be read.
     pub fn document(&self) -> Option<&Arc<Document>> {
         self.document.as_ref()?.as_ref().ok()
+    }
+}
+
+/// Params of an included document that are params of this one.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Expose {
+    /// Those that neither the include nor a group around it sets: `names`, once the document is
+    /// read.
+    pub all: bool,
+    pub names: Vec<Located<String>>,
+}
+
+impl<'de> Deserialize<'de> for Expose {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let (text, span) = raw(deserializer)?;
+        match text.chars().next() {
+            Some('[') => read(text).map(|names| Self { all: false, names }),
+            _ if text == "All" => Ok(Self {
+                all: true,
+                ..Self::default()
+            }),
+            _ => Err(refuse(DocumentError::Expose(span))),
+        }
     }
 }
 

@@ -42,7 +42,8 @@ mistakes! {
         Expression("the result is larger than a number can be").at(place, "here");
 
     NoSuchWord(span: Span, word: String, words: Vec<Name>) =>
-        Expression("`{word}` is not one of the words").at(span, "").suggest(&word, words.iter().map(Name::as_str));
+        Expression("`{word}` is not one of the words")
+        .at(span, "").suggest(&word, words.iter().map(Name::as_str));
 
     Words { span: Span, expected: Vec<String>, found: Value } =>
         Expression("{}", match &found {

@@ -103,7 +103,8 @@ mistakes! {
         .help("leave the numbers out: the graph gives them");
 
     Choice {
-        constant: String, found: String, word: String, param: Located<String>, number: u32, at: Span,
+        constant: String, found: String, word: String, param: Located<String>, number: u32,
+        at: Span,
     } =>
         ChoiceConstant(
             "`{constant}` is {found} in the shader, and {word} of `{param}` is {number}"

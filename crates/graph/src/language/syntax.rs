@@ -39,9 +39,10 @@ pub(crate) enum Subject {
     Material(Box<Reference>),
 }
 
-/// Declares what has a spelling, and a number that goes with it.
+/// Declares words or signs, each with its spelling and with a number that goes with it.
 macro_rules! spelt {
-    ($(#[$doc:meta])+ $enum:ident $($number:ty)?: $($name:ident = $text:literal $($of:literal)?,)+) => {
+    ($(#[$doc:meta])+ $enum:ident $($number:ty)?:
+        $($name:ident = $text:literal $($of:literal)?,)+) => {
         $(#[$doc])+
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub(crate) enum $enum { $($name),+ }
@@ -62,7 +63,7 @@ macro_rules! spelt {
 }
 
 spelt! {
-    /// What is asked of a subject.
+    /// Something that a subject can be asked for, with its word.
     Attribute:
     Size = "size",
     Width = "width",

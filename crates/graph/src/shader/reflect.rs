@@ -395,7 +395,7 @@ impl Shader {
     /// Scalar class and component count of each colour output of a fragment entry point, by
     /// location.
     pub(crate) fn fragment_outputs(&self, entry: usize) -> Vec<(u32, ScalarClass, u32)> {
-        let outputs = Varyings::outputs(self, entry).locations.into_iter();
+        let outputs = Varyings::outputs(&self.module, entry).locations.into_iter();
         let outputs = outputs.filter_map(|output| {
             let scalar = ScalarClass::from_kind(output.kind)?;
             Some((output.location, scalar, output.width))

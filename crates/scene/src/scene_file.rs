@@ -154,7 +154,7 @@ impl SceneFile {
             if number != 1 {
                 // Everything else in it would be a mistake, too.
                 let what = format!("format {number} is unknown; this program reads format 1");
-                told.push(Diagnostic::error(Code::FormatVersion, what).at(&format.node.span, ""));
+                told.push(Diagnostic::error(Code::FormatVersion, what).at(&format.node, ""));
                 return None;
             }
         }

@@ -54,6 +54,7 @@ mod text;
 pub mod texture;
 #[cfg(feature = "files")]
 mod texture_file;
+mod vector;
 pub mod weld;
 
 pub use adjacency::{Adjacency, NO_NEIGHBOUR};

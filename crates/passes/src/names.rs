@@ -83,43 +83,46 @@ pub(crate) fn next_version() -> u64 {
 /// that it had: executors that have seen it have nothing to do.
 #[derive(Clone, Debug)]
 pub(crate) struct Lately<T> {
-    /// The last one is set.
+    /// What is set.
+    pub now: T,
+    number: u64,
+    /// What was set before.
     known: Vec<(T, u64)>,
 }
 
 impl<T: PartialEq> Lately<T> {
     /// How many are remembered: more than executors take turns with one provider.
-    const MOST: usize = 32;
+    const MOST: usize = 31;
 
     pub fn new(value: T) -> Self {
         Self {
-            known: vec![(value, next_version())],
+            now: value,
+            number: next_version(),
+            known: Vec::new(),
         }
     }
 
     pub fn set(&mut self, value: T) {
+        if value == self.now {
+            return;
+        }
         let known = self.known.iter().position(|(known, _)| *known == value);
-        let number = match known {
-            Some(at) => self.known.remove(at).1,
-            None => next_version(),
-        };
+        let number = known.map_or_else(next_version, |at| self.known.remove(at).1);
         if self.known.len() == Self::MOST {
             self.known.remove(0);
         }
-        self.known.push((value, number));
-    }
-
-    /// That of what is set.
-    pub fn number(&self) -> u64 {
-        self.known.last().map_or(0, |(_, number)| *number)
+        let before = std::mem::replace(&mut self.now, value);
+        self.known.push((before, self.number));
+        self.number = number;
     }
 }
 
-/// Numbers for the contents of resources.
+/// Settings, and numbers for the contents of resources.
 #[derive(Clone, Debug)]
 pub(crate) struct Versions {
-    camera: Lately<Eye>,
+    pub eye: Lately<Eye>,
     light: Lately<LightKind>,
+    /// All lights of the scene, or the view's own.
     lights: Lately<Vec<LightKind>>,
     /// The light, and the lights, each with the shape that it is laid around.
     light_over: Lately<[u64; 2]>,
@@ -136,9 +139,9 @@ impl Versions {
     pub fn new(eye: Eye, light: LightKind, lights: Vec<LightKind>) -> Self {
         let (light, lights, shape) = (Lately::new(light), Lately::new(lights), next_version());
         Self {
-            camera: Lately::new(eye),
-            light_over: Lately::new([light.number(), shape]),
-            lights_over: Lately::new([lights.number(), shape]),
+            eye: Lately::new(eye),
+            light_over: Lately::new([light.number, shape]),
+            lights_over: Lately::new([lights.number, shape]),
             light,
             lights,
             shape,
@@ -147,8 +150,12 @@ impl Versions {
         }
     }
 
-    pub fn set_camera(&mut self, eye: Eye) {
-        self.camera.set(eye);
+    pub fn light(&self) -> LightKind {
+        self.light.now
+    }
+
+    pub fn lights(&self) -> &[LightKind] {
+        &self.lights.now
     }
 
     pub fn set_light(&mut self, light: LightKind) {
@@ -180,16 +187,16 @@ impl Versions {
     }
 
     fn lay(&mut self) {
-        self.light_over.set([self.light.number(), self.shape]);
-        self.lights_over.set([self.lights.number(), self.shape]);
+        self.light_over.set([self.light.number, self.shape]);
+        self.lights_over.set([self.lights.number, self.shape]);
     }
 
     /// That of a resource.
     pub fn get(&self, name: &str) -> u64 {
         match name {
-            CAMERA | UNPROJECTION => self.camera.number(),
-            LIGHT_AREA => self.light.number(),
-            LIGHT | LIGHT_SPACE_NODES | LIGHT_SPACE_PRIMITIVES => self.light_over.number(),
+            CAMERA | UNPROJECTION => self.eye.number,
+            LIGHT_AREA => self.light.number,
+            LIGHT | LIGHT_SPACE_NODES | LIGHT_SPACE_PRIMITIVES => self.light_over.number,
             POSITIONS | NORMALS | BVH_NODES | BVH_PRIMITIVES | TLAS => self.shape,
             INDICES | NORMAL_INDICES | UV_INDICES | ADJACENCY | MASKS => self.winding,
             _ => self.mesh,
@@ -198,7 +205,7 @@ impl Versions {
 
     /// That of `lights` and `light_areas`, and of what is in them.
     pub fn of_lists(&self) -> u64 {
-        self.lights_over.number()
+        self.lights_over.number
     }
 }
 

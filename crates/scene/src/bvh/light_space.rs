@@ -22,7 +22,7 @@ const DEPTH: f64 = 0.01;
 /// One node, 32 bytes, laid out as the trace shader reads it. All is relative to
 /// [`LightSpace::centre`], rounded outwards.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct LightSpaceNode {
     /// Low corner of what the node covers, seen along the rays.
     pub low: [f32; 2],

@@ -14,12 +14,7 @@ pub(super) fn build(triangles: &[Triangle]) -> (Vec<BvhNode>, Vec<u32>) {
     };
     let centre = |id: u32| corners(id).map(Vec3::as_dvec3).iter().sum::<DVec3>();
     let mut primitives: Vec<u32> = (0..triangles.len() as u32).collect();
-    let mut nodes = vec![BvhNode {
-        min: [0.0; 3],
-        first: 0,
-        max: [0.0; 3],
-        count: 0,
-    }];
+    let mut nodes = vec![BvhNode::default()];
     let mut open = vec![(0, 0..primitives.len())];
     while let Some((slot, range)) = open.pop() {
         let ids = &mut primitives[range.clone()];

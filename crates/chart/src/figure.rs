@@ -18,7 +18,7 @@ const LEFT: i32 = 12;
 const LINES: [i32; 3] = [34, 18, 8];
 
 /// A picture of panels under one title and one legend.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Figure {
     /// First line.
     pub title: String,
@@ -34,25 +34,10 @@ pub struct Figure {
     /// Panels of the figure, row by row. Panels in which a series has the same name give it the
     /// same colour and shape.
     pub panels: Vec<Panel>,
-    /// Panels beside each other, at least 1.
+    /// Panels beside each other; 0 counts as 1.
     pub columns: usize,
     /// True if panels beside each other have the same axes, so that heights can be compared.
     pub shared_axes: bool,
-}
-
-impl Default for Figure {
-    fn default() -> Self {
-        Self {
-            title: String::new(),
-            notes: Vec::new(),
-            sizes: Vec::new(),
-            looks: Vec::new(),
-            ticks: Vec::new(),
-            panels: Vec::new(),
-            columns: 1,
-            shared_axes: false,
-        }
-    }
 }
 
 impl Figure {

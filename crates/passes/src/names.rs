@@ -22,55 +22,42 @@ use crate::eye::Eye;
 use skiagraph_scene::LightKind;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-pub(crate) const POSITIONS: &str = "scene.positions";
-pub(crate) const INDICES: &str = "scene.indices";
-pub(crate) const NORMALS: &str = "scene.normals";
-pub(crate) const NORMAL_INDICES: &str = "scene.normal_indices";
-pub(crate) const ADJACENCY: &str = "scene.adjacency";
-pub(crate) const BVH_NODES: &str = "scene.bvh_nodes";
-pub(crate) const BVH_PRIMITIVES: &str = "scene.bvh_primitives";
-pub(crate) const LIGHT_SPACE_NODES: &str = "scene.light_space_nodes";
-pub(crate) const LIGHT_SPACE_PRIMITIVES: &str = "scene.light_space_primitives";
-pub(crate) const TLAS: &str = "scene.tlas";
-/// Name of the buffer that `shared/masks.wgsl` reads: no items in a scene where no triangle is
-/// masked or double-sided.
-pub const MASKS: &str = "scene.masks";
-pub(crate) const UVS: &str = "scene.uvs";
-pub(crate) const UV_INDICES: &str = "scene.uv_indices";
-pub(crate) const MATERIALS: &str = "scene.materials";
-pub(crate) const MATERIAL_INDICES: &str = "scene.material_indices";
-pub(crate) const TEXELS: &str = "scene.texels";
-/// The uniform of `shared/camera.wgsl`.
-pub const CAMERA: &str = "camera";
-/// The uniform of `shared/unprojection.wgsl`.
-pub const UNPROJECTION: &str = "unprojection";
-/// The uniform of `shared/light.wgsl`.
-pub const LIGHT: &str = "light";
-/// The uniform of `shared/light_area.wgsl`.
-pub const LIGHT_AREA: &str = "light_area";
+/// Names, and the list of all of them.
+macro_rules! names {
+    ($($(#[$doc:meta])* $visible:vis $name:ident = $text:literal;)+) => {
+        $($(#[$doc])* $visible const $name: &str = $text;)+
+        pub(crate) const NAMES: &[&str] = &[$($name),+];
+    };
+}
 
-pub(crate) const NAMES: [&str; 20] = [
-    POSITIONS,
-    INDICES,
-    NORMALS,
-    NORMAL_INDICES,
-    ADJACENCY,
-    BVH_NODES,
-    BVH_PRIMITIVES,
-    LIGHT_SPACE_NODES,
-    LIGHT_SPACE_PRIMITIVES,
-    TLAS,
-    MASKS,
-    UVS,
-    UV_INDICES,
-    MATERIALS,
-    MATERIAL_INDICES,
-    TEXELS,
-    CAMERA,
-    UNPROJECTION,
-    LIGHT,
-    LIGHT_AREA,
-];
+names! {
+    pub(crate) POSITIONS = "scene.positions";
+    pub(crate) INDICES = "scene.indices";
+    pub(crate) NORMALS = "scene.normals";
+    pub(crate) NORMAL_INDICES = "scene.normal_indices";
+    pub(crate) ADJACENCY = "scene.adjacency";
+    pub(crate) BVH_NODES = "scene.bvh_nodes";
+    pub(crate) BVH_PRIMITIVES = "scene.bvh_primitives";
+    pub(crate) LIGHT_SPACE_NODES = "scene.light_space_nodes";
+    pub(crate) LIGHT_SPACE_PRIMITIVES = "scene.light_space_primitives";
+    pub(crate) TLAS = "scene.tlas";
+    /// Name of the buffer that `shared/masks.wgsl` reads: no items in a scene where no triangle is
+    /// masked or double-sided.
+    pub MASKS = "scene.masks";
+    pub(crate) UVS = "scene.uvs";
+    pub(crate) UV_INDICES = "scene.uv_indices";
+    pub(crate) MATERIALS = "scene.materials";
+    pub(crate) MATERIAL_INDICES = "scene.material_indices";
+    pub(crate) TEXELS = "scene.texels";
+    /// The uniform of `shared/camera.wgsl`.
+    pub CAMERA = "camera";
+    /// The uniform of `shared/unprojection.wgsl`.
+    pub UNPROJECTION = "unprojection";
+    /// The uniform of `shared/light.wgsl`.
+    pub LIGHT = "light";
+    /// The uniform of `shared/light_area.wgsl`.
+    pub LIGHT_AREA = "light_area";
+}
 
 /// Returns a number that no provider of this process has counted yet: equal versions mean equal
 /// content, across all providers.

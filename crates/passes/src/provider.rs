@@ -145,7 +145,7 @@ impl SceneProvider {
     /// Notes what was made; of lights, which list they are of.
     fn note(&mut self, name: &str, how: How, began: Instant) {
         let time = began.elapsed();
-        let known = || NAMES.into_iter().find(|known| *known == name);
+        let known = || NAMES.iter().copied().find(|known| *known == name);
         let Some(name) = lights::list_of(name).or_else(known) else {
             return;
         };
@@ -445,13 +445,13 @@ impl SceneProvider {
 fn unknown(name: &str) -> Error {
     Error::Unknown {
         name: name.to_owned(),
-        known: NAMES.map(str::to_owned).to_vec(),
+        known: NAMES.iter().copied().map(str::to_owned).collect(),
     }
 }
 
 impl Describe for SceneProvider {
     fn names(&self) -> Vec<String> {
-        let names = NAMES.into_iter().map(str::to_owned);
+        let names = NAMES.iter().copied().map(str::to_owned);
         names.chain(lights::names(self.lights().len())).collect()
     }
 

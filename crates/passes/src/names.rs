@@ -108,9 +108,9 @@ impl<T: PartialEq> Lately<T> {
 #[derive(Clone, Debug)]
 pub(crate) struct Versions {
     pub eye: Lately<Eye>,
-    light: Lately<LightKind>,
+    pub light: Lately<LightKind>,
     /// All lights of the scene, or the view's own.
-    lights: Lately<Vec<LightKind>>,
+    pub lights: Lately<Vec<LightKind>>,
     /// The light, and the lights, each with the shape that it is laid around.
     light_over: Lately<[u64; 2]>,
     lights_over: Lately<[u64; 2]>,
@@ -135,14 +135,6 @@ impl Versions {
             winding: next_version(),
             mesh: next_version(),
         }
-    }
-
-    pub fn light(&self) -> LightKind {
-        self.light.now
-    }
-
-    pub fn lights(&self) -> &[LightKind] {
-        &self.lights.now
     }
 
     pub fn set_light(&mut self, light: LightKind) {

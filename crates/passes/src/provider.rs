@@ -313,7 +313,7 @@ impl SceneProvider {
 
     /// The light.
     pub fn light(&self) -> LightKind {
-        self.versions.light()
+        self.versions.light.now
     }
 
     /// Which of [`lights`](Self::lights) the light is; the first, if it is none of them.
@@ -325,7 +325,7 @@ impl SceneProvider {
 
     /// All lights of the scene, or the view's own.
     pub fn lights(&self) -> &[LightKind] {
-        self.versions.lights()
+        &self.versions.lights.now
     }
 
     /// Another light. A plan depends on the light's kind: what was planned under a light of another

@@ -222,12 +222,6 @@ impl From<DirectionalLight> for LightKind {
     }
 }
 
-impl From<&DirectionalLight> for LightKind {
-    fn from(light: &DirectionalLight) -> Self {
-        Self::Directional(*light)
-    }
-}
-
 impl From<SpotLight> for LightKind {
     fn from(light: SpotLight) -> Self {
         Self::Spot(light)
@@ -240,9 +234,9 @@ impl From<PointLight> for LightKind {
     }
 }
 
-impl From<&LightKind> for LightKind {
-    fn from(light: &LightKind) -> Self {
-        *light
+impl<L: Copy + Into<LightKind>> From<&L> for LightKind {
+    fn from(light: &L) -> Self {
+        (*light).into()
     }
 }
 

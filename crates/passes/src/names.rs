@@ -70,10 +70,10 @@ pub(crate) fn next_version() -> u64 {
 /// that it had: executors that have seen it have nothing to do.
 #[derive(Clone, Debug)]
 pub(crate) struct Lately<T> {
-    /// What is set.
+    /// The value that is set.
     pub now: T,
     number: u64,
-    /// What was set before.
+    /// Values that were set before.
     known: Vec<(T, u64)>,
 }
 

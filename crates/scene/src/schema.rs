@@ -1,7 +1,7 @@
 //! The JSON Schema of scene files (feature `schema`).
 
 use crate::{
-    View,
+    camera::View,
     scene_file::{NamedLightText, PathText, SceneFile},
 };
 use schemars::{JsonSchema, SchemaGenerator};

@@ -1,7 +1,7 @@
 //! Views and the cameras they make on a given viewport.
 
 use crate::{
-    light::{DirectionalLight, onto_axes},
+    light::onto_axes,
     light_kind::{Light, own_light},
     vector::Vector,
 };
@@ -32,7 +32,7 @@ pub struct View {
     pub far: f64,
     /// One sun in the place of the scene's lights.
     #[serde(default, deserialize_with = "own_light")]
-    #[cfg_attr(feature = "schema", schemars(with = "Option<DirectionalLight>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<crate::DirectionalLight>"))]
     pub light: Option<Light>,
 }
 

@@ -13,7 +13,7 @@ use crate::{
     document::{
         flat::{flat, keep},
         materials::{Material, TextureEntry},
-        typed::{Document, What, each_entry},
+        typed::Document,
     },
     errors::{compose::ComposeError, resource::SizeError, shader::ShaderError},
     instantiate::params::{Claim, Surroundings, checked, claims},
@@ -229,7 +229,7 @@ impl Graph {
 
     /// The open includes of the document: each one's name, and the document that stands there.
     pub fn openings(&self) -> impl Iterator<Item = (&str, &str)> {
-        let openings = self.document.openings().into_iter();
+        let openings = self.document.openings();
         openings.map(|(name, include)| (name.as_str(), include.graph.as_str()))
     }
 
@@ -346,11 +346,7 @@ impl Graph {
             }
         }
         for (unused, shader) in self.unused_in_shaders() {
-            reports.warn(ShaderError::Unused {
-                what: unused.what,
-                name: unused.name,
-                shader,
-            });
+            reports.warn(ShaderError::Unused(unused.what, unused.name, shader));
         }
     }
 
@@ -365,24 +361,19 @@ impl Graph {
                 constants.insert(name);
             }
         });
-        each_entry(&self.document.entries, &mut |entry| {
-            let What::Pass(pass) = &entry.what else {
-                return;
+        for shader in self.document.passes().flat_map(|pass| &pass.shaders) {
+            let mut variants = self.shaders.variants(&self.document, shader);
+            let Some(first) = variants.next() else {
+                continue;
             };
-            for shader in &pass.shaders {
-                let mut variants = self.shaders.variants(&self.document, shader);
-                let Some(first) = variants.next() else {
-                    continue;
-                };
-                let mut unused = finder.find(first, &constants);
-                for other in variants {
-                    let other = finder.find(other, &constants);
-                    unused.retain(|unused| other.contains(unused));
-                }
-                unused.retain(|unused| found.iter().all(|(known, _)| known != unused));
-                found.extend(unused.into_iter().map(|it| (it, first.file().to_owned())));
+            let mut unused = finder.find(first, &constants);
+            for other in variants {
+                let other = finder.find(other, &constants);
+                unused.retain(|unused| other.contains(unused));
             }
-        });
+            unused.retain(|unused| found.iter().all(|(known, _)| known != unused));
+            found.extend(unused.into_iter().map(|it| (it, first.file().to_owned())));
+        }
         found
     }
 
@@ -405,11 +396,9 @@ fn asked_for(documents: &[&Document]) -> wgt::Features {
                 features |= flag;
             }
         });
-        each_entry(&document.entries, &mut |entry| {
-            if let What::Pass(pass) = &entry.what {
-                features |= pass.features;
-            }
-        });
+        for pass in document.passes() {
+            features |= pass.features;
+        }
     }
     features
 }

@@ -51,7 +51,7 @@ mod sums;
 mod tree;
 mod visible;
 
-pub use area::{ground_truth, shade_area};
+pub use area::ground_truth;
 pub use blockers::{BlockerCounts, blockers};
 pub use edge::{Distances, EdgeDistances};
 pub use error::Error;

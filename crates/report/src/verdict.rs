@@ -427,9 +427,9 @@ mod tests {
         assert_eq!(
             said,
             [
-                "Take `light_buffer`, whatever moves: 21.0 ms a frame. It is exact here and 4.8 times \
-                 as fast as `rt`, the next such method. `nsm` is 2.1 times as fast and wrong on \
-                 4.700 % of the surfaces that face the light."
+                "Take `light_buffer`, whatever moves: 21.0 ms a frame. It is exact here and 4.8 \
+                 times as fast as `rt`, the next such method. `nsm` is 2.1 times as fast and wrong \
+                 on 4.700 % of the surfaces that face the light."
             ]
         );
     }
@@ -447,11 +447,11 @@ mod tests {
             said,
             [
                 "Take `rt` while light or meshes move: 70.0 ms a frame. It is exact here and 5.4 \
-                 times as fast as `crsma_full`, the next such method. `nsm` is 3.5 times as fast and \
-                 wrong on 0.009 % of the surfaces that face the light.",
+                 times as fast as `crsma_full`, the next such method. `nsm` is 3.5 times as fast \
+                 and wrong on 0.009 % of the surfaces that face the light.",
                 "Take `crsma_full` while only the camera moves: 34.0 ms a frame. It is exact here \
-                 and 2.1 times as fast as `rt`, the next such method. `nsm` is 3.4 times as fast and \
-                 wrong on 0.009 % of the surfaces that face the light.",
+                 and 2.1 times as fast as `rt`, the next such method. `nsm` is 3.4 times as fast \
+                 and wrong on 0.009 % of the surfaces that face the light.",
             ]
         );
     }
@@ -464,8 +464,8 @@ mod tests {
             said,
             [
                 "None is exact here. `crsm` is the least wrong (wrong on 0.020 % of the surfaces \
-                 that face the light, 40.0 ms a frame). `nsm` is 4.0 times as fast (wrong on 0.500 % \
-                 of the surfaces that face the light)."
+                 that face the light, 40.0 ms a frame). `nsm` is 4.0 times as fast (wrong on 0.500 \
+                 % of the surfaces that face the light)."
             ]
         );
         let (_, said) = outcome(&[run("a", 0, 10.0, 10.0), run("b", 0, 10.2, 10.2)]);
@@ -480,8 +480,8 @@ mod tests {
         assert_eq!(
             said,
             [
-                "Take `rt`, whatever moves: 10.0 ms a frame (4.00 while only the camera moves). It is \
-                 exact here."
+                "Take `rt`, whatever moves: 10.0 ms a frame (4.00 while only the camera moves). It \
+                 is exact here."
             ]
         );
         assert_eq!(outcome(&[unavailable("rt_hw")]), (None, Vec::new()));
@@ -509,8 +509,8 @@ mod tests {
         assert_eq!(
             said,
             [
-                "Of the 42 % that can be judged: Take `hybrid_pcf`: 30.0 ms a frame. It is right on \
-                 all of these. `nsm` is 3.3 times as fast and wrong on 0.121 % of these.",
+                "Of the 42 % that can be judged: Take `hybrid_pcf`: 30.0 ms a frame. It is right \
+                 on all of these. `nsm` is 3.3 times as fast and wrong on 0.121 % of these.",
                 "On the other 58 % the right answer hangs on rounding: no method is right or wrong \
                  there. From the reference's choice differ `hybrid_pcf` 2.073 % (the least) and \
                  `nsm` 28.800 % (the most).",

@@ -82,9 +82,9 @@ pub struct Prepared {
 }
 
 impl MeasureContext<'_> {
-    /// Runs and judges a method on one view; [`times`](Self::times) it together with others. A method
-    /// that remembers is judged in its steady state: what is timed behind that does not change what
-    /// it shows.
+    /// Runs and judges a method on one view; [`times`](Self::times) times it together with others.
+    /// A method that remembers is judged in its steady state: what is timed behind that does not
+    /// change what it shows.
     ///
     /// # Errors
     /// A method that the device refuses, outputs that are not a shadow method's

@@ -329,9 +329,9 @@ impl<'a> Series<'a> {
         Ok(())
     }
 
-    /// Plans and runs a method by `run`, whose step has so many frames. One that this adapter cannot
-    /// run, or whose outputs are not a shadow method's, yields a [`Run`] that says why: the others
-    /// are worth measuring all the same.
+    /// Plans and runs a method by `run`, whose step has so many frames. One that this adapter
+    /// cannot run, or whose outputs are not a shadow method's, yields a [`Run`] that says why: the
+    /// others are worth measuring all the same.
     ///
     /// # Errors
     /// Ctrl-C, a lost device, a picture that cannot be written.

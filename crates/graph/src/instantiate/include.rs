@@ -197,14 +197,11 @@ pub(super) fn params(
     }
     values_asked(include, document, &mut set, at);
     let outer = Arc::clone(&at.instance().params);
-    let exposed = include.expose.iter().map(|name| {
-        let own = if include.is_named {
-            format!("{}.{}", entry.name.value, **name)
-        } else {
-            name.value.clone()
-        };
-        (name.as_str(), own)
-    });
+    let exposed = include
+        .expose
+        .names
+        .iter()
+        .map(|name| (name.as_str(), entry.outer_name(include, name)));
     let given = Given {
         exposed: exposed.collect(),
         outer: &outer,
@@ -225,7 +222,11 @@ fn values_asked(
         let name = &param.name.value;
         let is_asked = param.default.is_none()
             && !set.contains_key(name)
-            && include.expose.iter().all(|exposed| **exposed != *name);
+            && include
+                .expose
+                .names
+                .iter()
+                .all(|exposed| **exposed != *name);
         let outer = &at.instance().params;
         if !is_asked || outer.bound(name).is_some() {
             continue;

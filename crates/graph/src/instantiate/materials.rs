@@ -123,11 +123,10 @@ fn texture(
 fn named_format(expr: &Expr, at: &mut impl Sizing) -> Result<wgt::TextureFormat, ErrorGuaranteed> {
     match eval::value(expr, at)? {
         Value::Format(format) => Ok(format),
-        found => Err(at.reports().report(EvaluationError::Type {
-            span: expr.span.clone(),
-            expected: "a format",
-            found,
-        })),
+        found => {
+            let error = EvaluationError::Type(expr.span.clone(), "a format", found);
+            Err(at.reports().report(error))
+        }
     }
 }
 

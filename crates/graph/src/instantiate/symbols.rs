@@ -885,10 +885,10 @@ impl Environment for At<'_, '_, '_> {
             (Attribute::Count, ResourceKind::Buffer(_) | ResourceKind::Provided(_)) => {
                 parts::uncounted(resource, of)
             }
-            _ => EvaluationError::NoAttribute {
-                span: span.clone(),
-                of: format!("`{}`, {},", resource.name, resource.kind.describe()),
-            },
+            _ => {
+                let of = format!("`{}`, {},", resource.name, resource.kind.describe());
+                EvaluationError::NoAttribute(span.clone(), of)
+            }
         };
         let counts = matches!(error, EvaluationError::NoCount(_));
         let reported = self.report(error);

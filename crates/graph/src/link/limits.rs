@@ -146,13 +146,13 @@ pub(super) fn stages(
     if let Some(index) = vertex {
         let is_points = draw.primitive.topology == wgt::PrimitiveTopology::PointList;
         let at = entry(shader, index);
-        if let Some(attribute) = Varyings::inputs(shader, index).locations.first() {
+        if let Some(attribute) = Varyings::inputs(&shader.module, index).locations.first() {
             return Err(reports.report(LimitError::Attribute {
                 entry: at,
                 location: attribute.location,
             }));
         }
-        let outputs = Varyings::outputs(shader, index);
+        let outputs = Varyings::outputs(&shader.module, index);
         let locations = most.saturating_sub(outputs.builtins);
         check_locations(&at, "writes", &outputs, locations, reports)?;
         let builtins = outputs.builtins + u32::from(is_points);
@@ -162,7 +162,7 @@ pub(super) fn stages(
         return Ok(());
     };
     let at = entry(shader, fragment);
-    let inputs = Varyings::inputs(shader, fragment);
+    let inputs = Varyings::inputs(&shader.module, fragment);
     check_locations(&at, "reads", &inputs, most, reports)?;
     check_varyings(&at, "reads", &inputs, inputs.builtins, most, reports)?;
     let most = limits.max_color_attachments;
@@ -171,12 +171,14 @@ pub(super) fn stages(
         check_locations(
             &at,
             "writes",
-            &Varyings::outputs(shader, fragment),
+            &Varyings::outputs(&shader.module, fragment),
             most,
             reports,
         )?;
     }
-    let given = vertex.map_or_else(Varyings::default, |index| Varyings::outputs(shader, index));
+    let given = vertex.map_or_else(Varyings::default, |index| {
+        Varyings::outputs(&shader.module, index)
+    });
     let mut wrong = None;
     for taken in &inputs.locations {
         if let Some(why) = misfit(taken, &given.locations) {

@@ -10,6 +10,7 @@ use super::{
     symbols::SymbolTable,
 };
 use crate::{
+    compose::loaded::Loaded,
     diagnostics::reports::{ErrorGuaranteed, Reports},
     document::{
         materials::{Input, InputKind},
@@ -18,7 +19,6 @@ use crate::{
     },
     errors::instantiate::InterfaceError,
     expressions::eval,
-    graph::Graph,
     language::{name::Name, syntax::Leaf},
     param::ParamType,
     provider::Import,
@@ -55,7 +55,7 @@ pub(super) struct Builder<'a, 'r> {
 
 /// Flattens a document with all that it includes; `merges`: those of one content are one.
 pub(crate) fn flatten<'a>(
-    graph: &'a Graph,
+    graph: &'a Loaded,
     request: &'a PlanRequest<'a>,
     params: Params,
     merges: bool,

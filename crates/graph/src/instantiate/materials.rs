@@ -5,11 +5,11 @@ use super::{
     state::Declared,
 };
 use crate::{
+    compose::loaded::Loaded,
     diagnostics::reports::{ErrorGuaranteed, Reports},
     document::materials::{BufferEntry, FormatEntry, Material, Mips, SamplerEntry, TextureEntry},
     errors::{evaluation::EvaluationError, resource::SizeError},
     expressions::eval,
-    graph::Graph,
     language::{syntax::Expr, value::Value},
     picture::Picture,
     request::PlanRequest,
@@ -23,7 +23,7 @@ use std::sync::Arc;
 pub(super) fn kind(
     declared: &Declared,
     full_name: &str,
-    (graph, request): (&Graph, &PlanRequest<'_>),
+    (graph, request): (&Loaded, &PlanRequest<'_>),
     at: &mut impl Sizing,
 ) -> Result<(ResourceKind, Option<Growth>), ErrorGuaranteed> {
     let (material, is_constant) = match declared.material() {
@@ -58,7 +58,7 @@ pub(super) fn kind(
 fn texture(
     entry: &TextureEntry,
     declared: &Declared,
-    graph: &Graph,
+    graph: &Loaded,
     at: &mut impl Sizing,
 ) -> Result<Texture, ErrorGuaranteed> {
     let format = match &entry.format {
@@ -136,7 +136,7 @@ fn picture(
     file: &Located<String>,
     declared: &Declared,
     format: wgt::TextureFormat,
-    graph: &Graph,
+    graph: &Loaded,
     reports: &mut Reports,
 ) -> Result<Picture, ErrorGuaranteed> {
     let picture = graph.pictures.get(&declared.document, file)?;
@@ -185,7 +185,7 @@ fn buffer(entry: &BufferEntry, at: &mut impl Sizing) -> Result<Buffer, ErrorGuar
 fn check_texture(
     entry: &TextureEntry,
     texture: &Texture,
-    (graph, request): (&Graph, &PlanRequest<'_>),
+    (graph, request): (&Loaded, &PlanRequest<'_>),
     reports: &mut Reports,
 ) -> Result<(), ErrorGuaranteed> {
     let format = texture.format;

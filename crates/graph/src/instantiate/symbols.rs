@@ -7,13 +7,13 @@ use super::{
     state::{Declared, DeclaredValue, State, ValueState},
 };
 use crate::{
+    compose::loaded::Loaded,
     diagnostics::reports::{ErrorGuaranteed, Reports},
     errors::{evaluation::EvaluationError, instantiate::InterfaceError},
     expressions::{
         eval::{self, Environment},
         parser,
     },
-    graph::Graph,
     language::{
         name::{Name, wgsl_identifier},
         syntax::{Attribute, Expr, Leaf, Reference, Segment, Selection},
@@ -41,7 +41,7 @@ const NESTED: usize = 8;
 
 /// Everything that names of a graph can mean in one plan.
 pub(crate) struct SymbolTable<'a> {
-    pub graph: &'a Graph,
+    pub graph: &'a Loaded,
     pub request: &'a PlanRequest<'a>,
     pub scopes: Scopes,
     pub resources: Vec<Resource>,
@@ -61,7 +61,7 @@ pub(crate) struct SymbolTable<'a> {
 }
 
 impl<'a> SymbolTable<'a> {
-    pub fn new(graph: &'a Graph, request: &'a PlanRequest<'a>) -> Self {
+    pub fn new(graph: &'a Loaded, request: &'a PlanRequest<'a>) -> Self {
         let names = request
             .provider
             .names()

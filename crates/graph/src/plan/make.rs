@@ -2,12 +2,13 @@
 
 use super::{
     backend::not_proven,
-    memory::growing,
-    plan::{CulledPass, Plan},
+    memory::{Memory, growing},
     readable::{check_captures, readable},
+    summary::refused_light,
     usages,
 };
 use crate::{
+    compose::loaded::Loaded,
     diagnostics::{diagnostic::Diagnostic, reports::Reports},
     errors::{
         flow::OrderError, instantiate::InterfaceError, plan::OutputError, resource::SizeError,
@@ -21,7 +22,6 @@ use crate::{
         schedule::{Schedule, sequence},
         view::GraphView,
     },
-    graph::Graph,
     instantiate::{
         build::flatten,
         flat::{Merge, PlanInputs},
@@ -30,26 +30,56 @@ use crate::{
     },
     link::{
         linker::{Linked, link},
-        pass::{Access, PassId},
+        pass::{Access, LinkedPass, PassId},
     },
     param::ParamValue,
     request::{PlanRequest, Request},
     resource::{Buffer, Growth, Origin, Resource, ResourceId, ResourceKind, Target},
     source::span::Located,
 };
-use std::collections::{BTreeMap, BTreeSet};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::Arc,
+};
+
+/// A plan, which [`Plan`](super::plan::Plan) shows to the host.
+#[derive(Debug)]
+pub(super) struct Planned {
+    pub graph: Arc<Loaded>,
+    pub request: Request,
+    pub values: BTreeMap<String, ParamValue>,
+    pub named_values: Vec<(String, String)>,
+    pub resources: Vec<Resource>,
+    pub passes: Vec<LinkedPass>,
+    pub schedule: Schedule,
+    pub readable: Vec<(String, Target)>,
+    pub culled: Vec<CulledPass>,
+    pub warnings: Vec<Diagnostic>,
+    /// The params of the root document that it depends on; of others, passes' uniforms alone hold
+    /// the values.
+    pub depends_on: BTreeSet<String>,
+}
+
+/// A pass that does not run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CulledPass {
+    /// Name.
+    pub name: String,
+    /// Why.
+    pub reason: String,
+}
 
 /// Result of planning: the plan, if nothing is wrong; the mistakes; the values that decide which
 /// entries exist.
 #[derive(Default)]
 pub(super) struct Outcome {
-    pub plan: Option<Plan>,
+    pub plan: Option<Planned>,
     pub found: Vec<Diagnostic>,
     pub plan_inputs: PlanInputs,
 }
 
 /// The plan, or everything that is wrong, even if some of the document could not be read.
-pub(super) fn plan_all(graph: &Graph, request: &PlanRequest<'_>) -> Outcome {
+pub(super) fn plan_all(graph: &Arc<Loaded>, request: &PlanRequest<'_>) -> Outcome {
     let mut reports = Reports::default();
     reports.any_adapter = request.any_adapter;
     let params = checked(
@@ -102,12 +132,12 @@ pub(super) fn plan_all(graph: &Graph, request: &PlanRequest<'_>) -> Outcome {
 /// Orders and culls what was linked, unless something is wrong with it. The plan knows neither the
 /// warnings nor the params that it depends on yet.
 fn schedule(
-    graph: &Graph,
+    graph: &Arc<Loaded>,
     mut linked: Linked<'_>,
     request: &PlanRequest<'_>,
     values: BTreeMap<String, ParamValue>,
     reports: &mut Reports,
-) -> Option<Plan> {
+) -> Option<Planned> {
     let is_complete = linked.first_invalid.is_none();
     let first_invalid = linked.first_invalid.unwrap_or(linked.passes.len());
     let order = order(view(&linked), first_invalid, reports);
@@ -174,8 +204,8 @@ fn schedule(
         conditions,
         aliases,
     };
-    Some(Plan {
-        graph: graph.clone(),
+    Some(Planned {
+        graph: Arc::clone(graph),
         request: Request::new(request),
         values,
         named_values,
@@ -190,14 +220,17 @@ fn schedule(
 }
 
 fn finish(
-    mut plan: Plan,
+    mut plan: Planned,
     request: &PlanRequest<'_>,
     mut reports: Reports,
     plan_inputs: PlanInputs,
 ) -> Outcome {
     plan.depends_on = std::mem::take(&mut reports.depends_on);
-    let too_much = plan.check_memory(request.memory_limit);
-    if let Some(error) = too_much.or_else(|| plan.refused_light()) {
+    let memory = plan.memory();
+    let too_much = memory.check(request.memory_limit, plan.graph.place());
+    let bound = plan.schedule.lifetimes.keys();
+    let bound = bound.map(|id| &plan.resources[id.0]);
+    if let Some(error) = too_much.or_else(|| refused_light(&plan.graph.document, bound)) {
         reports.report(error);
         return Outcome::failed(reports, plan_inputs);
     }
@@ -206,6 +239,15 @@ fn finish(
         plan: Some(plan),
         found: Vec::new(),
         plan_inputs,
+    }
+}
+
+impl Planned {
+    pub fn memory(&self) -> Memory<'_> {
+        Memory {
+            resources: &self.resources,
+            schedule: &self.schedule,
+        }
     }
 }
 

@@ -1,10 +1,10 @@
 //! Outputs and captures that can be read back, and why some cannot.
 
 use crate::{
+    compose::loaded::Loaded,
     diagnostics::reports::Reports,
     errors::plan::OutputError,
     expressions::eval::{self, Environment},
-    graph::Graph,
     instantiate::{
         lower::LoweredPass,
         symbols::{At, SymbolTable},
@@ -16,13 +16,14 @@ use crate::{
 
 /// The targets of all outputs and captures that are wanted.
 pub(super) fn readable(
-    graph: &Graph,
+    graph: &Loaded,
     request: &PlanRequest<'_>,
     at: &mut At<'_, '_, '_>,
     written: impl Fn(&Target) -> bool,
 ) -> Vec<(String, Target)> {
     let mut readable = Vec::new();
-    let declared = graph.outputs();
+    let outputs = graph.document.material_outputs();
+    let declared: Vec<&str> = outputs.map(|output| output.name.as_str()).collect();
     for wanted in request.outputs.iter().flatten() {
         if !declared.contains(&wanted.as_str()) {
             at.reports().report(OutputError::NoOutput {

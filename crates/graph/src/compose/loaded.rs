@@ -8,7 +8,7 @@ use crate::{
     diagnostics::{
         diagnostic::{Diagnostic, Severity},
         list::Diagnostics,
-        reports::{ErrorGuaranteed, Reports},
+        reports::{Reported, Reports},
     },
     document::{
         materials::{Material, TextureEntry},
@@ -51,14 +51,10 @@ pub(crate) struct Loaded {
 
 /// The pictures of all documents, by the path of the document and their own.
 #[derive(Debug, Default)]
-pub(crate) struct Pictures(HashMap<(Arc<str>, String), Result<Picture, ErrorGuaranteed>>);
+pub(crate) struct Pictures(HashMap<(Arc<str>, String), Reported<Picture>>);
 
 impl Pictures {
-    pub fn get(
-        &self,
-        document: &Document,
-        file: &Located<String>,
-    ) -> Result<Picture, ErrorGuaranteed> {
+    pub fn get(&self, document: &Document, file: &Located<String>) -> Reported<Picture> {
         let key = (Arc::clone(&document.file.name), file.value.clone());
         self.0[&key].clone()
     }

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     compose::loaded::Loaded,
-    diagnostics::reports::{ErrorGuaranteed, Reports},
+    diagnostics::reports::{ErrorGuaranteed, Reported, Reports},
     document::{
         materials::{Input, InputKind},
         raw::Invalid,
@@ -36,7 +36,7 @@ use std::{
 /// documents that double with each include: more would take absurd time and memory.
 const MOST: usize = 16_384;
 
-pub(super) struct Builder<'a, 'r> {
+pub(super) struct Builder<'a> {
     pub symbols: SymbolTable<'a>,
     pub(super) passes: Vec<FlatPass<'a>>,
     first_invalid: Option<usize>,
@@ -50,7 +50,6 @@ pub(super) struct Builder<'a, 'r> {
     said: Vec<(&'a Located<Name>, &'a Located<String>, bool)>,
     spent: usize,
     full: Option<ErrorGuaranteed>,
-    pub reports: &'r mut Reports,
 }
 
 /// Flattens a document with all that it includes; `merges`: those of one content are one.
@@ -59,10 +58,10 @@ pub(crate) fn flatten<'a>(
     request: &'a PlanRequest<'a>,
     params: Params,
     merges: bool,
-    reports: &mut Reports,
+    reports: Reports,
 ) -> Flat<'a> {
     let mut builder = Builder {
-        symbols: SymbolTable::new(graph, request),
+        symbols: SymbolTable::new(graph, request, reports),
         passes: Vec::new(),
         first_invalid: None,
         interfaces: Vec::new(),
@@ -73,7 +72,6 @@ pub(crate) fn flatten<'a>(
         said: Vec::new(),
         spent: 0,
         full: None,
-        reports,
     };
     let document = &graph.document;
     let instance = builder.symbols.scopes.add_instance(Instance {
@@ -96,7 +94,7 @@ pub(crate) fn flatten<'a>(
     builder.finish()
 }
 
-impl<'a> Builder<'a, '_> {
+impl<'a> Builder<'a> {
     /// The features that a document cannot do without.
     pub fn require(&mut self, document: &Document) {
         for (feature, flag) in &document.requires {
@@ -106,7 +104,7 @@ impl<'a> Builder<'a, '_> {
                     feature: feature.clone(),
                 };
                 // The report suffices: nothing here depends on the result.
-                let _ = self.reports.unsupported(error);
+                let _ = self.symbols.reports.unsupported(error);
             }
         }
     }
@@ -123,7 +121,7 @@ impl<'a> Builder<'a, '_> {
                     });
                     Symbol::Target(self.symbols.whole(id))
                 }
-                Err(error) => Symbol::Invalid(self.reports.report(error)),
+                Err(error) => Symbol::Invalid(self.symbols.reports.report(error)),
             };
             self.symbols.scopes.declare(scope, &name.value, symbol);
         }
@@ -220,8 +218,7 @@ impl<'a> Builder<'a, '_> {
             }
             let name = material.name();
             let instance = self.symbols.scopes.instance_of(scope);
-            let symbol = match include::overridden(instance, material, &self.symbols, self.reports)
-            {
+            let symbol = match include::overridden(instance, material, &mut self.symbols) {
                 Some(Ok(target)) => Symbol::Target(target),
                 Some(Err(reported)) => Symbol::Invalid(reported),
                 None => {
@@ -248,7 +245,7 @@ impl<'a> Builder<'a, '_> {
         let mut replaced = self.symbols.scopes.instance(instance).replaced.clone();
         for entry in &document.imports {
             // A condition without a value was reported.
-            let mut at = self.symbols.at(scope.begin(), None, self.reports);
+            let mut at = self.symbols.at(scope.begin(), None);
             if self.plan_inputs.is_there(entry.condition.as_ref(), &mut at) == Ok(true) {
                 let shaders = &self.symbols.graph.shaders;
                 shaders.replace(&mut replaced, &entry.of, &entry.is);
@@ -289,16 +286,12 @@ impl<'a> Builder<'a, '_> {
         self.first_invalid.get_or_insert(above);
     }
 
-    fn entry(
-        &mut self,
-        entry: &'a Entry,
-        context: &EntryContext<'a>,
-    ) -> Result<(), ErrorGuaranteed> {
+    fn entry(&mut self, entry: &'a Entry, context: &EntryContext<'a>) -> Reported<()> {
         if let Some(reported) = self.full {
             return Err(reported);
         }
         let scope = context.scope;
-        let mut at = self.symbols.at(scope.begin(), None, self.reports);
+        let mut at = self.symbols.at(scope.begin(), None);
         if !self
             .plan_inputs
             .is_there(entry.condition.as_ref(), &mut at)?
@@ -361,7 +354,7 @@ impl<'a> Builder<'a, '_> {
         entry: &'a Entry,
         index: Option<u32>,
         context: &EntryContext<'a>,
-    ) -> Result<Names, ErrorGuaranteed> {
+    ) -> Reported<Names> {
         let suffix = index.map_or(String::new(), |index| format!("[{index}]"));
         let name = format!("{}{}{suffix}", context.prefix, entry.name.value);
         let position = Position {
@@ -439,7 +432,7 @@ impl<'a> Builder<'a, '_> {
         include: &'a Include,
         position: Position,
         context: &EntryContext<'a>,
-    ) -> Result<Names, ErrorGuaranteed> {
+    ) -> Reported<Names> {
         let document = match &include.document {
             Some(Ok(document)) => document,
             Some(Err(reported)) => {
@@ -451,7 +444,7 @@ impl<'a> Builder<'a, '_> {
         self.require(document);
         let has_namespace = include.is_named || position.index.is_some();
         let place = (position, has_namespace);
-        let mut at = self.symbols.at(position, None, self.reports);
+        let mut at = self.symbols.at(position, None);
         let of_groups = include::said(entry, document, context, &mut at);
         let said = Overrides::new(entry, &of_groups, position);
         let params = include::params(entry, include, document, &said, &mut at);
@@ -501,7 +494,7 @@ impl<'a> Builder<'a, '_> {
         let read_only = include::declare_inputs(scope, document, inputs, scopes);
         let inner = context.inside(scope);
         self.document(document, &inner);
-        let mut at = self.symbols.at(scope.begin(), None, self.reports);
+        let mut at = self.symbols.at(scope.begin(), None);
         let plan_inputs = &mut self.plan_inputs;
         let (names, outputs) = include::outputs(document, &said, plan_inputs, &mut at);
         self.interfaces.push(Interface {
@@ -527,7 +520,7 @@ impl<'a> Builder<'a, '_> {
         entry: &Entry,
         position: Position,
         context: &EntryContext<'a>,
-    ) -> Result<Option<(Run, bool)>, ErrorGuaranteed> {
+    ) -> Reported<Option<(Run, bool)>> {
         let condition = match &entry.run {
             None => return Ok(context.run.clone()),
             Some(RunEntry::Always) => return Ok(Some((Run::Always, true))),
@@ -535,10 +528,7 @@ impl<'a> Builder<'a, '_> {
             Some(RunEntry::OnChange) => return Ok(Some((Run::OnChange, true))),
             Some(RunEntry::When(condition)) => condition,
         };
-        let enabled = eval::boolean(
-            condition,
-            &mut self.symbols.at(position, None, self.reports),
-        )?;
+        let enabled = eval::boolean(condition, &mut self.symbols.at(position, None))?;
         let instance = self.symbols.scopes.document(position.scope);
         let params = Arc::clone(&instance.params);
         let outer = instance.outer.as_ref();
@@ -568,7 +558,7 @@ impl<'a> Builder<'a, '_> {
                 None => name.to_owned(),
             },
             _ => {
-                let value = eval::value(leaf, &mut self.symbols.at(position, None, self.reports));
+                let value = eval::value(leaf, &mut self.symbols.at(position, None));
                 value.map_or_else(|_| leaf.text().to_owned(), |value| value.to_string())
             }
         });
@@ -662,7 +652,7 @@ impl<'a> Builder<'a, '_> {
     fn is_full(&mut self, name: &Located<String>, what: &'static str) {
         self.broken();
         if self.full.is_none() {
-            self.full = Some(self.reports.report(InterfaceError::TooMany {
+            self.full = Some(self.symbols.reports.report(InterfaceError::TooMany {
                 most: MOST,
                 what,
                 at: name.span.clone(),
@@ -677,12 +667,12 @@ impl<'a> Builder<'a, '_> {
         while number < self.symbols.resources.len() {
             let id = ResourceId(number);
             // A broken one is stored as such, and its users find that.
-            let _ = self.symbols.resolve_size(id, self.reports);
+            let _ = self.symbols.resolve_size(id);
             number += 1;
         }
         for (group, name, is_asked) in std::mem::take(&mut self.said) {
             if !is_asked && self.first_invalid.is_none() {
-                self.reports.report(InterfaceError::UnusedInGroup {
+                self.symbols.reports.report(InterfaceError::UnusedInGroup {
                     group: group.value.to_string(),
                     name: name.clone(),
                 });

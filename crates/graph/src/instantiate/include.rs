@@ -8,7 +8,7 @@ use super::{
     symbols::{At, SymbolTable},
 };
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, Reports},
+    diagnostics::reports::Reported,
     document::{
         materials::{Input, InputKind, Material},
         typed::{Document, Entry, Include, Output},
@@ -25,7 +25,7 @@ use crate::{
 use std::{collections::BTreeMap, sync::Arc};
 
 /// A material here that an output is written into, with the place that says so.
-type Bound = (Located<String>, Result<Target, ErrorGuaranteed>);
+type Bound = (Located<String>, Reported<Target>);
 
 /// Settings of groups around an include that its document asks for.
 type Said<'e> = (Vec<Inherited<'e, Reference>>, Vec<Inherited<'e, Expr>>);
@@ -70,7 +70,7 @@ pub(super) fn is_output(document: &Document, input: &Input) -> bool {
 pub(super) fn declare_inputs(
     scope: ScopeId,
     document: &Document,
-    inputs: Vec<Result<Target, ErrorGuaranteed>>,
+    inputs: Vec<Reported<Target>>,
     scopes: &mut Scopes,
 ) -> Vec<(Located<Name>, Target)> {
     let mut read_only = Vec::new();
@@ -93,7 +93,7 @@ pub(super) fn give(
     names: &Names,
     (position, has_namespace): (Position, bool),
     scopes: &mut Scopes,
-) -> Result<(), ErrorGuaranteed> {
+) -> Reported<()> {
     let name = &entry.name.value;
     if let Some(reported) = document.broken_outputs {
         let context = scopes.instance_of(position.scope);
@@ -119,7 +119,7 @@ pub(super) fn said<'e>(
     entry: &'e Entry,
     document: &Document,
     context: &EntryContext<'e>,
-    at: &mut At<'_, '_, '_>,
+    at: &mut At<'_, '_>,
 ) -> Said<'e> {
     let own = |name: &str| entry.bind.iter().any(|(own, _)| **own == *name);
     let mut bind = context.bind.clone();
@@ -168,7 +168,7 @@ pub(super) fn params(
     include: &Include,
     document: &Document,
     said: &Overrides<'_>,
-    at: &mut At<'_, '_, '_>,
+    at: &mut At<'_, '_>,
 ) -> Params {
     let mut set: BTreeMap<String, SetParam> = BTreeMap::new();
     for (name, expr, place) in &said.set {
@@ -176,7 +176,7 @@ pub(super) fn params(
         if !params.any(|param| param.name.value == name.value) {
             let known = document.params.iter().map(|param| param.name.value.clone());
             let known = at.reports().known(known);
-            at.reports().report(InterfaceError::Unused {
+            at.report(InterfaceError::Unused {
                 document: document.file.name.to_string(),
                 name: (*name).clone(),
                 known,
@@ -219,7 +219,7 @@ fn values_asked(
     include: &Include,
     document: &Document,
     set: &mut BTreeMap<String, SetParam>,
-    at: &mut At<'_, '_, '_>,
+    at: &mut At<'_, '_>,
 ) {
     for param in &document.params {
         let name = &param.name.value;
@@ -251,11 +251,8 @@ pub(super) fn outside(
     document: &Document,
     said: &Overrides<'_>,
     (position, has_namespace): (Position, bool),
-    at: &mut At<'_, '_, '_>,
-) -> (
-    BTreeMap<String, Result<Target, ErrorGuaranteed>>,
-    BTreeMap<String, Bound>,
-) {
+    at: &mut At<'_, '_>,
+) -> (BTreeMap<String, Reported<Target>>, BTreeMap<String, Bound>) {
     let (mut scene, mut overrides) = (BTreeMap::new(), BTreeMap::new());
     for (name, reference, place) in &said.bind {
         if has_input(document, name.as_str()) {
@@ -268,7 +265,7 @@ pub(super) fn outside(
             let outputs = document.outputs.iter().map(|output| &output.name.value);
             let known = inputs.chain(outputs).map(ToString::to_string);
             let known = at.reports().known(known);
-            at.reports().report(InterfaceError::Unused {
+            at.report(InterfaceError::Unused {
                 document: document.file.name.to_string(),
                 name: (*name).clone(),
                 known,
@@ -316,9 +313,8 @@ fn passed_on<'d>(
 pub(super) fn overridden(
     instance: InstanceId,
     material: &Material,
-    symbols: &SymbolTable<'_>,
-    reports: &mut Reports,
-) -> Option<Result<Target, ErrorGuaranteed>> {
+    symbols: &mut SymbolTable<'_>,
+) -> Option<Reported<Target>> {
     let overrides = &symbols.scopes.instance(instance).overrides;
     let (name, target) = overrides.get(material.name().as_str())?.clone();
     Some(target.and_then(|target| {
@@ -332,7 +328,7 @@ pub(super) fn overridden(
         if fits {
             Ok(target)
         } else {
-            Err(reports.report(InterfaceError::BoundOutput {
+            Err(symbols.reports.report(InterfaceError::BoundOutput {
                 name,
                 why: format!("this is {}", found.describe()),
                 declared: material.name().span.clone(),
@@ -347,8 +343,8 @@ pub(super) fn input(
     document: &Document,
     include: &Include,
     said: &Overrides<'_>,
-    at: &mut At<'_, '_, '_>,
-) -> Result<Target, ErrorGuaranteed> {
+    at: &mut At<'_, '_>,
+) -> Reported<Target> {
     let name = &input.name.value;
     let bound = said
         .bind
@@ -367,7 +363,7 @@ pub(super) fn input(
                 }
                 let known = at.symbols().scopes.known(at.scope());
                 let known = at.reports().known(known);
-                return Err(at.reports().report(InterfaceError::NoInput {
+                return Err(at.report(InterfaceError::NoInput {
                     document: document.file.name.to_string(),
                     name: input.name.value.to_string(),
                     kind: input.kind.describe_with_format(),
@@ -400,7 +396,7 @@ pub(super) fn input(
         ResourceKind::Texture(texture) => format!("a texture {:?}", texture.format),
         other => other.describe().to_owned(),
     };
-    Err(at.reports().report(InterfaceError::WrongInput {
+    Err(at.report(InterfaceError::WrongInput {
         document: document.file.name.to_string(),
         name: name.to_string(),
         expected: input.kind.describe_with_format(),
@@ -416,7 +412,7 @@ pub(super) fn outputs(
     document: &Document,
     said: &Overrides<'_>,
     plan_inputs: &mut PlanInputs,
-    at: &mut At<'_, '_, '_>,
+    at: &mut At<'_, '_>,
 ) -> (Names, Vec<(Located<Name>, Target)>) {
     let (mut names, mut outputs) = (Names::new(), Vec::new());
     for output in &document.outputs {

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     compose::loaded::Loaded,
-    diagnostics::reports::{ErrorGuaranteed, Reports},
+    diagnostics::reports::{Reported, Reports},
     document::materials::{BufferEntry, FormatEntry, Material, Mips, SamplerEntry, TextureEntry},
     errors::{evaluation::EvaluationError, resource::SizeError},
     expressions::eval,
@@ -25,7 +25,7 @@ pub(super) fn kind(
     full_name: &str,
     (graph, request): (&Loaded, &PlanRequest<'_>),
     at: &mut impl Sizing,
-) -> Result<(ResourceKind, Option<Growth>), ErrorGuaranteed> {
+) -> Reported<(ResourceKind, Option<Growth>)> {
     let (material, is_constant) = match declared.material() {
         material @ Material::Texture(entry) => (material, entry.file.is_some()),
         material @ Material::Buffer(entry) => (material, entry.data.is_some()),
@@ -60,7 +60,7 @@ fn texture(
     declared: &Declared,
     graph: &Loaded,
     at: &mut impl Sizing,
-) -> Result<Texture, ErrorGuaranteed> {
+) -> Reported<Texture> {
     let format = match &entry.format {
         FormatEntry::Named(format) => *format,
         FormatEntry::Expr(expr) => named_format(expr, at)?,
@@ -120,7 +120,7 @@ fn texture(
     })
 }
 
-fn named_format(expr: &Expr, at: &mut impl Sizing) -> Result<wgt::TextureFormat, ErrorGuaranteed> {
+fn named_format(expr: &Expr, at: &mut impl Sizing) -> Reported<wgt::TextureFormat> {
     match eval::value(expr, at)? {
         Value::Format(format) => Ok(format),
         found => Err(at.reports().report(EvaluationError::Type {
@@ -138,7 +138,7 @@ fn picture(
     format: wgt::TextureFormat,
     graph: &Loaded,
     reports: &mut Reports,
-) -> Result<Picture, ErrorGuaranteed> {
+) -> Reported<Picture> {
     let picture = graph.pictures.get(&declared.document, file)?;
     let takes = [
         (entry.size.is_some(), "size"),
@@ -156,7 +156,7 @@ fn picture(
     Ok(picture)
 }
 
-fn buffer(entry: &BufferEntry, at: &mut impl Sizing) -> Result<Buffer, ErrorGuaranteed> {
+fn buffer(entry: &BufferEntry, at: &mut impl Sizing) -> Reported<Buffer> {
     let name = |span: &Span| Located::new(entry.name.value.to_string(), span.clone());
     let count = match (&entry.count, &entry.data) {
         (Some(count), Some(_)) => {
@@ -187,7 +187,7 @@ fn check_texture(
     texture: &Texture,
     (graph, request): (&Loaded, &PlanRequest<'_>),
     reports: &mut Reports,
-) -> Result<(), ErrorGuaranteed> {
+) -> Reported<()> {
     let format = texture.format;
     let feature = format.required_features() - graph.features();
     if !feature.is_empty() {
@@ -262,7 +262,7 @@ fn check_samples(
     texture: &Texture,
     features: wgt::Features,
     reports: &mut Reports,
-) -> Result<(), ErrorGuaranteed> {
+) -> Reported<()> {
     if texture.is_3d || texture.layers > 1 || texture.mips > 1 {
         return Err(reports.report(SizeError::SamplesOfMany(name)));
     }

@@ -1,7 +1,7 @@
 //! Values of params: the root's from the request, an included document's from the including one.
 
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, Reports},
+    diagnostics::reports::{Reported, Reports},
     document::typed::Document,
     errors::{evaluation::EvaluationError, instantiate::ParamError},
     expressions::eval::{self, Environment},
@@ -38,7 +38,7 @@ pub(crate) struct Params {
 #[derive(Clone, Debug)]
 pub(crate) struct BoundParam {
     pub param: Param,
-    pub value: Result<ParamValue, ErrorGuaranteed>,
+    pub value: Reported<ParamValue>,
     /// The param of the root document whose value this is, unchanged.
     pub root: Option<String>,
     /// The params of the root document that it depends on.
@@ -46,7 +46,7 @@ pub(crate) struct BoundParam {
 }
 
 impl BoundParam {
-    fn in_expression(&self) -> Result<Value, ErrorGuaranteed> {
+    fn in_expression(&self) -> Reported<Value> {
         let value = self.value.as_ref();
         value
             .map(|value| self.param.value(value))
@@ -73,18 +73,14 @@ impl Params {
     }
 
     /// The value of a param in an expression, on which whatever is asked for then depends.
-    pub fn value(
-        &self,
-        name: &str,
-        reports: &mut Reports,
-    ) -> Option<Result<Value, ErrorGuaranteed>> {
+    pub fn value(&self, name: &str, reports: &mut Reports) -> Option<Reported<Value>> {
         let bound = self.bound(name)?;
         reports.depend_on(bound.roots.iter());
         Some(bound.in_expression())
     }
 
     /// The value of a param that is handed on as it is: nothing depends on it yet.
-    pub fn forwarded(&self, expr: &Expr) -> Option<Result<Value, ErrorGuaranteed>> {
+    pub fn forwarded(&self, expr: &Expr) -> Option<Reported<Value>> {
         Some(self.bound(expr.as_param()?)?.in_expression())
     }
 
@@ -130,7 +126,7 @@ impl Environment for ParamsAlone<'_> {
         self.context.features.contains(feature)
     }
 
-    fn param(&mut self, name: &str, span: &Span) -> Result<Value, ErrorGuaranteed> {
+    fn param(&mut self, name: &str, span: &Span) -> Reported<Value> {
         match self.params.value(name, self.reports) {
             Some(value) => value,
             None => {
@@ -144,21 +140,16 @@ impl Environment for ParamsAlone<'_> {
         self.params.value(name, self.reports)?.ok()
     }
 
-    fn index(&mut self, of: Option<&Name>, span: &Span) -> Result<u32, ErrorGuaranteed> {
+    fn index(&mut self, of: Option<&Name>, span: &Span) -> Reported<u32> {
         Err(self.report(EvaluationError::NoIndex(span.clone(), of.cloned())))
     }
 
-    fn attribute(
-        &mut self,
-        of: &Reference,
-        _: Attribute,
-        span: &Span,
-    ) -> Result<Value, ErrorGuaranteed> {
+    fn attribute(&mut self, of: &Reference, _: Attribute, span: &Span) -> Reported<Value> {
         let name = of.text().to_owned();
         Err(self.report(EvaluationError::NoSizes(span.clone(), name)))
     }
 
-    fn constant(&mut self, _: &str, span: &Span) -> Result<Value, ErrorGuaranteed> {
+    fn constant(&mut self, _: &str, span: &Span) -> Reported<Value> {
         Err(self.report(EvaluationError::NoShader(span.clone())))
     }
 
@@ -173,7 +164,7 @@ fn default(
     param: &Param,
     context: Surroundings,
     reports: &mut Reports,
-) -> Result<ParamValue, ErrorGuaranteed> {
+) -> Reported<ParamValue> {
     let Some(default) = &param.default else {
         return Ok(param.stand_in());
     };
@@ -231,7 +222,7 @@ pub(crate) fn root(
 /// Value that an include sets a param to.
 pub(crate) struct SetParam {
     pub expr: Located<Expr>,
-    pub value: Result<Value, ErrorGuaranteed>,
+    pub value: Reported<Value>,
     /// The params of the root document that it depends on.
     pub roots: BTreeSet<String>,
 }
@@ -361,7 +352,7 @@ pub(crate) fn checked(
     asked: &BTreeMap<String, ParamValue>,
     context: Surroundings,
     reports: &mut Reports,
-) -> Result<Params, ErrorGuaranteed> {
+) -> Reported<Params> {
     let mut wrong = None;
     for (name, value) in asked {
         let mistake = match find(&document.params, name, &document.file.name) {

@@ -2,7 +2,7 @@
 
 use super::scopes::ScopeId;
 use crate::{
-    diagnostics::reports::ErrorGuaranteed,
+    diagnostics::reports::{ErrorGuaranteed, Reported},
     document::{materials::Material, typed::Document},
     language::{name::Name, syntax::Expr, value::Value},
     source::span::{Located, Span},
@@ -52,7 +52,7 @@ pub(super) enum ValueState {
     Declared,
     /// It is being found: if it is asked for now, it is made of itself.
     Resolving,
-    Known(Result<Value, ErrorGuaranteed>),
+    Known(Reported<Value>),
 }
 
 impl DeclaredValue {

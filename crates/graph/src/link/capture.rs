@@ -8,9 +8,9 @@ use super::{
     steps,
 };
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, Reports},
+    diagnostics::reports::Reported,
     errors::plan::OutputError,
-    instantiate::flat::Run,
+    instantiate::{flat::Run, symbols::SymbolTable},
     kinds::step::{Operand, Scratch, Step},
     provider::Provided,
     request::Capture,
@@ -23,46 +23,47 @@ use crate::{
 pub(super) fn link(
     capture: &Capture,
     passes: &[LinkedPass],
-    scope: &mut PassScope<'_>,
+    symbols: &mut SymbolTable<'_>,
     layouts: &mut Layouts,
-    reports: &mut Reports,
-) -> Result<LinkedPass, ErrorGuaranteed> {
-    let Some(target) = scope.resolve_full(&capture.material, reports) else {
-        let known = reports.known(scope.symbols().full_names());
-        return Err(reports.report(OutputError::NoMaterial {
-            graph: scope.symbols().graph.path().to_owned(),
+) -> Reported<LinkedPass> {
+    let Some(target) = symbols.find_full(&capture.material) else {
+        let known = symbols.reports.known(symbols.full_names());
+        return Err(symbols.reports.report(OutputError::NoMaterial {
+            graph: symbols.graph.path().to_owned(),
             name: capture.material.clone(),
             known,
         }));
     };
     let mut target = target?;
-    if let Some(part) = written_part(scope.get(target.id), &target, passes) {
+    if let Some(part) = written_part(symbols.get(target.id), &target, passes) {
         target.part = part;
     }
-    let kind = copy_of(capture, &target, scope, reports)?;
-    let name = Located::new(capture.name(), scope.symbols().graph.place());
-    let copy = scope.add(name.value.clone(), kind);
-    scope.enter_capture(target, copy);
+    let copy = copy_of(capture, &target, symbols);
+    let copy = symbols.reports.check(copy)?;
+    let name = Located::new(capture.name(), symbols.graph.place());
+    let copy = symbols.add(Resource::new(name.value.clone(), copy, Origin::Own));
     let steps = [Step::Copy {
         from: Operand::Scratch(Scratch(0)),
         to: Operand::Scratch(Scratch(1)),
     }];
-    let mut pass = steps::link(name, CAPTURE, &steps, scope, layouts, reports)?;
     // A capture runs even if the pass that it comes after does not: the change may have been
     // written above that one.
-    pass.run = Run::OnChange;
-    Ok(pass)
+    let pass = LinkedPass::new(name, CAPTURE, Run::OnChange);
+    // Both ends are known by number, neither is a name of a document.
+    let ends = vec![target, symbols.whole(copy)];
+    let mut scope = PassScope::new(pass, ends, symbols, layouts);
+    steps::link(&steps, &mut scope)?;
+    Ok(scope.pass)
 }
 
 /// A texture or buffer that a part of a resource can be copied into.
 fn copy_of(
     capture: &Capture,
     target: &Target,
-    scope: &PassScope<'_>,
-    reports: &mut Reports,
-) -> Result<ResourceKind, ErrorGuaranteed> {
+    symbols: &SymbolTable<'_>,
+) -> Result<ResourceKind, OutputError> {
     let name = capture.material.clone();
-    Ok(match &scope.get(target.id).kind {
+    Ok(match &symbols.get(target.id).kind {
         ResourceKind::Texture(texture) => {
             let mut copy = texture.clone();
             copy.size = texture.mip_size(target.part.mips.start);
@@ -72,18 +73,18 @@ fn copy_of(
             ResourceKind::Texture(copy)
         }
         ResourceKind::Provided(Provided { items: None, .. }) => {
-            return Err(reports.report(OutputError::Unsized(name)));
+            return Err(OutputError::Unsized(name));
         }
         // It becomes as large as what is copied into it.
         ResourceKind::Buffer(_) | ResourceKind::Provided(_) | ResourceKind::Frame => {
             ResourceKind::Buffer(Buffer::default())
         }
         ResourceKind::Sampler(_) => {
-            return Err(reports.report(OutputError::Sampler(name)));
+            return Err(OutputError::Sampler(name));
         }
         ResourceKind::AccelerationStructure => {
             let what = "an acceleration structure".to_owned();
-            return Err(reports.report(OutputError::Unreadable { name, what }));
+            return Err(OutputError::Unreadable { name, what });
         }
     })
 }

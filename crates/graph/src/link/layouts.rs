@@ -1,7 +1,6 @@
 //! Sizes of buffers: item layouts come from the shaders that see them, counts from the document.
 
 use crate::{
-    diagnostics::reports::Reports,
     errors::layout::LayoutError,
     instantiate::symbols::SymbolTable,
     resource::{Buffer, FRAME_BYTES, Origin, ResourceId, ResourceKind, SubresourceRange},
@@ -83,11 +82,7 @@ impl Layouts {
     }
 
     /// Every buffer with its size; reports those that can have none.
-    pub fn sized(
-        self,
-        symbols: &SymbolTable<'_>,
-        reports: &mut Reports,
-    ) -> BTreeMap<ResourceId, Buffer> {
+    pub fn sized(self, symbols: &mut SymbolTable<'_>) -> BTreeMap<ResourceId, Buffer> {
         let (mut buffers, mut errors) = (BTreeMap::new(), Vec::new());
         for (index, resource) in symbols.resources.iter().enumerate() {
             let id = ResourceId(index);
@@ -128,9 +123,9 @@ impl Layouts {
             match error {
                 LayoutError::TooLarge { .. } | LayoutError::Alignment { .. } => {
                     // The report suffices: nothing here depends on the result.
-                    let _ = reports.unsupported(error);
+                    let _ = symbols.reports.unsupported(error);
                 }
-                error => drop(reports.report(error)),
+                error => drop(symbols.reports.report(error)),
             }
         }
         buffers

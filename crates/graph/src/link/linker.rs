@@ -8,7 +8,7 @@ use super::{
     steps,
 };
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, Reports},
+    diagnostics::reports::Reported,
     errors::{instantiate::InterfaceError, link::LinkError},
     instantiate::{
         flat::{Interface, Merge, PlanInputs},
@@ -40,9 +40,9 @@ pub(crate) struct Linked<'a> {
 }
 
 /// Links all passes with their captures.
-pub(crate) fn link<'a>(lowered: Lowered<'a>, reports: &mut Reports) -> Linked<'a> {
-    let request = lowered.symbols.request;
-    let mut scope = PassScope::new(lowered.symbols);
+pub(crate) fn link(lowered: Lowered<'_>) -> Linked<'_> {
+    let mut symbols = lowered.symbols;
+    let request = symbols.request;
     let mut layouts = Layouts::default();
     let (mut passes, mut instances) = (Vec::new(), Vec::new());
     // The writes of a pass with a mistake are not known.
@@ -51,7 +51,7 @@ pub(crate) fn link<'a>(lowered: Lowered<'a>, reports: &mut Reports) -> Linked<'a
     for (index, pass) in lowered.passes.into_iter().enumerate() {
         numbers.push(passes.len());
         // For each mistake all names are searched for what was meant.
-        if reports.has_enough() {
+        if symbols.reports.has_enough() {
             first_invalid.get_or_insert(passes.len());
             break;
         }
@@ -59,7 +59,7 @@ pub(crate) fn link<'a>(lowered: Lowered<'a>, reports: &mut Reports) -> Linked<'a
             first_invalid.get_or_insert(passes.len());
         }
         let (name, instance, is_broken) = (pass.flat.name.clone(), pass.instance, pass.is_broken);
-        match link_pass(pass, &mut scope, &mut layouts, reports) {
+        match link_pass(pass, &mut symbols, &mut layouts) {
             Ok(linked) if !is_broken => {
                 passes.push(linked);
                 instances.push(Some(instance));
@@ -70,8 +70,7 @@ pub(crate) fn link<'a>(lowered: Lowered<'a>, reports: &mut Reports) -> Linked<'a
         let captures: BTreeSet<&Capture> = request.captures.iter().filter(after).collect();
         for capture in captures {
             // A capture that cannot be was reported, and nothing needs it.
-            let captured = capture::link(capture, &passes, &mut scope, &mut layouts, reports);
-            if let Ok(captured) = captured {
+            if let Ok(captured) = capture::link(capture, &passes, &mut symbols, &mut layouts) {
                 passes.push(captured);
                 instances.push(None);
             }
@@ -80,8 +79,7 @@ pub(crate) fn link<'a>(lowered: Lowered<'a>, reports: &mut Reports) -> Linked<'a
     if lowered.first_invalid.is_some() {
         first_invalid.get_or_insert(passes.len());
     }
-    let mut symbols = scope.into_symbols();
-    for (id, buffer) in layouts.sized(&symbols, reports) {
+    for (id, buffer) in layouts.sized(&mut symbols) {
         symbols.resources[id.index()].kind = ResourceKind::Buffer(buffer);
     }
     symbols.size_previous();
@@ -98,51 +96,46 @@ pub(crate) fn link<'a>(lowered: Lowered<'a>, reports: &mut Reports) -> Linked<'a
 }
 
 fn link_pass<'a>(
-    mut pass: LoweredPass<'a>,
-    scope: &mut PassScope<'a>,
+    pass: LoweredPass<'a>,
+    symbols: &mut SymbolTable<'a>,
     layouts: &mut Layouts,
-    reports: &mut Reports,
-) -> Result<LinkedPass, ErrorGuaranteed> {
-    scope.enter(&mut pass);
+) -> Reported<LinkedPass> {
     let flat = pass.flat;
-    let mut linked = steps::link(
-        flat.name,
-        flat.pass.kind,
-        &pass.steps,
-        scope,
-        layouts,
-        reports,
-    )?;
-    linked.run = flat.run;
+    let mut linked = LinkedPass::new(flat.name, flat.pass.kind, flat.run);
     linked.enabled = flat.enabled;
-    scope.unasked(reports)?;
-    overwrites(&mut linked, &flat.pass.overwrites, scope, reports)?;
+    let scratch = pass.scratch.iter().map(|id| symbols.whole(*id)).collect();
+    let mut scope = PassScope {
+        position: flat.position,
+        set: &flat.entry.set,
+        inherited_bind: flat.bind,
+        inherited_set: flat.set,
+        own_shader: Some(pass.shader),
+        ..PassScope::new(linked, scratch, symbols, layouts)
+    };
+    steps::link(&pass.steps, &mut scope)?;
+    scope.unasked()?;
+    overwrites(&flat.pass.overwrites, &mut scope)?;
     if let Some(reads) = &flat.pass.reads {
-        self::reads(&linked, reads, scope, reports)?;
+        self::reads(reads, &mut scope)?;
     }
-    Ok(linked)
+    Ok(scope.pass)
 }
 
 /// Holds what the author says that a pass reads against what it reads.
-fn reads(
-    pass: &LinkedPass,
-    references: &[Reference],
-    scope: &mut PassScope<'_>,
-    reports: &mut Reports,
-) -> Result<(), ErrorGuaranteed> {
+fn reads(references: &[Reference], scope: &mut PassScope<'_, '_>) -> Reported<()> {
     let mut stated = BTreeSet::new();
     for reference in references {
-        let id = scope.resolve(reference, reports)?.id;
+        let id = scope.resolve(reference)?.id;
         stated.insert(id);
-        let mut read = pass.accesses.iter().filter(|access| access.reads);
+        let mut read = scope.pass.accesses.iter().filter(|access| access.reads);
         if !read.any(|access| access.resource == id) {
-            return Err(reports.report(LinkError::ReadsNot {
-                pass: pass.name.value.clone(),
+            return Err(scope.report(LinkError::ReadsNot {
+                pass: scope.pass.name.value.clone(),
                 name: reference.located(),
             }));
         }
     }
-    let unstated = pass.accesses.iter().find(|access| {
+    let unstated = scope.pass.accesses.iter().find(|access| {
         let kind = &scope.get(access.resource).kind;
         let is_given = matches!(kind, ResourceKind::Provided(_) | ResourceKind::Frame)
             || matches!(kind, ResourceKind::AccelerationStructure);
@@ -152,8 +145,8 @@ fn reads(
         None => Ok(()),
         Some(access) => {
             let name = scope.get(access.resource).name.clone();
-            Err(reports.report(LinkError::ReadsMore {
-                pass: pass.name.clone(),
+            Err(scope.report(LinkError::ReadsMore {
+                pass: scope.pass.name.clone(),
                 name,
                 read: access.span.clone(),
             }))
@@ -162,16 +155,11 @@ fn reads(
 }
 
 /// Takes the author's word that a pass writes all of some resources.
-fn overwrites(
-    pass: &mut LinkedPass,
-    references: &[Reference],
-    scope: &mut PassScope<'_>,
-    reports: &mut Reports,
-) -> Result<(), ErrorGuaranteed> {
+fn overwrites(references: &[Reference], scope: &mut PassScope<'_, '_>) -> Reported<()> {
     for reference in references {
-        let target = scope.resolve(reference, reports)?;
+        let target = scope.resolve(reference)?;
         let mut is_written = false;
-        for access in &mut pass.accesses {
+        for access in &mut scope.pass.accesses {
             if access.writes && access.resource == target.id && access.part == target.part {
                 is_written = true;
                 access.fully_overwrites = true;
@@ -180,8 +168,8 @@ fn overwrites(
             }
         }
         if !is_written {
-            return Err(reports.report(LinkError::Overwrites {
-                pass: pass.name.value.clone(),
+            return Err(scope.report(LinkError::Overwrites {
+                pass: scope.pass.name.value.clone(),
                 name: reference.located(),
             }));
         }

@@ -2,7 +2,7 @@
 
 use super::{pass::LinkedProgram, scope::PassScope};
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, Reports},
+    diagnostics::reports::Reported,
     document::materials::Filter,
     errors::link::{LinkError, TextureMisfit},
     kinds::step::Program,
@@ -29,15 +29,14 @@ pub(super) fn texture(
     class: &TextureClass,
     (texture, target): (&Texture, &Target),
     (linked, program): (&LinkedProgram, &Program),
-    scope: &mut PassScope<'_>,
-    reports: &mut Reports,
-) -> Result<Bound, ErrorGuaranteed> {
+    scope: &mut PassScope<'_, '_>,
+) -> Reported<Bound> {
     let grows = scope.get(target.id).growth.is_some();
     let misfit = wrong_shape(class.dimension(), texture, target, grows);
     let bound = match (misfit, class) {
         (Some(misfit), _) => Err(misfit),
         (None, TextureClass::Sampled { .. }) => {
-            sampled(global, class, texture, (linked, program), scope, reports)
+            sampled(global, class, texture, (linked, program), scope)
         }
         (
             None,
@@ -46,13 +45,7 @@ pub(super) fn texture(
                 access,
                 dimension,
             },
-        ) => storage(
-            (format, *access, *dimension),
-            texture,
-            target,
-            scope,
-            reports,
-        ),
+        ) => storage((format, *access, *dimension), texture, target, scope),
     };
     bound.map_err(|misfit| {
         let resource = scope.get(target.id);
@@ -64,7 +57,7 @@ pub(super) fn texture(
             declared: resource.declared.clone(),
             misfit: Box::new(misfit),
         };
-        reports.report(error)
+        scope.report(error)
     })
 }
 
@@ -73,8 +66,7 @@ fn sampled(
     class: &TextureClass,
     texture: &Texture,
     (linked, program): (&LinkedProgram, &Program),
-    scope: &mut PassScope<'_>,
-    reports: &mut Reports,
+    scope: &mut PassScope<'_, '_>,
 ) -> Result<Bound, TextureMisfit> {
     let TextureClass::Sampled {
         scalar,
@@ -112,10 +104,10 @@ fn sampled(
     let able = wgt::Features::FLOAT32_FILTERABLE;
     let with_feature = format.guaranteed_format_features(able).flags;
     let by_feature = with_feature.contains(TextureFormatFeatureFlags::FILTERABLE);
-    let asks = by_feature && scope.symbols().graph.features().contains(able);
-    let suits = filterable || asks && reports.any_adapter;
+    let asks = by_feature && scope.symbols.graph.features().contains(able);
+    let suits = filterable || asks && scope.symbols.reports.any_adapter;
     let is_linear = |name: &String| {
-        let sampler = scope.sampler(program, name, reports);
+        let sampler = scope.sampler(program, name);
         sampler.is_some_and(|it| it.filter == Filter::Linear && it.compare.is_none())
     };
     let samplers = linked.shader.samplers_of(&linked.entries, global.handle);
@@ -145,8 +137,7 @@ fn storage(
     (declared, access, dimension): (&str, wgt::StorageTextureAccess, wgt::TextureViewDimension),
     texture: &Texture,
     target: &Target,
-    scope: &PassScope<'_>,
-    reports: &mut Reports,
+    scope: &PassScope<'_, '_>,
 ) -> Result<Bound, TextureMisfit> {
     let format = texture.format;
     let features = format.guaranteed_format_features(scope.request().features);
@@ -165,7 +156,7 @@ fn storage(
             || features
                 .flags
                 .contains(TextureFormatFeatureFlags::STORAGE_READ_WRITE));
-    if !allowed && !reports.any_adapter {
+    if !allowed && !scope.symbols.reports.any_adapter {
         return Err(TextureMisfit::NoStorage);
     }
     if target.part.mips.len() > 1 {

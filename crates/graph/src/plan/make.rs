@@ -107,13 +107,14 @@ pub(super) fn plan_all(graph: &Arc<Loaded>, request: &PlanRequest<'_>) -> Outcom
     let before = reports.clone();
     let mut merges = true;
     let mut linked = loop {
-        let flat = flatten(graph, request, params.clone(), merges, &mut reports);
-        if lacks_features(&reports) {
-            return Outcome::lacking(reports, flat.plan_inputs);
+        let flat = flatten(graph, request, params.clone(), merges, reports);
+        if flat.symbols.reports.iter().any(is_lacking) {
+            return Outcome::lacking(flat.symbols.reports, flat.plan_inputs);
         }
-        let lowered = lower(flat, &mut reports);
-        check_captures(request, &lowered.passes, &mut reports);
-        let linked = link(lowered, &mut reports);
+        let mut lowered = lower(flat);
+        let found = &mut lowered.symbols.reports;
+        check_captures(request, &lowered.passes, found);
+        let linked = link(lowered);
         let Some(copies) = linked.two_copies() else {
             break linked;
         };
@@ -123,6 +124,7 @@ pub(super) fn plan_all(graph: &Arc<Loaded>, request: &PlanRequest<'_>) -> Outcom
         merges = false;
     };
     let plan_inputs = std::mem::take(&mut linked.plan_inputs);
+    let mut reports = std::mem::take(&mut linked.symbols.reports);
     match schedule(graph, linked, request, values, &mut reports) {
         Some(plan) => finish(plan, request, reports, plan_inputs),
         None => Outcome::failed(reports, plan_inputs),
@@ -147,11 +149,11 @@ fn schedule(
         interfaces(&linked, reports);
     }
     let written = |target: &Target| !is_complete || !order.final_writers(target).is_empty();
+    // Outputs are found as names in documents are, and so are their mistakes.
+    std::mem::swap(&mut linked.symbols.reports, reports);
     let root = linked.symbols.root();
-    let readable = {
-        let mut at = linked.symbols.at(root, None, reports);
-        readable(graph, request, &mut at, written)
-    };
+    let readable = readable(graph, request, &mut linked.symbols.at(root, None), written);
+    std::mem::swap(&mut linked.symbols.reports, reports);
     if !is_complete || reports.errors() > 0 {
         return None;
     }
@@ -271,10 +273,6 @@ impl Outcome {
 fn is_lacking(found: &Diagnostic) -> bool {
     use crate::diagnostics::{code::Code, diagnostic::Severity};
     found.code == Code::Feature && found.severity == Severity::Error
-}
-
-fn lacks_features(reports: &Reports) -> bool {
-    reports.iter().any(is_lacking)
 }
 
 fn view<'l>(linked: &'l Linked<'_>) -> GraphView<'l> {

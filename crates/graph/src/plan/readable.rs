@@ -18,7 +18,7 @@ use crate::{
 pub(super) fn readable(
     graph: &Loaded,
     request: &PlanRequest<'_>,
-    at: &mut At<'_, '_, '_>,
+    at: &mut At<'_, '_>,
     written: impl Fn(&Target) -> bool,
 ) -> Vec<(String, Target)> {
     let mut readable = Vec::new();
@@ -26,7 +26,7 @@ pub(super) fn readable(
     let declared: Vec<&str> = outputs.map(|output| output.name.as_str()).collect();
     for wanted in request.outputs.iter().flatten() {
         if !declared.contains(&wanted.as_str()) {
-            at.reports().report(OutputError::NoOutput {
+            at.report(OutputError::NoOutput {
                 graph: graph.path().to_owned(),
                 name: wanted.clone(),
                 known: declared.iter().map(|&name| name.to_owned()).collect(),
@@ -49,10 +49,9 @@ pub(super) fn readable(
         };
         if !written(&target) {
             let material = material.located();
-            at.reports()
-                .report(OutputError::UnwrittenOutput { name, material });
+            at.report(OutputError::UnwrittenOutput { name, material });
         } else if let Some(what) = unreadable(at.symbols(), &target) {
-            at.reports().report(OutputError::UnreadableOutput {
+            at.report(OutputError::UnreadableOutput {
                 name,
                 material: material.span.clone(),
                 what,
@@ -75,7 +74,7 @@ pub(super) fn readable(
                     let outputs = declared.iter().map(|&name| name.to_owned());
                     let known = at.symbols().full_names().into_iter().chain(outputs);
                     let known = at.reports().known(known);
-                    at.reports().report(OutputError::NoMaterial {
+                    at.report(OutputError::NoMaterial {
                         graph: graph.path().to_owned(),
                         name,
                         known,
@@ -88,11 +87,11 @@ pub(super) fn readable(
             at.symbols().get(target.id).kind,
             ResourceKind::Provided(_) | ResourceKind::AccelerationStructure | ResourceKind::Frame
         ) {
-            at.reports().report(OutputError::Provided(name));
+            at.report(OutputError::Provided(name));
         } else if !written(&target) {
-            at.reports().report(OutputError::Unwritten(name));
+            at.report(OutputError::Unwritten(name));
         } else if let Some(what) = unreadable(at.symbols(), &target) {
-            at.reports().report(OutputError::Unreadable { name, what });
+            at.report(OutputError::Unreadable { name, what });
         } else {
             readable.push((name, target));
         }

@@ -31,14 +31,14 @@ pub(super) struct PassScope<'s, 'a> {
     pub pass: LinkedPass,
     pub position: Position,
     /// Its own buffers; of a capture, its source and destination.
-    scratch: Vec<Target>,
+    pub scratch: Vec<Target>,
     pub set: &'a [(Located<String>, Expr)],
     pub inherited_bind: Vec<Inherited<'a, Reference>>,
     pub inherited_set: Vec<Inherited<'a, Expr>>,
     /// The shader that has the pass's own bindings.
     pub own_shader: Option<Located<String>>,
     /// The bindings and values that a shader of the pass has asked for.
-    asked: BTreeSet<String>,
+    pub asked: BTreeSet<String>,
 }
 
 /// A value that a shader asks for by name.

@@ -524,8 +524,8 @@ impl<'a> SymbolTable<'a> {
 
 /// Meaning of the names of an expression at a place of a document.
 pub(crate) struct At<'w, 'a> {
-    symbols: &'w mut SymbolTable<'a>,
-    position: Position,
+    pub symbols: &'w mut SymbolTable<'a>,
+    pub position: Position,
     /// The shader of the pass, where it is one's expression.
     shader: Option<Reported<Arc<Shader>>>,
 }
@@ -533,14 +533,6 @@ pub(crate) struct At<'w, 'a> {
 impl<'a> At<'_, 'a> {
     pub fn report(&mut self, mistake: impl Into<Diagnostic>) -> ErrorGuaranteed {
         self.symbols.reports.report(mistake)
-    }
-
-    pub fn symbols(&self) -> &SymbolTable<'a> {
-        self.symbols
-    }
-
-    pub fn scope(&self) -> ScopeId {
-        self.position.scope
     }
 
     /// The instance of a document that the place stands in.
@@ -553,18 +545,9 @@ impl<'a> At<'_, 'a> {
         self.symbols.at(position, None)
     }
 
-    pub fn value(&mut self, id: ValueId) -> Reported<Value> {
-        self.symbols.value(id)
-    }
-
     /// Finds the target of a name of the scene.
     pub fn find_scene(&mut self, name: &str) -> Option<Reported<Target>> {
         self.symbols.find_scene(name, self.position.scope)
-    }
-
-    /// Finds the target of a name in a command.
-    pub fn find_full(&mut self, name: &str) -> Option<Reported<Target>> {
-        self.symbols.find_full(name)
     }
 
     /// Resolves a reference.

@@ -13,8 +13,9 @@ use crate::{
     errors::link::LinkError,
     kinds::step::{ColorTarget, DepthTarget, Draw, DrawCall, Names, StencilTarget},
     language::syntax::Reference,
-    resource::{ResourceKind, Target, Texture},
+    resource::{Origin, Resource, ResourceKind, Target, Texture},
     scalar_class::ScalarClass,
+    shader::varyings::{Varying, Varyings},
     source::span::{Located, Span},
 };
 use wgt::{
@@ -42,11 +43,11 @@ pub(super) fn link(draw: &Draw<Names>, scope: &mut PassScope<'_, '_>) -> Reporte
         let (format, samples) = (texture.format, texture.samples);
         // A slash stands in no name: nothing in a document can mean this texture.
         let name = format!("{}/canvas", scope.pass.name.value);
-        let target = scope.add(name, ResourceKind::Texture(texture));
+        let texture = ResourceKind::Texture(texture);
+        let id = scope.symbols.add(Resource::new(name, texture, Origin::Own));
+        let target = scope.symbols.whole(id);
         // It is no content: nothing is written, and nothing of before is needed.
-        scope
-            .pass
-            .access(&target, (false, false, true), ATTACHMENT, span);
+        scope.access(&target, (false, false, true), ATTACHMENT, span);
         Some(Attachment {
             target,
             format,
@@ -114,7 +115,7 @@ fn colors(
 ) -> Reported<Vec<ColorTarget<Ids>>> {
     let outputs = program.and_then(|program| {
         let entry = *program.entries.last()?;
-        let outputs = program.shader.fragment_outputs(entry);
+        let outputs = Varyings::outputs(program.shader.module(), entry).locations;
         Some((outputs, program.shader.entry_span(entry)))
     });
     let limits = scope.request().limits.clone();
@@ -181,9 +182,7 @@ fn link_color(
     }
     let clears = color.clear.is_some();
     let used = (!clears, true, clears);
-    scope
-        .pass
-        .access(&target.target, used, ATTACHMENT, &name.span);
+    scope.access(&target.target, used, ATTACHMENT, &name.span);
     let resolve = match &color.resolve {
         Some(resolve) => Some(resolved(&target, resolve, scope)?),
         None => None,
@@ -222,9 +221,7 @@ fn resolved(
         return Err(scope.report(LinkError::Resolve { name, why }));
     }
     let used = (false, true, true);
-    scope
-        .pass
-        .access(&resolved.target, used, ATTACHMENT, &name.span);
+    scope.access(&resolved.target, used, ATTACHMENT, &name.span);
     Ok(resolved)
 }
 
@@ -232,11 +229,11 @@ fn check_output(
     location: u32,
     target: &Reference,
     format: TextureFormat,
-    outputs: &[(u32, ScalarClass, u32)],
+    outputs: &[Varying],
     entry: &Span,
 ) -> Result<(), LinkError> {
     let name = target.located();
-    let Some((_, scalar, width)) = outputs.iter().find(|(at, ..)| *at == location) else {
+    let Some(output) = outputs.iter().find(|output| output.location == location) else {
         return Err(LinkError::NoFragmentOutput {
             name,
             location,
@@ -245,6 +242,7 @@ fn check_output(
     };
     let needed = u32::from(format.components());
     let expected = scalar_of(format, TextureAspect::All);
+    let Varying { scalar, width, .. } = output;
     if expected == Some(*scalar) && *width >= needed {
         return Ok(());
     }
@@ -275,7 +273,7 @@ fn link_depth(
     let clears = depth.clear.is_some();
     let used = (!clears, depth.write || clears, clears);
     let depth_of = aspect_of(&target.target, format, TextureAspect::DepthOnly);
-    scope.pass.access(&depth_of, used, ATTACHMENT, &name.span);
+    scope.access(&depth_of, used, ATTACHMENT, &name.span);
     Ok(DepthTarget {
         target,
         clear: depth.clear,
@@ -307,7 +305,7 @@ fn link_stencil(
     let writes = !stencil.state.is_read_only(None);
     let used = (!clears, writes || clears, clears);
     let stencil_of = aspect_of(&target.target, format, TextureAspect::StencilOnly);
-    scope.pass.access(&stencil_of, used, ATTACHMENT, &name.span);
+    scope.access(&stencil_of, used, ATTACHMENT, &name.span);
     Ok(StencilTarget {
         target,
         clear: stencil.clear,

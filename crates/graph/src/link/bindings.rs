@@ -63,7 +63,7 @@ pub(super) fn bind(
             }
             let used = (global.reads, global.writes, false);
             let is_frame = scope.get(target.id).kind == ResourceKind::Frame;
-            scope.pass.access(&target, used, usage, &global.span);
+            scope.access(&target, used, usage, &global.span);
             if let Some(access) = scope.pass.accesses.last_mut() {
                 access.triggers = !is_frame || reads_clock(linked, global);
             }

@@ -78,12 +78,7 @@ fn returns_nothing(
     canvas: &Located<[u64; 2]>,
     scope: &mut PassScope<'_, '_>,
 ) -> Reported<()> {
-    let stages = program.stages.iter().zip(&program.entries);
-    let fragment = stages
-        .filter(|(stage, _)| **stage == ShaderStage::Fragment)
-        .map(|(_, entry)| *entry)
-        .next();
-    let Some(entry) = fragment else {
+    let Some(entry) = program.entry(ShaderStage::Fragment) else {
         return Err(scope.report(LinkError::CanvasWithoutFragment {
             pass: scope.pass.name.clone(),
             size: canvas.span.clone(),

@@ -49,9 +49,7 @@ pub(super) fn indirect(
     let id = scope.symbols.base(target.id);
     scope.layouts.at_least(id, &target.part, bytes, &name.span);
     let usage = Usage::Buffer(wgt::BufferUsages::INDIRECT);
-    scope
-        .pass
-        .access(&target, (true, false, false), usage, &name.span);
+    scope.access(&target, (true, false, false), usage, &name.span);
     Ok(target)
 }
 

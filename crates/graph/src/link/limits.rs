@@ -127,42 +127,40 @@ pub(super) fn stages(
     scope: &mut PassScope<'_, '_>,
 ) -> Reported<()> {
     let shader = &program.shader;
-    let of = |stage: ShaderStage| {
-        let at = program.stages.iter().position(|known| *known == stage)?;
-        program.entries.get(at).copied()
-    };
     let limits = &scope.request().limits;
     let most = limits.max_inter_stage_shader_variables;
-    let vertex = of(ShaderStage::Vertex);
+    let vertex = program.entry(ShaderStage::Vertex);
     if let Some(index) = vertex {
         let is_points = draw.primitive.topology == wgt::PrimitiveTopology::PointList;
         let at = entry(shader, index);
-        if let Some(attribute) = Varyings::inputs(shader, index).locations.first() {
+        if let Some(attribute) = Varyings::inputs(shader.module(), index).locations.first() {
             return Err(scope.report(LimitError::Attribute {
                 entry: at,
                 location: attribute.location,
             }));
         }
-        let outputs = Varyings::outputs(shader, index);
+        let outputs = Varyings::outputs(shader.module(), index);
         let locations = most.saturating_sub(outputs.builtins);
         check_locations(&at, "writes", &outputs, locations, scope)?;
         let builtins = outputs.builtins + u32::from(is_points);
         check_varyings(&at, "writes", &outputs, builtins, most, scope)?;
     }
-    let Some(fragment) = of(ShaderStage::Fragment) else {
+    let Some(fragment) = program.entry(ShaderStage::Fragment) else {
         return Ok(());
     };
     let at = entry(shader, fragment);
-    let inputs = Varyings::inputs(shader, fragment);
+    let inputs = Varyings::inputs(shader.module(), fragment);
     check_locations(&at, "reads", &inputs, most, scope)?;
     check_varyings(&at, "reads", &inputs, inputs.builtins, most, scope)?;
     let most = limits.max_color_attachments;
     // Too many targets were reported already.
     if draw.colors.len() <= most as usize {
-        let outputs = Varyings::outputs(shader, fragment);
+        let outputs = Varyings::outputs(shader.module(), fragment);
         check_locations(&at, "writes", &outputs, most, scope)?;
     }
-    let given = vertex.map_or_else(Varyings::default, |index| Varyings::outputs(shader, index));
+    let given = vertex.map_or_else(Varyings::default, |index| {
+        Varyings::outputs(shader.module(), index)
+    });
     let mut wrong = None;
     for taken in &inputs.locations {
         if let Some(why) = misfit(taken, &given.locations) {
@@ -240,24 +238,12 @@ fn misfit(taken: &Varying, given: &[Varying]) -> Option<String> {
     let Some(given) = given.iter().find(|given| given.location == taken.location) else {
         return Some("no vertex shader writes".to_owned());
     };
-    if given.kind != taken.kind || given.width < taken.width {
+    if given.scalar != taken.scalar || given.width < taken.width {
         return Some(format!(
             "holds {} × {}, not {} × {}",
-            given.width,
-            word(given.kind),
-            taken.width,
-            word(taken.kind)
+            given.width, given.scalar, taken.width, taken.scalar
         ));
     }
     let same = given.interpolation == taken.interpolation && given.sampling == taken.sampling;
     (!same).then(|| "is interpolated differently in the vertex shader".to_owned())
-}
-
-fn word(kind: naga::ScalarKind) -> &'static str {
-    match kind {
-        naga::ScalarKind::Float => "f32",
-        naga::ScalarKind::Sint => "i32",
-        naga::ScalarKind::Uint => "u32",
-        _ => "bool",
-    }
 }

@@ -82,7 +82,11 @@ pub(super) fn constants(
                 }
                 scope.check(number(name, &asked, shader, &span, scope))?
             }
-            None => scope.kind(name),
+            None => {
+                // The kind of what is provided, under which the plan is made.
+                let kind = scope.symbols.kind_of_wgsl_name(name, scope.position.scope);
+                kind.map(|kind| f64::from(kind.number))
+            }
         };
         match value {
             Some(value) => constants.push((key, value)),

@@ -46,7 +46,6 @@ pub(super) fn link(
         bindings: Vec::with_capacity(globals.len()),
         shader,
         entries,
-        stages: stages.to_vec(),
     };
     let mut wrong = None;
     for global in &globals {

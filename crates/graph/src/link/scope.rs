@@ -1,6 +1,9 @@
 //! Meaning of the names of the pass that is linked.
 
-use super::{layouts::Layouts, pass::LinkedPass};
+use super::{
+    layouts::Layouts,
+    pass::{Access, LinkedPass, Usage},
+};
 use crate::{
     diagnostics::{
         diagnostic::Diagnostic,
@@ -87,18 +90,33 @@ impl<'s, 'a> PassScope<'s, 'a> {
         self.symbols.reports.check(result)
     }
 
+    /// Notes that a step reads or writes a whole part.
+    pub fn access(
+        &mut self,
+        target: &Target,
+        (reads, writes, fully_overwrites): (bool, bool, bool),
+        usage: Usage,
+        span: &Span,
+    ) {
+        self.pass.accesses.push(Access {
+            resource: target.id,
+            part: target.part.clone(),
+            reads,
+            writes,
+            fully_overwrites,
+            triggers: true,
+            usage,
+            span: span.clone(),
+            step: 0,
+        });
+    }
+
     pub fn get(&self, id: ResourceId) -> &Resource {
         self.symbols.get(id)
     }
 
     pub fn request(&self) -> &'a PlanRequest<'a> {
         self.symbols.request
-    }
-
-    /// Adds a resource that no document names.
-    pub fn add(&mut self, name: String, kind: ResourceKind) -> Target {
-        let id = self.symbols.add(Resource::new(name, kind, Origin::Own));
-        self.symbols.whole(id)
     }
 
     /// Resolves a reference of the pass's document.
@@ -259,12 +277,6 @@ impl<'s, 'a> PassScope<'s, 'a> {
     pub fn params(&self) -> impl Iterator<Item = &str> {
         let instance = self.symbols.scopes.document(self.position.scope);
         instance.params.names()
-    }
-
-    /// The kind of what is provided, under which the plan is made.
-    pub fn kind(&mut self, name: &str) -> Option<f64> {
-        let kind = self.symbols.kind_of_wgsl_name(name, self.position.scope)?;
-        Some(f64::from(kind.number))
     }
 
     /// Reports what the entry binds or sets and no shader of it asks for.

@@ -60,12 +60,8 @@ pub(super) fn copy(
             }));
         }
     };
-    scope
-        .pass
-        .access(&source, (true, false, false), usages[0], &from.span);
-    scope
-        .pass
-        .access(&target, (false, true, true), usages[1], &to.span);
+    scope.access(&source, (true, false, false), usages[0], &from.span);
+    scope.access(&target, (false, true, true), usages[1], &to.span);
     Ok(Step::Copy {
         from: source,
         to: target,
@@ -99,8 +95,6 @@ pub(super) fn clear(
             return Err(scope.report(LinkError::ClearKind { name, found }));
         }
     };
-    scope
-        .pass
-        .access(&target, (false, true, true), usage, &name.span);
+    scope.access(&target, (false, true, true), usage, &name.span);
     Ok(Step::Clear { target, value })
 }

@@ -218,7 +218,8 @@ impl<'a> Builder<'a> {
             }
             let name = material.name();
             let instance = self.symbols.scopes.instance_of(scope);
-            let symbol = match include::overridden(instance, material, &mut self.symbols) {
+            let mut at = self.symbols.at(scope.begin(), None);
+            let symbol = match include::overridden(material, &mut at) {
                 Some(Ok(target)) => Symbol::Target(target),
                 Some(Err(reported)) => Symbol::Invalid(reported),
                 None => {

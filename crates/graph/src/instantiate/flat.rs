@@ -154,7 +154,7 @@ impl PlanInputs {
         let Some(condition) = condition else {
             return Ok(true);
         };
-        let (symbols, scope) = (&*at.symbols, at.position.scope);
+        let (symbols, scope) = (at.symbols(), at.position.scope);
         self.params.extend(symbols.roots(scope, condition));
         symbols.visit(scope, condition, &mut |_, leaf| {
             if let Leaf::Has(feature) = leaf {

@@ -4,8 +4,8 @@
 use super::{
     flat::{EntryContext, Inherited, PlanInputs},
     params::{Given, Params, SetParam},
-    scopes::{Instance, InstanceId, Names, Outer, Position, ScopeId, Scopes, Symbol},
-    symbols::{At, SymbolTable},
+    scopes::{Instance, Names, Outer, Position, ScopeId, Scopes, Symbol},
+    symbols::At,
 };
 use crate::{
     diagnostics::reports::Reported,
@@ -183,13 +183,13 @@ pub(super) fn params(
             });
             continue;
         }
-        let params = &at.symbols.scopes.document(place.scope).params;
+        let params = &at.symbols().scopes.document(place.scope).params;
         let value = match params.forwarded(expr) {
             Some(value) => value,
             None => eval::value(expr, &mut at.elsewhere(*place)),
         };
         let given = SetParam {
-            roots: at.symbols.roots(place.scope, expr),
+            roots: at.symbols().roots(place.scope, expr),
             expr: Located::new((*expr).clone(), expr.span.clone()),
             value,
         };
@@ -209,7 +209,7 @@ pub(super) fn params(
         exposed: exposed.collect(),
         outer: &outer,
         span: &include.graph.span,
-        context: at.symbols.request.surroundings(),
+        context: at.symbols().request.surroundings(),
     };
     given.bind(document, &set, at.reports())
 }
@@ -230,14 +230,14 @@ fn values_asked(
         if !is_asked || outer.bound(name).is_some() {
             continue;
         }
-        let Some(id) = at.symbols.scopes.find_value(at.position.scope, name) else {
+        let Some(id) = at.symbols().scopes.find_value(at.position.scope, name) else {
             continue;
         };
         let span = include.graph.span.clone();
         let expr = Expr::new(ExprKind::Param(name.clone()), span.clone());
         let given = SetParam {
-            roots: at.symbols.roots(at.position.scope, &expr),
-            value: at.symbols.value(id),
+            roots: at.symbols().roots(at.position.scope, &expr),
+            value: at.value(id),
             expr: Located::new(expr, span),
         };
         set.insert(name.clone(), given);
@@ -310,15 +310,11 @@ fn passed_on<'d>(
 }
 
 /// The material here that is written instead of one that the document declares.
-pub(super) fn overridden(
-    instance: InstanceId,
-    material: &Material,
-    symbols: &mut SymbolTable<'_>,
-) -> Option<Reported<Target>> {
-    let overrides = &symbols.scopes.instance(instance).overrides;
+pub(super) fn overridden(material: &Material, at: &mut At<'_, '_>) -> Option<Reported<Target>> {
+    let overrides = &at.instance().overrides;
     let (name, target) = overrides.get(material.name().as_str())?.clone();
     Some(target.and_then(|target| {
-        let found = &symbols.get(target.id).kind;
+        let found = &at.symbols().get(target.id).kind;
         let fits = matches!(
             (material, found),
             (Material::Texture(_), ResourceKind::Texture(_))
@@ -326,14 +322,14 @@ pub(super) fn overridden(
                 | (Material::Sampler(_), ResourceKind::Sampler(_))
         );
         if fits {
-            Ok(target)
-        } else {
-            Err(symbols.reports.report(InterfaceError::BoundOutput {
-                name,
-                why: format!("this is {}", found.describe()),
-                declared: material.name().span.clone(),
-            }))
+            return Ok(target);
         }
+        let why = format!("this is {}", found.describe());
+        Err(at.report(InterfaceError::BoundOutput {
+            name,
+            why,
+            declared: material.name().span.clone(),
+        }))
     }))
 }
 
@@ -357,11 +353,11 @@ pub(super) fn input(
         }
         None => {
             let span = include.graph.span.clone();
-            if at.symbols.scopes.find(at.position.scope, name).is_none() {
+            if at.symbols().scopes.find(at.position.scope, name).is_none() {
                 if let Some(reported) = at.instance().incomplete {
                     return Err(reported);
                 }
-                let known = at.symbols.scopes.known(at.position.scope);
+                let known = at.symbols().scopes.known(at.position.scope);
                 let known = at.reports().known(known);
                 return Err(at.report(InterfaceError::NoInput {
                     document: document.file.name.to_string(),
@@ -377,7 +373,7 @@ pub(super) fn input(
             (target, span)
         }
     };
-    let found = &at.symbols.get(target.id).kind;
+    let found = &at.symbols().get(target.id).kind;
     let fits = match (&input.kind, found) {
         (InputKind::Texture(None), ResourceKind::Texture(_)) => true,
         (InputKind::Texture(Some(format)), ResourceKind::Texture(texture)) => {
@@ -426,7 +422,7 @@ pub(super) fn outputs(
             }
         }
         let path = output.material.path();
-        let value = at.symbols.scopes.find_value(at.position.scope, &path);
+        let value = at.symbols().scopes.find_value(at.position.scope, &path);
         if let Some(id) = value {
             names.insert(name.value.clone(), Symbol::Value(id));
             continue;

@@ -524,7 +524,7 @@ impl<'a> SymbolTable<'a> {
 
 /// Meaning of the names of an expression at a place of a document.
 pub(crate) struct At<'w, 'a> {
-    pub symbols: &'w mut SymbolTable<'a>,
+    symbols: &'w mut SymbolTable<'a>,
     pub position: Position,
     /// The shader of the pass, where it is one's expression.
     shader: Option<Reported<Arc<Shader>>>,
@@ -535,6 +535,10 @@ impl<'a> At<'_, 'a> {
         self.symbols.reports.report(mistake)
     }
 
+    pub fn symbols(&self) -> &SymbolTable<'a> {
+        self.symbols
+    }
+
     /// The instance of a document that the place stands in.
     pub fn instance(&self) -> &Instance {
         self.symbols.scopes.document(self.position.scope)
@@ -543,6 +547,15 @@ impl<'a> At<'_, 'a> {
     /// Another place, without a shader.
     pub fn elsewhere(&mut self, position: Position) -> At<'_, 'a> {
         self.symbols.at(position, None)
+    }
+
+    pub fn value(&mut self, id: ValueId) -> Reported<Value> {
+        self.symbols.value(id)
+    }
+
+    /// Finds the target of a name in a command.
+    pub fn find_full(&mut self, name: &str) -> Option<Reported<Target>> {
+        self.symbols.find_full(name)
     }
 
     /// Finds the target of a name of the scene.

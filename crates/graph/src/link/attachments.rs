@@ -13,7 +13,7 @@ use crate::{
     errors::link::LinkError,
     kinds::step::{ColorTarget, DepthTarget, Draw, DrawCall, Names, StencilTarget},
     language::syntax::Reference,
-    resource::{Origin, Resource, ResourceKind, Target, Texture},
+    resource::{ResourceKind, Target, Texture},
     scalar_class::ScalarClass,
     shader::varyings::{Varying, Varyings},
     source::span::{Located, Span},
@@ -24,7 +24,7 @@ use wgt::{
 
 const ATTACHMENT: Usage = Usage::Texture(TextureUsages::RENDER_ATTACHMENT);
 
-pub(super) fn link(draw: &Draw<Names>, scope: &mut PassScope<'_, '_>) -> Reported<Draw<Ids>> {
+pub(super) fn link(draw: &Draw<Names>, scope: &mut PassScope<'_>) -> Reported<Draw<Ids>> {
     let (stages, depth_only) = canvas::stages_of(draw, || scope.shader(&draw.program));
     let mut program = programs::link(&draw.program, stages, depth_only, scope);
     if let Ok(linked) = &program
@@ -42,10 +42,8 @@ pub(super) fn link(draw: &Draw<Names>, scope: &mut PassScope<'_, '_>) -> Reporte
         let (texture, span) = (texture?, &draw.canvas.as_ref()?.span);
         let (format, samples) = (texture.format, texture.samples);
         // A slash stands in no name: nothing in a document can mean this texture.
-        let name = format!("{}/canvas", scope.pass.name.value);
-        let texture = ResourceKind::Texture(texture);
-        let id = scope.symbols.add(Resource::new(name, texture, Origin::Own));
-        let target = scope.symbols.whole(id);
+        let name = format!("{}/canvas", scope.pass.value);
+        let target = scope.add(name, ResourceKind::Texture(texture));
         // It is no content: nothing is written, and nothing of before is needed.
         scope.access(&target, (false, false, true), ATTACHMENT, span);
         Some(Attachment {
@@ -81,7 +79,7 @@ pub(super) fn link(draw: &Draw<Names>, scope: &mut PassScope<'_, '_>) -> Reporte
 }
 
 /// Checks features of the rasteriser that not every device has.
-fn features(draw: &Draw<Names>, scope: &mut PassScope<'_, '_>) -> Reported<()> {
+fn features(draw: &Draw<Names>, scope: &mut PassScope<'_>) -> Reported<()> {
     let features = scope.request().features;
     let primitive = &draw.primitive;
     let asked = [
@@ -99,7 +97,7 @@ fn features(draw: &Draw<Names>, scope: &mut PassScope<'_, '_>) -> Reported<()> {
     for (is_asked, field, feature) in asked {
         if is_asked && !features.contains(feature) {
             scope.unsupported(LinkError::DrawFeature {
-                pass: scope.pass.name.clone(),
+                pass: scope.pass.clone(),
                 field,
                 feature: feature.iter_names().next().map_or("", |(name, _)| name),
             })?;
@@ -111,7 +109,7 @@ fn features(draw: &Draw<Names>, scope: &mut PassScope<'_, '_>) -> Reported<()> {
 fn colors(
     draw: &Draw<Names>,
     program: Option<&LinkedProgram>,
-    scope: &mut PassScope<'_, '_>,
+    scope: &mut PassScope<'_>,
 ) -> Reported<Vec<ColorTarget<Ids>>> {
     let outputs = program.and_then(|program| {
         let entry = *program.entries.last()?;
@@ -122,7 +120,7 @@ fn colors(
     let most = limits.max_color_attachments;
     if draw.colors.len() > most as usize {
         scope.unsupported(LinkError::TooManyTargets {
-            pass: scope.pass.name.clone(),
+            pass: scope.pass.clone(),
             count: draw.colors.len(),
             most,
         })?;
@@ -154,7 +152,7 @@ fn colors(
     let most = limits.max_color_attachment_bytes_per_sample;
     if bytes_per_sample > most {
         scope.unsupported(LinkError::BytesPerPixel {
-            pass: scope.pass.name.clone(),
+            pass: scope.pass.clone(),
             bytes: bytes_per_sample,
             most,
         })?;
@@ -162,10 +160,7 @@ fn colors(
     wrong.map_or(Ok(colors), Err)
 }
 
-fn link_color(
-    color: &ColorTarget<Names>,
-    scope: &mut PassScope<'_, '_>,
-) -> Reported<ColorTarget<Ids>> {
+fn link_color(color: &ColorTarget<Names>, scope: &mut PassScope<'_>) -> Reported<ColorTarget<Ids>> {
     let name = color.target.located();
     let target = attachment(&color.target, scope)?;
     let format = target.format;
@@ -200,7 +195,7 @@ fn link_color(
 fn resolved(
     target: &Attachment,
     resolve: &Reference,
-    scope: &mut PassScope<'_, '_>,
+    scope: &mut PassScope<'_>,
 ) -> Reported<Attachment> {
     let name = resolve.located();
     let resolved = attachment(resolve, scope)?;
@@ -257,10 +252,7 @@ fn check_output(
     })
 }
 
-fn link_depth(
-    depth: &DepthTarget<Names>,
-    scope: &mut PassScope<'_, '_>,
-) -> Reported<DepthTarget<Ids>> {
+fn link_depth(depth: &DepthTarget<Names>, scope: &mut PassScope<'_>) -> Reported<DepthTarget<Ids>> {
     let name = depth.target.located();
     let target = attachment(&depth.target, scope)?;
     let format = target.format;
@@ -285,7 +277,7 @@ fn link_depth(
 
 fn link_stencil(
     stencil: &StencilTarget<Names>,
-    scope: &mut PassScope<'_, '_>,
+    scope: &mut PassScope<'_>,
 ) -> Reported<StencilTarget<Ids>> {
     let name = stencil.target.located();
     let target = attachment(&stencil.target, scope)?;
@@ -356,14 +348,14 @@ pub(super) fn clear_value(
     }
 }
 
-fn attachment(reference: &Reference, scope: &mut PassScope<'_, '_>) -> Reported<Attachment> {
+fn attachment(reference: &Reference, scope: &mut PassScope<'_>) -> Reported<Attachment> {
     let target = scope.resolve(reference)?;
     let name = reference.located();
     let resource = scope.get(target.id);
     let ResourceKind::Texture(texture) = &resource.kind else {
         let found = resource.kind.describe();
         return Err(scope.report(LinkError::NoTexture {
-            pass: scope.pass.name.value.clone(),
+            pass: scope.pass.value.clone(),
             name,
             found,
         }));
@@ -384,7 +376,7 @@ fn attachment(reference: &Reference, scope: &mut PassScope<'_, '_>) -> Reported<
 
 /// All attachments of a draw have one size and number of samples; the area lies in them; depth
 /// and stencil are one texture.
-fn alike(draw: &Draw<Ids>, scope: &PassScope<'_, '_>) -> Result<(), LinkError> {
+fn alike(draw: &Draw<Ids>, scope: &PassScope<'_>) -> Result<(), LinkError> {
     let colors = draw.colors.iter().map(|color| &color.target);
     let resolved = draw
         .colors
@@ -396,14 +388,14 @@ fn alike(draw: &Draw<Ids>, scope: &PassScope<'_, '_>) -> Result<(), LinkError> {
     let drawn: Vec<&Attachment> = drawn.collect();
     let Some(first) = drawn.first() else {
         return Err(LinkError::NoTargets {
-            pass: scope.pass.name.clone(),
+            pass: scope.pass.clone(),
             fullscreen: draw.fullscreen,
         });
     };
     if let (Some(depth), Some(stencil)) = (depth, stencil)
         && depth.target != stencil.target
     {
-        return Err(LinkError::TwoDepthStencils(scope.pass.name.clone()));
+        return Err(LinkError::TwoDepthStencils(scope.pass.clone()));
     }
     let size = |attachment: &Attachment| match &scope.get(attachment.target.id).kind {
         ResourceKind::Texture(texture) => texture.mip_size(attachment.target.part.mips.start),
@@ -414,7 +406,7 @@ fn alike(draw: &Draw<Ids>, scope: &PassScope<'_, '_>) -> Result<(), LinkError> {
     let differs = |other: &&Attachment| size(other) != whole;
     if let Some(other) = drawn.iter().copied().chain(resolved).find(differs) {
         let error = LinkError::TargetSizes {
-            pass: scope.pass.name.clone(),
+            pass: scope.pass.clone(),
             names: [name(first), name(other)],
             sizes: [whole, size(other)],
         };
@@ -422,7 +414,7 @@ fn alike(draw: &Draw<Ids>, scope: &PassScope<'_, '_>) -> Result<(), LinkError> {
     }
     if let Some(other) = drawn.iter().find(|other| other.samples != first.samples) {
         let error = LinkError::TargetSamples {
-            pass: scope.pass.name.clone(),
+            pass: scope.pass.clone(),
             names: [name(first), name(other)],
             samples: [first.samples, other.samples],
         };
@@ -438,7 +430,7 @@ fn alike(draw: &Draw<Ids>, scope: &PassScope<'_, '_>) -> Result<(), LinkError> {
         Ok(())
     } else {
         Err(LinkError::AreaOutside {
-            pass: scope.pass.name.clone(),
+            pass: scope.pass.clone(),
             area: [x, y, width, height],
             whole,
         })

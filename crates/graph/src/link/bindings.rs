@@ -24,7 +24,7 @@ pub(super) fn bind(
     global: &Global,
     program: &Program,
     linked: &LinkedProgram,
-    scope: &mut PassScope<'_, '_>,
+    scope: &mut PassScope<'_>,
 ) -> Reported<LinkedBinding> {
     let features = scope.request().features;
     let bound = program
@@ -64,7 +64,7 @@ pub(super) fn bind(
             let used = (global.reads, global.writes, false);
             let is_frame = scope.get(target.id).kind == ResourceKind::Frame;
             scope.access(&target, used, usage, &global.span);
-            if let Some(access) = scope.pass.accesses.last_mut() {
+            if let Some(access) = scope.accesses.last_mut() {
                 access.triggers = !is_frame || reads_clock(linked, global);
             }
             (bound, ty)
@@ -83,7 +83,7 @@ fn binding(
     global: &Global,
     target: &mut Target,
     (linked, program): (&LinkedProgram, &Program),
-    scope: &mut PassScope<'_, '_>,
+    scope: &mut PassScope<'_>,
 ) -> Reported<Binding> {
     let features = scope.request().features;
     let resource = scope.get(target.id).clone();
@@ -97,7 +97,7 @@ fn binding(
             return uniform_buffer(global, target, *size, provided.stride, scope);
         }
         (Class::Uniform { size, .. }, ResourceKind::Buffer(_)) => {
-            let id = scope.symbols.base(target.id);
+            let id = scope.symbols().base(target.id);
             scope.layouts.see(id, &target.part, global);
             return uniform_buffer(global, target, *size, u64::MAX, scope);
         }
@@ -134,7 +134,7 @@ fn binding(
             // Not every device queries rays.
             if !features.contains(wgt::Features::EXPERIMENTAL_RAY_QUERY) {
                 scope.unsupported(LinkError::RayQuery {
-                    pass: scope.pass.name.clone(),
+                    pass: scope.pass.clone(),
                     span: global.span.clone(),
                 })?;
             }
@@ -166,7 +166,7 @@ fn uniform_buffer(
     target: &Target,
     size: u64,
     have: u64,
-    scope: &mut PassScope<'_, '_>,
+    scope: &mut PassScope<'_>,
 ) -> Reported<Binding> {
     let most = scope.request().limits.max_uniform_buffer_binding_size;
     if size > have {
@@ -195,7 +195,7 @@ fn uniform_buffer(
 
 /// Items of a provided buffer begin where the device can bind; those of the document's own are
 /// looked at when their layout is known.
-fn aligned(global: &Global, target: &Target, scope: &mut PassScope<'_, '_>) -> Reported<()> {
+fn aligned(global: &Global, target: &Target, scope: &mut PassScope<'_>) -> Reported<()> {
     let ResourceKind::Provided(provided) = &scope.get(target.id).kind else {
         return Ok(());
     };
@@ -218,7 +218,7 @@ fn storage_buffer(
     target: &Target,
     least: u64,
     read_only: bool,
-    scope: &mut PassScope<'_, '_>,
+    scope: &mut PassScope<'_>,
 ) -> Reported<Binding> {
     let resource = scope.get(target.id);
     if matches!(resource.kind, ResourceKind::Provided(_)) && !read_only {
@@ -229,7 +229,7 @@ fn storage_buffer(
         }));
     }
     aligned(global, target, scope)?;
-    let id = scope.symbols.base(target.id);
+    let id = scope.symbols().base(target.id);
     scope.layouts.see(id, &target.part, global);
     Ok((
         BindTarget::Buffer(target.clone()),

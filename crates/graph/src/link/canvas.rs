@@ -42,7 +42,7 @@ pub(super) fn stages_of(
 pub(super) fn texture(
     draw: &Draw<Names>,
     program: Option<&LinkedProgram>,
-    scope: &mut PassScope<'_, '_>,
+    scope: &mut PassScope<'_>,
 ) -> Reported<Option<Texture>> {
     let Some(canvas) = &draw.canvas else {
         return Ok(None);
@@ -52,7 +52,7 @@ pub(super) fn texture(
     let stencil = draw.stencil.as_ref().map(|stencil| &stencil.target);
     if let Some(target) = colors.chain(depth).chain(stencil).next() {
         return Err(scope.report(LinkError::CanvasBeside {
-            pass: scope.pass.name.value.clone(),
+            pass: scope.pass.value.clone(),
             size: canvas.span.clone(),
             target: target.located(),
         }));
@@ -76,11 +76,11 @@ pub(super) fn texture(
 fn returns_nothing(
     program: &LinkedProgram,
     canvas: &Located<[u64; 2]>,
-    scope: &mut PassScope<'_, '_>,
+    scope: &mut PassScope<'_>,
 ) -> Reported<()> {
     let Some(entry) = program.entry(ShaderStage::Fragment) else {
         return Err(scope.report(LinkError::CanvasWithoutFragment {
-            pass: scope.pass.name.clone(),
+            pass: scope.pass.clone(),
             size: canvas.span.clone(),
         }));
     };
@@ -89,15 +89,15 @@ fn returns_nothing(
     match result {
         None => Ok(()),
         Some(_) => Err(scope.report(LinkError::CanvasOutput {
-            pass: scope.pass.name.value.clone(),
+            pass: scope.pass.value.clone(),
             size: canvas.span.clone(),
             entry: shader.entry_span(entry),
         })),
     }
 }
 
-fn canvas_size(canvas: &Located<[u64; 2]>, scope: &mut PassScope<'_, '_>) -> Reported<[u32; 2]> {
-    let name = Located::new(scope.pass.name.value.clone(), canvas.span.clone());
+fn canvas_size(canvas: &Located<[u64; 2]>, scope: &mut PassScope<'_>) -> Reported<[u32; 2]> {
+    let name = Located::new(scope.pass.value.clone(), canvas.span.clone());
     let [Ok(width), Ok(height)] = canvas.value.map(u32::try_from) else {
         return Err(scope.report(SizeError::Absurd { name }));
     };

@@ -2,7 +2,6 @@
 
 use super::{
     covered::{fully_overwrites, within},
-    layouts::Layouts,
     pass::{CAPTURE, LinkedPass},
     scope::PassScope,
     steps,
@@ -10,7 +9,7 @@ use super::{
 use crate::{
     diagnostics::reports::Reported,
     errors::plan::OutputError,
-    instantiate::{flat::Run, symbols::SymbolTable},
+    instantiate::flat::Run,
     kinds::step::{Operand, Scratch, Step},
     provider::Provided,
     request::Capture,
@@ -23,47 +22,44 @@ use crate::{
 pub(super) fn link(
     capture: &Capture,
     passes: &[LinkedPass],
-    symbols: &mut SymbolTable<'_>,
-    layouts: &mut Layouts,
+    scope: &mut PassScope<'_>,
 ) -> Reported<LinkedPass> {
-    let Some(target) = symbols.find_full(&capture.material) else {
+    let Some(target) = scope.resolve_full(&capture.material) else {
+        let symbols = scope.symbols();
         let known = symbols.reports.known(symbols.full_names());
-        return Err(symbols.reports.report(OutputError::NoMaterial {
+        return Err(scope.report(OutputError::NoMaterial {
             graph: symbols.graph.path().to_owned(),
             name: capture.material.clone(),
             known,
         }));
     };
     let mut target = target?;
-    if let Some(part) = written_part(symbols.get(target.id), &target, passes) {
+    if let Some(part) = written_part(scope.get(target.id), &target, passes) {
         target.part = part;
     }
-    let copy = copy_of(capture, &target, symbols);
-    let copy = symbols.reports.check(copy)?;
-    let name = Located::new(capture.name(), symbols.graph.place());
-    let copy = symbols.add(Resource::new(name.value.clone(), copy, Origin::Own));
+    let kind = scope.check(copy_of(capture, &target, scope))?;
+    let name = Located::new(capture.name(), scope.symbols().graph.place());
+    let copy = scope.add(name.value.clone(), kind);
+    scope.enter_capture(target, copy);
     let steps = [Step::Copy {
         from: Operand::Scratch(Scratch(0)),
         to: Operand::Scratch(Scratch(1)),
     }];
+    let mut pass = steps::link(name, CAPTURE, &steps, scope)?;
     // A capture runs even if the pass that it comes after does not: the change may have been
     // written above that one.
-    let pass = LinkedPass::new(name, CAPTURE, Run::OnChange);
-    // Both ends are known by number, neither is a name of a document.
-    let ends = vec![target, symbols.whole(copy)];
-    let mut scope = PassScope::new(pass, ends, symbols, layouts);
-    steps::link(&steps, &mut scope)?;
-    Ok(scope.pass)
+    pass.run = Run::OnChange;
+    Ok(pass)
 }
 
 /// A texture or buffer that a part of a resource can be copied into.
 fn copy_of(
     capture: &Capture,
     target: &Target,
-    symbols: &SymbolTable<'_>,
+    scope: &PassScope<'_>,
 ) -> Result<ResourceKind, OutputError> {
     let name = capture.material.clone();
-    Ok(match &symbols.get(target.id).kind {
+    Ok(match &scope.get(target.id).kind {
         ResourceKind::Texture(texture) => {
             let mut copy = texture.clone();
             copy.size = texture.mip_size(target.part.mips.start);

@@ -22,7 +22,7 @@ fn fold(groups: u64, most: u32) -> [u64; 3] {
 
 pub(super) fn link(
     dispatch: &Dispatch<Names>,
-    scope: &mut PassScope<'_, '_>,
+    scope: &mut PassScope<'_>,
 ) -> Reported<Dispatch<Ids>> {
     let stages = [ShaderStage::Compute];
     let program = programs::link(&dispatch.program, &stages, false, scope)?;
@@ -38,7 +38,7 @@ pub(super) fn link(
 pub(super) fn indirect(
     operand: &Operand,
     bytes: u64,
-    scope: &mut PassScope<'_, '_>,
+    scope: &mut PassScope<'_>,
 ) -> Reported<Target> {
     let (target, name) = scope.operand(operand)?;
     let resource = scope.get(target.id);
@@ -46,20 +46,20 @@ pub(super) fn indirect(
         let found = resource.kind.describe();
         return Err(scope.report(LinkError::NoArguments { name, found }));
     }
-    let id = scope.symbols.base(target.id);
+    let id = scope.symbols().base(target.id);
     scope.layouts.at_least(id, &target.part, bytes, &name.span);
     let usage = Usage::Buffer(wgt::BufferUsages::INDIRECT);
     scope.access(&target, (true, false, false), usage, &name.span);
     Ok(target)
 }
 
-fn workgroup_size(program: &LinkedProgram, scope: &mut PassScope<'_, '_>) -> Reported<[u32; 3]> {
+fn workgroup_size(program: &LinkedProgram, scope: &mut PassScope<'_>) -> Reported<[u32; 3]> {
     let entry = program.entries[0];
     let at = program.shader.entry_span(entry);
     let Some(size) = program.shader.workgroup_size(entry) else {
         return Err(scope.report(LinkError::WorkgroupOverride {
             at,
-            pass: scope.pass.name.clone(),
+            pass: scope.pass.clone(),
         }));
     };
     let limits = &scope.request().limits;
@@ -76,18 +76,14 @@ fn workgroup_size(program: &LinkedProgram, scope: &mut PassScope<'_, '_>) -> Rep
             most,
             threads,
             at,
-            pass: scope.pass.name.clone(),
+            pass: scope.pass.clone(),
         })?;
     }
     Ok(size)
 }
 
 /// How many workgroups of a size are dispatched.
-fn workgroups(
-    threads: &Threads,
-    size: [u32; 3],
-    scope: &mut PassScope<'_, '_>,
-) -> Reported<[u32; 3]> {
+fn workgroups(threads: &Threads, size: [u32; 3], scope: &mut PassScope<'_>) -> Reported<[u32; 3]> {
     let most = scope.request().limits.max_compute_workgroups_per_dimension;
     let per_group: u64 = size.iter().map(|&edge| u64::from(edge)).product();
     let groups: [u64; 3] = match threads {
@@ -102,7 +98,7 @@ fn workgroups(
         scope.unsupported(LinkError::Workgroups {
             groups,
             most,
-            pass: scope.pass.name.clone(),
+            pass: scope.pass.clone(),
         })?;
     }
     Ok(narrow)

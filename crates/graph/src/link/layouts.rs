@@ -81,8 +81,11 @@ impl Layouts {
         }));
     }
 
-    /// Every buffer with its size; reports those that can have none.
-    pub fn sized(self, symbols: &mut SymbolTable<'_>) -> BTreeMap<ResourceId, Buffer> {
+    /// Every buffer with its size, and the mistakes of those that can have none.
+    pub fn sized(
+        self,
+        symbols: &SymbolTable<'_>,
+    ) -> (BTreeMap<ResourceId, Buffer>, Vec<LayoutError>) {
         let (mut buffers, mut errors) = (BTreeMap::new(), Vec::new());
         for (index, resource) in symbols.resources.iter().enumerate() {
             let id = ResourceId(index);
@@ -119,16 +122,7 @@ impl Layouts {
             }
         }
         errors.extend(self.equal_sizes(symbols, &mut buffers));
-        for error in errors {
-            match error {
-                LayoutError::TooLarge { .. } | LayoutError::Alignment { .. } => {
-                    // The report suffices: nothing here depends on the result.
-                    let _ = symbols.reports.unsupported(error);
-                }
-                error => drop(symbols.reports.report(error)),
-            }
-        }
-        buffers
+        (buffers, errors)
     }
 
     /// Checks that an import is large enough.

@@ -30,7 +30,7 @@ const MOST_OF_ALL: u64 = 65_536;
 const MOST_OF_A_VALUE: u64 = 2048 * 16;
 
 /// Checks the memory that each entry point of a program takes.
-pub(super) fn footprints(program: &LinkedProgram, scope: &mut PassScope<'_, '_>) -> Reported<()> {
+pub(super) fn footprints(program: &LinkedProgram, scope: &mut PassScope<'_>) -> Reported<()> {
     let mut wrong = None;
     for &index in &program.entries {
         let shader = &program.shader;
@@ -43,7 +43,7 @@ pub(super) fn footprints(program: &LinkedProgram, scope: &mut PassScope<'_, '_>)
     wrong.map_or(Ok(()), Err)
 }
 
-fn check_footprint(entry: &Entry, of: &Footprint, scope: &mut PassScope<'_, '_>) -> Reported<()> {
+fn check_footprint(entry: &Entry, of: &Footprint, scope: &mut PassScope<'_>) -> Reported<()> {
     let most = scope.request().limits.max_compute_workgroup_storage_size;
     if let Some(excess) = beyond(&of.workgroup, u64::from(most), entry) {
         let entry = entry.clone();
@@ -93,7 +93,7 @@ fn check_footprint(entry: &Entry, of: &Footprint, scope: &mut PassScope<'_, '_>)
 pub(super) fn binding_numbers(
     shader: &Shader,
     globals: &[Global],
-    scope: &mut PassScope<'_, '_>,
+    scope: &mut PassScope<'_>,
 ) -> Reported<()> {
     let limits = &scope.request().limits;
     // Those of globals that nothing uses count, too: a device refuses the whole module. (One number
@@ -124,7 +124,7 @@ pub(super) fn binding_numbers(
 pub(super) fn stages(
     program: &LinkedProgram,
     draw: &Draw<Names>,
-    scope: &mut PassScope<'_, '_>,
+    scope: &mut PassScope<'_>,
 ) -> Reported<()> {
     let shader = &program.shader;
     let limits = &scope.request().limits;
@@ -180,7 +180,7 @@ fn check_locations(
     verb: &'static str,
     of: &Varyings,
     most: u32,
-    scope: &mut PassScope<'_, '_>,
+    scope: &mut PassScope<'_>,
 ) -> Reported<()> {
     let locations = of.locations.iter().map(|varying| varying.location);
     match locations.max() {
@@ -200,7 +200,7 @@ fn check_varyings(
     of: &Varyings,
     builtins: u32,
     most: u32,
-    scope: &mut PassScope<'_, '_>,
+    scope: &mut PassScope<'_>,
 ) -> Reported<()> {
     let number = of.locations.len() as u64 + u64::from(builtins);
     if number <= u64::from(most) {

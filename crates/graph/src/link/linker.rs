@@ -2,14 +2,13 @@
 
 use super::{
     capture,
-    layouts::Layouts,
     pass::{Access, LinkedPass},
     scope::PassScope,
     steps,
 };
 use crate::{
     diagnostics::reports::Reported,
-    errors::{instantiate::InterfaceError, link::LinkError},
+    errors::{instantiate::InterfaceError, layout::LayoutError, link::LinkError},
     instantiate::{
         flat::{Interface, Merge, PlanInputs},
         lower::{Lowered, LoweredPass},
@@ -41,9 +40,8 @@ pub(crate) struct Linked<'a> {
 
 /// Links all passes with their captures.
 pub(crate) fn link(lowered: Lowered<'_>) -> Linked<'_> {
-    let mut symbols = lowered.symbols;
-    let request = symbols.request;
-    let mut layouts = Layouts::default();
+    let request = lowered.symbols.request;
+    let mut scope = PassScope::new(lowered.symbols);
     let (mut passes, mut instances) = (Vec::new(), Vec::new());
     // The writes of a pass with a mistake are not known.
     let mut first_invalid: Option<usize> = None;
@@ -51,7 +49,7 @@ pub(crate) fn link(lowered: Lowered<'_>) -> Linked<'_> {
     for (index, pass) in lowered.passes.into_iter().enumerate() {
         numbers.push(passes.len());
         // For each mistake all names are searched for what was meant.
-        if symbols.reports.has_enough() {
+        if scope.reports().has_enough() {
             first_invalid.get_or_insert(passes.len());
             break;
         }
@@ -59,7 +57,7 @@ pub(crate) fn link(lowered: Lowered<'_>) -> Linked<'_> {
             first_invalid.get_or_insert(passes.len());
         }
         let (name, instance, is_broken) = (pass.flat.name.clone(), pass.instance, pass.is_broken);
-        match link_pass(pass, &mut symbols, &mut layouts) {
+        match link_pass(pass, &mut scope) {
             Ok(linked) if !is_broken => {
                 passes.push(linked);
                 instances.push(Some(instance));
@@ -70,7 +68,7 @@ pub(crate) fn link(lowered: Lowered<'_>) -> Linked<'_> {
         let captures: BTreeSet<&Capture> = request.captures.iter().filter(after).collect();
         for capture in captures {
             // A capture that cannot be was reported, and nothing needs it.
-            if let Ok(captured) = capture::link(capture, &passes, &mut symbols, &mut layouts) {
+            if let Ok(captured) = capture::link(capture, &passes, &mut scope) {
                 passes.push(captured);
                 instances.push(None);
             }
@@ -79,7 +77,19 @@ pub(crate) fn link(lowered: Lowered<'_>) -> Linked<'_> {
     if lowered.first_invalid.is_some() {
         first_invalid.get_or_insert(passes.len());
     }
-    for (id, buffer) in layouts.sized(&mut symbols) {
+    let layouts = std::mem::take(&mut scope.layouts);
+    let mut symbols = scope.into_symbols();
+    let (buffers, errors) = layouts.sized(&symbols);
+    for error in errors {
+        match error {
+            LayoutError::TooLarge { .. } | LayoutError::Alignment { .. } => {
+                // The report suffices: nothing here depends on the result.
+                let _ = symbols.reports.unsupported(error);
+            }
+            error => drop(symbols.reports.report(error)),
+        }
+    }
+    for (id, buffer) in buffers {
         symbols.resources[id.index()].kind = ResourceKind::Buffer(buffer);
     }
     symbols.size_previous();
@@ -95,47 +105,35 @@ pub(crate) fn link(lowered: Lowered<'_>) -> Linked<'_> {
     }
 }
 
-fn link_pass<'a>(
-    pass: LoweredPass<'a>,
-    symbols: &mut SymbolTable<'a>,
-    layouts: &mut Layouts,
-) -> Reported<LinkedPass> {
+fn link_pass<'a>(mut pass: LoweredPass<'a>, scope: &mut PassScope<'a>) -> Reported<LinkedPass> {
+    scope.enter(&mut pass);
     let flat = pass.flat;
-    let mut linked = LinkedPass::new(flat.name, flat.pass.kind, flat.run);
+    let mut linked = steps::link(flat.name, flat.pass.kind, &pass.steps, scope)?;
+    linked.run = flat.run;
     linked.enabled = flat.enabled;
-    let scratch = pass.scratch.iter().map(|id| symbols.whole(*id)).collect();
-    let mut scope = PassScope {
-        position: flat.position,
-        set: &flat.entry.set,
-        inherited_bind: flat.bind,
-        inherited_set: flat.set,
-        own_shader: Some(pass.shader),
-        ..PassScope::new(linked, scratch, symbols, layouts)
-    };
-    steps::link(&pass.steps, &mut scope)?;
     scope.unasked()?;
-    overwrites(&flat.pass.overwrites, &mut scope)?;
+    overwrites(&mut linked, &flat.pass.overwrites, scope)?;
     if let Some(reads) = &flat.pass.reads {
-        self::reads(reads, &mut scope)?;
+        self::reads(&linked, reads, scope)?;
     }
-    Ok(scope.pass)
+    Ok(linked)
 }
 
 /// Holds what the author says that a pass reads against what it reads.
-fn reads(references: &[Reference], scope: &mut PassScope<'_, '_>) -> Reported<()> {
+fn reads(pass: &LinkedPass, references: &[Reference], scope: &mut PassScope<'_>) -> Reported<()> {
     let mut stated = BTreeSet::new();
     for reference in references {
         let id = scope.resolve(reference)?.id;
         stated.insert(id);
-        let mut read = scope.pass.accesses.iter().filter(|access| access.reads);
+        let mut read = pass.accesses.iter().filter(|access| access.reads);
         if !read.any(|access| access.resource == id) {
             return Err(scope.report(LinkError::ReadsNot {
-                pass: scope.pass.name.value.clone(),
+                pass: pass.name.value.clone(),
                 name: reference.located(),
             }));
         }
     }
-    let unstated = scope.pass.accesses.iter().find(|access| {
+    let unstated = pass.accesses.iter().find(|access| {
         let kind = &scope.get(access.resource).kind;
         let is_given = matches!(kind, ResourceKind::Provided(_) | ResourceKind::Frame)
             || matches!(kind, ResourceKind::AccelerationStructure);
@@ -146,7 +144,7 @@ fn reads(references: &[Reference], scope: &mut PassScope<'_, '_>) -> Reported<()
         Some(access) => {
             let name = scope.get(access.resource).name.clone();
             Err(scope.report(LinkError::ReadsMore {
-                pass: scope.pass.name.clone(),
+                pass: pass.name.clone(),
                 name,
                 read: access.span.clone(),
             }))
@@ -155,11 +153,15 @@ fn reads(references: &[Reference], scope: &mut PassScope<'_, '_>) -> Reported<()
 }
 
 /// Takes the author's word that a pass writes all of some resources.
-fn overwrites(references: &[Reference], scope: &mut PassScope<'_, '_>) -> Reported<()> {
+fn overwrites(
+    pass: &mut LinkedPass,
+    references: &[Reference],
+    scope: &mut PassScope<'_>,
+) -> Reported<()> {
     for reference in references {
         let target = scope.resolve(reference)?;
         let mut is_written = false;
-        for access in &mut scope.pass.accesses {
+        for access in &mut pass.accesses {
             if access.writes && access.resource == target.id && access.part == target.part {
                 is_written = true;
                 access.fully_overwrites = true;
@@ -169,7 +171,7 @@ fn overwrites(references: &[Reference], scope: &mut PassScope<'_, '_>) -> Report
         }
         if !is_written {
             return Err(scope.report(LinkError::Overwrites {
-                pass: scope.pass.name.value.clone(),
+                pass: pass.name.value.clone(),
                 name: reference.located(),
             }));
         }

@@ -61,7 +61,7 @@ fn param_of((class, width): (ScalarClass, u32)) -> Option<String> {
 pub(super) fn constants(
     program: &Program,
     shader: &Shader,
-    scope: &mut PassScope<'_, '_>,
+    scope: &mut PassScope<'_>,
 ) -> Reported<Vec<(String, f64)>> {
     let mut constants = Vec::new();
     for (name, key, has_default, span) in shader.overrides() {
@@ -78,15 +78,11 @@ pub(super) fn constants(
                 // The plan depends on a param that a constant asks for.
                 if let Some(bound) = scope.param(name) {
                     let roots = bound.roots.clone();
-                    scope.symbols.reports.depend_on(roots.iter());
+                    scope.reports().depend_on(roots.iter());
                 }
                 scope.check(number(name, &asked, shader, &span, scope))?
             }
-            None => {
-                // The kind of what is provided, under which the plan is made.
-                let kind = scope.symbols.kind_of_wgsl_name(name, scope.position.scope);
-                kind.map(|kind| f64::from(kind.number))
-            }
+            None => scope.kind(name),
         };
         match value {
             Some(value) => constants.push((key, value)),
@@ -106,7 +102,7 @@ fn number(
     asked: &Asked,
     shader: &Shader,
     span: &Span,
-    scope: &PassScope<'_, '_>,
+    scope: &PassScope<'_>,
 ) -> Result<Option<f64>, LinkError> {
     let (value, found, position) = match asked {
         Asked::Index(index) => return Ok(Some(f64::from(*index))),
@@ -146,7 +142,7 @@ fn word(
     value: &Value,
     span: &Span,
     shader: &Shader,
-    scope: &PassScope<'_, '_>,
+    scope: &PassScope<'_>,
 ) -> Result<u32, LinkError> {
     let Value::Word(word) = value else {
         return Err(wrong_value(name, "a word", value, span));
@@ -184,7 +180,7 @@ pub(super) fn block(
     global: &Global,
     size: u64,
     members: &[Member],
-    scope: &mut PassScope<'_, '_>,
+    scope: &mut PassScope<'_>,
 ) -> Reported<Block> {
     let most = scope.request().limits.max_uniform_buffer_binding_size;
     if members.is_empty() || size > most {
@@ -220,10 +216,10 @@ pub(super) fn block(
 fn member_words(
     global: &Global,
     member: &Member,
-    scope: &mut PassScope<'_, '_>,
+    scope: &mut PassScope<'_>,
 ) -> Reported<(Vec<u32>, Option<String>)> {
     let Some(asked) = scope.asked(&member.name).transpose()? else {
-        let known = scope.symbols.reports.known(scope.params());
+        let known = scope.symbols().reports.known(scope.params());
         return Err(scope.report(LinkError::UnknownMember {
             member: member.name.clone(),
             span: global.span.clone(),
@@ -264,7 +260,7 @@ fn set_member(
     member: &Member,
     value: &Value,
     span: &Span,
-    scope: &mut PassScope<'_, '_>,
+    scope: &mut PassScope<'_>,
 ) -> Reported<Vec<u32>> {
     let Some((class, width)) = member.vector else {
         return Err(scope.report(LinkError::MemberIsNoVector {

@@ -42,18 +42,6 @@ pub struct LinkedPass {
 }
 
 impl LinkedPass {
-    /// A pass of which no step is linked yet.
-    pub(crate) fn new(name: Located<String>, kind: &'static str, run: Run) -> Self {
-        Self {
-            name,
-            kind,
-            steps: Vec::with_capacity(1),
-            accesses: Vec::new(),
-            run,
-            enabled: true,
-        }
-    }
-
     /// True if it only keeps the result of another pass.
     pub fn is_capture(&self) -> bool {
         self.kind == CAPTURE

@@ -17,10 +17,10 @@ pub(super) fn link(
     program: &Program,
     stages: &[ShaderStage],
     depth_only: bool,
-    scope: &mut PassScope<'_, '_>,
+    scope: &mut PassScope<'_>,
 ) -> Reported<LinkedProgram> {
     let shader = scope.shader(program)?;
-    let named = program.shader.as_ref().unwrap_or(&scope.pass.name);
+    let named = program.shader.as_ref().unwrap_or(&scope.pass);
     let wanted = named.span.clone();
     let mut entries = Vec::new();
     let mut wrong = None;
@@ -65,7 +65,7 @@ fn bound_globals(
     program: &Program,
     shader: &Shader,
     globals: &[Global],
-    scope: &mut PassScope<'_, '_>,
+    scope: &mut PassScope<'_>,
 ) -> Reported<()> {
     let mut wrong = None;
     let own = scope.own_shader.as_ref();
@@ -77,7 +77,7 @@ fn bound_globals(
             wrong = Some(scope.report(LinkError::UnusedBind {
                 shader: shader.source.file.name.to_string(),
                 name: bound.clone(),
-                known: scope.symbols.reports.known(known),
+                known: scope.symbols().reports.known(known),
             }));
         }
     }
@@ -85,7 +85,7 @@ fn bound_globals(
 }
 
 /// The numbers of bindings that wgpu limits per stage.
-fn counts(bindings: &[LinkedBinding], scope: &mut PassScope<'_, '_>) -> Reported<()> {
+fn counts(bindings: &[LinkedBinding], scope: &mut PassScope<'_>) -> Reported<()> {
     let limits = &scope.request().limits;
     type IsOf = fn(&wgt::BindingType) -> bool;
     let kinds: [(&str, IsOf, u32); 7] = [
@@ -147,7 +147,7 @@ fn counts(bindings: &[LinkedBinding], scope: &mut PassScope<'_, '_>) -> Reported
         let number = stages.map(of_stage).into_iter().max().unwrap_or(0);
         if number > most as usize {
             scope.unsupported(LinkError::TooManyBindings {
-                pass: scope.pass.name.clone(),
+                pass: scope.pass.clone(),
                 what,
                 number,
                 most,

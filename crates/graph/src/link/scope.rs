@@ -2,16 +2,19 @@
 
 use super::{
     layouts::Layouts,
-    pass::{Access, LinkedPass, Usage},
+    pass::{Access, Usage},
 };
 use crate::{
     diagnostics::{
         diagnostic::Diagnostic,
-        reports::{ErrorGuaranteed, Reported},
+        reports::{ErrorGuaranteed, Reported, Reports},
     },
     errors::{instantiate::InterfaceError, link::LinkError},
     expressions::eval,
-    instantiate::{flat::Inherited, params::BoundParam, scopes::Position, symbols::SymbolTable},
+    instantiate::{
+        flat::Inherited, lower::LoweredPass, params::BoundParam, scopes::Position,
+        symbols::SymbolTable,
+    },
     kinds::step::{Operand, Program, ShaderUse},
     language::{
         name::{Name, wgsl_identifier},
@@ -26,22 +29,24 @@ use crate::{
 };
 use std::{collections::BTreeSet, sync::Arc};
 
-/// A pass that is linked, and the symbols of its graph as it sees them.
-pub(super) struct PassScope<'s, 'a> {
-    pub symbols: &'s mut SymbolTable<'a>,
-    pub layouts: &'s mut Layouts,
-    /// The pass, as far as it is linked.
-    pub pass: LinkedPass,
-    pub position: Position,
+/// The symbols of a graph, as one pass after the other sees them.
+pub(super) struct PassScope<'a> {
+    symbols: SymbolTable<'a>,
+    pub layouts: Layouts,
+    /// The name of the pass.
+    pub pass: Located<String>,
+    /// Its reads and writes so far.
+    pub accesses: Vec<Access>,
+    position: Position,
     /// Its own buffers; of a capture, its source and destination.
-    pub scratch: Vec<Target>,
-    pub set: &'a [(Located<String>, Expr)],
-    pub inherited_bind: Vec<Inherited<'a, Reference>>,
-    pub inherited_set: Vec<Inherited<'a, Expr>>,
+    scratch: Vec<Target>,
+    set: &'a [(Located<String>, Expr)],
+    inherited_bind: Vec<Inherited<'a, Reference>>,
+    inherited_set: Vec<Inherited<'a, Expr>>,
     /// The shader that has the pass's own bindings.
     pub own_shader: Option<Located<String>>,
     /// The bindings and values that a shader of the pass has asked for.
-    pub asked: BTreeSet<String>,
+    asked: BTreeSet<String>,
 }
 
 /// A value that a shader asks for by name.
@@ -54,26 +59,51 @@ pub(super) enum Asked {
     Index(u32),
 }
 
-impl<'s, 'a> PassScope<'s, 'a> {
-    /// The scope of a pass that no document writes.
-    pub fn new(
-        pass: LinkedPass,
-        scratch: Vec<Target>,
-        symbols: &'s mut SymbolTable<'a>,
-        layouts: &'s mut Layouts,
-    ) -> Self {
+impl<'a> PassScope<'a> {
+    pub fn new(symbols: SymbolTable<'a>) -> Self {
         Self {
             position: symbols.root(),
+            pass: Located::new(String::new(), symbols.graph.place()),
             symbols,
-            layouts,
-            pass,
-            scratch,
+            layouts: Layouts::default(),
+            accesses: Vec::new(),
+            scratch: Vec::new(),
             set: &[],
             inherited_bind: Vec::new(),
             inherited_set: Vec::new(),
             own_shader: None,
             asked: BTreeSet::new(),
         }
+    }
+
+    /// The next pass is linked.
+    pub fn enter(&mut self, pass: &mut LoweredPass<'a>) {
+        self.position = pass.flat.position;
+        let scratch = pass.scratch.iter().map(|id| self.symbols.whole(*id));
+        self.scratch = scratch.collect();
+        self.set = &pass.flat.entry.set;
+        self.inherited_bind = std::mem::take(&mut pass.flat.bind);
+        self.inherited_set = std::mem::take(&mut pass.flat.set);
+        self.own_shader = Some(pass.shader.clone());
+        self.asked.clear();
+    }
+
+    /// A capture is linked: both ends are known by number, neither is a name of a document.
+    pub fn enter_capture(&mut self, from: Target, to: Target) {
+        self.scratch = vec![from, to];
+    }
+
+    pub fn into_symbols(self) -> SymbolTable<'a> {
+        self.symbols
+    }
+
+    pub fn symbols(&self) -> &SymbolTable<'a> {
+        &self.symbols
+    }
+
+    /// The mistakes so far.
+    pub fn reports(&mut self) -> &mut Reports {
+        &mut self.symbols.reports
     }
 
     pub fn report(&mut self, mistake: impl Into<Diagnostic>) -> ErrorGuaranteed {
@@ -98,7 +128,7 @@ impl<'s, 'a> PassScope<'s, 'a> {
         usage: Usage,
         span: &Span,
     ) {
-        self.pass.accesses.push(Access {
+        self.accesses.push(Access {
             resource: target.id,
             part: target.part.clone(),
             reads,
@@ -109,6 +139,12 @@ impl<'s, 'a> PassScope<'s, 'a> {
             span: span.clone(),
             step: 0,
         });
+    }
+
+    /// Adds a resource that no document names.
+    pub fn add(&mut self, name: String, kind: ResourceKind) -> Target {
+        let id = self.symbols.add(Resource::new(name, kind, Origin::Own));
+        self.symbols.whole(id)
     }
 
     pub fn get(&self, id: ResourceId) -> &Resource {
@@ -124,6 +160,11 @@ impl<'s, 'a> PassScope<'s, 'a> {
         self.symbols.resolve(reference, self.position)
     }
 
+    /// Resolves a name of a command.
+    pub fn resolve_full(&mut self, name: &str) -> Option<Reported<Target>> {
+        self.symbols.find_full(name)
+    }
+
     /// Resolves an operand of a step. Returns its name and place, too, for messages.
     pub fn operand(&mut self, operand: &Operand) -> Reported<(Target, Located<String>)> {
         match operand {
@@ -131,7 +172,7 @@ impl<'s, 'a> PassScope<'s, 'a> {
             Operand::Scratch(scratch) => {
                 let target = self.scratch[scratch.0].clone();
                 let name = self.get(target.id).name.clone();
-                Ok((target, Located::new(name, self.pass.name.span.clone())))
+                Ok((target, Located::new(name, self.pass.span.clone())))
             }
         }
     }
@@ -208,7 +249,7 @@ impl<'s, 'a> PassScope<'s, 'a> {
         Err(self.report(LinkError::UnknownGlobal {
             global: global.name.clone(),
             span: global.span.clone(),
-            pass: self.pass.name.clone(),
+            pass: self.pass.clone(),
             known,
         }))
     }
@@ -277,6 +318,12 @@ impl<'s, 'a> PassScope<'s, 'a> {
     pub fn params(&self) -> impl Iterator<Item = &str> {
         let instance = self.symbols.scopes.document(self.position.scope);
         instance.params.names()
+    }
+
+    /// The kind of what is provided, under which the plan is made.
+    pub fn kind(&mut self, name: &str) -> Option<f64> {
+        let kind = self.symbols.kind_of_wgsl_name(name, self.position.scope)?;
+        Some(f64::from(kind.number))
     }
 
     /// Reports what the entry binds or sets and no shader of it asks for.

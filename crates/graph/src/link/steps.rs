@@ -1,31 +1,52 @@
 //! The steps of a pass, linked one after the other.
 
-use super::{attachments, dispatch, pass::Ids, scope::PassScope, transfers};
+use super::{
+    attachments, dispatch,
+    pass::{Ids, LinkedPass},
+    scope::PassScope,
+    transfers,
+};
 use crate::{
     diagnostics::reports::Reported,
     errors::link::LinkError,
+    instantiate::flat::Run,
     kinds::step::{Names, Step},
+    source::span::Located,
 };
 
-/// Links the steps of the scope's pass.
-pub(super) fn link(steps: &[Step<Names>], scope: &mut PassScope<'_, '_>) -> Reported<()> {
+/// The pass of these steps.
+pub(super) fn link(
+    name: Located<String>,
+    kind: &'static str,
+    steps: &[Step<Names>],
+    scope: &mut PassScope<'_>,
+) -> Reported<LinkedPass> {
+    scope.pass = name.clone();
+    scope.accesses = Vec::new();
+    let mut linked = Vec::with_capacity(steps.len());
     let mut wrong = None;
     for (index, step) in steps.iter().enumerate() {
-        let first = scope.pass.accesses.len();
-        let linked = self::step(step, scope);
-        let own = &mut scope.pass.accesses[first..];
-        own.iter_mut().for_each(|access| access.step = index);
-        let looped = feedback(first, scope);
-        match linked {
-            Ok(step) => scope.pass.steps.push(step),
+        let first = scope.accesses.len();
+        match self::step(step, scope) {
+            Ok(step) => linked.push(step),
             Err(reported) => wrong = Some(reported),
         }
-        wrong = looped.err().or(wrong);
+        let own = &mut scope.accesses[first..];
+        own.iter_mut().for_each(|access| access.step = index);
+        wrong = feedback(first, scope).err().or(wrong);
     }
-    wrong.map_or(Ok(()), Err)
+    let pass = LinkedPass {
+        name,
+        kind,
+        steps: linked,
+        accesses: std::mem::take(&mut scope.accesses),
+        run: Run::Always,
+        enabled: true,
+    };
+    wrong.map_or(Ok(pass), Err)
 }
 
-fn step(step: &Step<Names>, scope: &mut PassScope<'_, '_>) -> Reported<Step<Ids>> {
+fn step(step: &Step<Names>, scope: &mut PassScope<'_>) -> Reported<Step<Ids>> {
     match step {
         Step::Draw(draw) => attachments::link(draw, scope).map(Step::Draw),
         Step::Dispatch(step) => dispatch::link(step, scope).map(Step::Dispatch),
@@ -34,13 +55,12 @@ fn step(step: &Step<Names>, scope: &mut PassScope<'_, '_>) -> Reported<Step<Ids>
     }
 }
 
-/// A step that uses one part of a resource in two ways of which one writes: wgpu forbids it. `first`:
-/// the number of its first access.
-fn feedback(first: usize, scope: &mut PassScope<'_, '_>) -> Reported<()> {
-    let pass = &scope.pass;
+/// A step that uses one part of a resource in two ways of which one writes: wgpu forbids it.
+/// `first` is the number of its first access.
+fn feedback(first: usize, scope: &mut PassScope<'_>) -> Reported<()> {
     let mut wrong = Vec::new();
-    for (index, a) in pass.accesses[first..].iter().enumerate() {
-        for b in &pass.accesses[first..][..index] {
+    for (index, a) in scope.accesses[first..].iter().enumerate() {
+        for b in &scope.accesses[first..][..index] {
             let conflict =
                 a.resource == b.resource && a.part.overlaps(&b.part) && (a.writes || b.writes);
             // A depth attachment that is tested and written counts once; so does one global
@@ -52,7 +72,7 @@ fn feedback(first: usize, scope: &mut PassScope<'_, '_>) -> Reported<()> {
                     (a, b)
                 };
                 wrong.push(LinkError::Feedback {
-                    pass: pass.name.value.clone(),
+                    pass: scope.pass.value.clone(),
                     name: scope.get(a.resource).name.clone(),
                     reader: reader.span.clone(),
                     reads: !reader.writes,

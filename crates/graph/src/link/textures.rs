@@ -29,7 +29,7 @@ pub(super) fn texture(
     class: &TextureClass,
     (texture, target): (&Texture, &Target),
     (linked, program): (&LinkedProgram, &Program),
-    scope: &mut PassScope<'_, '_>,
+    scope: &mut PassScope<'_>,
 ) -> Reported<Bound> {
     let grows = scope.get(target.id).growth.is_some();
     let misfit = wrong_shape(class.dimension(), texture, target, grows);
@@ -66,7 +66,7 @@ fn sampled(
     class: &TextureClass,
     texture: &Texture,
     (linked, program): (&LinkedProgram, &Program),
-    scope: &mut PassScope<'_, '_>,
+    scope: &mut PassScope<'_>,
 ) -> Result<Bound, TextureMisfit> {
     let TextureClass::Sampled {
         scalar,
@@ -104,8 +104,8 @@ fn sampled(
     let able = wgt::Features::FLOAT32_FILTERABLE;
     let with_feature = format.guaranteed_format_features(able).flags;
     let by_feature = with_feature.contains(TextureFormatFeatureFlags::FILTERABLE);
-    let asks = by_feature && scope.symbols.graph.features().contains(able);
-    let suits = filterable || asks && scope.symbols.reports.any_adapter;
+    let asks = by_feature && scope.symbols().graph.features().contains(able);
+    let suits = filterable || asks && scope.symbols().reports.any_adapter;
     let is_linear = |name: &String| {
         let sampler = scope.sampler(program, name);
         sampler.is_some_and(|it| it.filter == Filter::Linear && it.compare.is_none())
@@ -137,7 +137,7 @@ fn storage(
     (declared, access, dimension): (&str, wgt::StorageTextureAccess, wgt::TextureViewDimension),
     texture: &Texture,
     target: &Target,
-    scope: &PassScope<'_, '_>,
+    scope: &PassScope<'_>,
 ) -> Result<Bound, TextureMisfit> {
     let format = texture.format;
     let features = format.guaranteed_format_features(scope.request().features);
@@ -156,7 +156,7 @@ fn storage(
             || features
                 .flags
                 .contains(TextureFormatFeatureFlags::STORAGE_READ_WRITE));
-    if !allowed && !scope.symbols.reports.any_adapter {
+    if !allowed && !scope.symbols().reports.any_adapter {
         return Err(TextureMisfit::NoStorage);
     }
     if target.part.mips.len() > 1 {

@@ -19,11 +19,7 @@ fn extent(texture: &Texture, target: &Target) -> [usize; 4] {
     [width as usize, height as usize, layers, mips]
 }
 
-pub(super) fn copy(
-    from: &Operand,
-    to: &Operand,
-    scope: &mut PassScope<'_, '_>,
-) -> Reported<Step<Ids>> {
+pub(super) fn copy(from: &Operand, to: &Operand, scope: &mut PassScope<'_>) -> Reported<Step<Ids>> {
     let (source, from) = scope.operand(from)?;
     let (target, to) = scope.operand(to)?;
     scope.writable(target.id, &to.span)?;
@@ -47,7 +43,7 @@ pub(super) fn copy(
             ResourceKind::Buffer(_) | ResourceKind::Provided(_) | ResourceKind::Frame,
             ResourceKind::Buffer(_),
         ] => {
-            let sized = scope.symbols.base(source.id);
+            let sized = scope.symbols().base(source.id);
             let source = (sized, &source.part, &from);
             scope.layouts.same(source, (target.id, &target.part, &to));
             [wgt::BufferUsages::COPY_SRC, wgt::BufferUsages::COPY_DST].map(Usage::Buffer)
@@ -71,7 +67,7 @@ pub(super) fn copy(
 pub(super) fn clear(
     operand: &Operand,
     value: [f64; 4],
-    scope: &mut PassScope<'_, '_>,
+    scope: &mut PassScope<'_>,
 ) -> Reported<Step<Ids>> {
     let (target, name) = scope.operand(operand)?;
     scope.writable(target.id, &name.span)?;

@@ -50,7 +50,7 @@ pub(super) fn readable(
         if !written(&target) {
             let material = material.located();
             at.report(OutputError::UnwrittenOutput { name, material });
-        } else if let Some(what) = unreadable(at.symbols, &target) {
+        } else if let Some(what) = unreadable(at.symbols(), &target) {
             at.report(OutputError::UnreadableOutput {
                 name,
                 material: material.span.clone(),
@@ -66,13 +66,13 @@ pub(super) fn readable(
             continue;
         }
         // Those after a pass were entered as resources of their own.
-        let target = match at.symbols.find_full(&name) {
+        let target = match at.find_full(&name) {
             Some(Ok(target)) => target,
             Some(Err(_)) => continue,
             None => {
                 if capture.after.is_none() {
                     let outputs = declared.iter().map(|&name| name.to_owned());
-                    let known = at.symbols.full_names().into_iter().chain(outputs);
+                    let known = at.symbols().full_names().into_iter().chain(outputs);
                     let known = at.reports().known(known);
                     at.report(OutputError::NoMaterial {
                         graph: graph.path().to_owned(),
@@ -84,13 +84,13 @@ pub(super) fn readable(
             }
         };
         if matches!(
-            at.symbols.get(target.id).kind,
+            at.symbols().get(target.id).kind,
             ResourceKind::Provided(_) | ResourceKind::AccelerationStructure | ResourceKind::Frame
         ) {
             at.report(OutputError::Provided(name));
         } else if !written(&target) {
             at.report(OutputError::Unwritten(name));
-        } else if let Some(what) = unreadable(at.symbols, &target) {
+        } else if let Some(what) = unreadable(at.symbols(), &target) {
             at.report(OutputError::Unreadable { name, what });
         } else {
             readable.push((name, target));

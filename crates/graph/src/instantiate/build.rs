@@ -2,7 +2,7 @@
 
 use super::{
     flat::{EntryContext, Flat, FlatPass, Inherited, Interface, Merge, PlanInputs, Run},
-    include::{self, Overrides},
+    include::{self, Call},
     merge::{Content, Site},
     params::Params,
     scopes::{Instance, InstanceId, Names, Position, ScopeId, Symbol},
@@ -443,14 +443,12 @@ impl<'a> Builder<'a> {
             None => return Ok(Names::new()),
         };
         self.require(document);
-        let has_namespace = include.is_named || position.index.is_some();
-        let place = (position, has_namespace);
         let mut at = self.symbols.at(position, None);
         let of_groups = include::said(entry, document, context, &mut at);
-        let said = Overrides::new(entry, &of_groups, position);
-        let params = include::params(entry, include, document, &said, &mut at);
-        let (scene, overrides) = include::outside(entry, document, &said, place, &mut at);
-        let given = |input| include::input(input, document, include, &said, &mut at);
+        let call = Call::new(entry, include, document, &of_groups, position);
+        let params = call.params(&mut at);
+        let (scene, overrides) = call.outside(&mut at);
+        let given = |input| call.input(input, &mut at);
         let inputs: Vec<_> = document.inputs.iter().map(given).collect();
         self.mark(&of_groups.0, &of_groups.1);
         let around = self.symbols.scopes.instance_of(position.scope);
@@ -458,7 +456,7 @@ impl<'a> Builder<'a> {
         // With a name, or in a repetition, an include is one of its own; so is one that writes into
         // what it is given.
         let may_merge = self.merges
-            && !has_namespace
+            && !call.has_namespace
             && overrides.is_empty()
             && self.symbols.scopes.index(position, None).is_none()
             && !document
@@ -477,11 +475,11 @@ impl<'a> Builder<'a> {
         let scopes = &mut self.symbols.scopes;
         if let Some(site) = site {
             self.merged.push(site.merge(self.passes.len(), include));
-            include::give(entry, document, &site.names, place, scopes)?;
+            call.give(&site.names, scopes)?;
             return Ok(site.names.clone());
         }
         let first_resource = self.symbols.resources.len();
-        let outer = include::outer(entry, position, has_namespace, context);
+        let outer = call.outer(context);
         let instance = scopes.add_instance(Instance {
             document: Arc::clone(document),
             params: Arc::new(params),
@@ -492,12 +490,12 @@ impl<'a> Builder<'a> {
             incomplete: None,
         });
         let scope = scopes.add_scope(instance, None, String::new(), None);
-        let read_only = include::declare_inputs(scope, document, inputs, scopes);
+        let read_only = call.declare_inputs(scope, inputs, scopes);
         let inner = context.inside(scope);
         self.document(document, &inner);
         let mut at = self.symbols.at(scope.begin(), None);
         let plan_inputs = &mut self.plan_inputs;
-        let (names, outputs) = include::outputs(document, &said, plan_inputs, &mut at);
+        let (names, outputs) = call.outputs(plan_inputs, &mut at);
         self.interfaces.push(Interface {
             instance,
             outputs,
@@ -511,7 +509,7 @@ impl<'a> Builder<'a> {
                 owned: first_resource..self.symbols.resources.len(),
             });
         }
-        include::give(entry, document, &names, place, &mut self.symbols.scopes)?;
+        call.give(&names, &mut self.symbols.scopes)?;
         Ok(names)
     }
 

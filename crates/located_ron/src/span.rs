@@ -100,6 +100,14 @@ impl<T> Located<T> {
     pub fn new(value: T, span: Span) -> Self {
         Self { value, span }
     }
+
+    /// The value as text, at the same place.
+    pub fn to_text(&self) -> Located<String>
+    where
+        T: ToString,
+    {
+        Located::new(self.value.to_string(), self.span.clone())
+    }
 }
 
 impl<T> Deref for Located<T> {

@@ -147,16 +147,14 @@ impl Loaded {
         for material in &document.materials {
             let name = material.name();
             if document.is_own(&name.span) && !used.materials.contains(name.as_str()) {
-                let name = Located::new(name.value.to_string(), name.span.clone());
-                reports.warn(ComposeError::UnusedMaterial(name));
+                reports.warn(ComposeError::UnusedMaterial(name.to_text()));
             }
         }
         for (name, _) in &document.values {
             let is_used =
                 used.params.contains(name.as_str()) || used.materials.contains(name.as_str());
             if document.is_own(&name.span) && !is_used {
-                let name = Located::new(name.value.to_string(), name.span.clone());
-                reports.warn(ComposeError::UnusedValue(name));
+                reports.warn(ComposeError::UnusedValue(name.to_text()));
             }
         }
         for param in &document.params[..document.declared] {

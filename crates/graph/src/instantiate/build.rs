@@ -19,13 +19,13 @@ use crate::{
     },
     errors::instantiate::InterfaceError,
     expressions::eval,
-    language::{name::Name, syntax::Leaf},
+    language::name::Name,
     param::ParamType,
     provider::Import,
     request::PlanRequest,
     resource::{Buffer, Origin, Resource, ResourceId, ResourceKind, Sampler, Texture},
     shader::expand::Replaced,
-    source::span::Located,
+    source::span::{Located, Span},
 };
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -128,7 +128,7 @@ impl<'a> Builder<'a> {
     }
 
     fn import(&self, input: &Input) -> Result<ResourceKind, InterfaceError> {
-        let name = Located::new(input.name.value.to_string(), input.name.span.clone());
+        let name = input.name.to_text();
         let Some(import) = self.symbols.request.imports.get(&name.value) else {
             return Err(InterfaceError::NoImport(name));
         };
@@ -212,9 +212,7 @@ impl<'a> Builder<'a> {
         }
         for (number, material) in document.materials.iter().enumerate() {
             if self.symbols.resources.len() >= MOST {
-                let name = material.name();
-                let at = Located::new(name.value.to_string(), name.span.clone());
-                return self.is_full(&at, "materials");
+                return self.is_full(&material.name().span, "materials");
             }
             let name = material.name();
             let instance = self.symbols.scopes.instance_of(scope);
@@ -305,8 +303,7 @@ impl<'a> Builder<'a> {
         };
         self.spent = self.spent.saturating_add(count as usize);
         if self.spent > MOST {
-            let at = Located::new(entry.name.value.to_string(), entry.name.span.clone());
-            self.is_full(&at, "passes");
+            self.is_full(&entry.name.span, "passes");
         }
         if let Some(reported) = self.full {
             return Err(reported);
@@ -314,20 +311,12 @@ impl<'a> Builder<'a> {
         let Some(_) = entry.repeat else {
             return self.instance(entry, None, context).map(drop);
         };
-        let mut given = Vec::new();
-        let mut wrong = None;
-        for index in 0..count {
-            match self.instance(entry, Some(index), context) {
-                Ok(names) => given.push(names),
-                // The others would be wrong in the same way.
-                Err(reported) => {
-                    wrong = Some(reported);
-                    break;
-                }
-            }
-        }
+        // Behind a mistake the others would be wrong in the same way.
+        let given = (0..count).map(|index| self.instance(entry, Some(index), context));
+        let given: Reported<Vec<Names>> = given.collect();
+        let wrong = given.as_ref().err().copied();
         if !matches!(entry.what, What::Pass(_)) {
-            let symbol = wrong.map_or(Symbol::Repeated(given), Symbol::Invalid);
+            let symbol = given.map_or_else(Symbol::Invalid, Symbol::Repeated);
             self.symbols
                 .scopes
                 .declare(scope, &entry.name.value, symbol);
@@ -534,32 +523,20 @@ impl<'a> Builder<'a> {
         let private = outer.map_or(String::new(), |outer| outer.private.clone());
         // Conditions of two documents are one if they are made of the same params of the root;
         // attributes (`index` is one) are what they are here.
-        let scopes = &self.symbols.scopes;
-        let is_value = |name: &str| scopes.find_value(position.scope, name).is_some();
-        let own: BTreeSet<String> = {
-            let mut own = BTreeSet::new();
-            condition.visit(&mut |leaf| {
-                if let Leaf::Param(name) = leaf
-                    && params.bound(name).is_none()
-                    && is_value(name)
-                {
-                    own.insert(name.to_owned());
+        let text = condition.canonical(&mut |leaf| {
+            if let Some(name) = leaf.as_param() {
+                match params.bound(name).map(|bound| &bound.root) {
+                    Some(Some(root)) => return root.clone(),
+                    Some(None) => return format!("{private}{name}"),
+                    None => {}
                 }
-            });
-            own
-        };
-        let text = condition.canonical(&mut |leaf| match leaf.as_param() {
-            Some(name) if !own.contains(name) => match params.bound(name) {
-                Some(bound) => match &bound.root {
-                    Some(root) => root.clone(),
-                    None => format!("{private}{name}"),
-                },
-                None => name.to_owned(),
-            },
-            _ => {
-                let value = eval::value(leaf, &mut self.symbols.at(position, None));
-                value.map_or_else(|_| leaf.text().to_owned(), |value| value.to_string())
+                let scopes = &self.symbols.scopes;
+                if scopes.find_value(position.scope, name).is_none() {
+                    return name.to_owned();
+                }
             }
+            let value = eval::value(leaf, &mut self.symbols.at(position, None));
+            value.map_or_else(|_| leaf.text().to_owned(), |value| value.to_string())
         });
         Ok(Some((Run::When(text), enabled)))
     }
@@ -648,13 +625,13 @@ impl<'a> Builder<'a> {
     }
 
     /// Says once that there is no room for more.
-    fn is_full(&mut self, name: &Located<String>, what: &'static str) {
+    fn is_full(&mut self, at: &Span, what: &'static str) {
         self.broken();
         if self.full.is_none() {
             self.full = Some(self.symbols.reports.report(InterfaceError::TooMany {
                 most: MOST,
                 what,
-                at: name.span.clone(),
+                at: at.clone(),
             }));
         }
     }
@@ -691,14 +668,10 @@ impl<'a> Builder<'a> {
     fn root_interface(&mut self, document: &Document, instance: InstanceId, scope: ScopeId) {
         let mut read_only = Vec::new();
         for input in &document.inputs {
-            let is_output = document
-                .outputs
-                .iter()
-                .any(|output| output.material.path() == *input.name.as_str());
-            if let (false, Some(Symbol::Target(target))) = (
-                is_output,
-                self.symbols.scopes.find(scope, &input.name.value),
-            ) {
+            let symbol = self.symbols.scopes.find(scope, &input.name.value);
+            if let Some(Symbol::Target(target)) = symbol
+                && !include::is_output(document, input)
+            {
                 read_only.push((input.name.clone(), target.clone()));
             }
         }

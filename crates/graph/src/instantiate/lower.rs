@@ -71,7 +71,6 @@ pub(crate) fn lower(flat: Flat<'_>) -> Lowered<'_> {
         for diagnostic in diagnostics {
             symbols.reports.report(diagnostic);
         }
-        let own = Located::new(entry.name.value.to_string(), entry.name.span.clone());
         // A slash stands in no name: nothing in a document can mean this buffer.
         let scratch = scratch.into_iter().map(|(name, bytes)| {
             let name = format!("{}/{name}", flat.name.value);
@@ -85,7 +84,7 @@ pub(crate) fn lower(flat: Flat<'_>) -> Lowered<'_> {
             scratch: scratch.collect(),
             instance: symbols.scopes.instance_of(flat.position.scope),
             steps,
-            shader: pass.shader.clone().unwrap_or(own),
+            shader: pass.shader.clone().unwrap_or_else(|| entry.name.to_text()),
             is_broken: symbols.reports.errors() > before,
             flat,
         }

@@ -11,7 +11,6 @@ use crate::{
     errors::{evaluation::EvaluationError, resource::SizeError},
     expressions::eval,
     language::{syntax::Expr, value::Value},
-    picture::Picture,
     request::PlanRequest,
     resource::{Buffer, Growth, ResourceKind, Sampler, Texture},
     source::span::{Located, Span},
@@ -32,8 +31,7 @@ pub(super) fn kind(
         material @ Material::Sampler(_) => (material, false),
     };
     if material.keeps() && is_constant {
-        let name = material.name();
-        let name = Located::new(name.value.to_string(), name.span.clone());
+        let name = material.name().to_text();
         return Err(at.reports().report(SizeError::KeepsConstant(name)));
     }
     // The items or layers that a frame before has asked for; 0 if none has.
@@ -67,14 +65,11 @@ fn texture(
     };
     let picture = match &entry.file {
         None => None,
-        Some(file) => Some(self::picture(
-            entry,
-            file,
-            declared,
-            format,
-            graph,
-            at.reports(),
-        )?),
+        Some(file) => {
+            let picture = graph.pictures.get(&declared.document, file)?;
+            at.reports().check(check_picture(entry, file, format))?;
+            Some(picture)
+        }
     };
     let edges = match (&entry.size, &picture) {
         (_, Some(picture)) => picture.size.map(u64::from).to_vec(),
@@ -131,15 +126,12 @@ fn named_format(expr: &Expr, at: &mut impl Sizing) -> Reported<wgt::TextureForma
     }
 }
 
-fn picture(
+/// A picture has a size of its own, and a format must be able to hold it.
+fn check_picture(
     entry: &TextureEntry,
     file: &Located<String>,
-    declared: &Declared,
     format: wgt::TextureFormat,
-    graph: &Loaded,
-    reports: &mut Reports,
-) -> Reported<Picture> {
-    let picture = graph.pictures.get(&declared.document, file)?;
+) -> Result<(), SizeError> {
     let takes = [
         (entry.size.is_some(), "size"),
         (!matches!(entry.mips, Mips::One), "mips"),
@@ -147,13 +139,13 @@ fn picture(
         (entry.samples.is_some(), "samples"),
     ];
     if let Some((_, field)) = takes.into_iter().find(|(given, _)| *given) {
-        return Err(reports.report(SizeError::FileHas(file.clone(), field)));
+        return Err(SizeError::FileHas(file.clone(), field));
     }
     if !crate::picture::can_hold(format) {
         let position = Located::new(format!("{format:?}"), file.span.clone());
-        return Err(reports.report(SizeError::PictureFormat(position)));
+        return Err(SizeError::PictureFormat(position));
     }
-    Ok(picture)
+    Ok(())
 }
 
 fn buffer(entry: &BufferEntry, at: &mut impl Sizing) -> Reported<Buffer> {
@@ -191,7 +183,7 @@ fn check_texture(
     let format = texture.format;
     let feature = format.required_features() - graph.features();
     if !feature.is_empty() {
-        let name = Located::new(entry.name.value.to_string(), entry.name.span.clone());
+        let name = entry.name.to_text();
         return Err(reports.report(SizeError::FormatFeature {
             name,
             format,
@@ -217,16 +209,12 @@ fn check_texture(
             samples,
         }));
     }
-    let (most, third) = if texture.is_3d {
-        (
-            limits.max_texture_dimension_3d,
-            limits.max_texture_dimension_3d,
-        )
-    } else {
-        (
+    let [most, third] = match texture.is_3d {
+        true => [limits.max_texture_dimension_3d; 2],
+        false => [
             limits.max_texture_dimension_2d,
             limits.max_texture_array_layers,
-        )
+        ],
     };
     if width > most || height > most {
         let size = [width, height];

@@ -195,30 +195,6 @@ fn in_order(document: &Document) -> impl Iterator<Item = &Param> {
     exposed.iter().chain(declared)
 }
 
-/// The params of the root document.
-pub(crate) fn root(
-    document: &Document,
-    asked: &BTreeMap<String, ParamValue>,
-    context: Surroundings,
-    reports: &mut Reports,
-) -> Params {
-    let mut params = Params::default();
-    for param in in_order(document) {
-        let name = &param.name.value;
-        let value = match asked.get(name) {
-            Some(value) => Ok(value.clone()),
-            None => default(&params, param, context, reports),
-        };
-        params.list.push(BoundParam {
-            param: param.clone(),
-            value,
-            root: Some(name.clone()),
-            roots: BTreeSet::from([name.clone()]),
-        });
-    }
-    params
-}
-
 /// Value that an include sets a param to.
 pub(crate) struct SetParam {
     pub expr: Located<Expr>,
@@ -365,12 +341,22 @@ pub(crate) fn checked(
         };
         wrong = mistake.map(|mistake| reports.report(mistake)).or(wrong);
     }
-    let params = root(document, asked, context, reports);
-    let bad = params
-        .list
-        .iter()
-        .find_map(|bound| bound.value.as_ref().err());
-    wrong.or(bad.copied()).map_or(Ok(params), Err)
+    let mut params = Params::default();
+    for param in in_order(document) {
+        let name = &param.name.value;
+        let value = match asked.get(name) {
+            Some(value) => Ok(value.clone()),
+            None => default(&params, param, context, reports),
+        };
+        wrong = wrong.or(value.as_ref().err().copied());
+        params.list.push(BoundParam {
+            param: param.clone(),
+            value,
+            root: Some(name.clone()),
+            roots: BTreeSet::from([name.clone()]),
+        });
+    }
+    wrong.map_or(Ok(params), Err)
 }
 
 /// Returns the promises of a document about itself for these values of params.

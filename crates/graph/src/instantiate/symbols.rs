@@ -140,8 +140,7 @@ impl<'a> SymbolTable<'a> {
             ValueState::Declared => {}
         }
         if self.resolving.len() == DEEPEST_VALUE {
-            let name = declared.name();
-            let name = Located::new(name.value.to_string(), name.span.clone());
+            let name = declared.name().to_text();
             return Err(self.reports.report(EvaluationError::DeepValue {
                 name,
                 most: DEEPEST_VALUE,
@@ -172,10 +171,8 @@ impl<'a> SymbolTable<'a> {
 
     fn circular_value(&mut self, id: ValueId) -> ErrorGuaranteed {
         let ring = self.resolving.iter().skip_while(|other| **other != id);
-        let ring = ring.chain([&id]).map(|id| {
-            let name = self.values[id.0].name();
-            Located::new(name.value.to_string(), name.span.clone())
-        });
+        let ring = ring.chain([&id]);
+        let ring = ring.map(|id| self.values[id.0].name().to_text());
         self.reports
             .report(EvaluationError::CircularValue(ring.collect()))
     }
@@ -640,7 +637,7 @@ impl<'a> At<'_, 'a> {
                         None => Ok((target, segment.selection.as_ref())),
                         Some(next) => Err(self.report(InterfaceError::NotOfMaterial {
                             of: walked,
-                            name: Located::new(next.name.value.to_string(), next.name.span.clone()),
+                            name: next.name.to_text(),
                         })),
                     };
                 }
@@ -659,7 +656,7 @@ impl<'a> At<'_, 'a> {
                 let known = self.symbols.reports.known(known);
                 return Err(self.report(InterfaceError::Private {
                     entry: walked,
-                    name: Located::new(next.name.value.to_string(), next.name.span.clone()),
+                    name: next.name.to_text(),
                     known,
                 }));
             };
@@ -673,8 +670,7 @@ impl<'a> At<'_, 'a> {
     fn repetition(&mut self, segment: &Segment, count: usize) -> Reported<usize> {
         let name = &segment.name;
         let Some(Selection::One(expr)) = &segment.selection else {
-            let name = Located::new(name.value.to_string(), name.span.clone());
-            return Err(self.report(InterfaceError::Namespace(name)));
+            return Err(self.report(InterfaceError::Namespace(name.to_text())));
         };
         let index = eval::count(expr, self)?;
         let index = usize::try_from(index).ok().filter(|index| *index < count);

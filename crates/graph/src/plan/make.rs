@@ -33,6 +33,7 @@ use crate::{
         pass::{Access, LinkedPass, PassId},
     },
     param::ParamValue,
+    provider::Described,
     request::{PlanRequest, Request},
     resource::{Buffer, Growth, Origin, Resource, ResourceId, ResourceKind, Target},
     source::span::Located,
@@ -46,7 +47,7 @@ use std::{
 #[derive(Debug)]
 pub(super) struct Planned {
     pub graph: Arc<Loaded>,
-    pub request: Request,
+    pub request: Request<Described>,
     pub values: BTreeMap<String, ParamValue>,
     pub named_values: Vec<(String, String)>,
     pub resources: Vec<Resource>,
@@ -208,7 +209,7 @@ fn schedule(
     };
     Some(Planned {
         graph: Arc::clone(graph),
-        request: Request::new(request),
+        request: request.to(Described::by(request.provider)),
         values,
         named_values,
         resources,
@@ -490,17 +491,15 @@ fn interfaces(linked: &Linked<'_>, reports: &mut Reports) {
                 || linked.merged.iter().any(is_merged);
             let mut passes = passes.iter();
             if !has_content && !passes.any(|pass| linked.writes(*pass, target.id, &target.part)) {
-                let name = Located::new(name.value.to_string(), name.span.clone());
-                reports.report(InterfaceError::UnwrittenOutput(name));
+                reports.report(InterfaceError::UnwrittenOutput(name.to_text()));
             }
         }
         for (name, target) in &border.read_only {
             let mut passes = passes.iter();
             let writer = passes.find(|pass| linked.writes(**pass, target.id, &target.part));
             if let Some(writer) = writer {
-                let name = Located::new(name.value.to_string(), name.span.clone());
                 let by = linked.passes[*writer].name.span.clone();
-                reports.report(InterfaceError::WrittenInput(name, by));
+                reports.report(InterfaceError::WrittenInput(name.to_text(), by));
             }
         }
     }

@@ -114,7 +114,8 @@ impl Plan {
 
     /// True if the host imports or provides something under this name.
     pub fn offers(&self, name: &str) -> bool {
-        self.0.request.offers(name)
+        let request = &self.0.request;
+        request.imports.contains_key(name) || request.provider.0.contains_key(name)
     }
 
     /// The graph's own textures and buffers with what they take, in the order of the document.
@@ -348,7 +349,7 @@ impl Plan {
         &'a self,
         change: impl FnOnce(&mut PlanRequest<'a>),
     ) -> Result<Self, Diagnostics> {
-        let mut request = self.0.request.again();
+        let mut request: PlanRequest<'a> = self.0.request.to(&self.0.request.provider);
         change(&mut request);
         Self::new(&self.0.graph, &request)
     }

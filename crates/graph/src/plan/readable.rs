@@ -11,7 +11,6 @@ use crate::{
     },
     request::PlanRequest,
     resource::{ResourceKind, Target},
-    source::span::Located,
 };
 
 /// The targets of all outputs and captures that are wanted.
@@ -42,7 +41,7 @@ pub(super) fn readable(
         if condition.is_some_and(|condition| !eval::boolean(condition, at).unwrap_or(false)) {
             continue;
         }
-        let name = Located::new(output.name.value.to_string(), output.name.span.clone());
+        let name = output.name.to_text();
         let material = &output.material;
         let Ok(target) = at.resolve(material) else {
             continue;

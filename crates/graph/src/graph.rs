@@ -203,11 +203,7 @@ impl Graph {
         let mut reports = Reports::default();
         let context = Surroundings { viewport, features };
         match checked(&self.0.document, asked, context, &mut reports) {
-            Ok(params) => Ok(params
-                .list
-                .into_iter()
-                .filter_map(|bound| Some((bound.param.name.value, bound.value.ok()?)))
-                .collect()),
+            Ok(params) => Ok(params.values()),
             Err(_) => Err(self.0.diagnostics(reports.into_list())),
         }
     }

@@ -27,9 +27,7 @@ use crate::{
     presence::Presence,
     provider::Provider,
 };
-use skiagraph_graph::{
-    LinkedPass, Origin, ParamValue, Plan, Resource, ResourceId, ResourceKind, Target,
-};
+use skiagraph_graph::{LinkedPass, Origin, ParamValue, Plan, Resource, ResourceKind, Target};
 use std::{
     sync::Arc,
     time::{Duration, Instant},
@@ -421,10 +419,9 @@ impl Executor {
     }
 
     fn refresh_live(&mut self, provider: &mut dyn Provider) -> Result<(), ExecuteError> {
-        let known: Vec<(ResourceId, Option<u64>)> = self.state.memory.provided().collect();
-        for (id, version) in known {
+        for (id, version) in self.state.memory.provided().clone() {
             let state = &mut self.state;
-            if Some(provider.version(&state.plan.resource(id).name)) == version {
+            if Ok(provider.version(&state.plan.resource(id).name)) == version {
                 continue;
             }
             self.presence.check()?;
@@ -714,14 +711,9 @@ impl Executor {
         let Some(plan) = self.larger() else {
             return Ok(());
         };
-        let memory = &self.state.memory;
-        let known = memory.provided().map(|(id, version)| {
-            let missing = || memory.missing(id).unwrap_or_default().to_owned();
-            (
-                self.plan().resource(id).name.clone(),
-                version.ok_or_else(missing),
-            )
-        });
+        let known = self.state.memory.provided().iter();
+        let known =
+            known.map(|(id, version)| (self.plan().resource(*id).name.clone(), version.clone()));
         let mut unchanged = Unchanged(known.collect());
         self.grow_to(plan, &mut unchanged).map(drop)
     }

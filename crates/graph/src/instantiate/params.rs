@@ -7,7 +7,7 @@ use crate::{
     expressions::eval::{self, Environment},
     language::{
         name::{Name, wgsl_identifier},
-        syntax::{Attribute, Expr, Leaf, Reference},
+        syntax::{Attribute, Expr, Reference},
         value::Value,
     },
     param::{Param, ParamValue, find},
@@ -68,6 +68,15 @@ impl Params {
             .or_else(|| self.list.iter().find(wgsl_name))
     }
 
+    /// The values that are right, by name.
+    pub fn values(&self) -> BTreeMap<String, ParamValue> {
+        let values = self.list.iter().filter_map(|bound| {
+            let value = bound.value.clone().ok()?;
+            Some((bound.param.name.value.clone(), value))
+        });
+        values.collect()
+    }
+
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.list.iter().map(|bound| bound.param.name.as_str())
     }
@@ -88,16 +97,8 @@ impl Params {
     pub fn roots(&self, expr: &Expr) -> BTreeSet<String> {
         let mut roots = BTreeSet::new();
         expr.visit(&mut |leaf| {
-            let name = match leaf {
-                Leaf::Param(name) => name,
-                Leaf::Word(name) => name.as_str(),
-                _ => return,
-            };
-            roots.extend(
-                self.bound(name)
-                    .iter()
-                    .flat_map(|bound| bound.roots.clone()),
-            );
+            let bound = leaf.named().and_then(|name| self.bound(name));
+            roots.extend(bound.iter().flat_map(|bound| bound.roots.clone()));
         });
         roots
     }

@@ -194,13 +194,8 @@ impl<'a> SymbolTable<'a> {
         let mut open = vec![(scope, expr)];
         while let Some((scope, expr)) = open.pop() {
             expr.visit(&mut |leaf| {
-                let name = match leaf {
-                    Leaf::Param(name) => Some(name),
-                    Leaf::Word(name) => Some(name.as_str()),
-                    _ => None,
-                };
                 let params = &self.scopes.document(scope).params;
-                let name = name.filter(|name| params.bound(name).is_none());
+                let name = leaf.named().filter(|name| params.bound(name).is_none());
                 match name.and_then(|name| self.scopes.find_value(scope, name)) {
                     Some(id) if seen.insert(id) => {
                         let value = &self.values[id.0];
@@ -217,14 +212,9 @@ impl<'a> SymbolTable<'a> {
     pub fn roots(&self, scope: ScopeId, expr: &Expr) -> BTreeSet<String> {
         let mut roots = BTreeSet::new();
         self.visit(scope, expr, &mut |scope, leaf| {
-            let name = match leaf {
-                Leaf::Param(name) => name,
-                Leaf::Word(name) => name.as_str(),
-                _ => return,
-            };
-            if let Some(bound) = self.scopes.document(scope).params.bound(name) {
-                roots.extend(bound.roots.iter().cloned());
-            }
+            let params = &self.scopes.document(scope).params;
+            let bound = leaf.named().and_then(|name| params.bound(name));
+            roots.extend(bound.iter().flat_map(|bound| bound.roots.clone()));
         });
         roots
     }

@@ -11,7 +11,7 @@ use super::{
 use crate::{
     diagnostics::reports::Reported,
     errors::link::LinkError,
-    kinds::step::{ColorTarget, DepthTarget, Draw, DrawCall, Names, StencilTarget},
+    kinds::step::{ColorTarget, DepthTarget, Draw, Names, StencilTarget},
     language::syntax::Reference,
     resource::{ResourceKind, Target, Texture},
     scalar_class::ScalarClass,
@@ -52,16 +52,9 @@ pub(super) fn link(draw: &Draw<Names>, scope: &mut PassScope<'_>) -> Reported<Dr
             samples,
         })
     });
-    let call = match &draw.call {
-        DrawCall::Direct {
-            vertices,
-            instances,
-        } => Ok(DrawCall::Direct {
-            vertices: *vertices,
-            instances: *instances,
-        }),
-        DrawCall::Indirect(name) => dispatch::indirect(name, 16, scope).map(DrawCall::Indirect),
-    };
+    let call = draw
+        .call
+        .in_stage(|name| dispatch::indirect(name, 16, scope));
     features(draw, scope)?;
     let linked = Draw {
         program: program?,

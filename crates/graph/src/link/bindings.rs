@@ -109,7 +109,9 @@ fn binding(
                 ..
             },
             ResourceKind::Buffer(_) | ResourceKind::Provided(_),
-        ) if may_be_storage(&resource.kind) => {
+        ) if !matches!(&resource.kind,
+            ResourceKind::Provided(it) if it.binding == ProvidedBinding::Uniform) =>
+        {
             let least = fixed + stride.unwrap_or(0);
             return storage_buffer(global, target, least, *read_only, scope);
         }
@@ -267,12 +269,5 @@ fn uniform(size: u64) -> wgt::BindingType {
         ty: wgt::BufferBindingType::Uniform,
         has_dynamic_offset: false,
         min_binding_size: NonZeroU64::new(size),
-    }
-}
-
-fn may_be_storage(kind: &ResourceKind) -> bool {
-    match kind {
-        ResourceKind::Provided(provided) => provided.binding != ProvidedBinding::Uniform,
-        _ => true,
     }
 }

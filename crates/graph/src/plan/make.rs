@@ -100,11 +100,7 @@ pub(super) fn plan_all(graph: &Arc<Loaded>, request: &PlanRequest<'_>) -> Outcom
     let (Ok(params), 0) = (params, reports.errors()) else {
         return Outcome::failed(reports, PlanInputs::default());
     };
-    let values = params.list.iter().filter_map(|bound| {
-        let value = bound.value.clone().ok()?;
-        Some((bound.param.name.value.clone(), value))
-    });
-    let values = values.collect();
+    let values = params.values();
     let before = reports.clone();
     let mut merges = true;
     let mut linked = loop {

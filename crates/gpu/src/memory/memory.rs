@@ -72,10 +72,7 @@ impl Memory {
         for &id in plan.schedule().lifetimes.keys() {
             memory.enter(plan, id, old, factory)?;
         }
-        let used = |name: &String| {
-            let mut live = plan.schedule().lifetimes.keys();
-            live.any(|id| plan.resource(*id).name == *name)
-        };
+        let used = |name: &String| plan.used().any(|used| used.name == *name);
         for name in plan.imports().keys().filter(|name| !used(name)) {
             if let Some(import) = old.and_then(|old| kept_import(plan, name, old)) {
                 memory.spare.insert(name.clone(), import);
@@ -394,8 +391,8 @@ fn is_copyable(built: &Physical) -> bool {
 
 /// Returns true if a live pass reads a provided resource as it was in the frame before.
 fn is_read_as_before(id: ResourceId, plan: &Plan) -> bool {
-    let mut live = plan.schedule().lifetimes.keys();
-    live.any(|other| plan.resource(*other).origin == Origin::Previous(id))
+    plan.used()
+        .any(|other| other.origin == Origin::Previous(id))
 }
 
 /// The bytes of a buffer that a part of a resource is.

@@ -132,56 +132,22 @@ impl<'a> Builder<'a> {
         let Some(import) = self.symbols.request.imports.get(&name.value) else {
             return Err(InterfaceError::NoImport(name));
         };
-        let wrong = |expected: &str, found: String| InterfaceError::WrongImport {
-            name: name.clone(),
-            expected: expected.to_owned(),
-            found,
-        };
-        match (&input.kind, *import) {
-            (InputKind::Texture(asked), Import::Texture { format, .. })
-                if asked.is_some_and(|asked| asked != format) =>
-            {
-                let asked = asked.map_or(String::new(), |asked| format!("a texture {asked:?}"));
-                Err(wrong(&asked, format!("a texture {format:?}")))
-            }
-            (
-                InputKind::Texture(_),
-                Import::Texture {
-                    format,
-                    size,
-                    mips,
-                    layers,
-                    is_3d,
-                    samples,
-                    ..
-                },
-            ) => Ok(ResourceKind::Texture(Texture {
-                format,
-                size,
-                layers,
-                is_3d,
-                mips,
-                samples,
-                picture: None,
-            })),
-            (InputKind::Buffer, Import::Buffer { bytes, items, .. }) => {
-                Ok(ResourceKind::Buffer(Buffer {
-                    count: items,
-                    bytes,
-                    ..Buffer::default()
-                }))
-            }
-            (InputKind::Sampler { compare: asked }, Import::Sampler { filter, compare })
-                if *asked == compare =>
-            {
-                Ok(ResourceKind::Sampler(Sampler {
-                    filter,
-                    address: Default::default(),
-                    compare: compare.then_some(wgt::CompareFunction::LessEqual),
-                }))
-            }
-            (kind, import) => Err(wrong(kind.describe(), import.describe().to_owned())),
+        let kind = imported(*import);
+        if include::takes(&input.kind, &kind) {
+            return Ok(kind);
         }
+        let (expected, found) = match (&input.kind, &kind) {
+            (InputKind::Texture(Some(asked)), ResourceKind::Texture(found)) => (
+                format!("a texture {asked:?}"),
+                format!("a texture {:?}", found.format),
+            ),
+            (asked, found) => (asked.describe().to_owned(), found.describe().to_owned()),
+        };
+        Err(InterfaceError::WrongImport {
+            name,
+            expected,
+            found,
+        })
     }
 
     /// The materials and entries of a document.
@@ -226,7 +192,6 @@ impl<'a> Builder<'a> {
                         scope,
                         document: Arc::clone(document),
                         number,
-                        span: name.span.clone(),
                     };
                     let id = self.symbols.declare(full, declared);
                     Symbol::Target(self.symbols.whole(id))
@@ -680,5 +645,38 @@ impl<'a> Builder<'a> {
             outputs: Vec::new(),
             read_only,
         });
+    }
+}
+
+/// The resource that an import is.
+fn imported(import: Import) -> ResourceKind {
+    match import {
+        Import::Texture {
+            format,
+            size,
+            mips,
+            layers,
+            is_3d,
+            samples,
+            ..
+        } => ResourceKind::Texture(Texture {
+            format,
+            size,
+            layers,
+            is_3d,
+            mips,
+            samples,
+            picture: None,
+        }),
+        Import::Buffer { bytes, items, .. } => ResourceKind::Buffer(Buffer {
+            count: items,
+            bytes,
+            ..Buffer::default()
+        }),
+        Import::Sampler { filter, compare } => ResourceKind::Sampler(Sampler {
+            filter,
+            address: Default::default(),
+            compare: compare.then_some(wgt::CompareFunction::LessEqual),
+        }),
     }
 }

@@ -48,6 +48,20 @@ fn has_input(document: &Document, name: &str) -> bool {
     inputs.any(|input| input.name.as_str() == name)
 }
 
+/// True if an input can be this resource.
+pub(super) fn takes(input: &InputKind, found: &ResourceKind) -> bool {
+    match (input, found) {
+        (InputKind::Texture(format), ResourceKind::Texture(texture)) => {
+            format.is_none_or(|format| format == texture.format)
+        }
+        (InputKind::Buffer, ResourceKind::Buffer(_) | ResourceKind::Provided(_)) => true,
+        (InputKind::Sampler { compare }, ResourceKind::Sampler(sampler)) => {
+            sampler.compare.is_some() == *compare
+        }
+        _ => false,
+    }
+}
+
 /// True if a document writes into one of its inputs.
 pub(super) fn is_output(document: &Document, input: &Input) -> bool {
     let mut outputs = document.outputs.iter();
@@ -357,18 +371,7 @@ impl<'e> Call<'e> {
             }
         };
         let found = &at.symbols().get(target.id).kind;
-        let fits = match (&input.kind, found) {
-            (InputKind::Texture(None), ResourceKind::Texture(_)) => true,
-            (InputKind::Texture(Some(format)), ResourceKind::Texture(texture)) => {
-                texture.format == *format
-            }
-            (InputKind::Buffer, ResourceKind::Buffer(_) | ResourceKind::Provided(_)) => true,
-            (InputKind::Sampler { compare }, ResourceKind::Sampler(sampler)) => {
-                sampler.compare.is_some() == *compare
-            }
-            _ => false,
-        };
-        if fits {
+        if takes(&input.kind, found) {
             return Ok(target);
         }
         let found = match found {

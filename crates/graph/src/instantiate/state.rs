@@ -5,7 +5,7 @@ use crate::{
     diagnostics::reports::{ErrorGuaranteed, Reported},
     document::{materials::Material, typed::Document},
     language::{name::Name, syntax::Expr, value::Value},
-    source::span::{Located, Span},
+    source::span::Located,
 };
 use std::sync::Arc;
 
@@ -27,7 +27,6 @@ pub(super) struct Declared {
     pub document: Arc<Document>,
     /// Its number among the document's materials.
     pub number: usize,
-    pub span: Span,
 }
 
 impl Declared {

@@ -117,7 +117,7 @@ impl<'a> SymbolTable<'a> {
     pub(super) fn declare(&mut self, name: String, declared: Declared) -> ResourceId {
         let kind = ResourceKind::Buffer(crate::resource::Buffer::default());
         self.resources.push(Resource {
-            declared: Some(declared.span.clone()),
+            declared: Some(declared.material().name().span.clone()),
             keep: declared.material().keeps(),
             ..Resource::new(name, kind, Origin::Own)
         });
@@ -580,13 +580,7 @@ impl<'a> At<'_, 'a> {
             let have = parts::layers(&target, resource, reference);
             let have = self.symbols.reports.check(have)?;
             let range = self.range(selection, have, reference, &target)?;
-            // Items of a buffer without parts so far count from 0.
-            let is_whole = target.part == SubresourceRange::WHOLE;
-            let start = if is_whole {
-                0
-            } else {
-                target.part.layers.start
-            };
+            let start = target.part.layers.start;
             target.part.layers = start + range.start..start + range.end;
         }
         if reference.previous {

@@ -87,48 +87,50 @@ fn bound_globals(
 /// The numbers of bindings that wgpu limits per stage.
 fn counts(bindings: &[LinkedBinding], scope: &mut PassScope<'_>) -> Reported<()> {
     let limits = &scope.request().limits;
-    type IsOf = fn(&wgt::BindingType) -> bool;
+    use wgt::{BindingType as Type, BufferBindingType::Storage, BufferBindingType::Uniform};
+    type IsOf = fn(&Type) -> bool;
     let kinds: [(&str, IsOf, u32); 7] = [
         (
             "storage buffers",
             |ty| {
-                is_buffer(ty, |ty| {
-                    matches!(ty, wgt::BufferBindingType::Storage { .. })
-                })
+                matches!(
+                    ty,
+                    Type::Buffer {
+                        ty: Storage { .. },
+                        ..
+                    }
+                )
             },
             limits.max_storage_buffers_per_shader_stage,
         ),
         (
             "uniform buffers",
-            |ty| is_buffer(ty, |ty| *ty == wgt::BufferBindingType::Uniform),
+            |ty| matches!(ty, Type::Buffer { ty: Uniform, .. }),
             limits.max_uniform_buffers_per_shader_stage,
         ),
         (
             "textures",
-            |ty| matches!(ty, wgt::BindingType::Texture { .. }),
+            |ty| matches!(ty, Type::Texture { .. }),
             limits.max_sampled_textures_per_shader_stage,
         ),
         (
             "storage textures",
-            |ty| matches!(ty, wgt::BindingType::StorageTexture { .. }),
+            |ty| matches!(ty, Type::StorageTexture { .. }),
             limits.max_storage_textures_per_shader_stage,
         ),
         (
             "samplers",
-            |ty| matches!(ty, wgt::BindingType::Sampler(_)),
+            |ty| matches!(ty, Type::Sampler(_)),
             limits.max_samplers_per_shader_stage,
         ),
         (
             "acceleration structures",
-            |ty| matches!(ty, wgt::BindingType::AccelerationStructure { .. }),
+            |ty| matches!(ty, Type::AccelerationStructure { .. }),
             limits.max_acceleration_structures_per_shader_stage,
         ),
         (
             "buffers and acceleration structures",
-            |ty| {
-                is_buffer(ty, |_| true)
-                    || matches!(ty, wgt::BindingType::AccelerationStructure { .. })
-            },
+            |ty| matches!(ty, Type::Buffer { .. } | Type::AccelerationStructure { .. }),
             limits.max_buffers_and_acceleration_structures_per_shader_stage,
         ),
     ];
@@ -155,8 +157,4 @@ fn counts(bindings: &[LinkedBinding], scope: &mut PassScope<'_>) -> Reported<()>
         }
     }
     Ok(())
-}
-
-fn is_buffer(ty: &wgt::BindingType, is: fn(&wgt::BufferBindingType) -> bool) -> bool {
-    matches!(ty, wgt::BindingType::Buffer { ty, .. } if is(ty))
 }

@@ -10,7 +10,7 @@ use crate::{
     scalar_class::ScalarClass,
     shader::{class::TextureClass, reflect::Global},
 };
-use wgt::{TextureAspect, TextureFormat, TextureFormatFeatureFlags, TextureUsages};
+use wgt::{TextureAspect, TextureFormat, TextureFormatFeatureFlags as Flags, TextureUsages};
 
 /// Returns the scalars that a shader sees in a format; of one aspect, if the format has two.
 pub(super) fn scalar_of(format: TextureFormat, aspect: TextureAspect) -> Option<ScalarClass> {
@@ -97,13 +97,10 @@ fn sampled(
         return Err(TextureMisfit::Samples(texture.samples));
     }
     let is_depth = format.is_depth_stencil_format();
-    let filterable = features
-        .flags
-        .contains(TextureFormatFeatureFlags::FILTERABLE)
-        && !is_depth;
+    let filterable = features.flags.contains(Flags::FILTERABLE) && !is_depth;
     let able = wgt::Features::FLOAT32_FILTERABLE;
     let with_feature = format.guaranteed_format_features(able).flags;
-    let by_feature = with_feature.contains(TextureFormatFeatureFlags::FILTERABLE);
+    let by_feature = with_feature.contains(Flags::FILTERABLE);
     let asks = by_feature && scope.symbols().graph.features().contains(able);
     let suits = filterable || asks && scope.symbols().reports.any_adapter;
     let is_linear = |name: &String| {
@@ -152,10 +149,7 @@ fn storage(
     let allowed = features
         .allowed_usages
         .contains(TextureUsages::STORAGE_BINDING)
-        && (!both
-            || features
-                .flags
-                .contains(TextureFormatFeatureFlags::STORAGE_READ_WRITE));
+        && (!both || features.flags.contains(Flags::STORAGE_READ_WRITE));
     if !allowed && !scope.symbols().reports.any_adapter {
         return Err(TextureMisfit::NoStorage);
     }

@@ -1,5 +1,4 @@
-//! From a graph to a plan: once, or with everything that is wrong for all values that decide which
-//! entries are there.
+//! Everything that is wrong with a graph, for all values that decide which entries are there.
 
 use super::{
     make::{Outcome, plan_all},

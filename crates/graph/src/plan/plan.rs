@@ -55,6 +55,12 @@ impl Plan {
         &self.0.resources[id.0]
     }
 
+    /// The resources that live passes use; only these are made.
+    pub fn used(&self) -> impl Iterator<Item = &Resource> {
+        let used = self.0.schedule.lifetimes.keys();
+        used.map(|id| self.resource(*id))
+    }
+
     /// Every pass in the order of the file, those that do not run included.
     pub fn all_passes(&self) -> &[LinkedPass] {
         &self.0.passes
@@ -193,15 +199,13 @@ impl Plan {
     }
 
     fn does_the_same_as(&self, other: &Self) -> bool {
-        let resources = |plan: &Self| {
-            let live = plan.0.schedule.lifetimes.keys();
-            live.map(|id| plan.resource(*id).kind.clone())
-                .collect::<Vec<_>>()
-        };
         self.0.readable == other.0.readable
             && self.live().count() == other.live().count()
             && self.live().zip(other.live()).all(is_same_pass)
-            && resources(self) == resources(other)
+            && self
+                .used()
+                .map(|it| &it.kind)
+                .eq(other.used().map(|it| &it.kind))
     }
 
     /// The provided resources that are bound by the passes that write an output or capture: depths
@@ -225,7 +229,8 @@ impl Plan {
         Some(items::part(self.live(), target, &self.0.resources))
     }
 
-    fn readable_target(&self, output: &str) -> Option<&Target> {
+    /// The resource or part that an output or capture is.
+    pub fn readable_target(&self, output: &str) -> Option<&Target> {
         let (_, target) = self.0.readable.iter().find(|(name, _)| name == output)?;
         Some(target)
     }
@@ -276,32 +281,25 @@ impl Plan {
 
     /// The provided resources that live passes bind; only these are built.
     pub fn provided(&self) -> Vec<&str> {
-        self.0
-            .schedule
-            .lifetimes
-            .keys()
-            .map(|id| self.resource(*id))
-            .filter(|resource| {
-                matches!(
-                    resource.kind,
-                    ResourceKind::Provided(_) | ResourceKind::AccelerationStructure
-                )
-            })
-            .map(|resource| resource.name.as_str())
-            .collect()
+        let is_provided = |resource: &&Resource| {
+            matches!(
+                resource.kind,
+                ResourceKind::Provided(_) | ResourceKind::AccelerationStructure
+            )
+        };
+        let provided = self.used().filter(is_provided);
+        provided.map(|resource| resource.name.as_str()).collect()
     }
 
     /// True if a frame may depend on those before it though the host changes nothing: live passes
     /// read what the graph left in the frame before, or the frame's number.
     pub fn remembers(&self) -> bool {
-        let used = self.0.schedule.lifetimes.keys();
-        used.map(|id| self.resource(*id))
-            .any(|resource| match (&resource.kind, resource.origin) {
-                _ if resource.keep => true,
-                (ResourceKind::Frame, _) => true,
-                (ResourceKind::Provided(_), _) => false,
-                (_, origin) => matches!(origin, Origin::Previous(_)),
-            })
+        self.used().any(|resource| match resource.kind {
+            _ if resource.keep => true,
+            ResourceKind::Frame => true,
+            ResourceKind::Provided(_) => false,
+            _ => matches!(resource.origin, Origin::Previous(_)),
+        })
     }
 
     /// Returns the outputs that can be read back after a frame.

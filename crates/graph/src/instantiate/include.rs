@@ -334,7 +334,7 @@ impl<'e> Call<'e> {
         })
     }
 
-    /// What an input or output of its document is bound to.
+    /// Finds the setting of an input or output of its document.
     fn bound(&self, name: &Name) -> Option<&(&Located<String>, &Reference, Position)> {
         let mut bound = self.bind.iter();
         bound.find(|(bound, ..)| bound.as_str() == name.as_str())

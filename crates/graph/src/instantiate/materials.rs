@@ -209,12 +209,13 @@ fn check_texture(
             samples,
         }));
     }
-    let [most, third] = match texture.is_3d {
-        true => [limits.max_texture_dimension_3d; 2],
-        false => [
+    let [most, third] = if texture.is_3d {
+        [limits.max_texture_dimension_3d; 2]
+    } else {
+        [
             limits.max_texture_dimension_2d,
             limits.max_texture_array_layers,
-        ],
+        ]
     };
     if width > most || height > most {
         let size = [width, height];

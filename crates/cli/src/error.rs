@@ -55,7 +55,7 @@ impl CliError {
         match self {
             Self::Usage(_) => 2,
             Self::Compare(CompareError::NoGpu(_)) => 3,
-            Self::Compare(CompareError::Gpu { source, .. }) if is_fatal(source.as_ref()) => 3,
+            Self::Compare(CompareError::Gpu { source, .. }) if is_fatal(source) => 3,
             Self::Interrupted { .. } => 130,
             // The reader had enough, for example `skiagraph presets | head -1`.
             Self::Stdout(cause) if cause.kind() == io::ErrorKind::BrokenPipe => 0,

@@ -154,7 +154,7 @@ impl Graph {
 
     /// The open includes of the document: each one's name, and the document that stands there.
     pub fn openings(&self) -> impl Iterator<Item = (&str, &str)> {
-        let openings = self.0.document.openings().into_iter();
+        let openings = self.0.document.openings();
         openings.map(|(name, include)| (name.as_str(), include.graph.as_str()))
     }
 

@@ -68,6 +68,15 @@ impl Invalid {
     }
 }
 
+/// How many pixels the errors of a picture are means over.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct JudgedPixels {
+    /// Pixels facing the light (PFL).
+    pub facing_light: u64,
+    /// Number of these that are indeterminate.
+    pub in_band: u64,
+}
+
 impl Graded {
     /// Judges a method's `visibility` against the reference's `shares`, both one value per pixel,
     /// row by row from the top left.
@@ -113,18 +122,7 @@ impl Graded {
         graded.flip = flip(&right, &Image::shaded(visibility, truth)?)?;
         Ok(graded)
     }
-}
 
-/// How many pixels the errors of a picture are means over.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct JudgedPixels {
-    /// Pixels facing the light (PFL).
-    pub facing_light: u64,
-    /// Number of these that are indeterminate.
-    pub in_band: u64,
-}
-
-impl Graded {
     /// Errors of several pictures together, each with its pixels. FLIP is the mean of theirs.
     pub fn together(pictures: impl IntoIterator<Item = (Self, JudgedPixels)>) -> Self {
         let mut all = Self::default();

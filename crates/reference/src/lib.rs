@@ -50,7 +50,7 @@ mod sums;
 mod tree;
 mod visible;
 
-pub use area::{ground_truth, shade_area};
+pub use area::ground_truth;
 pub use blockers::{BlockerCounts, blockers};
 pub use error::Error;
 pub use graded::{Graded, Invalid, JudgedPixels, OffBy};

@@ -94,12 +94,8 @@ impl<'a> Row<'a> {
 
     /// Root mean square error of graded answers, over all views.
     pub fn rmse(&self) -> Option<f64> {
-        let squares = self
-            .runs
-            .iter()
-            .map(|(_, of)| Some(of.graded?.rmse.powi(2)));
-        let sum: f64 = squares.sum::<Option<f64>>()?;
-        (self.views() > 0).then(|| (sum / self.views() as f64).sqrt())
+        let squares = self.mean(|_, of| Some(of.graded?.rmse.powi(2)));
+        squares.map(f64::sqrt)
     }
 
     /// Milliseconds of a frame in which light or meshes have moved: every pass runs. The mean of
@@ -123,16 +119,14 @@ impl<'a> Row<'a> {
     /// Counts, of camera paths, answers that changed though the right ones did not, of those
     /// compared.
     pub fn shimmer(&self) -> Option<Part> {
-        let shimmers = self
-            .runs
-            .iter()
-            .map(|(_, of)| Some(of.sequence.as_ref()?.shimmer));
-        let add = |sum: Part, of: Shimmer| Part {
-            count: sum.count + of.changed,
-            of: sum.of + of.compared,
-        };
-        let all: Vec<Shimmer> = shimmers.collect::<Option<_>>()?;
-        Some(all.into_iter().fold(Part { count: 0, of: 0 }, add))
+        let mut all = Shimmer::default();
+        for (_, of) in &self.runs {
+            all += of.sequence.as_ref()?.shimmer;
+        }
+        Some(Part {
+            count: all.changed,
+            of: all.compared,
+        })
     }
 
     /// Worst frame of all camera paths, by its error.

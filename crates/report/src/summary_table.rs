@@ -8,7 +8,7 @@ use crate::summary::{Row, by_wall, rows};
 use crate::verdict::{Verdict, verdict};
 use crate::{graded, results_table::timed_frames, table::terminal};
 use itertools::Itertools;
-use skiagraph_compare::lists::{place, unique};
+use skiagraph_compare::lists::unique;
 use skiagraph_compare::records::columns::are_paths;
 use skiagraph_compare::records::results::{Results, Run};
 use skiagraph_compare::records::table::Table;
@@ -361,39 +361,31 @@ pub fn passes(results: &Results) -> String {
 }
 
 fn matrix(method: &str, runs: &[&Run]) -> String {
-    let mut columns: Vec<([u32; 2], Option<u32>)> = Vec::new();
-    let mut passes: Vec<&str> = Vec::new();
-    // A pass's place, and the sum and number of its times, by pass and column.
-    let mut times: BTreeMap<(usize, usize), (f64, u32)> = BTreeMap::new();
-
-    for run in runs {
-        let Some(measured) = &run.measured else {
-            continue;
-        };
-        let cell = (run.viewport, run.map_size);
-        let column = place(&mut columns, cell);
-        for pass in &measured.passes {
-            let row = place(&mut passes, pass.name.as_str());
-            if let Some(gpu) = pass.gpu_ms {
-                let (sum, count) = times.entry((row, column)).or_default();
-                *sum += gpu.median;
-                *count += 1;
-            }
-        }
-    }
+    let measured = || {
+        runs.iter()
+            .filter_map(|run| Some((*run, run.measured.as_ref()?)))
+    };
+    let column = |run: &Run| (run.viewport, run.map_size);
+    let columns = unique(measured().map(|(run, _)| column(run)));
+    let passes = measured().flat_map(|(_, of)| &of.passes);
+    let passes = unique(passes.map(|pass| pass.name.as_str()));
     let head = |(viewport, map): &([u32; 2], Option<u32>)| match map {
         Some(map) => format!("{}\nmap {map}", size(*viewport)),
         None => size(*viewport),
     };
     let heads = [format!("{method}, GPU ms")].into_iter();
     let heads = heads.chain(columns.iter().map(head));
-    let rows = passes.iter().enumerate().map(|(row, name)| {
-        let cell = |column| {
-            let time = times.get(&(row, column));
-            or_dash(time, |(sum, count)| ms(sum / f64::from(*count)))
+    let rows = passes.into_iter().map(|name| {
+        let cell = |of_column: &([u32; 2], Option<u32>)| {
+            let runs = measured().filter(|(run, _)| column(run) == *of_column);
+            let passes = runs.flat_map(|(_, of)| &of.passes);
+            let times = passes.filter(|pass| pass.name == name);
+            let times: Vec<f64> = times.filter_map(|pass| Some(pass.gpu_ms?.median)).collect();
+            let mean = || times.iter().sum::<f64>() / times.len() as f64;
+            or_dash((!times.is_empty()).then(mean), ms)
         };
-        let cells = (0..columns.len()).map(cell);
-        [name.to_string()].into_iter().chain(cells).collect()
+        let cells = columns.iter().map(cell);
+        [name.to_owned()].into_iter().chain(cells).collect()
     });
     terminal(&Table::new(heads, 1, rows))
 }

@@ -4,8 +4,10 @@ use crate::{
     keys::{not_later, spline},
     mesh::Mesh,
     movable::{Movable, MoveError},
+    vector::Vector,
 };
 use glam::{DAffine3, DMat3, DQuat, DVec3};
+use serde::Deserialize;
 use std::f64::consts::TAU;
 
 /// A part, by the name of its groups, with its motion.
@@ -44,13 +46,17 @@ pub enum Motion {
 }
 
 /// Where a part is at a time.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
 pub struct RigidKey {
-    /// Seconds, as of the camera's keys.
+    /// Time in seconds.
     pub at: f64,
     /// From where it rests.
+    #[serde(default, with = "Vector")]
     pub translation: DVec3,
     /// Turn about the axis through the pivot, before it is shifted.
+    #[serde(default)]
     pub degrees: f64,
 }
 

@@ -245,7 +245,7 @@ fn material(method: &MethodSnapshot, name: &str, reading: &Reading) -> Drawn {
     let part = &parts[reading.part.min(parts.len() - 1)];
     let texels = Texels::new(part, decoding.planes);
     let channel = |desired: usize| {
-        let last = texels.as_ref().map_or(0, |texels| texels.channels() - 1);
+        let last = texels.as_ref().map_or(0, |texels| texels.channels - 1);
         desired.min(last)
     };
     let histogram = texels

@@ -230,13 +230,9 @@ pub fn locate(argument: &str, sources: &dyn Sources) -> Result<String, CompareEr
         Ok(None) => {
             let known = names(sources);
             let known: Vec<&str> = known.iter().map(String::as_str).collect();
-            let text = unknown(
-                &format!("unknown preset `{argument}`"),
-                argument,
-                "presets",
-                &known,
-            );
-            text + "\n  a graph of your own is given as a path that ends in .ron"
+            let what = format!("unknown preset `{argument}`");
+            unknown(&what, argument, "presets", &known)
+                + "\n  a graph of your own is given as a path that ends in .ron"
         }
     };
     Err(CompareError::Input(missing))

@@ -1,29 +1,27 @@
 //! One run: a method on one view, executed, timed, judged and pictured.
 
+use crate::comparison::Protocol;
 use crate::error::CompareError;
-use crate::files::fingerprint::Fingerprint;
-use crate::graphs::faults::reasons;
 use crate::graphs::ground_truth::{Judgement, judged};
 use crate::graphs::method::Method;
-use crate::graphs::planning::Capabilities;
 use crate::graphs::shadow_method::Outputs;
-use crate::measuring::ground_truth::GroundTruthView;
+use crate::measuring::ground_truth::{GroundTruthFrames, GroundTruthView};
 use crate::measuring::steady;
-use crate::measuring::stop::{Stop, attempt};
+use crate::measuring::stop::Stop;
 use crate::measuring::timing::{self, FrameMode, Times};
+use crate::measuring::view_or_path::ViewOrPath;
 use crate::measuring::{
     date,
     frame::{self, Contents},
     guarantee,
 };
-use crate::pictures::run_pictures::{PictureFile, PicturePlace, conditions, draw_pictures, stem};
+use crate::pictures::run_pictures::{PictureFile, PicturePlace, draw_pictures, stem};
 use crate::records::results::{Answer, AreaReference, Images, Measured, Run};
 use crate::records::statistics::FrameTimes;
 use crate::records::steady::Steady;
 use crate::sink::{Session, Step};
 use skiagraph_gpu::{ExecuteError, Executor, Provider};
 use skiagraph_graph::Plan;
-use skiagraph_passes::SceneProvider;
 use skiagraph_reference::{GroundTruth, Statistics};
 use std::cell::RefCell;
 
@@ -33,24 +31,18 @@ pub struct MeasureContext<'a> {
     pub session: Session<'a>,
     /// True if its timestamps are true.
     pub timestamps: bool,
-    /// Name of the view.
-    pub view: &'a str,
+    /// View or path on which it is measured.
+    pub view: &'a ViewOrPath,
+    /// Its frames with their ground truth.
+    pub path: &'a GroundTruthFrames<'a>,
+    /// The ground truth of the first frame.
+    pub truth_view: &'a GroundTruthView<'a>,
     /// Which of the view's lights it is under.
     pub light: usize,
-    /// Hash of mesh, light and view.
-    pub fingerprint: Fingerprint,
-    /// The ground truth, and where it is from; of a path's first frame.
-    pub truth_view: &'a GroundTruthView<'a>,
-    /// The reference's own pixels, of all frames of a path.
+    /// The reference's own pixels, of all frames.
     pub own: Statistics,
-    /// Pixels that show a surface which is not seen there, of all frames of a path.
-    pub wrong_surfaces: u64,
-    /// Timed frames.
-    pub frames: u64,
-    /// Frames before them.
-    pub warmup: u32,
-    /// Timed frames in which only the camera moves.
-    pub cached_frames: u32,
+    /// How long it is measured.
+    pub protocol: Protocol,
     /// The pictures of the last run, if there are to be any.
     pub pictures: Option<RefCell<Vec<PictureFile>>>,
 }
@@ -66,41 +58,6 @@ pub struct Prepared {
 }
 
 impl MeasureContext<'_> {
-    /// Plans and runs a method by `run`: [`still`](Self::still), or
-    /// [`follow`](crate::measuring::sequence). One that this adapter cannot run yields a [`Run`]
-    /// that says why.
-    ///
-    /// # Errors
-    /// Ctrl-C, a lost device, a picture that cannot be written, outputs that are not a shadow
-    /// method's ([`CompareError::InvalidOutputs`]).
-    pub fn measure(
-        &self,
-        method: &Method,
-        provider: &mut SceneProvider,
-        run: impl FnOnce(&Method, Plan, &mut SceneProvider, &Step) -> Result<Measured, Stop>,
-    ) -> Result<Run, CompareError> {
-        let viewport = self.truth_view.ground_truth.pixels.viewport;
-        let plan = match method.plan(viewport, Capabilities::new(self.session.gpu), provider) {
-            Ok(plan) => plan,
-            // The graph itself is sound: that was checked before anything ran.
-            Err(diagnostics) => return Ok(self.unavailable(method, reasons(&diagnostics))),
-        };
-        let name = conditions(method, self.view, viewport);
-        let name = format!("{}, {name}", method.name);
-        let frames = u64::from(self.warmup) + self.frames;
-        let step = Step::begin(self.session.sink, &name, frames, "frames");
-        let came = run(method, plan, provider, &step);
-        let run = match attempt(self.session, method, came)? {
-            Ok(measured) => Run {
-                measured: Some(measured),
-                ..self.empty(method)
-            },
-            Err(reason) => self.unavailable(method, reason),
-        };
-        step.end();
-        Ok(run)
-    }
-
     /// Runs, times and judges a method on one view. A method that remembers is judged first, in its
     /// steady state: what is timed behind that does not change what it shows.
     ///
@@ -121,20 +78,16 @@ impl MeasureContext<'_> {
             let outputs = self.decode(contents, self.truth_view);
             judged(&method.preset, outputs, ground_truth)
         };
-        let worst = match &mut prepared.steady {
-            Some(steady) => Some(steady::judge(
-                self.session,
-                executor,
-                &names,
-                steady,
-                judge,
-            )?),
-            None => None,
-        };
-        let (count, all) = ([self.warmup, self.frames as u32], FrameMode::AllPasses);
+        let settled = prepared.steady.as_mut();
+        let worst = settled.map(|of| steady::judge(self.session, executor, &names, of, judge));
+        let worst = worst.transpose()?;
+        let (count, all) = (
+            [self.protocol.warmup, self.protocol.frames],
+            FrameMode::AllPasses,
+        );
         let set_done = |frames| step.set_done(frames);
         let times = timing::times(self.session, executor, all, count, set_done)?;
-        let mut cached = timing::cached(self.session, executor, self.cached_frames)?;
+        let mut cached = timing::cached(self.session, executor, self.protocol.cached_frames)?;
         if let Some(cached) = &mut cached {
             self.distrust(&mut cached.frame);
         }
@@ -227,10 +180,10 @@ impl MeasureContext<'_> {
     }
 
     /// A run that says why there are no measurements.
-    pub fn unavailable(&self, method: &Method, reason: String) -> Run {
+    pub fn unavailable(&self, method: &Method, planned: &Run, reason: String) -> Run {
         Run {
             unavailable: Some(reason),
-            ..self.empty(method)
+            ..self.empty(method, planned)
         }
     }
 
@@ -277,8 +230,8 @@ impl MeasureContext<'_> {
             return Ok(None);
         };
         let place = PicturePlace {
-            stem: stem(method, self.view, ground_truth.pixels.viewport),
-            view: self.view,
+            stem: stem(method, self.view.name(), ground_truth.pixels.viewport),
+            view: self.view.name(),
             frame,
         };
         let (images, files) = draw_pictures(&place, ground_truth, outputs, judgement)?;
@@ -287,26 +240,18 @@ impl MeasureContext<'_> {
     }
 
     /// The run with nothing measured.
-    fn empty(&self, method: &Method) -> Run {
+    pub fn empty(&self, method: &Method, planned: &Run) -> Run {
         let ground_truth = &self.truth_view.ground_truth;
         let (truth, area) = (&ground_truth.pixels, ground_truth.area.as_ref());
-        let counts = self.own;
         Run {
-            preset: method.name.clone(),
-            view: self.view.into(),
-            viewport: truth.viewport,
-            map_size: method.map_size,
-            params: method.all_params(),
-            fingerprint: method.fingerprint(self.fingerprint),
             date: date::today(),
             promise: guarantee::promise(method),
-            pixels: counts.pixels,
-            band: counts.band,
-            wrong_surface: self.wrong_surfaces,
+            pixels: self.own.pixels,
+            band: self.own.band,
+            wrong_surface: self.path.wrong_surfaces(),
             area: area.map(|area| AreaReference::new(area, truth)),
-            measured: None,
             unavailable: None,
-            published: Vec::new(),
+            ..planned.clone()
         }
     }
 }

@@ -1,9 +1,7 @@
 //! Why a method's frames ended early.
 
-use crate::error::{CompareError, explain, is_fatal};
-use crate::graphs::method::Method;
+use crate::error::CompareError;
 use crate::measuring::frame;
-use crate::records::results::Measured;
 use crate::sink::Session;
 use skiagraph_gpu::ExecuteError;
 
@@ -34,22 +32,5 @@ impl From<ExecuteError> for Stop {
 impl From<CompareError> for Stop {
     fn from(error: CompareError) -> Self {
         Self::Failed(error)
-    }
-}
-
-/// Tells a method that the device refuses, with its reason, from a device that is of no more use.
-///
-/// # Errors
-/// Ctrl-C, a lost device, and what else ends more than this method.
-pub fn attempt(
-    session: Session,
-    method: &Method,
-    came: Result<Measured, Stop>,
-) -> Result<Result<Measured, String>, CompareError> {
-    match came {
-        Ok(measured) => Ok(Ok(measured)),
-        // The box is an error, too, but not the one that is asked for.
-        Err(Stop::Refused(error)) if !is_fatal(&*error) => Ok(Err(explain(&*error))),
-        Err(stop) => Err(stop.into_error(session, &method.name)),
     }
 }

@@ -99,23 +99,20 @@ impl Times {
     /// # Errors
     /// Ctrl-C came before there were any.
     pub fn new(timed: Vec<TimedFrame>) -> Result<Self, CompareError> {
-        Self::of_some(timed).ok_or_else(CompareError::interrupted)
-    }
-
-    fn of_some(timed: Vec<TimedFrame>) -> Option<Self> {
         let samples = Samples::new(&timed);
         let pass = |PassSamples { name, gpu, cpu }| Pass {
             name,
             gpu_ms: Spread::from_all(&gpu),
             cpu_ms: Spread::new(&cpu).expect("a pass is named by its first sample"),
         };
-        Some(Self {
+        let first = timed.into_iter().next();
+        Ok(Self {
             frame: FrameTimes {
                 gpu_ms: Spread::from_all(&samples.gpu),
-                wall_ms: Spread::new(&samples.wall)?,
+                wall_ms: Spread::new(&samples.wall).ok_or_else(CompareError::interrupted)?,
             },
             passes: samples.passes.into_iter().map(pass).collect(),
-            skipped: timed.into_iter().next()?.skipped,
+            skipped: first.map_or_else(Vec::new, |first| first.skipped),
         })
     }
 }

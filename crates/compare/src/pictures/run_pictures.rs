@@ -71,60 +71,39 @@ pub fn draw_pictures(
 ) -> Result<(Images, Vec<PictureFile>), CompareError> {
     let Judgement { counts, graded } = judgement;
     let (truth, visibility, status) = (&ground_truth.pixels, &outputs.shown(), &outputs.status);
-    let of_reference = draw_reference(place.view, place.frame, ground_truth)?;
     let mut files = Vec::new();
-    let mut draw = |kind: &str, image| -> Result<String, CompareError> {
-        let file = drawn(place.file(format!("{}-{kind}.png", place.stem)), image)?;
-        let name = file.name.clone();
-        files.push(file);
+    let mut draw = |name: String, image: Result<Image, Error>| -> Result<String, CompareError> {
+        let name = place.file(name);
+        let image =
+            image.map_err(|error| CompareError::Input(format!("no picture {name}: {error}")))?;
+        let png = png::encode(Path::new(&name), &image)?;
+        files.push(PictureFile {
+            name: name.clone(),
+            png,
+        });
         Ok(name)
     };
+    let (viewport, shares) = (truth.viewport, &ground_truth.shares());
+    let own = |kind: &str| format!("{}-{kind}.png", place.stem);
+    let reference = Image::visibility(viewport, shares, &truth.status());
+    let shown = Image::visibility(viewport, visibility, status);
     let error = match graded {
         None => Image::error(&outputs.visibility, status, truth),
-        Some(_) => Image::difference(visibility, &ground_truth.shares(), truth),
+        Some(_) => Image::difference(visibility, shares, truth),
     };
+    let uncertain = || Image::uncertain(visibility, status, truth);
     let images = Images {
         frame: place.frame,
-        reference: of_reference.name.clone(),
-        shaded: draw("shaded", Image::shaded(visibility, truth))?,
-        visibility: draw(
-            "visibility",
-            Image::visibility(truth.viewport, visibility, status),
-        )?,
-        error: draw("error", error)?,
+        reference: draw(reference_name(place.view, viewport), reference)?,
+        shaded: draw(own("shaded"), Image::shaded(visibility, truth))?,
+        visibility: draw(own("visibility"), shown)?,
+        error: draw(own("error"), error)?,
         uncertain: match counts.certain.lit + counts.certain.shadow + counts.uncertain {
             0 => None,
-            _ => Some(draw(
-                "uncertain",
-                Image::uncertain(visibility, status, truth),
-            )?),
+            _ => Some(draw(own("uncertain"), uncertain())?),
         },
     };
-    files.push(of_reference);
     Ok((images, files))
-}
-
-/// Draws the picture of the reference of a view or case, or of a frame of a path.
-fn draw_reference(
-    view: &str,
-    frame: Option<usize>,
-    ground_truth: &GroundTruth,
-) -> Result<PictureFile, CompareError> {
-    let truth = &ground_truth.pixels;
-    let image = Image::visibility(truth.viewport, &ground_truth.shares(), &truth.status());
-    let place = PicturePlace {
-        stem: String::new(),
-        view,
-        frame,
-    };
-    drawn(place.file(reference_name(view, truth.viewport)), image)
-}
-
-fn drawn(name: String, image: Result<Image, Error>) -> Result<PictureFile, CompareError> {
-    let image =
-        image.map_err(|error| CompareError::Input(format!("no picture {name}: {error}")))?;
-    let png = png::encode(Path::new(&name), &image)?;
-    Ok(PictureFile { name, png })
 }
 
 /// The file of a frame: `visibility.0003.png` of `visibility.png`.

@@ -133,7 +133,7 @@ impl fmt::Display for Scene {
 }
 
 /// One preset on one view, viewport and map size.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Run {
     /// Name of the preset, or path of the graph, with what tells one setting of it from its others:
     /// `crsm@n=1,depth=plane`.

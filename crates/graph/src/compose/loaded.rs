@@ -12,7 +12,7 @@ use crate::{
     },
     document::{
         materials::{Material, TextureEntry},
-        typed::{Document, What, each_entry},
+        typed::Document,
     },
     errors::{compose::ComposeError, resource::SizeError, shader::ShaderError},
     kinds::registry::Registry,
@@ -147,14 +147,14 @@ impl Loaded {
         for material in &document.materials {
             let name = material.name();
             if document.is_own(&name.span) && !used.materials.contains(name.as_str()) {
-                reports.warn(ComposeError::UnusedMaterial(name.to_text()));
+                reports.warn(ComposeError::UnusedMaterial(name.text()));
             }
         }
         for (name, _) in &document.values {
             let is_used =
                 used.params.contains(name.as_str()) || used.materials.contains(name.as_str());
             if document.is_own(&name.span) && !is_used {
-                reports.warn(ComposeError::UnusedValue(name.to_text()));
+                reports.warn(ComposeError::UnusedValue(name.text()));
             }
         }
         for param in &document.params[..document.declared] {
@@ -172,11 +172,7 @@ impl Loaded {
             }
         }
         for (unused, shader) in self.unused_in_shaders() {
-            reports.warn(ShaderError::Unused {
-                what: unused.what,
-                name: unused.name,
-                shader,
-            });
+            reports.warn(ShaderError::Unused(unused.what, unused.name, shader));
         }
     }
 
@@ -191,24 +187,19 @@ impl Loaded {
                 constants.insert(name);
             }
         });
-        each_entry(&self.document.entries, &mut |entry| {
-            let What::Pass(pass) = &entry.what else {
-                return;
+        for shader in self.document.passes().flat_map(|pass| &pass.shaders) {
+            let mut variants = self.shaders.variants(&self.document, shader);
+            let Some(first) = variants.next() else {
+                continue;
             };
-            for shader in &pass.shaders {
-                let mut variants = self.shaders.variants(&self.document, shader);
-                let Some(first) = variants.next() else {
-                    continue;
-                };
-                let mut unused = finder.find(first, &constants);
-                for other in variants {
-                    let other = finder.find(other, &constants);
-                    unused.retain(|unused| other.contains(unused));
-                }
-                unused.retain(|unused| found.iter().all(|(known, _)| known != unused));
-                found.extend(unused.into_iter().map(|it| (it, first.file().to_owned())));
+            let mut unused = finder.find(first, &constants);
+            for other in variants {
+                let other = finder.find(other, &constants);
+                unused.retain(|unused| other.contains(unused));
             }
-        });
+            unused.retain(|unused| found.iter().all(|(known, _)| known != unused));
+            found.extend(unused.into_iter().map(|it| (it, first.file().to_owned())));
+        }
         found
     }
 }
@@ -226,11 +217,9 @@ fn asked_for(documents: &[&Document]) -> wgt::Features {
                 features |= flag;
             }
         });
-        each_entry(&document.entries, &mut |entry| {
-            if let What::Pass(pass) = &entry.what {
-                features |= pass.features;
-            }
-        });
+        for pass in document.passes() {
+            features |= pass.features;
+        }
     }
     features
 }

@@ -128,7 +128,7 @@ impl<'a> Builder<'a> {
     }
 
     fn import(&self, input: &Input) -> Result<ResourceKind, InterfaceError> {
-        let name = input.name.to_text();
+        let name = input.name.text();
         let Some(import) = self.symbols.request.imports.get(&name.value) else {
             return Err(InterfaceError::NoImport(name));
         };

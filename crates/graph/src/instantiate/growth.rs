@@ -26,7 +26,7 @@ pub(super) fn grow_buffer(
     let Some(grow) = &entry.grow else {
         return Ok(None);
     };
-    let name = entry.name.to_text();
+    let name = entry.name.text();
     let Some(count) = buffer.count.filter(|_| entry.count.is_some()) else {
         return Err(at.reports().report(SizeError::GrowWithoutCount(name)));
     };
@@ -45,7 +45,7 @@ pub(super) fn grow_texture(
     let Some(grow) = &entry.grow else {
         return Ok(None);
     };
-    let name = entry.name.to_text();
+    let name = entry.name.text();
     if entry.layers.is_none() || texture.is_3d {
         return Err(at.reports().report(SizeError::GrowWithoutLayers(name)));
     }

@@ -225,14 +225,9 @@ impl<'e> Call<'e> {
         }
         self.values_asked(&mut set, at);
         let outer = Arc::clone(&at.instance().params);
-        let exposed = self.include.expose.iter().map(|name| {
-            let own = if self.include.is_named {
-                format!("{}.{}", self.entry.name.value, **name)
-            } else {
-                name.value.clone()
-            };
-            (name.as_str(), own)
-        });
+        let exposed = self.include.expose.names.iter();
+        let exposed =
+            exposed.map(|name| (name.as_str(), self.entry.outer_name(self.include, name)));
         let given = Given {
             exposed: exposed.collect(),
             outer: &outer,
@@ -248,7 +243,12 @@ impl<'e> Call<'e> {
             let name = &param.name.value;
             let is_asked = param.default.is_none()
                 && !set.contains_key(name)
-                && self.include.expose.iter().all(|exposed| **exposed != *name);
+                && self
+                    .include
+                    .expose
+                    .names
+                    .iter()
+                    .all(|exposed| **exposed != *name);
             let outer = &at.instance().params;
             if !is_asked || outer.bound(name).is_some() {
                 continue;

@@ -84,7 +84,7 @@ pub(crate) fn lower(flat: Flat<'_>) -> Lowered<'_> {
             scratch: scratch.collect(),
             instance: symbols.scopes.instance_of(flat.position.scope),
             steps,
-            shader: pass.shader.clone().unwrap_or_else(|| entry.name.to_text()),
+            shader: pass.shader.clone().unwrap_or_else(|| entry.name.text()),
             is_broken: symbols.reports.errors() > before,
             flat,
         }

@@ -31,7 +31,7 @@ pub(super) fn kind(
         material @ Material::Sampler(_) => (material, false),
     };
     if material.keeps() && is_constant {
-        let name = material.name().to_text();
+        let name = material.name().text();
         return Err(at.reports().report(SizeError::KeepsConstant(name)));
     }
     // The items or layers that a frame before has asked for; 0 if none has.
@@ -118,11 +118,10 @@ fn texture(
 fn named_format(expr: &Expr, at: &mut impl Sizing) -> Reported<wgt::TextureFormat> {
     match eval::value(expr, at)? {
         Value::Format(format) => Ok(format),
-        found => Err(at.reports().report(EvaluationError::Type {
-            span: expr.span.clone(),
-            expected: "a format",
-            found,
-        })),
+        found => {
+            let error = EvaluationError::Type(expr.span.clone(), "a format", found);
+            Err(at.reports().report(error))
+        }
     }
 }
 
@@ -183,7 +182,7 @@ fn check_texture(
     let format = texture.format;
     let feature = format.required_features() - graph.features();
     if !feature.is_empty() {
-        let name = entry.name.to_text();
+        let name = entry.name.text();
         return Err(reports.report(SizeError::FormatFeature {
             name,
             format,

@@ -140,7 +140,7 @@ impl<'a> SymbolTable<'a> {
             ValueState::Declared => {}
         }
         if self.resolving.len() == DEEPEST_VALUE {
-            let name = declared.name().to_text();
+            let name = declared.name().text();
             return Err(self.reports.report(EvaluationError::DeepValue {
                 name,
                 most: DEEPEST_VALUE,
@@ -172,7 +172,7 @@ impl<'a> SymbolTable<'a> {
     fn circular_value(&mut self, id: ValueId) -> ErrorGuaranteed {
         let ring = self.resolving.iter().skip_while(|other| **other != id);
         let ring = ring.chain([&id]);
-        let ring = ring.map(|id| self.values[id.0].name().to_text());
+        let ring = ring.map(|id| self.values[id.0].name().text());
         self.reports
             .report(EvaluationError::CircularValue(ring.collect()))
     }
@@ -621,7 +621,7 @@ impl<'a> At<'_, 'a> {
                         None => Ok((target, segment.selection.as_ref())),
                         Some(next) => Err(self.report(InterfaceError::NotOfMaterial {
                             of: walked,
-                            name: next.name.to_text(),
+                            name: next.name.text(),
                         })),
                     };
                 }
@@ -640,7 +640,7 @@ impl<'a> At<'_, 'a> {
                 let known = self.symbols.reports.known(known);
                 return Err(self.report(InterfaceError::Private {
                     entry: walked,
-                    name: next.name.to_text(),
+                    name: next.name.text(),
                     known,
                 }));
             };
@@ -654,7 +654,7 @@ impl<'a> At<'_, 'a> {
     fn repetition(&mut self, segment: &Segment, count: usize) -> Reported<usize> {
         let name = &segment.name;
         let Some(Selection::One(expr)) = &segment.selection else {
-            return Err(self.report(InterfaceError::Namespace(name.to_text())));
+            return Err(self.report(InterfaceError::Namespace(name.text())));
         };
         let index = eval::count(expr, self)?;
         let index = usize::try_from(index).ok().filter(|index| *index < count);
@@ -847,10 +847,10 @@ impl Environment for At<'_, '_> {
             (Attribute::Count, ResourceKind::Buffer(_) | ResourceKind::Provided(_)) => {
                 parts::uncounted(resource, of)
             }
-            _ => EvaluationError::NoAttribute {
-                span: span.clone(),
-                of: format!("`{}`, {},", resource.name, resource.kind.describe()),
-            },
+            _ => {
+                let of = format!("`{}`, {},", resource.name, resource.kind.describe());
+                EvaluationError::NoAttribute(span.clone(), of)
+            }
         };
         let counts = matches!(error, EvaluationError::NoCount(_));
         let reported = self.report(error);

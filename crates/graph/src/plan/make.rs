@@ -487,7 +487,7 @@ fn interfaces(linked: &Linked<'_>, reports: &mut Reports) {
                 || linked.merged.iter().any(is_merged);
             let mut passes = passes.iter();
             if !has_content && !passes.any(|pass| linked.writes(*pass, target.id, &target.part)) {
-                reports.report(InterfaceError::UnwrittenOutput(name.to_text()));
+                reports.report(InterfaceError::UnwrittenOutput(name.text()));
             }
         }
         for (name, target) in &border.read_only {
@@ -495,7 +495,7 @@ fn interfaces(linked: &Linked<'_>, reports: &mut Reports) {
             let writer = passes.find(|pass| linked.writes(**pass, target.id, &target.part));
             if let Some(writer) = writer {
                 let by = linked.passes[*writer].name.span.clone();
-                reports.report(InterfaceError::WrittenInput(name.to_text(), by));
+                reports.report(InterfaceError::WrittenInput(name.text(), by));
             }
         }
     }

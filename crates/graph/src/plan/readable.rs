@@ -41,7 +41,7 @@ pub(super) fn readable(
         if condition.is_some_and(|condition| !eval::boolean(condition, at).unwrap_or(false)) {
             continue;
         }
-        let name = output.name.to_text();
+        let name = output.name.text();
         let material = &output.material;
         let Ok(target) = at.resolve(material) else {
             continue;

@@ -157,12 +157,7 @@ impl Shader {
             .collect();
         let stage = format!("{stage:?}").to_lowercase();
         let file = self.source.file.name.to_string();
-        let known = || {
-            of_stage
-                .iter()
-                .map(|(_, known)| (*known).to_owned())
-                .collect()
-        };
+        let known = of_stage.iter().map(|(_, known)| (*known).to_owned());
         match (name, of_stage.as_slice()) {
             (Some(name), _) => {
                 let mut named = of_stage.iter().filter(|(_, known)| *known == name.as_str());
@@ -170,21 +165,17 @@ impl Shader {
                     file,
                     stage,
                     name: name.clone(),
-                    known: known(),
+                    known: known.collect(),
                 };
                 named.next().map(|(index, _)| *index).ok_or_else(error)
             }
             (None, [(index, _)]) => Ok(*index),
-            (None, []) => Err(ShaderError::NoEntry {
-                file,
-                stage,
-                at: wanted.clone(),
-            }),
+            (None, []) => Err(ShaderError::NoEntry(file, stage, wanted.clone())),
             (None, _) => Err(ShaderError::SeveralEntries {
                 file,
                 stage,
                 at: wanted.clone(),
-                known: known(),
+                known: known.collect(),
             }),
         }
     }

@@ -77,26 +77,23 @@ impl Varyings {
 
 /// How many variables between stages a built-in value counts for.
 fn variables(builtin: BuiltIn, ty: &TypeInner) -> u32 {
-    match (builtin, ty) {
-        (
-            BuiltIn::ClipDistances,
+    match builtin {
+        BuiltIn::ClipDistances => match ty {
             TypeInner::Array {
                 size: naga::ArraySize::Constant(count),
                 ..
-            },
-        ) => count.get().div_ceil(4),
-        (
-            BuiltIn::FrontFacing
-            | BuiltIn::SampleIndex
-            | BuiltIn::SampleMask
-            | BuiltIn::PrimitiveIndex
-            | BuiltIn::SubgroupInvocationId
-            | BuiltIn::SubgroupSize
-            | BuiltIn::ViewIndex
-            | BuiltIn::PointCoord,
-            _,
-        ) => 1,
-        (BuiltIn::Barycentric { .. }, _) => 3,
+            } => count.get().div_ceil(4),
+            _ => 0,
+        },
+        BuiltIn::FrontFacing
+        | BuiltIn::SampleIndex
+        | BuiltIn::SampleMask
+        | BuiltIn::PrimitiveIndex
+        | BuiltIn::SubgroupInvocationId
+        | BuiltIn::SubgroupSize
+        | BuiltIn::ViewIndex
+        | BuiltIn::PointCoord => 1,
+        BuiltIn::Barycentric { .. } => 3,
         _ => 0,
     }
 }

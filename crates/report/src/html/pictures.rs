@@ -50,7 +50,7 @@ pub struct Graph {
 }
 
 /// Kinds of pictures, the most telling first.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Kind {
     Reference,
     Error,
@@ -59,15 +59,6 @@ enum Kind {
     Visibility,
     Uncertain,
 }
-
-const ORDER: [Kind; 6] = [
-    Kind::Reference,
-    Kind::Error,
-    Kind::Shaded,
-    Kind::Graph,
-    Kind::Visibility,
-    Kind::Uncertain,
-];
 
 impl Kind {
     fn word(self) -> &'static str {
@@ -98,28 +89,27 @@ impl Pictures {
     pub fn embed(sources: &[Source], room: usize) -> Self {
         let mut pictures = Self::default();
         let mut room = room;
-        let candidates: Vec<EmbedCandidate> = candidates(sources);
+        let mut candidates = candidates(sources);
+        candidates.sort_by_key(|candidate| candidate.kind);
         let mut left_out: BTreeMap<&str, usize> = BTreeMap::new();
-        for kind in ORDER {
-            for file in candidates.iter().filter(|candidate| candidate.kind == kind) {
-                let source = &sources[file.source];
-                let path = source.folder_of(file.run).join(&file.name);
-                let Ok(length) = fs::metadata(&path).map(|found| found.len() as usize) else {
-                    continue;
-                };
-                // Its letters, and what names it.
-                let cost = length.div_ceil(3) * 4 + 400;
-                if cost > room {
-                    *left_out.entry(kind.word()).or_default() += 1;
-                    continue;
-                }
-                let Ok(bytes) = fs::read(&path) else {
-                    continue;
-                };
-                room -= cost;
-                pictures.files.push(STANDARD.encode(bytes));
-                pictures.place(source, file);
+        for file in &candidates {
+            let source = &sources[file.source];
+            let path = source.folder_of(file.run).join(&file.name);
+            let Ok(length) = fs::metadata(&path).map(|found| found.len() as usize) else {
+                continue;
+            };
+            // Its letters, and what names it.
+            let cost = length.div_ceil(3) * 4 + 400;
+            if cost > room {
+                *left_out.entry(file.kind.word()).or_default() += 1;
+                continue;
             }
+            let Ok(bytes) = fs::read(&path) else {
+                continue;
+            };
+            room -= cost;
+            pictures.files.push(STANDARD.encode(bytes));
+            pictures.place(source, file);
         }
         if !left_out.is_empty() {
             let all: usize = left_out.values().sum();

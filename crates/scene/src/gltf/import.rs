@@ -14,7 +14,6 @@ use super::{
 use crate::{
     builder::{Corner, MeshBuilder},
     error::{FaceRef, SceneError, plural},
-    material::Material,
     material_use::MaterialUse,
     mesh::Mesh,
     obj::read::check_read,
@@ -50,7 +49,7 @@ pub fn parse_gltf(
     path: &Path,
     materials: MaterialUse,
 ) -> Result<(Mesh, ImportReport), SceneError> {
-    let fail = |(place, reason)| SceneError::Gltf {
+    let fail = |(place, reason)| SceneError::Part {
         path: path.to_owned(),
         place,
         reason,
@@ -84,7 +83,8 @@ pub fn parse_gltf(
         corners: 0,
     };
     import.read_nodes().map_err(fail)?;
-    let (mesh, report) = import.finish();
+    let materials = import.materials.all.into_iter().map(|read| read.material);
+    let (mesh, report) = import.builder.finish(materials.collect());
     check_read(&mesh, &report, path)?;
     Ok((mesh, report))
 }
@@ -144,12 +144,6 @@ struct Arrays {
 }
 
 impl<'a> Import<'a> {
-    fn finish(self) -> (Mesh, ImportReport) {
-        let materials = self.materials.all.into_iter().map(|read| read.material);
-        let materials: Vec<Material> = materials.collect();
-        self.builder.finish(materials)
-    }
-
     fn read_nodes(&mut self) -> Result<(), Fault> {
         let Some(nodes) = Nodes::new(self.document, self.beside)? else {
             for mesh in self.document.meshes() {

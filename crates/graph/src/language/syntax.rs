@@ -220,6 +220,17 @@ pub(crate) enum Leaf<'a> {
     Has(wgt::Features),
 }
 
+impl<'a> Leaf<'a> {
+    /// The name of what may be a param or a value.
+    pub fn named(&self) -> Option<&'a str> {
+        match self {
+            Self::Param(name) => Some(name),
+            Self::Word(name) => Some(name.as_str()),
+            _ => None,
+        }
+    }
+}
+
 impl Expr {
     pub(crate) fn new(kind: ExprKind, span: Span) -> Self {
         Self { kind, span }

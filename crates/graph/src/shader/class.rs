@@ -61,7 +61,7 @@ pub(crate) struct Member {
 }
 
 /// Scalar class and number of components of a scalar or vector.
-fn vector(module: &naga::Module, ty: Handle<naga::Type>) -> Option<(ScalarClass, u32)> {
+pub(super) fn vector(module: &naga::Module, ty: Handle<naga::Type>) -> Option<(ScalarClass, u32)> {
     match module.types[ty].inner {
         TypeInner::Scalar(scalar) | TypeInner::Atomic(scalar) => {
             Some((ScalarClass::from_kind(scalar.kind)?, 1))

@@ -124,9 +124,13 @@ impl Shader {
         let entries = self.module.entry_points.iter().enumerate();
         entries
             .filter(|(index, entry)| {
-                entry.stage == ShaderStage::Fragment && self.fragment_outputs(*index).is_empty()
+                entry.stage == ShaderStage::Fragment && self.is_colourless(*index)
             })
             .map(|(index, _)| index)
+    }
+
+    fn is_colourless(&self, entry: usize) -> bool {
+        Varyings::outputs(&self.module, entry).locations.is_empty()
     }
 
     /// The entry point of `stage`: the one called `name`, or the only one of the stage, of those
@@ -144,7 +148,7 @@ impl Shader {
                 && (stage != ShaderStage::Fragment
                     || !depth_only
                     || name.is_some()
-                    || self.fragment_outputs(index).is_empty())
+                    || self.is_colourless(index))
         };
         let entries = self.module.entry_points.iter().enumerate();
         let of_stage: Vec<(usize, &str)> = entries
@@ -390,19 +394,6 @@ impl Shader {
     pub(crate) fn global_names(&self) -> impl Iterator<Item = &str> {
         let globals = self.module.global_variables.iter();
         globals.filter_map(|(_, global)| global.name.as_deref())
-    }
-
-    /// Scalar class and component count of each colour output of a fragment entry point, by
-    /// location.
-    pub(crate) fn fragment_outputs(&self, entry: usize) -> Vec<(u32, ScalarClass, u32)> {
-        let outputs = Varyings::outputs(&self.module, entry).locations.into_iter();
-        let outputs = outputs.filter_map(|output| {
-            let scalar = ScalarClass::from_kind(output.kind)?;
-            Some((output.location, scalar, output.width))
-        });
-        let mut outputs: Vec<_> = outputs.collect();
-        outputs.sort_by_key(|(location, ..)| *location);
-        outputs
     }
 }
 

@@ -1,13 +1,15 @@
 //! Values that pass from one stage to the next: locations, with their types and how they are
 //! interpolated, and what of the limit built-in values take.
 
-use naga::{Binding, BuiltIn, Handle, Module, ScalarKind, Type, TypeInner};
+use super::class::vector;
+use crate::scalar_class::ScalarClass;
+use naga::{Binding, BuiltIn, Handle, Module, Type, TypeInner};
 
 /// A value at a location.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Varying {
     pub location: u32,
-    pub kind: ScalarKind,
+    pub scalar: ScalarClass,
     pub width: u32,
     pub interpolation: Option<naga::Interpolation>,
     pub sampling: Option<naga::Sampling>,
@@ -54,20 +56,16 @@ impl Varyings {
                     sampling,
                     ..
                 }),
-                inner,
+                _,
             ) => {
-                let (width, scalar) = match *inner {
-                    TypeInner::Scalar(scalar) => (1, scalar),
-                    TypeInner::Vector { size, scalar } => (size as u32, scalar),
-                    _ => return,
-                };
-                self.locations.push(Varying {
+                let vector = vector(module, ty);
+                self.locations.extend(vector.map(|(scalar, width)| Varying {
                     location,
-                    kind: scalar.kind,
+                    scalar,
                     width,
                     interpolation,
                     sampling,
-                });
+                }));
             }
             (Some(Binding::BuiltIn(builtin)), inner) => {
                 self.builtins += variables(*builtin, inner);

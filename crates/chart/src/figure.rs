@@ -231,7 +231,8 @@ fn fault(mark: &Mark, kind: &Kind, sizes: usize) -> Option<String> {
         Kind::Frames if (x == 0.0 || is_in(x)) && is_zero_or_in => {}
         Kind::Frames => {
             return Some(format!(
-                "({x}, {y}) does not fit; expected the index of a frame and a finite figure of at least 0"
+                "({x}, {y}) does not fit; expected the index of a frame and a finite figure of at \
+                 least 0"
             ));
         }
         Kind::Front | Kind::Growth => {

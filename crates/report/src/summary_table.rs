@@ -56,7 +56,7 @@ impl<'a> Summary<'a> {
 
     /// Which of its rows to take.
     pub fn verdict(&self) -> Verdict {
-        verdict(&self.rows)
+        verdict(&self.rows, &self.results.budgets)
     }
 
     /// True if the light has an extent, so that shares are what is judged.

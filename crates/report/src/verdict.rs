@@ -1,7 +1,8 @@
 //! Which method to take, in a sentence or two.
 
 use crate::summary::{Row, Wrong, by_wall};
-use skiagraph_compare::wording::{ms, percent};
+use skiagraph_compare::records::budgets::Budgets;
+use skiagraph_compare::wording::{bytes, ms, percent, plural};
 
 /// The share of pixels in the band beyond which a verdict holds of the others alone: the right
 /// answer of more than one pixel in a hundred hangs on rounding.
@@ -19,7 +20,8 @@ pub struct Verdict {
 
 /// Judges rows that were measured on the same views, the fastest first; those on fewer views, those
 /// that an early end left without their frames and those that could not run take no part.
-pub fn verdict(rows: &[Row]) -> Verdict {
+/// Those beyond a budget are not taken.
+pub fn verdict(rows: &[Row], budgets: &Budgets) -> Verdict {
     let most = rows.iter().map(Row::views).max().unwrap_or_default();
     let by_wall = by_wall(rows);
     let full: Vec<Contender> = rows
@@ -28,13 +30,28 @@ pub fn verdict(rows: &[Row]) -> Verdict {
         .filter(|(_, row)| row.views() == most && most > 0 && row.is_whole())
         .filter_map(|(index, row)| Contender::new(index, row, by_wall))
         .collect();
+    let within: Vec<Contender> = full
+        .iter()
+        .filter(|of| of.is_within(budgets))
+        .cloned()
+        .collect();
     let mut verdict = if full.is_empty() {
         Verdict::default()
+    } else if within.is_empty() {
+        none_within(&full, budgets)
+    } else if budgets.wrong_percent.is_some() {
+        right_enough(&within)
     } else if full.iter().any(|of| of.is_soft) {
-        graded(&full, rows)
+        graded(&within, rows)
     } else {
-        hard(&full)
+        hard(&within)
     };
+    if !budgets.is_empty() && !within.is_empty() {
+        let (count, all) = (within.len(), plural(full.len(), "method"));
+        verdict
+            .sentences
+            .insert(0, format!("Within {budgets}: {count} of {all}."));
+    }
     if let Some(condition) = full.iter().find_map(|of| of.condition) {
         verdict.sentences = conditioned(condition, verdict.sentences, &full);
     }
@@ -144,6 +161,17 @@ impl<'a> Contender<'a> {
                 format!("wrong on {share} of the surfaces that face the light")
             }
         }
+    }
+
+    fn is_within(&self, budgets: &Budgets) -> bool {
+        let is_quick = budgets.frame_ms.is_none_or(|most| self.frame <= most);
+        let is_right = budgets
+            .wrong_percent
+            .is_none_or(|most| 100.0 * self.wrong.share() < most);
+        let is_small = budgets
+            .memory_bytes
+            .is_none_or(|most| self.row.bytes() <= most);
+        is_quick && is_right && is_small
     }
 
     /// That no pixel is wrong, as far as that can be judged.
@@ -354,6 +382,65 @@ fn graded(all: &[Contender], rows: &[Row]) -> Verdict {
     }
 }
 
+/// The fastest of methods that are all right enough, with those that cannot be told apart from it.
+fn right_enough(all: &[Contender]) -> Verdict {
+    let when = When::AnythingMoves;
+    let Some(best) = least(all, |of| of.frame) else {
+        return Verdict::default();
+    };
+    let others = all.iter().filter(|of| of.index != best.index);
+    let level = others.filter(|of| !of.is_told_apart(best, when));
+    let figures =
+        |of: &Contender| format!("{} ({}, {})", of.name(), of.error(), per_frame(of, when));
+    let level: Vec<String> = level.map(figures).collect();
+    let level = match &level[..] {
+        [] => String::new(),
+        level => format!(". Not told apart from it in time: {}", level.join(", ")),
+    };
+    Verdict {
+        fastest_exact: best.is_exact.then_some(best.index),
+        sentences: vec![format!("Take {}{level}.", figures(best))],
+    }
+}
+
+/// That no method keeps to the budgets, and which come closest to each.
+fn none_within(all: &[Contender], budgets: &Budgets) -> Verdict {
+    let mut text = format!("No method keeps to {budgets}");
+    let memory = |of: &Contender| of.row.bytes() as f64;
+    let closest: [(bool, &str, Figure, fn(&Contender) -> String); 3] = [
+        (
+            budgets.frame_ms.is_some(),
+            "the fastest",
+            &|of| of.frame,
+            |of| per_frame(of, When::AnythingMoves),
+        ),
+        (
+            budgets.wrong_percent.is_some(),
+            "the least wrong",
+            &|of| of.wrong.share(),
+            Contender::error,
+        ),
+        (
+            budgets.memory_bytes.is_some(),
+            "the smallest",
+            &memory,
+            |of| bytes(of.row.bytes()),
+        ),
+    ];
+    for (_, what, figure, told) in closest.into_iter().filter(|(is_asked, ..)| *is_asked) {
+        if let Some(of) = least(all, figure) {
+            text += &format!("; {what} is {} ({})", of.name(), told(of));
+        }
+    }
+    Verdict {
+        fastest_exact: None,
+        sentences: vec![text + "."],
+    }
+}
+
+/// By what methods are compared.
+type Figure<'a> = &'a dyn Fn(&Contender) -> f64;
+
 /// A ratio of times as it is read: two digits that count.
 fn ratio(ratio: f64) -> String {
     if ratio >= 9.95 {
@@ -408,8 +495,12 @@ mod tests {
 
     /// The label of the marked row, and what is said.
     fn outcome(runs: &[Run]) -> (Option<String>, Vec<String>) {
+        within(runs, &Budgets::default())
+    }
+
+    fn within(runs: &[Run], budgets: &Budgets) -> (Option<String>, Vec<String>) {
         let rows = rows(runs, [512, 256]);
-        let verdict = verdict(&rows);
+        let verdict = verdict(&rows, budgets);
         let marked = verdict.fastest_exact.map(|index| rows[index].label.clone());
         (marked, verdict.sentences)
     }
@@ -489,6 +580,48 @@ mod tests {
         let mut dark = run("rt", 0, 10.0, 10.0);
         dark.pixels.facing_light = 0;
         assert_eq!(outcome(&[dark]), (None, Vec::new()), "nothing to judge");
+    }
+
+    #[test]
+    fn budgets_leave_methods_out_and_say_what_comes_closest() {
+        let runs = [
+            run("rt", 0, 30.0, 30.0),
+            run("pssm", 400, 8.0, 8.0),
+            run("nsm", 4_700, 5.0, 5.0),
+        ];
+        let budget = |frame_ms, wrong_percent| Budgets {
+            frame_ms,
+            wrong_percent,
+            memory_bytes: None,
+        };
+        let (_, said) = within(&runs, &budget(None, Some(1.0)));
+        assert_eq!(
+            said,
+            [
+                "Within less than 1 % wrong: 2 of 3 methods.",
+                "Take `pssm` (wrong on 0.400 % of the surfaces that face the light, 8.00 ms a \
+                 frame).",
+            ]
+        );
+        let (_, said) = within(&runs, &budget(Some(10.0), None));
+        assert!(said[1].contains("`pssm` is the least wrong"), "{said:?}");
+        let (marked, said) = within(&runs, &budget(Some(40.0), None));
+        assert_eq!(marked.as_deref(), Some("rt"), "{said:?}");
+        let (marked, said) = within(&runs, &budget(Some(6.0), Some(1.0)));
+        assert_eq!(marked, None);
+        assert_eq!(
+            said,
+            [
+                "No method keeps to at most 6 ms a frame and less than 1 % wrong; the fastest is \
+                 `nsm` (5.00 ms a frame); the least wrong is `rt` (exact here)."
+            ]
+        );
+        let memory = Budgets {
+            memory_bytes: Some(1 << 20),
+            ..Budgets::default()
+        };
+        let (_, said) = within(&runs, &memory);
+        assert!(said[0].starts_with("No method keeps to at most 1.0 MiB; the smallest is"));
     }
 
     #[test]

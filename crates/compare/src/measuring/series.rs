@@ -125,6 +125,7 @@ impl<'a> Series<'a> {
             warmup: protocol.warmup,
             cached_frames: protocol.cached_frames,
             began: date::now(),
+            budgets: comparison.budgets,
             commands: comparison.command.iter().cloned().collect(),
             runs: Vec::new(),
         };

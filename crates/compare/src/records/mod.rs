@@ -20,6 +20,7 @@
 //! ```
 
 pub mod baseline;
+pub mod budgets;
 pub mod check;
 pub mod columns;
 pub mod profile;

@@ -18,6 +18,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+use crate::records::budgets::Budgets;
 use crate::records::sequence::Sequence;
 use crate::records::statistics::{FrameTimes, Spread};
 use crate::records::steady::Steady;
@@ -56,6 +57,9 @@ pub struct Results {
     pub cached_frames: u32,
     /// When the comparison began that measured the newest runs, `2026-11-21T04:30:12Z`.
     pub began: String,
+    /// What a method may cost to be taken; absent without any.
+    #[serde(default, skip_serializing_if = "Budgets::is_empty")]
+    pub budgets: Budgets,
     /// The commands that measured it, the first one first.
     pub commands: Vec<String>,
     /// One entry per view, viewport, preset and map size, in this order.
@@ -666,6 +670,7 @@ pub(crate) mod tests {
             warmup: 2,
             cached_frames: 10,
             began: "2026-11-20T04:30:12Z".into(),
+            budgets: Budgets::default(),
             commands: vec!["skiagraph compare nsm rt rt_hw --size 512x256".into()],
             runs: vec![
                 Run {

@@ -83,7 +83,7 @@ pub struct Comparison {
     pub protocol: Protocol,
     /// Finds the visible triangles.
     pub primary: PrimaryVisibility,
-    /// What a method may cost to be taken.
+    /// Limits on methods that are to be taken.
     pub budgets: Budgets,
     /// Figures that others have published, to stand beside the runs that they are of.
     pub published: Vec<Row>,

@@ -20,7 +20,9 @@ pub struct PartialBackend {
 /// Request for a plan.
 pub type PlanRequest<'a> = Request<&'a dyn Describe>;
 
-/// A [`PlanRequest`], by how it describes the provided resources.
+/// Viewport, params, limits and imports to plan a graph with. `P` describes the resources that the
+/// scene provides: a borrowed `&dyn Describe` in a [`PlanRequest`], which callers use, and a stored
+/// copy inside of a plan, to plan again.
 #[derive(Clone, Debug)]
 pub struct Request<P> {
     /// Width and height in pixels.

@@ -104,14 +104,15 @@ impl<T: PartialEq> Lately<T> {
     }
 }
 
-/// Settings, and numbers for the contents of resources.
+/// Eye and lights that the provider is set to, and a version of everything that its resources are
+/// made from: resources of equal versions have equal contents.
 #[derive(Clone, Debug)]
 pub(crate) struct Versions {
     pub eye: Lately<Eye>,
     pub light: Lately<LightKind>,
     /// All lights of the scene, or the view's own.
     pub lights: Lately<Vec<LightKind>>,
-    /// The light, and the lights, each with the shape that it is laid around.
+    /// Versions of light and shape together, of resources that are made from both.
     light_over: Lately<[u64; 2]>,
     lights_over: Lately<[u64; 2]>,
     /// Places and normals of the mesh's corners.

@@ -141,7 +141,8 @@ pub struct JudgedPixels {
 
 impl Graded {
     /// Judges a method's `visibility` against the reference's `shares`, both one value per pixel,
-    /// row by row from the top left.
+    /// row by row from the top left. `truth` says which pixels face the light, and which of them
+    /// are indeterminate.
     ///
     /// # Errors
     /// [`Error::PixelCount`] if a buffer is not as large as the reference.

@@ -169,7 +169,7 @@ fn difference(
     })
 }
 
-/// Which pixels a reference is of.
+/// Words for a legend: the pixels of which there is a reference yet, at this stride.
 pub fn of_pixels(stride: u32) -> &'static str {
     match stride {
         1 => "of all pixels",

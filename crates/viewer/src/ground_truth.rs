@@ -152,7 +152,7 @@ pub fn thinned_size(size: [u32; 2], stride: u32) -> [u32; 2] {
     size.map(|edge| edge / stride)
 }
 
-/// One value of `stride` in each row and column.
+/// Keeps the middle one of every `stride` values in each row and column, row by row.
 pub fn thin<T: Copy>(values: &[T], size: [u32; 2], stride: u32) -> Vec<T> {
     let [width, height] = thinned_size(size, stride).map(|edge| edge as usize);
     let place = |at: usize| at * stride as usize + stride as usize / 2;

@@ -19,9 +19,13 @@ use std::path::PathBuf;
 pub struct CompareArgs {
     /// Presets by name, or graphs (.ron) with the output `visibility`, and perhaps `status`.
     /// With settings of its own a method stands beside itself: `crsm@n=1,depth=plane`. Without any:
-    /// all presets, those in ./pipelines and the built-in ones.
+    /// the eight that one would ship (rt, light_buffer, nsm, pcf, pssm, vsm, hybrid_pcf, crsm) and
+    /// one's own in ./pipelines.
     #[arg(value_name = "PRESET|FILE.ron[@NAME=VALUE,…]")]
     pub presets: Vec<String>,
+    /// Compare all presets, those in ./pipelines and the built-in ones.
+    #[arg(long, conflicts_with = "presets")]
+    pub all: bool,
     /// The scene and the place that it is seen from.
     #[command(flatten)]
     pub scene: SceneArgs,

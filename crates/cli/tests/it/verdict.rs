@@ -43,13 +43,13 @@ fn doubled_tree(file: &Path) {
     fs::write(file, obj).unwrap();
 }
 
-/// Nothing is exact where most of what is seen has no right answer, and no winner without saying so.
+/// Nothing is exact where most of what is seen has no right answer, and a winner has a condition.
 #[test]
 fn a_doubled_tree_has_no_exact_method_and_no_winner_without_its_condition() {
     let folder = tempfile::tempdir().unwrap();
     doubled_tree(&folder.path().join("tree.obj"));
-    let line = "compare nsm light_buffer rt --scene tree.obj --size 96x96 --map-size 256 --frames 2 \
-                --warmup 0 --images none --out out";
+    let line = "compare nsm light_buffer rt --scene tree.obj --size 96x96 --map-size 256 \
+                --frames 2 --warmup 0 --images none --out out";
     let output = skiagraph(folder.path(), line);
     let told = String::from_utf8_lossy(&output.stdout);
     let (_, answer) = told.rsplit_once('┘').unwrap();
@@ -73,8 +73,8 @@ fn budgets_and_gates_are_held() {
     let folder = tempfile::tempdir().unwrap();
     let line = |rest: &str| {
         format!(
-            "compare nsm light_buffer --scene park --size 48x48 --map-size 32 --frames 1 --warmup 0 \
-             --images none --out out {rest}"
+            "compare nsm light_buffer --scene park --size 48x48 --map-size 32 --frames 1 \
+             --warmup 0 --images none --out out {rest}"
         )
     };
     let output = skiagraph(folder.path(), &line("--below 0.001% --under 1000000ms"));

@@ -55,8 +55,8 @@ impl Method {
         Self::on(preset, params, [1024, 1024], wgpu::Features::all())
     }
 
-    /// Creates a method of a preset and the params set for it, in so many pixels on an adapter with
-    /// these features.
+    /// Creates a method of a preset with these params, for a viewport in pixels on an adapter with
+    /// these features. Params are checked when it is planned.
     pub fn on(
         preset: Arc<Preset>,
         params: ParamValues,

@@ -94,6 +94,28 @@ pub fn names(sources: &dyn Sources) -> Vec<String> {
     names.sorted().dedup().map(Into::into).collect()
 }
 
+/// The built-in presets that one would ship: those that a comparison takes unless it is told
+/// others.
+pub const SHIPPED: [&str; 8] = [
+    "rt",
+    "light_buffer",
+    "nsm",
+    "pcf",
+    "pssm",
+    "vsm",
+    "hybrid_pcf",
+    "crsm",
+];
+
+/// Names of the presets that a comparison takes by itself: those that one would ship, and one's own
+/// in `./pipelines`.
+pub fn shipped_and_own(sources: &dyn Sources) -> Vec<String> {
+    let built_in = names(&EmbeddedSources);
+    let own = names(sources).into_iter();
+    let own = own.filter(|name| !built_in.contains(name));
+    SHIPPED.map(str::to_owned).into_iter().chain(own).collect()
+}
+
 /// The presets that a command is to take: those that its arguments name, else all.
 pub fn named_or_all(arguments: &[String], sources: &dyn Sources) -> Vec<String> {
     match arguments {

@@ -23,13 +23,13 @@ use crate::measuring::view_or_path::ViewOrPath;
 use skiagraph_passes::SceneProvider;
 use skiagraph_scene::{CameraPath, Mesh, Scene};
 
-/// Frames one after the other.
+/// The frames of a view or path in order: the camera of each, and its mesh where parts move.
 pub struct FrameSequence {
     /// From where each is seen.
     pub poses: Vec<CameraPose>,
     /// The mesh of each, all with the same triangles; `None` where nothing moves.
     pub meshes: Option<Vec<Mesh>>,
-    /// Frames per second of their own time.
+    /// Frames per second of the path's clock, which says when each is; not how fast they are drawn.
     frames_per_second: f64,
 }
 

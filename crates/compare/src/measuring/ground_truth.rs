@@ -212,12 +212,13 @@ pub struct GroundTruthFrames<'a> {
     pub frames: &'a FrameSequence,
     /// The ground truth of each.
     pub truth_views: Vec<GroundTruthView<'a>>,
-    /// For each frame but the first, where each pixel's receiver was in the frame before.
+    /// `same[i]` belongs to frame `i + 1`: for each of its pixels the number of the pixel of frame
+    /// `i` that shows the same receiver, or [`BACKGROUND`](skiagraph_reference::BACKGROUND).
     pub same: Vec<Vec<u32>>,
 }
 
 impl<'a> GroundTruthFrames<'a> {
-    /// Finds receivers that are seen in two frames one after the other.
+    /// Matches the receivers of each frame with those of the frame before.
     ///
     /// # Errors
     /// Ctrl-C.

@@ -125,7 +125,7 @@ pub fn follow(
     })
 }
 
-/// A method on its way along a path.
+/// Runs a method on each frame of a path, judges it, and adds the figures to `account`.
 struct Walk<'a> {
     context: &'a MeasureContext<'a>,
     method: &'a Method,

@@ -1,4 +1,4 @@
-//! What a method may cost to be taken.
+//! Limits on methods that are to be taken.
 //!
 //! ```
 //! use skiagraph_compare::records::budgets::Budgets;
@@ -15,7 +15,7 @@ use crate::wording::bytes;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// What a method may cost to be taken, each where there is a limit.
+/// Limits on methods that are to be taken, each where there is one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Budgets {

@@ -57,7 +57,7 @@ pub struct Results {
     pub cached_frames: u32,
     /// When the comparison began that measured the newest runs, `2026-11-21T04:30:12Z`.
     pub began: String,
-    /// What a method may cost to be taken; absent without any.
+    /// Limits on methods that are to be taken; absent without any.
     #[serde(default, skip_serializing_if = "Budgets::is_empty")]
     pub budgets: Budgets,
     /// The commands that measured it, the first one first.
@@ -163,7 +163,7 @@ impl fmt::Display for Scene {
     }
 }
 
-/// One preset on one view, viewport and map size.
+/// One preset in one setting on one view and viewport, with its measurements or why there are none.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Run {
     /// Name of the preset, or path of the graph, with what tells one setting of it from its others:
@@ -191,8 +191,8 @@ pub struct Run {
     /// Pixels facing the light whose answer flips within the rounding error of receiver and
     /// casters.
     pub band: u64,
-    /// Pixels that show a surface which is not seen there: another one stands before it by more
-    /// than rounding. All methods are judged on what is shown.
+    /// Pixels whose primitive, as rasterised, is hidden behind another one by more than rounding.
+    /// All methods are judged on the rasterised one.
     pub wrong_surface: u64,
     /// Sampling of the reference, of a light that has an extent; absent where it has none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -351,7 +351,8 @@ pub struct Measured {
     pub certain: CertainCounts,
     /// Pixels that it left to rays, or all that it traced.
     pub uncertain: u64,
-    /// Both by the reference's class, with those that are wrong.
+    /// Certain and uncertain pixels, apart for those that the reference lights and those in its
+    /// shadow, each with how many are wrong.
     pub split: Split,
     /// Rays traced per frame; null where the graph does not count them.
     pub rays: Option<u64>,
@@ -363,8 +364,8 @@ pub struct Measured {
     pub certain_wrong_blockers: Option<BlockerCounts>,
     /// Pixels that face the light by the reference but not by the method, or the other way round.
     pub facing_mismatch: u64,
-    /// In what the method answers. Of shares, `certain`, `split` and `wrong` are counted as if they
-    /// were cut at one half.
+    /// Kind of the answers: 0 and 1, or shares of light. Of shares, `certain`, `split` and
+    /// `wrong` count as lit what is one half or more.
     pub answer: Answer,
     /// How far the shares of light that it shows are from the reference's; a hard answer shows 0 or
     /// 1.

@@ -38,10 +38,11 @@ const CALLBACK: Duration = Duration::from_secs(10);
 
 /// A plan on a device.
 ///
-/// A frame is [`encode`](Self::encode), the host's submission, and, for times and readbacks,
-/// [`poll`](Self::poll) in this frame or a later one, or [`finish`](Self::finish), which waits.
-/// Every encoder that a frame was encoded into must be submitted, in order: later frames use what a
-/// skipped pass kept there, and read it as `.previous`.
+/// For each frame call [`encode`](Self::encode), then submit the encoder. Only if times or
+/// readbacks were asked for, call [`poll`](Self::poll), which does not wait, in this frame or a
+/// later one, or [`finish`](Self::finish), which waits. Submit every such encoder, in the order of
+/// encoding: later frames use what earlier ones wrote, in passes that are skipped and as
+/// `.previous`.
 pub struct Executor {
     device: wgpu::Device,
     presence: Presence,

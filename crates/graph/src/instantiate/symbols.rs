@@ -312,8 +312,8 @@ impl<'a> SymbolTable<'a> {
         self.scopes.root().begin()
     }
 
-    /// Finds the target of a name in a command: a resource by its full name, or a part of one that
-    /// the root document knows. `None` if the name is unknown.
+    /// Finds the output or capture that a request names: a resource by its full name, or a part of
+    /// one that the root document knows. `None` if the name is unknown.
     pub fn find_full(&mut self, name: &str) -> Option<Reported<Target>> {
         let known = self
             .resources
@@ -540,7 +540,7 @@ impl<'a> At<'_, 'a> {
         self.symbols.value(id)
     }
 
-    /// Finds the target of a name in a command.
+    /// Finds the output or capture that a request names.
     pub fn find_full(&mut self, name: &str) -> Option<Reported<Target>> {
         self.symbols.find_full(name)
     }

@@ -216,8 +216,8 @@ impl Plan {
         target.map_or_else(BTreeSet::new, behind)
     }
 
-    /// The items of an output or capture that is a buffer; `None` if it is none, or no live pass
-    /// binds it as an array of plain items or as a single one.
+    /// The layout of an item of an output or capture that is a buffer; `None` of a texture, or if
+    /// no live pass binds it as an array of plain items or as a single one.
     pub fn item(&self, output: &str) -> Option<Item> {
         items::item_of(self.live(), self.readable_target(output)?)
     }

@@ -21,16 +21,63 @@ pub struct Summary<'a> {
     results: &'a Results,
     /// Its size in pixels.
     pub viewport: [u32; 2],
+    /// The light, where views were compared under several: nothing is averaged over lights.
+    light: Option<&'a str>,
     runs: Vec<&'a Run>,
     /// A row per method and setting, the fastest first.
     pub rows: Vec<Row<'a>>,
 }
 
-/// One summary per viewport, in the order of the results.
+/// One summary per viewport and light, in the order of the results.
 pub fn summaries(results: &Results) -> Vec<Summary<'_>> {
-    let all = unique(results.runs.iter().map(|run| run.viewport)).into_iter();
-    all.map(|viewport| Summary::new(results, viewport))
-        .collect()
+    let place = |run: &'_ Run| (run.viewport, run.light.clone());
+    let all = unique(results.runs.iter().map(place)).into_iter();
+    let summary = |(viewport, light)| {
+        let runs = results.runs.iter();
+        let runs = runs.filter(|run| run.viewport == viewport && run.light == light);
+        Summary::new(results, runs.collect())
+    };
+    all.map(summary).collect()
+}
+
+/// Each method under each light, of the viewports with several: wrong pixels outside the band in
+/// percent, milliseconds of a frame and memory. Each comes with its viewport.
+pub fn by_light(results: &Results) -> Vec<([u32; 2], Table)> {
+    let summaries = summaries(results);
+    let mut tables = Vec::new();
+    for viewport in unique(summaries.iter().map(|summary| summary.viewport)) {
+        let of = summaries
+            .iter()
+            .filter(|summary| summary.viewport == viewport);
+        let lights: Vec<(&str, &Summary)> = of
+            .filter_map(|summary| Some((summary.light?, summary)))
+            .collect();
+        if lights.len() < 2 {
+            continue;
+        }
+        let rows = lights.iter().flat_map(|(_, summary)| &summary.rows);
+        let labels = unique(rows.map(|row| &row.label));
+        let cells = labels.into_iter().map(|label| {
+            let cell = |(_, summary): &(&str, &Summary)| {
+                let by_wall = by_wall(&summary.rows);
+                let mut rows = summary.rows.iter().filter(|row| row.views() > 0);
+                let row = rows.find(|row| row.label == *label);
+                or_dash(row, |row| {
+                    let wrong = row.wrong();
+                    let share = percent(wrong.outside_band, wrong.facing_light);
+                    let time = or_dash(row.frame_ms(by_wall), ms);
+                    format!("{share}, {time} ms, {}", bytes(row.bytes()))
+                })
+            };
+            let cells = lights.iter().map(cell);
+            [label.clone()].into_iter().chain(cells).collect()
+        });
+        let heads = ["method"]
+            .into_iter()
+            .chain(lights.iter().map(|(light, _)| *light));
+        tables.push((viewport, Table::new(heads, 1, cells)));
+    }
+    tables
 }
 
 /// Beginning of lines that warn; the page makes them stand out by it.
@@ -43,12 +90,13 @@ pub const WRONG: &str = "wrong outside band";
 pub const NOT_THERE: &str = "n/a";
 
 impl<'a> Summary<'a> {
-    fn new(results: &'a Results, viewport: [u32; 2]) -> Self {
-        let runs = results.runs.iter();
-        let runs: Vec<&Run> = runs.filter(|run| run.viewport == viewport).collect();
+    /// The runs of one viewport and light.
+    fn new(results: &'a Results, runs: Vec<&'a Run>) -> Self {
+        let viewport = runs.first().map_or([0; 2], |run| run.viewport);
         Self {
             results,
             viewport,
+            light: runs.first().and_then(|run| run.light.as_deref()),
             rows: rows(runs.iter().copied(), viewport),
             runs,
         }
@@ -69,7 +117,8 @@ impl<'a> Summary<'a> {
         are_paths(self.runs.iter().copied())
     }
 
-    fn views(&self) -> BTreeSet<&str> {
+    /// Names of the views or paths.
+    pub fn views(&self) -> BTreeSet<&str> {
         self.runs.iter().map(|run| run.view.as_str()).collect()
     }
 
@@ -83,7 +132,13 @@ impl<'a> Summary<'a> {
                 format!("path {view}, {frames}")
             }
             (Some(view), 1) => format!("view {view}"),
-            (_, count) => plural(count, if paths { "path" } else { "view" }),
+            (_, count) => {
+                let views = plural(count, if paths { "path" } else { "view" });
+                let light = self
+                    .light
+                    .map_or(String::new(), |light| format!(" under {light}"));
+                views + &light
+            }
         }
     }
 
@@ -440,6 +495,27 @@ mod tests {
         ] {
             assert!(text.contains(part), "no {part:?} in\n{text}");
         }
+    }
+
+    #[test]
+    fn each_light_has_a_table_of_its_own_and_all_stand_in_one() {
+        let mut results = two_views();
+        for run in &mut results.runs {
+            run.light = Some("lamp".into());
+        }
+        let mut sun = results.runs[0].clone();
+        sun.light = Some("sun".into());
+        sun.measured.as_mut().unwrap().wrong.total = 6;
+        results.runs.push(sun);
+        let all = summaries(&results);
+        let whats: Vec<String> = all.iter().map(Summary::what).collect();
+        assert_eq!(whats, ["2 views under lamp", "view main"]);
+        assert_eq!(all[1].rows.len(), 1);
+        let [(_, table)] = &by_light(&results)[..] else {
+            panic!("one viewport")
+        };
+        insta::assert_snapshot!(table.markdown());
+        assert!(by_light(&two_views()).is_empty());
     }
 
     #[test]

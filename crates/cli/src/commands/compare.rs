@@ -36,6 +36,7 @@ use skiagraph_report::{
     gate::Gate,
     markdown, page, results_table,
     summary_table::{self, Summary},
+    table::terminal,
 };
 use skiagraph_scene::Scene;
 use std::sync::Arc;
@@ -220,12 +221,26 @@ fn print_summary(args: &CompareArgs, results: &Results) -> Result<(), CliError> 
     match args.format {
         Format::Table => {
             print(&summaries.iter().map(Summary::text).join("\n"))?;
+            for (viewport, lights) in summary_table::by_light(results) {
+                let head = format!("By light, {}: wrong pixels, frame, memory", size(viewport));
+                print(&format!("\n{head}\n{}\n", terminal(&lights)))?;
+            }
             if args.passes {
                 print(&format!("\n{}\n", summary_table::passes(results)))?;
             }
             Ok(())
         }
-        Format::Markdown => print(&summaries.iter().map(Summary::markdown).collect::<String>()),
+        Format::Markdown => {
+            print(&summaries.iter().map(Summary::markdown).collect::<String>())?;
+            for (viewport, lights) in summary_table::by_light(results) {
+                print(&format!(
+                    "\n## By light, {}\n\n{}",
+                    size(viewport),
+                    lights.markdown()
+                ))?;
+            }
+            Ok(())
+        }
         Format::Json => print(&json::to_text(results)),
     }
 }

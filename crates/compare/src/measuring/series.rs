@@ -503,6 +503,7 @@ fn planned(comparison: &Comparison, methods: &[Method]) -> Vec<Run> {
             planned.extend(methods.map(|method| Run {
                 preset: method.name.clone(),
                 view: view.name().to_owned(),
+                light: view.one_of_lights().map(str::to_owned),
                 viewport,
                 map_size: method.map_size,
                 params: method.all_params(),

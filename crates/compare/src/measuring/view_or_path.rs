@@ -47,6 +47,14 @@ impl ViewOrPath {
         scene.light_of(self.view())
     }
 
+    /// The name of its light, where it is one of several views that differ in it.
+    pub fn one_of_lights(&self) -> Option<&str> {
+        let view = self.view();
+        let light = &view.light.as_ref()?.name;
+        let view = view.name.strip_suffix(light.as_str())?;
+        view.ends_with('@').then_some(light)
+    }
+
     /// With what it depends on.
     pub fn fingerprint(&self, of: Fingerprint) -> Fingerprint {
         match self {

@@ -171,6 +171,9 @@ pub struct Run {
     pub preset: String,
     /// Name of the view.
     pub view: String,
+    /// Name of the light, where the view is compared under several; absent elsewhere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub light: Option<String>,
     /// Width and height in pixels.
     pub viewport: [u32; 2],
     /// Value of the param `map_size`; null where the graph has none.

@@ -68,6 +68,7 @@ fn page_within(sources: &[Source], reports: &[Report], limit: usize) -> Page {
         .replace("<!--FRONTS-->", &charts::fronts(&tables))
         .replace("<!--LEGEND-->", &charts::legends(&tables))
         .replace("<!--TABLES-->", &rows::tables(&tables))
+        .replace("<!--LIGHTS-->", &rows::lights(sources))
         .replace("<!--STEPS-->", &steps::bars(&tables))
         .replace("<!--GROWTHS-->", &charts::growths(&tables))
         .replace("<!--PATHS-->", &charts::paths(&tables))

@@ -15,7 +15,7 @@ const setOf = (pane) => setsHere().find((set) => nameOf(set) === pane.label);
 /** Chooses what there is: views, methods and kinds of the table's source and viewport. */
 function settleViewer() {
   const here = data.pictures.sets.filter((set) => set.source === table().source
-    && size(set.viewport) === size(table().viewport));
+    && size(set.viewport) === size(table().viewport) && table().views.includes(set.view));
   viewer.views = [...new Set(here.map((set) => set.view))];
   viewer.place = Math.min(viewer.place, Math.max(viewer.views.length - 1, 0));
   const sets = setsHere(), names = sets.map(nameOf);

@@ -208,6 +208,7 @@ mod tests {
     use super::*;
     use crate::Class::{self, FacingAway, Lit, Shadow};
     use glam::{DVec3, Vec3};
+    use proptest::prelude::*;
     use skiagraph_scene::{Camera, Mesh, View};
 
     /// A wall of two triangles across a camera whose pixels are one unit wide on it.
@@ -287,6 +288,29 @@ mod tests {
         assert_eq!(of.shadow.count, 1);
         assert!((of.shadow.max_pixels - 5f64.sqrt()).abs() < 1e-12);
         assert_eq!(of.lit, Distances::default());
+    }
+
+    proptest! {
+        /// Figures of a path agree with those of its frames, however these are grouped.
+        #[test]
+        fn distances_together_are_those_of_all_pixels(
+            pixels in prop::collection::vec(prop::option::of([0.0..500.0, 0.0..80.0]), 0..60),
+            cut in 0usize..60,
+        ) {
+            let (one, other) = pixels.split_at(cut.min(pixels.len()));
+            let of = |pixels: &[Option<[f64; 2]>]| Distances::new(pixels.iter().copied());
+            let (together, whole) = (of(one).with(of(other)), of(&pixels));
+            prop_assert_eq!(
+                (together.count, together.near, together.without),
+                (whole.count, whole.near, whole.without)
+            );
+            let figures = |of: Distances| {
+                [of.mean_pixels, of.max_pixels, of.mean_world, of.max_world]
+            };
+            for (one, other) in figures(together).into_iter().zip(figures(whole)) {
+                prop_assert!((one - other).abs() < 1e-9, "{together:?} {whole:?}");
+            }
+        }
     }
 
     #[test]

@@ -17,12 +17,15 @@ pub struct Row<'a> {
     /// Method and variant.
     pub method: String,
     /// Its runs, one per view, those that measured something.
-    runs: Vec<(&'a Run, &'a Measured)>,
+    runs: Vec<Measurement<'a>>,
     /// Why it could not run, where it could not at all.
     pub unavailable: Option<&'a str>,
     /// True if its times are the GPU's own, not the wall clock's.
     pub has_gpu_times: bool,
 }
+
+/// A run, and its measurements.
+type Measurement<'a> = (&'a Run, &'a Measured);
 
 /// Wrong pixels over all views.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -94,6 +97,12 @@ impl<'a> Row<'a> {
                 band: sum.band + run.band,
             }
         })
+    }
+
+    /// When the newest comparison began that measured it.
+    pub fn session(&self) -> &'a str {
+        let sessions = self.runs.iter().map(|(run, _)| run.session.as_str());
+        sessions.max().unwrap_or_default()
     }
 
     /// True unless an early end left one of its runs with a single frame.
@@ -188,7 +197,10 @@ impl<'a> Row<'a> {
     /// those that did not are told apart if their quartiles do not overlap.
     pub fn is_told_apart(&self, other: &Self, by_wall: bool, is_kept: bool) -> bool {
         let pair = || self.runs.iter().zip(&other.runs);
-        if !is_kept && pair().all(|((_, one), (_, other))| are_paired(one, other)) {
+        let is_pair = |((one, of), (other, of_other)): (&Measurement, &Measurement)| {
+            one.session == other.session && are_paired(of, of_other)
+        };
+        if !is_kept && pair().all(is_pair) {
             let mut sums: [Vec<f64>; 2] = Default::default();
             for ((_, one), (_, other)) in pair() {
                 let times = [one, other].map(|of| full(of).frames(by_wall));
@@ -268,8 +280,7 @@ impl<'a> Row<'a> {
 /// True if the frames of two runs of a view can be compared one by one: they took turns, or are
 /// those of one camera path.
 fn are_paired(one: &Measured, other: &Measured) -> bool {
-    let session = |of: &Measured| of.turns.as_ref().map(|turns| turns.session.clone());
-    session(one) == session(other)
+    one.turns.is_some() == other.turns.is_some()
 }
 
 /// How the common anchor's times in the group of `one` stand to those in the group of `other`, turn

@@ -9,6 +9,7 @@ use crate::verdict::{Verdict, verdict};
 use crate::{graded, results_table::timed_frames, table::terminal};
 use itertools::Itertools;
 use skiagraph_compare::lists::unique;
+use skiagraph_compare::measuring::date::is_another_hour;
 use skiagraph_compare::records::columns::are_paths;
 use skiagraph_compare::records::results::{Results, Run};
 use skiagraph_compare::records::table::Table;
@@ -105,6 +106,12 @@ impl<'a> Summary<'a> {
     /// Which of its rows to take.
     pub fn verdict(&self) -> Verdict {
         verdict(&self.rows, &self.results.budgets)
+    }
+
+    /// True if a row was measured in another hour than the newest: it takes no part in the verdict.
+    pub fn is_old(&self, row: &Row) -> bool {
+        let sessions = self.rows.iter().map(Row::session);
+        is_another_hour(row.session(), sessions.max().unwrap_or_default())
     }
 
     /// True if the light has an extent, so that shares are what is judged.
@@ -224,17 +231,20 @@ impl<'a> Summary<'a> {
         let best = self.verdict().fastest_exact;
         let (views, is_soft) = (self.views().len(), self.is_soft());
         let row = |(index, row): (usize, &Row)| {
-            let mark = if best == Some(index) { " *" } else { "" };
-            let few = match row.views() {
-                some if some == views || some == 0 => String::new(),
-                some => format!(" ({some} of {})", plural(views, "view")),
-            };
-            let few = if row.is_whole() {
-                few
-            } else {
-                few + " (1 frame)"
-            };
-            let mut cells = vec![format!("{}{few}{mark}", row.label)];
+            let mut label = row.label.clone();
+            if row.views() != views && row.views() > 0 {
+                label += &format!(" ({} of {})", row.views(), plural(views, "view"));
+            }
+            if !row.is_whole() {
+                label += " (1 frame)";
+            }
+            if self.is_old(row) {
+                label += &format!(" (of {})", row.session());
+            }
+            if best == Some(index) {
+                label += " *";
+            }
+            let mut cells = vec![label];
             if row.views() == 0 {
                 cells.push(NOT_THERE.into());
                 cells.resize(heads.len(), "–".into());

@@ -1,6 +1,7 @@
 //! Which method to take, in a sentence or two.
 
 use crate::summary::{Row, Wrong, by_wall};
+use skiagraph_compare::measuring::date::is_another_hour;
 use skiagraph_compare::records::budgets::Budgets;
 use skiagraph_compare::wording::{bytes, ms, percent, plural};
 
@@ -19,15 +20,18 @@ pub struct Verdict {
 }
 
 /// Judges rows that were measured on the same views, the fastest first; those on fewer views, those
-/// that an early end left without their frames and those that could not run take no part.
+/// of another hour, whose machine may have been another one by its load, those that an early end
+/// left without their frames and those that could not run take no part.
 /// Those beyond a budget are not taken.
 pub fn verdict(rows: &[Row], budgets: &Budgets) -> Verdict {
     let most = rows.iter().map(Row::views).max().unwrap_or_default();
     let by_wall = by_wall(rows);
+    let newest = rows.iter().map(Row::session).max().unwrap_or_default();
     let full: Vec<Contender> = rows
         .iter()
         .enumerate()
         .filter(|(_, row)| row.views() == most && most > 0 && row.is_whole())
+        .filter(|(_, row)| !is_another_hour(row.session(), newest))
         .filter_map(|(index, row)| Contender::new(index, row, by_wall))
         .collect();
     let within: Vec<Contender> = full
@@ -580,6 +584,15 @@ mod tests {
         let mut dark = run("rt", 0, 10.0, 10.0);
         dark.pixels.facing_light = 0;
         assert_eq!(outcome(&[dark]), (None, Vec::new()), "nothing to judge");
+    }
+
+    #[test]
+    fn a_row_of_another_hour_takes_no_part() {
+        let mut old = run("quick", 0, 1.0, 1.0);
+        old.session = "2026-11-20T03:00:00Z".into();
+        let (marked, said) = outcome(&[run("rt", 0, 50.0, 50.0), old]);
+        assert_eq!(marked.as_deref(), Some("rt"));
+        assert_eq!(said, ["Take `rt`: 50.0 ms a frame. It is exact here."]);
     }
 
     #[test]

@@ -161,7 +161,7 @@ impl MeasureContext<'_> {
     pub fn times(
         &self,
         methods: &mut [Judged],
-        (session, group): (&str, u32),
+        group: u32,
         done: impl Fn(u64),
     ) -> Result<Vec<Run>, CompareError> {
         let executors = methods.iter_mut().map(|of| &mut of.prepared.executor);
@@ -180,7 +180,6 @@ impl MeasureContext<'_> {
                 let mut measured = self.timed(of, times);
                 let anchor = anchor.get_or_insert_with(|| measured.frame.clone());
                 measured.turns = Some(Turns {
-                    session: session.to_owned(),
                     group,
                     anchor: anchor.clone(),
                 });

@@ -112,7 +112,8 @@ impl<'a> Series<'a> {
         kept_in: Option<(&Path, Kept)>,
     ) -> Result<Self, CompareError> {
         let methods = comparison.settled(session);
-        let planned = planned(comparison, &methods);
+        let began = date::now();
+        let planned = planned(comparison, &methods, &began);
         let protocol = &comparison.protocol;
         let results = Results {
             schema: 1,
@@ -124,7 +125,7 @@ impl<'a> Series<'a> {
             frames: protocol.frames,
             warmup: protocol.warmup,
             cached_frames: protocol.cached_frames,
-            began: date::now(),
+            began,
             budgets: comparison.budgets,
             commands: comparison.command.iter().cloned().collect(),
             runs: Vec::new(),
@@ -295,7 +296,7 @@ impl<'a> Series<'a> {
         let name = format!("{methods} in turns, {} {viewport}", context.view.name());
         let step = Step::begin(self.session.sink, &name, turns.into(), "turns");
         let set_done = |turns| step.set_done(turns);
-        let runs = context.times(group, (&self.results.began, index), set_done)?;
+        let runs = context.times(group, index, set_done)?;
         step.end();
         // The anchor's run is that of its first group.
         let anchors = usize::from(index > 0);
@@ -494,7 +495,7 @@ impl<'a> Series<'a> {
 }
 
 /// Every run with nothing measured, in the order of the results.
-fn planned(comparison: &Comparison, methods: &[Method]) -> Vec<Run> {
+fn planned(comparison: &Comparison, methods: &[Method], began: &str) -> Vec<Run> {
     let (mut planned, fingerprint) = (Vec::new(), comparison.fingerprint());
     for view in &comparison.views {
         let fingerprint = view.fingerprint(fingerprint);
@@ -508,6 +509,7 @@ fn planned(comparison: &Comparison, methods: &[Method]) -> Vec<Run> {
                 map_size: method.map_size,
                 params: method.all_params(),
                 fingerprint: method.fingerprint(fingerprint),
+                session: began.to_owned(),
                 ..Run::default()
             }));
         }

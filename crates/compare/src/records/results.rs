@@ -186,6 +186,8 @@ pub struct Run {
     pub fingerprint: String,
     /// The day on which it was measured, `2026-11-21` (UTC).
     pub date: String,
+    /// When the comparison began that measured it, `2026-11-21T04:30:12Z`.
+    pub session: String,
     /// The document's promise of its answers with these params; absent where it has none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub promise: Option<Promise>,
@@ -562,6 +564,7 @@ pub(crate) mod tests {
             ]),
             fingerprint: "85944171f73967e8".into(),
             date: "2026-11-20".into(),
+            session: "2026-11-20T04:30:12Z".into(),
             promise: None,
             pixels: PixelCounts {
                 background: 72,
@@ -643,7 +646,6 @@ pub(crate) mod tests {
             saved_bytes: 1_048_576,
             scene_bytes: 2_000_000,
             turns: Some(Turns {
-                session: "2026-11-20T04:30:12Z".into(),
                 group: 0,
                 anchor: times(Some(1.0), 2.0),
             }),

@@ -21,8 +21,6 @@ use serde::{Deserialize, Serialize};
 /// The group of methods that a run took turns with.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Turns {
-    /// When the comparison began that measured it, `2026-11-21T04:30:12Z`.
-    pub session: String,
     /// Index of the group in the view and viewport: all methods that fit the memory at once.
     pub group: u32,
     /// Times of the frames of the group's first method, which is the same in all groups of the view

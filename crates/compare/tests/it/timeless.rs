@@ -8,7 +8,7 @@ pub fn timeless(mut value: Value) -> Value {
         match value {
             Value::Object(fields) if fields.contains_key("p95") => *value = Value::Null,
             Value::Object(fields) => {
-                for of_the_hour in ["began", "date", "machine", "turns"] {
+                for of_the_hour in ["began", "date", "machine", "session", "turns"] {
                     fields.remove(of_the_hour);
                 }
                 for frames in ["gpu_frames", "wall_frames"] {

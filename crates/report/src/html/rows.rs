@@ -69,6 +69,7 @@ fn attributes(index: usize, table: &Shown) -> Vec<String> {
     let of_row = |(place, row): (usize, &Row)| {
         let class = match row.views() > 0 && row.is_exact() {
             _ if best == Some(place) => "exact best",
+            _ if table.summary.is_old(row) => "old",
             true => "exact",
             false => "",
         };

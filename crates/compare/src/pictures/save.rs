@@ -96,7 +96,7 @@ pub fn capture(save: &Save) -> Capture {
     }
 }
 
-/// Returns captures of those saves that are not outputs of the graph anyway.
+/// Returns captures of those saves that are not `outputs`, which the graph gives anyway.
 pub fn captures(outputs: &[&str], saves: &[Save]) -> Vec<Capture> {
     let wanted: BTreeMap<String, Capture> = saves
         .iter()

@@ -7,6 +7,7 @@ use crate::graphs::ground_truth::{Judgement, judged};
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
 use crate::graphs::shadow_method::Outputs;
+use crate::measuring::diagnostics::{Diagnostics, diagnose};
 use crate::measuring::ground_truth::GroundTruthView;
 use crate::measuring::steady;
 use crate::measuring::stop::{Stop, attempt};
@@ -146,13 +147,16 @@ impl MeasureContext<'_> {
         let counts = &judgement.counts;
         let has_blockers = judgement.is_hard && counts.wrong.certain > 0;
         let blockers = has_blockers.then(|| self.truth_view.blockers(&outputs));
+        let found = diagnose(self, method, self.truth_view, &outputs, provider)?;
         Ok(Measured {
             rays: outputs.rays,
             certain_wrong_blockers: blockers.transpose()?,
             graded: judgement.graded,
             edges: self.truth_view.edges(&outputs)?,
             cached,
-            images: self.draw(method, None, ground_truth, (&outputs, &judgement))?,
+            images: self.draw(method, None, ground_truth, (&outputs, &judgement, &found))?,
+            texels: found.texels,
+            layer_jump: found.layer_jump,
             ..self.measured(prepared, times, counts, outputs.shares.is_some())
         })
     }
@@ -214,6 +218,8 @@ impl MeasureContext<'_> {
             saved_bytes,
             scene_bytes: prepared.scene_bytes,
             steady: prepared.steady,
+            texels: None,
+            layer_jump: None,
             sequence: None,
             images: None,
         }
@@ -269,7 +275,7 @@ impl MeasureContext<'_> {
         method: &Method,
         frame: Option<usize>,
         ground_truth: &GroundTruth,
-        (outputs, judgement): (&Outputs, &Judgement),
+        (outputs, judgement, found): (&Outputs, &Judgement, &Diagnostics),
     ) -> Result<Option<Images>, CompareError> {
         let Some(pictures) = &self.pictures else {
             return Ok(None);
@@ -279,7 +285,12 @@ impl MeasureContext<'_> {
             view: self.view,
             frame,
         };
-        let (images, files) = draw_pictures(&place, ground_truth, outputs, judgement)?;
+        let (images, files) = draw_pictures(
+            &place,
+            ground_truth,
+            (outputs, judgement),
+            found.footprints.as_deref(),
+        )?;
         pictures.replace(files);
         Ok(Some(images))
     }

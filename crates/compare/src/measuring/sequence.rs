@@ -5,6 +5,7 @@ use crate::graphs::ground_truth::{Judgement, judged};
 use crate::graphs::method::Method;
 use crate::graphs::shadow_method::Outputs;
 use crate::measuring::camera_pose::CameraPose;
+use crate::measuring::diagnostics::{Diagnostics, diagnose};
 use crate::measuring::frame;
 use crate::measuring::ground_truth::{GroundTruthView, heard, own_counts};
 use crate::measuring::mesh_frames::MeshFrames;
@@ -174,13 +175,19 @@ pub fn follow(
     }
     let every_pass = every_pass(context, executor, path, &names, provider, &mut account)?;
     let times = Times::new(account.timed)?;
-    let images = match &account.worst {
-        Some((index, outputs, judgement)) => {
-            let ground_truth = &path.truth_views[*index].ground_truth;
-            context.draw(method, Some(*index), ground_truth, (outputs, judgement))?
-        }
-        None => None,
-    };
+    let (mut images, mut found) = (None, Diagnostics::default());
+    if let Some((index, outputs, judgement)) = &account.worst {
+        let truth_view = &path.truth_views[*index];
+        let ground_truth = &truth_view.ground_truth;
+        path.show(*index, ground_truth.pixels.viewport, provider)?;
+        found = diagnose(context, method, truth_view, outputs, provider)?;
+        images = context.draw(
+            method,
+            Some(*index),
+            ground_truth,
+            (outputs, judgement, &found),
+        )?;
+    }
     let mut all = Shimmer::default();
     for frame in &account.frames {
         all += frame.shimmer.unwrap_or_default();
@@ -191,6 +198,8 @@ pub fn follow(
         graded: Graded::together(account.graded),
         edges: account.edges,
         images,
+        texels: found.texels,
+        layer_jump: found.layer_jump,
         sequence: Some(Sequence {
             frames: account.frames,
             shimmer: all,

@@ -16,7 +16,7 @@ use crate::graphs::shadow_method::Outputs;
 use crate::pictures::png;
 use crate::records::results::Images;
 use crate::wording::size;
-use skiagraph_reference::{Error, GroundTruth, Image};
+use skiagraph_reference::{Error, Footprint, GroundTruth, Image};
 use std::{
     collections::BTreeMap,
     path::{Path, PathBuf},
@@ -59,15 +59,16 @@ impl PicturePlace<'_> {
     }
 }
 
-/// Draws the pictures of a frame, and that of the reference beside it.
+/// Draws the pictures of a frame, and that of the reference beside it; with what its pixels cover of
+/// a shadow map one of texels, too.
 ///
 /// # Errors
 /// Outputs that do not fit the reference.
 pub fn draw_pictures(
     place: &PicturePlace,
     ground_truth: &GroundTruth,
-    outputs: &Outputs,
-    judgement: &Judgement,
+    (outputs, judgement): (&Outputs, &Judgement),
+    footprints: Option<&[Option<Footprint>]>,
 ) -> Result<(Images, Vec<PictureFile>), CompareError> {
     let counts = &judgement.counts;
     let (truth, visibility, status) = (&ground_truth.pixels, &outputs.shown(), &outputs.status);
@@ -99,6 +100,16 @@ pub fn draw_pictures(
                 "uncertain",
                 Image::uncertain(visibility, status, truth),
             )?),
+        },
+        texels: match footprints {
+            Some(footprints) => {
+                let texels = footprints.iter().map(|of| of.map(Footprint::texels));
+                Some(draw(
+                    "texels",
+                    Image::texels(&texels.collect::<Vec<_>>(), truth),
+                )?)
+            }
+            None => None,
         },
     };
     files.push(of_reference);

@@ -25,7 +25,7 @@ use crate::wording::{size, thousands};
 use serde::{Deserialize, Serialize};
 use skiagraph_reference::{
     AreaVisibility, BlockerCounts, CertainCounts, EdgeDistances, Graded, GroundTruthPixels,
-    PixelCounts, Split, WrongCounts,
+    LayerJump, PixelCounts, Split, TexelsPerPixel, WrongCounts,
 };
 use std::{collections::BTreeMap, fmt};
 
@@ -350,6 +350,14 @@ pub struct Measured {
     /// How a method that remembers came to its steady state; absent of one that does not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub steady: Option<Steady>,
+    /// Texels of its shadow map per pixel, of a path's worst frame; absent where the graph has no
+    /// output `texel_density`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub texels: Option<TexelsPerPixel>,
+    /// How errors jump where two layers of its shadow map meet, in a path's worst frame; absent
+    /// where the graph has no output `map_layer`, or no two layers meet.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub layer_jump: Option<LayerJump>,
     /// The frames of a camera path; all other fields are their sums and spreads. Absent of a still
     /// view.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -457,13 +465,17 @@ pub struct Images {
     /// uncertain.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub uncertain: Option<String>,
+    /// Shadow-map texels per pixel, from red (few) over pale yellow (1) to blue (many); absent where
+    /// the graph has no output `texel_density`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub texels: Option<String>,
 }
 
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
     use crate::files::json;
-    use skiagraph_reference::ClassSplit;
+    use skiagraph_reference::{ClassSplit, Quantiles};
 
     /// An adapter that no machine has.
     pub(crate) fn adapter() -> Adapter {
@@ -596,6 +608,23 @@ pub(crate) mod tests {
             saved_bytes: 1_048_576,
             scene_bytes: 2_000_000,
             steady: None,
+            texels: gpu.then(|| TexelsPerPixel {
+                pixels: 99_990,
+                under_one: 25_000,
+                outside_map: 10,
+                texels: Quantiles {
+                    p5: 0.25,
+                    median: 2.5,
+                    p95: 40.0,
+                },
+                ..TexelsPerPixel::default()
+            }),
+            layer_jump: gpu.then_some(LayerJump {
+                pairs: 500,
+                across: 0.0625,
+                pairs_elsewhere: 198_000,
+                elsewhere: 0.015625,
+            }),
             sequence: None,
             images: gpu.then(|| Images {
                 frame: None,
@@ -604,6 +633,7 @@ pub(crate) mod tests {
                 visibility: format!("{name}-visibility.png"),
                 error: format!("{name}-error.png"),
                 uncertain: Some(format!("{name}-uncertain.png")),
+                texels: Some(format!("{name}-texels.png")),
             }),
         };
         Results {

@@ -132,7 +132,10 @@ mod tests {
         let images = results.runs[0].measured.as_ref().unwrap().images.as_ref();
         let images = images.unwrap();
         let names = [&images.shaded, &images.visibility, &images.error];
-        let names = names.into_iter().chain(&images.uncertain);
+        let names = names
+            .into_iter()
+            .chain(&images.uncertain)
+            .chain(&images.texels);
         for name in names {
             std::fs::write(folder.path().join(name), [7; 3_000]).unwrap();
         }

@@ -1,6 +1,7 @@
 //! The pictures of a page, the most telling first, as far as there is room.
 
 use crate::html::sources::Source;
+use crate::notes::map_figures;
 use base64::{Engine, engine::general_purpose::STANDARD};
 use itertools::Itertools;
 use serde::Serialize;
@@ -37,6 +38,9 @@ pub struct Set {
     visibility: Option<usize>,
     error: Option<usize>,
     uncertain: Option<usize>,
+    texels: Option<usize>,
+    /// Figures of its map's texels, in words.
+    figures: Option<String>,
     /// True if its answer is a share of light.
     graded: bool,
 }
@@ -58,15 +62,17 @@ enum Kind {
     Graph,
     Visibility,
     Uncertain,
+    Texels,
 }
 
-const ORDER: [Kind; 6] = [
+const ORDER: [Kind; 7] = [
     Kind::Reference,
     Kind::Error,
     Kind::Shaded,
     Kind::Graph,
     Kind::Visibility,
     Kind::Uncertain,
+    Kind::Texels,
 ];
 
 impl Kind {
@@ -78,6 +84,7 @@ impl Kind {
             Self::Graph => "graph",
             Self::Visibility => "visibility",
             Self::Uncertain => "uncertain",
+            Self::Texels => "texels",
         }
     }
 }
@@ -168,6 +175,10 @@ impl Pictures {
             Kind::Error => &mut set.error,
             Kind::Shaded => &mut set.shaded,
             Kind::Uncertain => &mut set.uncertain,
+            Kind::Texels => {
+                set.figures = map_figures(run);
+                &mut set.texels
+            }
             _ => &mut set.visibility,
         };
         *place = Some(file);
@@ -203,6 +214,7 @@ fn candidates(sources: &[Source]) -> Vec<EmbedCandidate> {
 
 fn names(run: &Run, images: &Images) -> Vec<(Kind, String)> {
     let uncertain = images.uncertain.iter();
+    let texels = images.texels.iter();
     [
         (Kind::Reference, images.reference.clone()),
         (Kind::Error, images.error.clone()),
@@ -212,5 +224,6 @@ fn names(run: &Run, images: &Images) -> Vec<(Kind, String)> {
     ]
     .into_iter()
     .chain(uncertain.map(|name| (Kind::Uncertain, name.clone())))
+    .chain(texels.map(|name| (Kind::Texels, name.clone())))
     .collect()
 }

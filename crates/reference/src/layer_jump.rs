@@ -15,8 +15,8 @@ use serde::{Deserialize, Serialize};
 /// A *pair* is two pixels beside or below each other that face the light, are not indeterminate,
 /// and show one surface: the receiver of each lies within a pixel's width of the plane of the
 /// other's primitive. So an object before a far wall makes no pair with it, though they may ask two
-/// layers. A pair lies *across* if its pixels ask different layers, else *elsewhere*. The error of a
-/// pixel is the share of light that it shows less the reference's; a pair differs by the size of
+/// layers. A pair lies *across* if its pixels ask different layers, else *elsewhere*. The error of
+/// a pixel is the share of light that it shows less the reference's. A pair differs by the size of
 /// the difference of its errors, 0 to 2: of hard answers by 1 where one of the two is wrong.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LayerJump {

@@ -11,13 +11,13 @@ use crate::{
 use serde::{Deserialize, Serialize};
 use skiagraph_scene::LightKind;
 
-/// What a pixel covers of a shadow map.
+/// A pixel's part of a shadow map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Footprint {
     /// Texels per pixel if the surface stood across the eye's ray and across the light's: the
     /// pixel's area at the receiver times the map's density there. 0 outside the map.
     pub perspective: f64,
-    /// What the surface's angles make of it: cos θ / cos φ, with θ between its normal and the light
+    /// Factor of the surface's angles: cos θ / cos φ, with θ between its normal and the light
     /// and φ between its normal and the eye. Small where light grazes, great where the eye does.
     pub projection: f64,
 }

@@ -1,5 +1,5 @@
-//! What a document tells of its shadow map on request, for figures and a picture: drawn after a
-//! method was timed and judged, by a plan of its own.
+//! Outputs on request that tell of a method's shadow map, for figures and a picture: drawn after it
+//! was timed and judged, by a plan of their own.
 
 use crate::error::{explain, is_fatal};
 use crate::graphs::method::Method;
@@ -8,16 +8,16 @@ use crate::graphs::preset::{MAP_LAYER, TEXEL_DENSITY};
 use crate::graphs::shadow_method::{Outputs, of_light};
 use crate::measuring::frame::{self, Contents};
 use crate::measuring::ground_truth::GroundTruthView;
-use crate::measuring::run::MeasureContext;
 use crate::measuring::stop::Stop;
+use crate::sink::Session;
 use skiagraph_gpu::{Content, ExecuteError, Provider};
 use skiagraph_graph::Plan;
 use skiagraph_reference::{Footprint, LayerJump, TexelsPerPixel};
 
-/// What was found, as far as the document tells it.
+/// Findings, as far as the document gives the outputs for them.
 #[derive(Default)]
 pub struct Diagnostics {
-    /// What each pixel covers of the map.
+    /// Each pixel's part of the map.
     pub footprints: Option<Vec<Option<Footprint>>>,
     /// The same in figures.
     pub texels: Option<TexelsPerPixel>,
@@ -25,37 +25,37 @@ pub struct Diagnostics {
     pub layer_jump: Option<LayerJump>,
 }
 
-/// Draws a method's diagnostics of a view, whose judged `outputs` are known. What this adapter
-/// cannot draw is told to the sink and left out.
+/// Draws a method's diagnostics of a view, whose judged `outputs` under one of its lights are
+/// known. Whatever this adapter cannot draw is told to the sink and left out.
 ///
 /// # Errors
 /// Ctrl-C, a lost device, outputs that do not fit the reference.
 pub fn diagnose(
-    context: &MeasureContext<'_>,
+    session: Session,
     method: &Method,
     truth_view: &GroundTruthView<'_>,
-    outputs: &Outputs,
+    (outputs, light): (&Outputs, usize),
     provider: &mut dyn Provider,
 ) -> Result<Diagnostics, Stop> {
     let names = method.preset.diagnostics();
     let viewport = truth_view.ground_truth.pixels.viewport;
-    let capabilities = Capabilities::new(context.session.gpu);
+    let capabilities = Capabilities::new(session.gpu);
     let plan = method.plan_of(&names, viewport, capabilities, provider);
     // All of it was planned for the greatest adapter; this one may lack what it needs.
     let Some(plan) = plan.ok().filter(|plan| !plan.outputs().is_empty()) else {
         return Ok(Diagnostics::default());
     };
-    let mut contents = match contents(context, plan, provider) {
+    let mut contents = match contents(session, plan, provider) {
         Ok(contents) => contents,
         Err(error) if is_fatal(&error) => return Err(error.into()),
         Err(error) => {
             let reason = explain(&error);
             let text = format!("no diagnostics of `{}`: {reason}", method.name);
-            context.session.sink.note(&text);
+            session.sink.note(&text);
             return Ok(Diagnostics::default());
         }
     };
-    let mut of = |name: &str| Some(of_light(contents.remove(name)?, context.light));
+    let mut of = |name: &str| Some(of_light(contents.remove(name)?, light));
     let density = of(TEXEL_DENSITY).as_ref().and_then(Content::as_f32);
     let layers = of(MAP_LAYER).as_ref().and_then(Content::as_u32);
     let footprints = density.map(|density| truth_view.footprints(&density));
@@ -69,12 +69,12 @@ pub fn diagnose(
 }
 
 fn contents(
-    context: &MeasureContext<'_>,
+    session: Session,
     plan: Plan,
     provider: &mut dyn Provider,
 ) -> Result<Contents, ExecuteError> {
     let outputs = plan.outputs();
     let names: Vec<&str> = outputs.iter().map(|output| output.name.as_str()).collect();
-    let (mut executor, _) = frame::settled(context.session, plan, provider)?;
-    frame::read(context.session, &mut executor, &names)
+    let (mut executor, _) = frame::settled(session, plan, provider)?;
+    frame::read(session, &mut executor, &names)
 }

@@ -147,7 +147,13 @@ impl MeasureContext<'_> {
         let counts = &judgement.counts;
         let has_blockers = judgement.is_hard && counts.wrong.certain > 0;
         let blockers = has_blockers.then(|| self.truth_view.blockers(&outputs));
-        let found = diagnose(self, method, self.truth_view, &outputs, provider)?;
+        let found = diagnose(
+            self.session,
+            method,
+            self.truth_view,
+            (&outputs, self.light),
+            provider,
+        )?;
         Ok(Measured {
             rays: outputs.rays,
             certain_wrong_blockers: blockers.transpose()?,

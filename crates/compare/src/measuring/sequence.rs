@@ -180,7 +180,13 @@ pub fn follow(
         let truth_view = &path.truth_views[*index];
         let ground_truth = &truth_view.ground_truth;
         path.show(*index, ground_truth.pixels.viewport, provider)?;
-        found = diagnose(context, method, truth_view, outputs, provider)?;
+        found = diagnose(
+            context.session,
+            method,
+            truth_view,
+            (outputs, context.light),
+            provider,
+        )?;
         images = context.draw(
             method,
             Some(*index),

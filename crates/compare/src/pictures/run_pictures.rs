@@ -59,8 +59,8 @@ impl PicturePlace<'_> {
     }
 }
 
-/// Draws the pictures of a frame, and that of the reference beside it; with what its pixels cover of
-/// a shadow map one of texels, too.
+/// Draws the pictures of a frame, and that of the reference beside it; with `footprints` in a
+/// shadow map one of its texels, too.
 ///
 /// # Errors
 /// Outputs that do not fit the reference.

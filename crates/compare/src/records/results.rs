@@ -465,8 +465,8 @@ pub struct Images {
     /// uncertain.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub uncertain: Option<String>,
-    /// Shadow-map texels per pixel, from red (few) over pale yellow (1) to blue (many); absent where
-    /// the graph has no output `texel_density`.
+    /// Shadow-map texels per pixel, from red (few) over pale yellow (1) to blue (many); absent
+    /// where the graph has no output `texel_density`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub texels: Option<String>,
 }

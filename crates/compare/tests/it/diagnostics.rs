@@ -1,4 +1,4 @@
-//! What a document tells of its shadow map on request.
+//! Outputs on request that tell of a shadow map.
 
 use crate::support::{
     LIT, NOWHERE, along, comparison, count, gpu, keep, mesh, park, park_comparison, runs,
@@ -21,8 +21,8 @@ fn passes(run: &Value) -> Vec<&str> {
         .collect()
 }
 
-/// From 10 above it, 64 pixels at 90° see 20 units of the floor, and the map of 256 texels lies over
-/// all 40: everywhere two by two texels.
+/// From 10 above it, 64 pixels at 90° see 20 units of the floor, and the map of 256 texels lies
+/// over all 40: everywhere two by two texels.
 #[test]
 fn texels_per_pixel_of_a_floor_are_those_worked_by_hand() {
     let folder = tempfile::tempdir().unwrap();
@@ -131,12 +131,17 @@ fn diagnostics_of_another_format_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let odd = LIT.replace(
         r#"outputs: ["visibility", "status"]"#,
-        r#"outputs: ["visibility", "status", (name: "texel_density", material: "status", on_request: true),
+        r#"outputs: ["visibility", "status",
+            (name: "texel_density", material: "status", on_request: true),
             (name: "map_layer", material: "status", on_request: true)]"#,
     );
     assert_ne!(odd, LIT);
     fs::write(folder.path().join("odd.ron"), odd).unwrap();
     let comparison = park_comparison(&["odd.ron"], folder.path(), 16);
     let error = comparison.check(Session::new(gpu(), &Silent)).unwrap_err();
-    insta::assert_snapshot!(error, @"");
+    assert_eq!(
+        error.to_string(),
+        "`odd.ron`: the output `texel_density` is R8Uint of 16x16; expected R32Float of the \
+         viewport's 16x16, in one layer or one for each of 1 lights"
+    );
 }

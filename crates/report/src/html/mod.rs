@@ -142,7 +142,7 @@ mod tests {
         let sources = source(folder.path(), results);
         let whole = page(&sources, &[]);
         assert!(whole.left_out.is_empty(), "{:?}", whole.left_out);
-        // The four take 16,000 letters.
+        // The five take 20,000 letters.
         let thin = page_within(&sources, &[], whole.html.len() - 5_000);
         assert!(thin.html.len() <= whole.html.len() - 5_000);
         let [line] = &thin.left_out[..] else {

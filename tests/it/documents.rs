@@ -87,7 +87,7 @@ fn presets_keep_the_contract() {
             graph.warnings()
         );
         let plan = plan(&preset.path, None);
-        let culled = plan.culled().into_iter().map(|pass| pass.name);
+        let culled = plan.culled().iter().map(|pass| &pass.name);
         let culled: Vec<_> = culled
             .filter(|name| !name.ends_with("fit_map.texel_density"))
             .collect();

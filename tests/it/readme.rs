@@ -122,7 +122,7 @@ const DOCUMENTS: [(&str, usize); 13] = [
     ("blur.ron", 2),
     ("cascades.ron", 5),
     ("softer.ron", 21),
-    ("darkened.ron", 6),
+    ("darkened.ron", 7),
     ("extended.ron", 4),
     ("history.ron", 1),
     ("age.ron", 3),

@@ -19,6 +19,7 @@ const DOCUMENT: &str = r#"(
     materials: [Texture(name: "texel", format: Rgba32Float)],
     passes: [Fullscreen(after: "shadow_lookup", name: "texel", color: ["texel"])],
     outputs: ["texel", "texel_density", "map_layer"],
+    lights: [directional, spot, point],
 )"#;
 const SHADER: &str = r#"
 #import "shared/map_layers.wgsl"

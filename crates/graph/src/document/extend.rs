@@ -2,7 +2,7 @@
 
 use super::{
     raw::{Invalid, REMOVE, RawDocument, RawEntry, RawItem, RawMap},
-    typed::Narrow,
+    typed::{Narrow, Output},
 };
 use crate::{diagnostics::reports::Reports, errors::edit::EditError, source::span::Located};
 use skiagraph_located_ron::reader::{Field, Node};
@@ -31,12 +31,13 @@ pub(crate) fn extend(base: RawDocument, own: RawDocument, reports: &mut Reports)
         materials: merge(materials, own.materials),
         passes: base.passes,
         outputs: if own.outputs.is_empty() {
-            base.outputs
+            inherited(base.outputs)
         } else {
             own.outputs
         },
         set: base.set,
-        // Lights and claims belong to a method as written, not to methods that extend it.
+        // Lights, claims and outputs on request belong to a method as written, not to methods that
+        // extend it.
         lights: own.lights,
         proven_on: own.proven_on,
         claims: own.claims,
@@ -79,6 +80,13 @@ fn default_field(name: &Located<String>, node: Node) -> Field {
 }
 
 /// A value of the same name is replaced where it stands, the rest is added.
+/// Outputs of a document that those have that extend it: diagnostics may not be true of these.
+fn inherited(outputs: Vec<Node>) -> Vec<Node> {
+    let is_on_request = |node: &Node| node.parse::<Output>().is_ok_and(|it| it.on_request);
+    let (_, inherited) = outputs.into_iter().partition::<Vec<_>, _>(is_on_request);
+    inherited
+}
+
 fn redefine(base: RawMap, own: RawMap) -> RawMap {
     let mut values = base;
     for (name, value) in own {

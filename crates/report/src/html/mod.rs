@@ -152,7 +152,7 @@ mod tests {
         let data = data_of(&thin.html);
         let set = &data["pictures"]["sets"][0];
         assert!(set["error"].is_u64() && set["shaded"].is_u64(), "{set}");
-        assert!(set["uncertain"].is_null() && set["visibility"].is_null());
+        assert!(set["uncertain"].is_null() && set["texels"].is_null());
         assert_eq!(data["left_out"][0], line.as_str());
     }
 

@@ -128,9 +128,9 @@ const DOCUMENTS: [(&str, usize); 13] = [
     ("age.ron", 3),
     ("kept.ron", 1),
     ("settled.ron", 1),
-    ("filtered.ron", 5),
+    ("filtered.ron", 6),
     ("every_light.ron", 7),
-    ("claims.ron", 5),
+    ("claims.ron", 6),
 ];
 
 /// Every document of the authoring guide, as a file beside the shaders that it shows.

@@ -85,7 +85,7 @@ pub fn draw_pictures(
     } else {
         Image::difference(visibility, &ground_truth.shares(), truth)
     };
-    let images = Images {
+    let mut images = Images {
         frame: place.frame,
         reference: of_reference.name.clone(),
         shaded: draw("shaded", Image::shaded(visibility, truth))?,
@@ -101,17 +101,19 @@ pub fn draw_pictures(
                 Image::uncertain(visibility, status, truth),
             )?),
         },
-        texels: match footprints {
-            Some(footprints) => {
-                let texels = footprints.iter().map(|of| of.map(Footprint::texels));
-                Some(draw(
-                    "texels",
-                    Image::texels(&texels.collect::<Vec<_>>(), truth),
-                )?)
-            }
-            None => None,
-        },
+        texels: None,
+        perspective: None,
+        projection: None,
     };
+    if let Some(footprints) = footprints {
+        let mut heat = |kind, part: fn(Footprint) -> f64| {
+            let values: Vec<_> = footprints.iter().map(|of| of.map(part)).collect();
+            draw(kind, Image::texels(&values, truth))
+        };
+        images.texels = Some(heat("texels", Footprint::texels)?);
+        images.perspective = Some(heat("perspective", |of| of.perspective)?);
+        images.projection = Some(heat("projection", |of| of.projection)?);
+    }
     files.push(of_reference);
     Ok((images, files))
 }

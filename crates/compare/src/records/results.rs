@@ -469,6 +469,12 @@ pub struct Images {
     /// where the graph has no output `texel_density`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub texels: Option<String>,
+    /// Their part of distance and map alone; absent as `texels` is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub perspective: Option<String>,
+    /// Their part of angles alone; absent as `texels` is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub projection: Option<String>,
 }
 
 #[cfg(test)]
@@ -634,6 +640,8 @@ pub(crate) mod tests {
                 error: format!("{name}-error.png"),
                 uncertain: Some(format!("{name}-uncertain.png")),
                 texels: Some(format!("{name}-texels.png")),
+                perspective: Some(format!("{name}-perspective.png")),
+                projection: Some(format!("{name}-projection.png")),
             }),
         };
         Results {

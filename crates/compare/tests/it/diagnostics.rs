@@ -80,13 +80,11 @@ fn a_map_is_asked_after_the_timed_frames_and_pictured() {
         let facing = count(&run["pixels"]["facing_light"]);
         let [inside, outside] = ["pixels", "outside_map"].map(|key| count(&run["texels"][key]));
         assert_eq!(inside + outside, facing);
-        let picture = folder
-            .path()
-            .join(run["images"]["texels"].as_str().unwrap());
-        assert_eq!(
-            image::open(picture).unwrap().to_rgb8().dimensions(),
-            (64, 64)
-        );
+        for kind in ["texels", "perspective", "projection"] {
+            let picture = folder.path().join(run["images"][kind].as_str().unwrap());
+            let picture = image::open(picture).unwrap().to_rgb8();
+            assert_eq!(picture.dimensions(), (64, 64), "{kind}");
+        }
     }
     // Splits spend the texels where the eye is: in the median far more of them.
     let median = |run: &Value| run["texels"]["perspective"]["median"].as_f64().unwrap();

@@ -47,9 +47,11 @@ const meanings = {
 };
 const kinds = {
   shaded: 'shaded', visibility: 'visibility', error: 'wrong pixels', uncertain: 'uncertain pixels',
-  texels: 'map texels per pixel',
+  texels: 'map texels per pixel', perspective: 'texels by distance', projection: 'texels by angles',
 };
-const meaningOf = (kind, isGraded) => meanings[kind === 'error' && isGraded ? 'difference' : kind];
+const isOfTexels = (kind) => ['texels', 'perspective', 'projection'].includes(kind);
+const meaningOf = (kind, isGraded) => meanings[
+  isOfTexels(kind) ? 'texels' : kind === 'error' && isGraded ? 'difference' : kind];
 
 /** A share of light from its sRGB grey (IEC 61966-2-1). */
 const linear = (grey) => (grey <= 0.04045 ? grey / 12.92 : ((grey + 0.055) / 1.055) ** 2.4);
@@ -71,7 +73,7 @@ function reading(kind, isGraded, [red, green, blue]) {
   const known = meaningOf(kind, isGraded).find(([rgb]) => rgb[0] === red && rgb[1] === green && rgb[2] === blue);
   if (known) return known[1];
   if (kind === 'visibility' && red === green && green === blue) return `${(100 * linear(red / 255)).toFixed(0)} % lit`;
-  if (kind === 'texels') return `about ${texelsOf([red, green, blue]).toPrecision(2)}`;
+  if (isOfTexels(kind)) return `about ${texelsOf([red, green, blue]).toPrecision(2)}`;
   if (kind === 'error' && !isGraded) return 'right';
   if (kind === 'error') {
     return blue > red + 8 ? 'too light' : red > blue + 8 ? 'too dark' : 'right';

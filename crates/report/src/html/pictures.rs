@@ -39,6 +39,8 @@ pub struct Set {
     error: Option<usize>,
     uncertain: Option<usize>,
     texels: Option<usize>,
+    perspective: Option<usize>,
+    projection: Option<usize>,
     /// Figures of its map's texels, in words.
     figures: Option<String>,
     /// True if its answer is a share of light.
@@ -63,9 +65,11 @@ enum Kind {
     Visibility,
     Uncertain,
     Texels,
+    Perspective,
+    Projection,
 }
 
-const ORDER: [Kind; 7] = [
+const ORDER: [Kind; 9] = [
     Kind::Reference,
     Kind::Error,
     Kind::Shaded,
@@ -73,6 +77,8 @@ const ORDER: [Kind; 7] = [
     Kind::Visibility,
     Kind::Uncertain,
     Kind::Texels,
+    Kind::Perspective,
+    Kind::Projection,
 ];
 
 impl Kind {
@@ -85,6 +91,8 @@ impl Kind {
             Self::Visibility => "visibility",
             Self::Uncertain => "uncertain",
             Self::Texels => "texels",
+            Self::Perspective => "perspective",
+            Self::Projection => "projection",
         }
     }
 }
@@ -179,6 +187,8 @@ impl Pictures {
                 set.figures = map_figures(run);
                 &mut set.texels
             }
+            Kind::Perspective => &mut set.perspective,
+            Kind::Projection => &mut set.projection,
             _ => &mut set.visibility,
         };
         *place = Some(file);
@@ -213,8 +223,13 @@ fn candidates(sources: &[Source]) -> Vec<EmbedCandidate> {
 }
 
 fn names(run: &Run, images: &Images) -> Vec<(Kind, String)> {
-    let uncertain = images.uncertain.iter();
-    let texels = images.texels.iter();
+    let optional = [
+        (Kind::Uncertain, &images.uncertain),
+        (Kind::Texels, &images.texels),
+        (Kind::Perspective, &images.perspective),
+        (Kind::Projection, &images.projection),
+    ];
+    let optional = optional.into_iter();
     [
         (Kind::Reference, images.reference.clone()),
         (Kind::Error, images.error.clone()),
@@ -223,7 +238,6 @@ fn names(run: &Run, images: &Images) -> Vec<(Kind, String)> {
         (Kind::Visibility, images.visibility.clone()),
     ]
     .into_iter()
-    .chain(uncertain.map(|name| (Kind::Uncertain, name.clone())))
-    .chain(texels.map(|name| (Kind::Texels, name.clone())))
+    .chain(optional.filter_map(|(kind, name)| Some((kind, name.clone()?))))
     .collect()
 }

@@ -84,6 +84,9 @@ try {
   check('a scale of texels', all('.stage')[1].textContent.includes('64 or more'), all('.stage')[1].textContent);
   const figures = find('#viewer .figures').textContent;
   check('and their figures', figures.startsWith('nsm 64, texels per pixel: median '), figures);
+  ['texels by distance', 'texels by angles'].forEach((kind) => set('#kind-right', kind));
+  await settled();
+  check('of their parts, too', find('#viewer .figures').textContent === figures);
   set('#kind-right', 'wrong pixels');
   await settled();
   check('which go with them', !find('#viewer .figures'));

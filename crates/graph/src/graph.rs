@@ -140,6 +140,13 @@ impl Graph {
         outputs.map(|output| output.name.as_str()).collect()
     }
 
+    /// The same without those that a host gets only if it names them.
+    pub fn default_outputs(&self) -> Vec<&str> {
+        let outputs = self.document.material_outputs();
+        let outputs = outputs.filter(|output| !output.on_request);
+        outputs.map(|output| output.name.as_str()).collect()
+    }
+
     /// The words of the section `lights`: the kinds of light that the method takes, each where it
     /// was written. The graph does not know what they mean.
     pub fn lights(&self) -> impl Iterator<Item = &Located<Name>> {

@@ -29,7 +29,8 @@ pub struct Request<P> {
     pub viewport: [u32; 2],
     /// Values of params; where missing, the document's default.
     pub params: BTreeMap<String, ParamValue>,
-    /// The outputs that are wanted; `None` = all that the document declares.
+    /// The outputs that are wanted; `None` = all that the document declares, but for those on
+    /// request that no capture names.
     pub outputs: Option<Vec<String>>,
     /// Materials that are to be read back beside the outputs.
     pub captures: Vec<Capture>,

@@ -7,7 +7,7 @@ use crate::{
     error::Error,
     ground_truth::GroundTruthPixels,
     pixels::check_pixel_count,
-    shimmer::{Seen, hit},
+    shimmer::Seen,
     statistics::{Verdict, for_each_verdict},
 };
 use rayon::prelude::*;
@@ -189,10 +189,7 @@ fn place(seen: Seen, pixel: usize) -> [u32; 2] {
 
 /// The place in the scene that a pixel shows, where it has one.
 fn receiver(seen: Seen, pixel: usize) -> Option<[f64; 3]> {
-    let primitive = seen.primitives[pixel];
-    let is_known = (primitive as usize) < seen.mesh.triangles.len();
-    let hit = is_known.then(|| hit(seen.mesh, primitive, seen.camera, place(seen, pixel)));
-    Some(hit??.to_array())
+    Some(seen.surface(pixel)?.receiver.to_array())
 }
 
 fn apart<const N: usize>(one: &[f64; N], other: &[f64; N]) -> f64 {

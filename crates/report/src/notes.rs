@@ -4,8 +4,8 @@ use crate::graded::graded;
 use itertools::Itertools;
 use skiagraph_compare::records::results::{Machine, Results, Run};
 use skiagraph_compare::records::sequence::{FrameCost, Sequence};
-use skiagraph_compare::wording::{frames, ms, plural, thousands};
-use skiagraph_reference::BlockerCounts;
+use skiagraph_compare::wording::{frames, ms, percent, plural, thousands};
+use skiagraph_reference::{BlockerCounts, Quantiles};
 
 /// A band of more than one pixel in so many of those facing the light leaves too much open.
 const MAX_BAND: u128 = 1000;
@@ -44,6 +44,41 @@ pub fn wrong_surface(count: u64, all: u64) -> String {
         thousands(count),
         thousands(all)
     )
+}
+
+/// Texels of a run's map per pixel, and how errors jump between its layers, in words; `None` where
+/// its graph does not tell.
+pub fn map_figures(run: &Run) -> Option<String> {
+    let measured = run.measured.as_ref()?;
+    let of = measured.texels.as_ref()?;
+    let range = |of: &Quantiles| format!("{} to {}", digits(of.p5), digits(of.p95));
+    let mut text = format!(
+        "texels per pixel: median {}, nine tenths of the pixels {}; by distance and map {}, by \
+         angles × {}; under one in {}",
+        digits(of.texels.median),
+        range(&of.texels),
+        range(&of.perspective),
+        range(&of.projection),
+        percent(of.under_one, of.pixels),
+    );
+    if of.outside_map > 0 {
+        text += &format!("; outside the map {}", thousands(of.outside_map));
+    }
+    if let Some(jump) = &measured.layer_jump {
+        text += &format!(
+            ". Neighbours differ in error by {:.4} across layers ({}), by {:.4} elsewhere",
+            jump.across,
+            plural(jump.pairs as usize, "pair"),
+            jump.elsewhere,
+        );
+    }
+    Some(text)
+}
+
+/// A number with three significant digits.
+fn digits(number: f64) -> String {
+    let behind = 2.0 - number.abs().max(1e-6).log10().floor();
+    format!("{number:.*}", behind.max(0.0) as usize)
 }
 
 /// Says of each method that is wrong of certain pixels how many they are, and what blocks them. All

@@ -59,7 +59,7 @@ pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         provider.set_view(view, method.size.0);
         let mut request = Capabilities::new(&gpu).request(method.size.0, &provider);
         request.params = params.clone();
-        request.captures = captures(&preset.graph.outputs(), saves);
+        request.captures = captures(&preset.graph.default_outputs(), saves);
         let plan = preset.plan(&request, &Terminal)?;
         idle.note_of(&Terminal, &preset.name, &plan, provider.light());
         check_encodings(&plan, saves)?;

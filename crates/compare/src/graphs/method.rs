@@ -111,10 +111,23 @@ impl Method {
         capabilities: Capabilities,
         provider: &dyn Provider,
     ) -> Result<Plan, Diagnostics> {
+        self.plan_of(&self.preset.judged(), viewport, capabilities, provider)
+    }
+
+    /// The plan of some outputs alone.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it.
+    pub fn plan_of(
+        &self,
+        outputs: &[&str],
+        viewport: [u32; 2],
+        capabilities: Capabilities,
+        provider: &dyn Provider,
+    ) -> Result<Plan, Diagnostics> {
         let mut request = capabilities.request(viewport, provider);
         request.params = self.params.clone();
-        let judged = self.preset.judged().into_iter();
-        request.outputs = Some(judged.map(str::to_owned).collect());
+        request.outputs = Some(outputs.iter().map(|&name| name.to_owned()).collect());
         self.preset.graph.plan(&request)
     }
 

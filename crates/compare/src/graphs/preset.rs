@@ -38,6 +38,11 @@ pub const VISIBILITY: &str = "visibility";
 pub const STATUS: &str = "status";
 /// The optional output with the number of rays traced in the frame.
 pub const RAY_COUNT: &str = "ray_count";
+/// The optional output with the density of the shadow map at each pixel's receiver: texels on a
+/// unit of area across the light's ray, 0 outside the map.
+pub const TEXEL_DENSITY: &str = "texel_density";
+/// The optional output with the layer of the shadow map that each pixel asks.
+pub const MAP_LAYER: &str = "map_layer";
 
 /// Where graphs and shaders are read from: the working directory, then what is built in. Tells the
 /// sink, once in a process, which files of the working directory stand in for others that are built
@@ -137,10 +142,19 @@ pub struct Preset {
 impl Preset {
     /// Names of the outputs by which a shadow method is judged, as far as the graph has them.
     pub fn judged(&self) -> Vec<&'static str> {
+        self.outputs_of(&[VISIBILITY, STATUS, RAY_COUNT])
+    }
+
+    /// Names of the outputs that tell of its shadow map, as far as the graph has them: nothing of a
+    /// timed frame.
+    pub fn diagnostics(&self) -> Vec<&'static str> {
+        self.outputs_of(&[TEXEL_DENSITY, MAP_LAYER])
+    }
+
+    fn outputs_of(&self, names: &[&'static str]) -> Vec<&'static str> {
         let outputs = self.graph.outputs();
-        let mut names = vec![VISIBILITY, STATUS, RAY_COUNT];
-        names.retain(|name| outputs.contains(name));
-        names
+        let names = names.iter().copied();
+        names.filter(|name| outputs.contains(name)).collect()
     }
 
     /// The param that the graph declares under this name.

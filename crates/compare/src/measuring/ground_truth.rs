@@ -27,10 +27,10 @@ use skiagraph_gpu::{Content, Provider};
 use skiagraph_graph::{Graph, Plan, Sources};
 use skiagraph_passes::registry;
 use skiagraph_reference::{
-    BlockerCounts, EdgeDistances, Error, GroundTruth, GroundTruthPixels, Oracle, OracleMode,
-    Progress, Statistics, area,
+    BlockerCounts, EdgeDistances, Error, Footprint, GroundTruth, GroundTruthPixels, LayerJump,
+    Oracle, OracleMode, Progress, Statistics, area,
     shimmer::{Seen, same_receivers},
-    wrong_surfaces,
+    texels, wrong_surfaces,
 };
 use skiagraph_scene::{Camera, LightKind};
 use std::rc::Rc;
@@ -203,6 +203,32 @@ impl<'a> GroundTruthView<'a> {
         let truth = &self.ground_truth.pixels;
         let edges = EdgeDistances::measured(self.seen(), visibility, status, truth);
         edges.map_err(|error| CompareError::Input(format!("no distances from edges: {error}")))
+    }
+
+    /// Finds what each pixel covers of a shadow map with this density.
+    ///
+    /// # Errors
+    /// A density that does not fit the reference.
+    pub fn footprints(&self, density: &[f32]) -> Result<Vec<Option<Footprint>>, CompareError> {
+        let truth = &self.ground_truth.pixels;
+        let footprints = texels::footprints(self.seen(), &self.light, density, truth);
+        footprints.map_err(|error| CompareError::Input(format!("no texels per pixel: {error}")))
+    }
+
+    /// Measures how a method's errors jump where pixels beside each other ask different layers of
+    /// its map.
+    ///
+    /// # Errors
+    /// Outputs or layers that do not fit the reference.
+    pub fn layer_jump(
+        &self,
+        outputs: &Outputs,
+        layers: &[u32],
+    ) -> Result<Option<LayerJump>, CompareError> {
+        let (truth, shares) = (&self.ground_truth.pixels, self.ground_truth.shares());
+        let shown = outputs.shown();
+        let jump = LayerJump::measured(self.seen(), [&shown, &shares], layers, truth);
+        jump.map_err(|error| CompareError::Input(format!("no jump between layers: {error}")))
     }
 }
 

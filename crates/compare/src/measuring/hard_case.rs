@@ -225,7 +225,7 @@ impl HardCaseContext<'_> {
                                 frame: None,
                             };
                             let (images, files) =
-                                draw_pictures(&place, ground_truth, &outputs, &whole)?;
+                                draw_pictures(&place, ground_truth, (&outputs, &whole), None)?;
                             write_pictures(folder, &files)?;
                             cell.images = Some(images);
                         }

@@ -24,6 +24,7 @@
 pub mod camera_pose;
 pub mod date;
 pub mod device;
+mod diagnostics;
 pub mod frame;
 pub mod frame_sequence;
 pub mod ground_truth;

@@ -5,6 +5,7 @@ use crate::error::CompareError;
 use crate::graphs::ground_truth::{Judgement, judged};
 use crate::graphs::method::Method;
 use crate::graphs::shadow_method::Outputs;
+use crate::measuring::diagnostics::{Diagnostics, diagnose};
 use crate::measuring::ground_truth::{GroundTruthFrames, GroundTruthView};
 use crate::measuring::steady;
 use crate::measuring::stop::{Stop, attempt};
@@ -23,7 +24,9 @@ use crate::records::turns::Turns;
 use crate::sink::Session;
 use skiagraph_gpu::{ExecuteError, Executor, Provider};
 use skiagraph_graph::Plan;
-use skiagraph_reference::{BlockerCounts, EdgeDistances, GroundTruth, Statistics};
+use skiagraph_reference::{
+    BlockerCounts, EdgeDistances, GroundTruth, LayerJump, Statistics, TexelsPerPixel,
+};
 use std::cell::RefCell;
 
 /// Context shared by all methods on one view and viewport.
@@ -59,6 +62,8 @@ pub struct Judged {
     rays: Option<u64>,
     answers_in_shares: bool,
     blockers: Option<BlockerCounts>,
+    texels: Option<TexelsPerPixel>,
+    layer_jump: Option<LayerJump>,
     images: Option<Images>,
     /// Its pictures, to be written with its run.
     pub pictures: Vec<PictureFile>,
@@ -109,7 +114,14 @@ impl MeasureContext<'_> {
         };
         let has_blockers = judgement.is_hard && judgement.counts.wrong.certain > 0;
         let blockers = has_blockers.then(|| self.truth_view.blockers(&outputs));
-        let images = self.draw(method, None, ground_truth, (&outputs, &judgement))?;
+        let found = diagnose(
+            self.session,
+            method,
+            self.truth_view,
+            (&outputs, self.light),
+            provider,
+        )?;
+        let images = self.draw(method, None, ground_truth, (&outputs, &judgement, &found))?;
         Ok(Judged {
             method: method.clone(),
             planned: planned.clone(),
@@ -118,6 +130,8 @@ impl MeasureContext<'_> {
             rays: outputs.rays,
             answers_in_shares: outputs.shares.is_some(),
             blockers: blockers.transpose()?,
+            texels: found.texels,
+            layer_jump: found.layer_jump,
             pictures: self
                 .pictures
                 .as_ref()
@@ -204,6 +218,8 @@ impl MeasureContext<'_> {
             certain_wrong_blockers: of.blockers,
             graded: of.judgement.graded,
             edges: of.edges,
+            texels: of.texels,
+            layer_jump: of.layer_jump,
             images: of.images.clone(),
             ..self.measured(
                 &of.prepared,
@@ -272,6 +288,8 @@ impl MeasureContext<'_> {
             scene_bytes: prepared.scene_bytes,
             steady: prepared.steady.clone(),
             turns: None,
+            texels: None,
+            layer_jump: None,
             sequence: None,
             images: None,
         }
@@ -337,7 +355,7 @@ impl MeasureContext<'_> {
         method: &Method,
         frame: Option<usize>,
         ground_truth: &GroundTruth,
-        (outputs, judgement): (&Outputs, &Judgement),
+        (outputs, judgement, found): (&Outputs, &Judgement, &Diagnostics),
     ) -> Result<Option<Images>, CompareError> {
         let Some(pictures) = &self.pictures else {
             return Ok(None);
@@ -347,7 +365,12 @@ impl MeasureContext<'_> {
             view: self.view.name(),
             frame,
         };
-        let (images, files) = draw_pictures(&place, ground_truth, outputs, judgement)?;
+        let (images, files) = draw_pictures(
+            &place,
+            ground_truth,
+            (outputs, judgement),
+            found.footprints.as_deref(),
+        )?;
         pictures.replace(files);
         Ok(Some(images))
     }

@@ -4,6 +4,7 @@ use crate::error::CompareError;
 use crate::graphs::ground_truth::{Judgement, judged};
 use crate::graphs::method::Method;
 use crate::graphs::shadow_method::Outputs;
+use crate::measuring::diagnostics::{Diagnostics, diagnose};
 use crate::measuring::frame::{self, Contents};
 use crate::measuring::run::MeasureContext;
 use crate::measuring::stop::Stop;
@@ -99,13 +100,26 @@ pub fn follow(
     let every_pass = walk.every_pass()?;
     let account = walk.account;
     let times = Times::new(account.timed)?;
-    let images = match &account.worst {
-        Some((index, outputs, judgement)) => {
-            let ground_truth = &path.truth_views[*index].ground_truth;
-            context.draw(method, Some(*index), ground_truth, (outputs, judgement))?
-        }
-        None => None,
-    };
+    let (mut images, mut found) = (None, Diagnostics::default());
+    if let Some((index, outputs, judgement)) = &account.worst {
+        let truth_view = &path.truth_views[*index];
+        let ground_truth = &truth_view.ground_truth;
+        path.frames
+            .show(*index, ground_truth.pixels.viewport, provider)?;
+        found = diagnose(
+            context.session,
+            method,
+            truth_view,
+            (outputs, context.light),
+            provider,
+        )?;
+        images = context.draw(
+            method,
+            Some(*index),
+            ground_truth,
+            (outputs, judgement, &found),
+        )?;
+    }
     let mut all = Shimmer::default();
     for frame in &account.frames {
         all += frame.shimmer.unwrap_or_default();
@@ -116,6 +130,8 @@ pub fn follow(
         graded: Graded::together(account.graded),
         edges: account.edges,
         images,
+        texels: found.texels,
+        layer_jump: found.layer_jump,
         sequence: Some(Sequence {
             frames: account.frames,
             shimmer: all,

@@ -16,7 +16,7 @@ use crate::graphs::shadow_method::Outputs;
 use crate::pictures::png;
 use crate::records::results::Images;
 use crate::wording::size;
-use skiagraph_reference::{Error, GroundTruth, Image};
+use skiagraph_reference::{Error, Footprint, GroundTruth, Image};
 use std::{
     collections::BTreeMap,
     path::{Path, PathBuf},
@@ -59,15 +59,16 @@ impl PicturePlace<'_> {
     }
 }
 
-/// Draws the pictures of a frame, and that of the reference beside it.
+/// Draws the pictures of a frame, and that of the reference beside it; with `footprints` in a
+/// shadow map one of its texels, too.
 ///
 /// # Errors
 /// Outputs that do not fit the reference.
 pub fn draw_pictures(
     place: &PicturePlace,
     ground_truth: &GroundTruth,
-    outputs: &Outputs,
-    judgement: &Judgement,
+    (outputs, judgement): (&Outputs, &Judgement),
+    footprints: Option<&[Option<Footprint>]>,
 ) -> Result<(Images, Vec<PictureFile>), CompareError> {
     let counts = &judgement.counts;
     let (truth, visibility, status) = (&ground_truth.pixels, &outputs.shown(), &outputs.status);
@@ -93,7 +94,7 @@ pub fn draw_pictures(
         Image::difference(visibility, shares, truth)
     };
     let uncertain = || Image::uncertain(visibility, status, truth);
-    let images = Images {
+    let mut images = Images {
         frame: place.frame,
         reference: draw(reference_name(place.view, viewport), reference)?,
         shaded: draw(own("shaded"), Image::shaded(visibility, truth))?,
@@ -103,7 +104,19 @@ pub fn draw_pictures(
             0 => None,
             _ => Some(draw(own("uncertain"), uncertain())?),
         },
+        texels: None,
+        perspective: None,
+        projection: None,
     };
+    if let Some(footprints) = footprints {
+        let mut heat = |kind: &str, part: fn(Footprint) -> f64| {
+            let values: Vec<_> = footprints.iter().map(|of| of.map(part)).collect();
+            draw(own(kind), Image::texels(&values, truth))
+        };
+        images.texels = Some(heat("texels", Footprint::texels)?);
+        images.perspective = Some(heat("perspective", |of| of.perspective)?);
+        images.projection = Some(heat("projection", |of| of.projection)?);
+    }
     Ok((images, files))
 }
 

@@ -86,7 +86,7 @@ impl FromStr for Save {
     }
 }
 
-/// Returns captures of those saves that are not outputs of the graph anyway.
+/// Returns captures of those saves that are not `outputs`, which the graph gives anyway.
 pub fn captures(outputs: &[&str], saves: &[Save]) -> Vec<Capture> {
     let wanted = saves.iter().map(|save| &save.capture);
     let wanted = wanted.filter(|capture| !outputs.contains(&&*capture.name()));

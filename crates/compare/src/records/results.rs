@@ -27,7 +27,7 @@ use crate::wording::{size, thousands};
 use serde::{Deserialize, Serialize};
 use skiagraph_reference::{
     AreaVisibility, BlockerCounts, CertainCounts, EdgeDistances, Graded, GroundTruthPixels,
-    PixelCounts, Split, WrongCounts,
+    LayerJump, PixelCounts, Split, TexelsPerPixel, WrongCounts,
 };
 use std::{collections::BTreeMap, fmt};
 
@@ -397,6 +397,14 @@ pub struct Measured {
     /// How a method that remembers came to its steady state; absent of one that does not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub steady: Option<Steady>,
+    /// Texels of its shadow map per pixel, of a path's worst frame; absent where the graph has no
+    /// output `texel_density`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub texels: Option<TexelsPerPixel>,
+    /// How errors jump where two layers of its shadow map meet, in a path's worst frame; absent
+    /// where the graph has no output `map_layer`, or no two layers meet.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub layer_jump: Option<LayerJump>,
     /// The frames of a camera path; all other fields are their sums and spreads. Absent of a still
     /// view.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -504,13 +512,23 @@ pub struct Images {
     /// uncertain.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub uncertain: Option<String>,
+    /// Shadow-map texels per pixel, from red (few) over pale yellow (1) to blue (many); absent
+    /// where the graph has no output `texel_density`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub texels: Option<String>,
+    /// Their part of distance and map alone; absent as `texels` is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub perspective: Option<String>,
+    /// Their part of angles alone; absent as `texels` is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub projection: Option<String>,
 }
 
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
     use crate::files::json;
-    use skiagraph_reference::ClassSplit;
+    use skiagraph_reference::{ClassSplit, Quantiles};
 
     /// An adapter that no machine has.
     pub(crate) fn adapter() -> Adapter {
@@ -650,6 +668,23 @@ pub(crate) mod tests {
                 anchor: times(Some(1.0), 2.0),
             }),
             steady: None,
+            texels: gpu.then(|| TexelsPerPixel {
+                pixels: 99_990,
+                under_one: 25_000,
+                outside_map: 10,
+                texels: Quantiles {
+                    p5: 0.25,
+                    median: 2.5,
+                    p95: 40.0,
+                },
+                ..TexelsPerPixel::default()
+            }),
+            layer_jump: gpu.then_some(LayerJump {
+                pairs: 500,
+                across: 0.0625,
+                pairs_elsewhere: 198_000,
+                elsewhere: 0.015625,
+            }),
             sequence: None,
             images: gpu.then(|| Images {
                 frame: None,
@@ -658,6 +693,9 @@ pub(crate) mod tests {
                 visibility: format!("{name}-visibility.png"),
                 error: format!("{name}-error.png"),
                 uncertain: Some(format!("{name}-uncertain.png")),
+                texels: Some(format!("{name}-texels.png")),
+                perspective: Some(format!("{name}-perspective.png")),
+                projection: Some(format!("{name}-projection.png")),
             }),
         };
         Results {

@@ -2,7 +2,7 @@
 
 use super::{
     raw::{Invalid, REMOVE, RawDocument, RawEntry, RawItem, RawMap},
-    typed::Narrow,
+    typed::{Narrow, Output},
 };
 use crate::{diagnostics::reports::Reports, errors::edit::EditError, source::span::Located};
 use skiagraph_located_ron::reader::{Field, Node};
@@ -29,11 +29,12 @@ pub(crate) fn extend(base: RawDocument, own: RawDocument, reports: &mut Reports)
         inputs,
         materials,
         outputs: if own.outputs.is_empty() {
-            base.outputs
+            inherited(base.outputs)
         } else {
             own.outputs
         },
-        // Lights and claims belong to a method as written, not to methods that extend it.
+        // Lights, claims and outputs on request belong to a method as written, not to methods that
+        // extend it.
         lights: own.lights,
         proven_on: own.proven_on,
         claims: own.claims,
@@ -80,6 +81,13 @@ fn default_field(name: &Located<String>, node: Node) -> Field {
         name: Located::new("default".to_owned(), name.span.clone()),
         node,
     }
+}
+
+/// Outputs of a document that those have that extend it: diagnostics may not be true of these.
+fn inherited(outputs: Vec<Node>) -> Vec<Node> {
+    let is_on_request = |node: &Node| node.parse::<Output>().is_ok_and(|it| it.on_request);
+    let (_, inherited) = outputs.into_iter().partition::<Vec<_>, _>(is_on_request);
+    inherited
 }
 
 /// Puts each of `own` into the place of the one that is the same in the list, or behind the others.

@@ -139,6 +139,8 @@ pub(crate) struct Output {
     pub material: Reference,
     /// Condition under which it exists.
     pub condition: Option<Expr>,
+    /// True if a host has to name it to get it.
+    pub on_request: bool,
 }
 
 /// Output of a document.
@@ -154,23 +156,25 @@ pub(crate) struct OutputFields {
     /// Condition under which it exists.
     #[serde(default, rename = "if")]
     condition: Option<Expr>,
+    /// True if only a host that names it gets it, and all others pay nothing for it: a diagnostic.
+    #[serde(default)]
+    on_request: bool,
 }
 
 impl<'de> Deserialize<'de> for Output {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let named = |name: Located<Name>, material: Option<Reference>, condition| Self {
-            material: material.unwrap_or_else(|| Reference::new(name.clone())),
-            name,
-            condition,
+        let long = |long: OutputFields| Self {
+            material: (long.material).unwrap_or_else(|| Reference::new(long.name.clone())),
+            name: long.name,
+            condition: long.condition,
+            on_request: long.on_request,
         };
-        short_or_long(
-            deserializer,
-            |long: OutputFields| named(long.name, long.material, long.condition),
-            |short: Reference| {
-                let name = short.segments[0].name.clone();
-                named(name, Some(short), None)
-            },
-        )
+        short_or_long(deserializer, long, |short: Reference| Self {
+            name: short.segments[0].name.clone(),
+            material: short,
+            condition: None,
+            on_request: false,
+        })
     }
 }
 

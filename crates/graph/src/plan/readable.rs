@@ -32,9 +32,12 @@ pub(super) fn readable(
             });
         }
     }
-    let is_wanted = |name: &String| {
-        let wanted = request.outputs.as_ref();
-        wanted.is_none_or(|wanted| wanted.contains(name))
+    let is_wanted = |name: &String, on_request: bool| {
+        let is_captured = || request.captures.iter().any(|it| it.name() == *name);
+        match &request.outputs {
+            Some(wanted) => wanted.contains(name),
+            None => !on_request || is_captured(),
+        }
     };
     for output in graph.document.material_outputs() {
         let condition = output.condition.as_ref();
@@ -55,7 +58,7 @@ pub(super) fn readable(
                 material: material.span.clone(),
                 what,
             });
-        } else if is_wanted(&name.value) {
+        } else if is_wanted(&name.value, output.on_request) {
             readable.push((name.value, target));
         }
     }

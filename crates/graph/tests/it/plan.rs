@@ -146,6 +146,29 @@ fn outputs_by_choice() {
 }
 
 /// ```text
+/// fill_a ─▶ a ─▶ [a]      fill_b ─▶ b ─▶ [second, on request]
+/// ```
+/// A diagnostic runs for those alone that name it, as an output or as a capture.
+#[test]
+fn an_output_on_request_costs_only_those_that_name_it() {
+    let materials = ["a", "b"].map(texture);
+    let passes = [fill("fill_a", "a"), fill("fill_b", "b")];
+    let passes = passes.each_ref().map(String::as_str);
+    let outputs = r#""a", (name: "second", material: "b", on_request: true)"#;
+    let unasked = plan(&materials, &passes, outputs, &[]);
+    assert_eq!(names(&unasked), ["fill_a"]);
+    assert_eq!(unasked.graph().outputs(), ["a", "second"]);
+    assert_eq!(unasked.graph().default_outputs(), ["a"]);
+    let captured = plan(&materials, &passes, outputs, &[("second", None)]);
+    assert_eq!(names(&captured), ["fill_a", "fill_b"]);
+    assert_eq!(captured.outputs().len(), 2);
+    let mut request = PlanRequest::new([8, 4], &Triangle);
+    request.outputs = Some(vec!["second".to_owned()]);
+    let named = right(unasked.graph().plan(&request));
+    assert_eq!(names(&named), ["fill_b"]);
+}
+
+/// ```text
 /// fill ─▶ image ─▶ keep ─▶ kept      fill2 ─▶ image ─▶ [image]
 ///         └─ image@fill
 /// ```

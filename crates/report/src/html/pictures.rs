@@ -1,6 +1,7 @@
 //! The pictures of a page, the most telling first, as far as there is room.
 
 use crate::html::sources::Source;
+use crate::notes::map_figures;
 use base64::{Engine, engine::general_purpose::STANDARD};
 use itertools::Itertools;
 use serde::Serialize;
@@ -37,6 +38,11 @@ pub struct Set {
     visibility: Option<usize>,
     error: Option<usize>,
     uncertain: Option<usize>,
+    texels: Option<usize>,
+    perspective: Option<usize>,
+    projection: Option<usize>,
+    /// Figures of its map's texels, in words.
+    figures: Option<String>,
     /// True if its answer is a share of light.
     graded: bool,
 }
@@ -58,6 +64,9 @@ enum Kind {
     Graph,
     Visibility,
     Uncertain,
+    Texels,
+    Perspective,
+    Projection,
 }
 
 impl Kind {
@@ -69,6 +78,9 @@ impl Kind {
             Self::Graph => "graph",
             Self::Visibility => "visibility",
             Self::Uncertain => "uncertain",
+            Self::Texels => "texels",
+            Self::Perspective => "perspective",
+            Self::Projection => "projection",
         }
     }
 }
@@ -158,6 +170,12 @@ impl Pictures {
             Kind::Error => &mut set.error,
             Kind::Shaded => &mut set.shaded,
             Kind::Uncertain => &mut set.uncertain,
+            Kind::Texels => {
+                set.figures = map_figures(run);
+                &mut set.texels
+            }
+            Kind::Perspective => &mut set.perspective,
+            Kind::Projection => &mut set.projection,
             _ => &mut set.visibility,
         };
         *place = Some(file);
@@ -192,7 +210,13 @@ fn candidates(sources: &[Source]) -> Vec<EmbedCandidate> {
 }
 
 fn names(run: &Run, images: &Images) -> Vec<(Kind, String)> {
-    let uncertain = images.uncertain.iter();
+    let optional = [
+        (Kind::Uncertain, &images.uncertain),
+        (Kind::Texels, &images.texels),
+        (Kind::Perspective, &images.perspective),
+        (Kind::Projection, &images.projection),
+    ];
+    let optional = optional.into_iter();
     [
         (Kind::Reference, images.reference.clone()),
         (Kind::Error, images.error.clone()),
@@ -201,6 +225,6 @@ fn names(run: &Run, images: &Images) -> Vec<(Kind, String)> {
         (Kind::Visibility, images.visibility.clone()),
     ]
     .into_iter()
-    .chain(uncertain.map(|name| (Kind::Uncertain, name.clone())))
+    .chain(optional.filter_map(|(kind, name)| Some((kind, name.clone()?))))
     .collect()
 }

@@ -84,6 +84,8 @@ function drawViewer() {
   viewer.stages = stages.map((panes) => stage(panes));
   byId('viewer').replaceChildren(
     el('div', { class: `stages ${viewer.mode}` }, ...viewer.stages.map((one) => one.box)),
+    ...viewer.panes.filter((pane) => isOfTexels(pane.kind) && setOf(pane)?.figures)
+      .map((pane) => el('div', { class: 'quiet figures' }, `${pane.label}, ${setOf(pane).figures}`)),
     el('div', { id: 'values', class: 'quiet' }, 'Wheel or buttons zoom, dragging moves; point at a pixel for the values of every picture there.'),
   );
   load();

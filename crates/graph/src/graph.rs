@@ -142,7 +142,7 @@ impl Graph {
 
     /// The same without those that a host gets only if it names them.
     pub fn default_outputs(&self) -> Vec<&str> {
-        let outputs = self.document.material_outputs();
+        let outputs = self.0.document.material_outputs();
         let outputs = outputs.filter(|output| !output.on_request);
         outputs.map(|output| output.name.as_str()).collect()
     }

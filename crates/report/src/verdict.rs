@@ -410,31 +410,23 @@ fn right_enough(all: &[Contender]) -> Verdict {
 /// That no method keeps to the budgets, and which come closest to each.
 fn none_within(all: &[Contender], budgets: &Budgets) -> Verdict {
     let mut text = format!("No method keeps to {budgets}");
-    let memory = |of: &Contender| of.row.bytes() as f64;
-    let closest: [(bool, &str, Figure, fn(&Contender) -> String); 3] = [
-        (
-            budgets.frame_ms.is_some(),
-            "the fastest",
-            &|of| of.frame,
-            |of| per_frame(of, When::AnythingMoves),
-        ),
-        (
-            budgets.wrong_percent.is_some(),
-            "the least wrong",
-            &|of| of.wrong.share(),
-            Contender::error,
-        ),
-        (
-            budgets.memory_bytes.is_some(),
-            "the smallest",
-            &memory,
-            |of| bytes(of.row.bytes()),
-        ),
-    ];
-    for (_, what, figure, told) in closest.into_iter().filter(|(is_asked, ..)| *is_asked) {
+    let mut add = |name: &str, figure: &dyn Fn(&Contender) -> f64, told: Told| {
         if let Some(of) = least(all, figure) {
-            text += &format!("; {what} is {} ({})", of.name(), told(of));
+            text += &format!("; {name} is {} ({})", of.name(), told(of));
         }
+    };
+    if budgets.frame_ms.is_some() {
+        add("the fastest", &|of| of.frame, |of| {
+            per_frame(of, When::AnythingMoves)
+        });
+    }
+    if budgets.wrong_percent.is_some() {
+        add("the least wrong", &|of| of.wrong.share(), |of| of.error());
+    }
+    if budgets.memory_bytes.is_some() {
+        add("the smallest", &|of| of.row.bytes() as f64, |of| {
+            bytes(of.row.bytes())
+        });
     }
     Verdict {
         fastest_exact: None,
@@ -442,8 +434,8 @@ fn none_within(all: &[Contender], budgets: &Budgets) -> Verdict {
     }
 }
 
-/// By what methods are compared.
-type Figure<'a> = &'a dyn Fn(&Contender) -> f64;
+/// A figure in words.
+type Told = fn(&Contender) -> String;
 
 /// A ratio of times as it is read: two digits that count.
 fn ratio(ratio: f64) -> String {

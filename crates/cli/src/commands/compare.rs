@@ -49,9 +49,10 @@ use std::sync::Arc;
 pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let published = published::read(&args.published)?;
     let sources = preset::sources(&Terminal);
-    let names = match args.presets.is_empty() && !args.all {
-        true => preset::shipped_and_own(&sources),
-        false => preset::named_or_all(&args.presets, &sources),
+    let names = if args.presets.is_empty() && !args.all {
+        preset::shipped_and_own(&sources)
+    } else {
+        preset::named_or_all(&args.presets, &sources)
     };
     let methods = shadow_method::load_methods(&names, &args.params, &args.map_size, &sources)?;
     note_without_map(&methods, &args.map_size);

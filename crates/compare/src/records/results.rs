@@ -574,6 +574,7 @@ pub(crate) mod tests {
         let run = |preset: &str, map_size| Run {
             preset: preset.into(),
             view: "main".into(),
+            light: None,
             viewport: [512, 256],
             map_size,
             params: BTreeMap::from([

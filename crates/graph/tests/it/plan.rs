@@ -151,20 +151,29 @@ fn outputs_by_choice() {
 /// A diagnostic runs for those alone that name it, as an output or as a capture.
 #[test]
 fn an_output_on_request_costs_only_those_that_name_it() {
-    let materials = ["a", "b"].map(texture);
-    let passes = [fill("fill_a", "a"), fill("fill_b", "b")];
-    let passes = passes.each_ref().map(String::as_str);
     let outputs = r#""a", (name: "second", material: "b", on_request: true)"#;
-    let unasked = plan(&materials, &passes, outputs, &[]);
-    assert_eq!(names(&unasked), ["fill_a"]);
-    assert_eq!(unasked.graph().outputs(), ["a", "second"]);
-    assert_eq!(unasked.graph().default_outputs(), ["a"]);
-    let captured = plan(&materials, &passes, outputs, &[("second", None)]);
+    let sections = format!(
+        "materials: [{}, {}], passes: [{}, {}], outputs: [{outputs}]",
+        texture("a"),
+        texture("b"),
+        fill("fill_a", "a"),
+        fill("fill_b", "b")
+    );
+    let graph = right(load(&Files::new(SHADERS).document("graph.ron", &sections)));
+    assert_eq!(graph.outputs(), ["a", "second"]);
+    assert_eq!(graph.default_outputs(), ["a"]);
+    let mut request = PlanRequest::new([8, 4], &Triangle);
+    assert_eq!(names(&right(graph.plan(&request))), ["fill_a"]);
+    request.captures = vec![Capture {
+        material: "second".into(),
+        after: None,
+    }];
+    let captured = right(graph.plan(&request));
     assert_eq!(names(&captured), ["fill_a", "fill_b"]);
     assert_eq!(captured.outputs().len(), 2);
-    let mut request = PlanRequest::new([8, 4], &Triangle);
+    request.captures.clear();
     request.outputs = Some(vec!["second".to_owned()]);
-    let named = right(unasked.graph().plan(&request));
+    let named = right(graph.plan(&request));
     assert_eq!(names(&named), ["fill_b"]);
 }
 

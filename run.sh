@@ -16,13 +16,9 @@ cd "$(dirname "$0")"
 # Without a session (a container, say) Mesa asks for this folder and complains on stderr.
 export XDG_RUNTIME_DIR="${XDG_RUNTIME_DIR:-${TMPDIR:-/tmp}}"
 
-methods=(rt light_buffer nsm pcf pssm vsm hybrid_pcf crsm)
 size=512x512 frames=3
-if [ "${1:-}" = --all ]; then
-    methods=() size='' frames=''
-    shift
-elif [ $# -gt 0 ] && [ "${1#-}" = "$1" ]; then
-    methods=() size='' frames='' # they are named
+if [ "${1:-}" = --all ] || { [ $# -gt 0 ] && [ "${1#-}" = "$1" ]; }; then
+    size='' frames='' # all, or they are named
 fi
 
 scene='' out='' previous=''
@@ -51,4 +47,4 @@ fi
 [ -z "$frames" ] || set -- "$@" --frames "$frames"
 
 program=$(scripts/setup.sh "${SKIAGRAPH_PROFILE:-release}")
-exec "$program" compare ${methods[@]+"${methods[@]}"} "$@"
+exec "$program" compare "$@"

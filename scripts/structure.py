@@ -5,8 +5,8 @@
     circle  folders directly under a crate's `src` do not import each other in a circle
     whole   no function outside its file takes one of `WHOLE` by `&mut`
 
-Tests are left out. `scripts/structure.txt` lists what offends still; a new offence fails, and so
-does a line of the list that offends no more.
+Tests are left out. `scripts/structure.txt`, where it exists, lists what offends still; a new offence
+fails, and so does a line of the list that offends no more.
 
     scripts/structure.py            exit 0 fine, 1 not
     scripts/structure.py --list     prints the list as it should be

@@ -7,7 +7,7 @@ use crate::support::{
 };
 use glam::{DVec3, Vec3};
 use skiagraph_graph::{Capture, ParamValue};
-use skiagraph_reference::{Class, Oracle, OracleMode, Progress, shade_area};
+use skiagraph_reference::{Class, Oracle, OracleMode, Progress, ground_truth};
 use skiagraph_scene::{DirectionalLight, LightKind, PointLight, Scene, SpotLight};
 use std::sync::Arc;
 
@@ -167,8 +167,8 @@ fn the_blur_of_pcf_knows_no_distance() {
     let (oracle, camera) = (Oracle::new(&scene.mesh), scene.views[0].camera(VIEWPORT));
     let primitives = oracle.primary(&camera, Progress::default()).unwrap();
     let (how, progress) = ((OracleMode::Exact, 64), Progress::default());
-    let area = shade_area(&oracle, &camera, lamp, &primitives, how, progress);
-    let shares = area.unwrap().1.shares;
+    let truth = ground_truth(&oracle, &camera, lamp, &primitives, how, progress).unwrap();
+    let shares = truth.shares();
     let seen = see(&scene, "pcf", &[map(512)]);
     let between = |right: bool| {
         let pixels = shares.iter().zip(&seen.position);

@@ -53,5 +53,6 @@ mod receivers;
 mod shaders;
 mod splits;
 mod spot_layers;
+mod texels;
 mod trace;
 mod work;

@@ -371,21 +371,17 @@ fn a_param_that_only_uniforms_hold_needs_no_other_plan() {
         let mut plan = plan(&path, &provider, VIEWPORT, |request| {
             request.any_adapter = true
         });
-        let params: Vec<String> = plan
-            .graph()
-            .params()
-            .iter()
-            .map(|param| param.name.value.clone())
-            .collect();
-        for name in params {
-            let Some(ParamValue::F32(value)) = plan.param(&name) else {
+        let graph = Graph::load(&path, &registry(), &EmbeddedSources).unwrap();
+        for param in graph.params() {
+            let name = &param.name.value;
+            let Some(ParamValue::F32(value)) = plan.param(name) else {
                 continue;
             };
             let other = ParamValue::F32(value * 0.5 + 0.25);
-            if plan.is_in_uniforms(&name, &other) {
-                let changed = plan.set_in_uniforms(&name, other.clone());
+            if plan.is_in_uniforms(name, &other) {
+                let changed = plan.set_in_uniforms(name, other.clone());
                 let what = format!("{}: {name}", preset.name);
-                assert!(plan.is_same_with(&name, other), "{what}");
+                assert!(plan.is_same_with(name, other), "{what}");
                 written.extend((!changed.is_empty()).then_some(what));
             }
         }

@@ -122,15 +122,15 @@ const DOCUMENTS: [(&str, usize); 13] = [
     ("blur.ron", 2),
     ("cascades.ron", 5),
     ("softer.ron", 21),
-    ("darkened.ron", 6),
+    ("darkened.ron", 7),
     ("extended.ron", 4),
     ("history.ron", 1),
     ("age.ron", 3),
     ("kept.ron", 1),
     ("settled.ron", 1),
-    ("filtered.ron", 5),
+    ("filtered.ron", 6),
     ("every_light.ron", 7),
-    ("claims.ron", 5),
+    ("claims.ron", 6),
 ];
 
 /// Every document of the authoring guide, as a file beside the shaders that it shows.

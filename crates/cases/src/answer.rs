@@ -14,12 +14,8 @@ pub(crate) fn judge(depths: impl IntoIterator<Item = f64>, margin: f64) -> Optio
 /// Among boxes of which none hides a part of another's surface by more than its own volume: a point
 /// on a box's own surface, which faces the light, is not shaded by this box.
 pub(crate) fn among(point: DVec3, light: DVec3, blocks: &[Block], margin: f64) -> Option<bool> {
-    judge(
-        blocks
-            .iter()
-            .filter_map(|&block| in_block(point, light, block)),
-        margin,
-    )
+    let inside = |&block: &Block| in_block(point, light, block);
+    judge(blocks.iter().filter_map(inside), margin)
 }
 
 /// The same under a light at a place; boxes beyond it cast no shadow.

@@ -5,6 +5,7 @@ use crate::{
     shape::{Block, Seen, Shape},
 };
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 use skiagraph_scene::{LightKind, Scene};
 
 /// One case of the catalogue.
@@ -35,7 +36,8 @@ enum Geometry {
 }
 
 /// Kinds of casters in a scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Casters {
     /// Closed surfaces wound outward that do not pass through each other: no lit surface is its own
     /// caster when front faces are culled.

@@ -86,13 +86,7 @@ pub(crate) const CASES: &[HardCase] = &[
         || Shape::default().cuboid(FLOOR).and(plate()),
     )
     .with_answer(|p| {
-        if p.y > 0.5 {
-            None
-        } else {
-            judge(
-                cells().filter_map(|(x, z)| in_block(p, LIGHT, cell(x, z))),
-                1e-3,
-            )
-        }
+        let depths = cells().filter_map(|(x, z)| in_block(p, LIGHT, cell(x, z)));
+        judge(depths, 1e-3).filter(|_| p.y <= 0.5)
     }),
 ];

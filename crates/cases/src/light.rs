@@ -148,9 +148,7 @@ pub(crate) const CASES: &[HardCase] = &[
         },
     )
     .with_answer(|p| {
-        judge(
-            [in_sheet(p, SEAM_LIGHT, [[-0.5, -2.0], [0.5, 2.0]], 1.0)],
-            1e-3,
-        )
+        let depth = in_sheet(p, SEAM_LIGHT, [[-0.5, -2.0], [0.5, 2.0]], 1.0);
+        judge([depth], 1e-3)
     }),
 ];

@@ -37,11 +37,8 @@ fn put_mask(scene: &mut Scene, y: f32, mask: Mask, uv: impl Fn(Vec3) -> Vec2) {
             top.max(mesh.positions[index as usize].y)
         }) > y
     };
-    mesh.surfaces.of = mesh
-        .triangles
-        .iter()
-        .map(|of| u32::from(above(of)))
-        .collect();
+    let of = mesh.triangles.iter().map(|of| u32::from(above(of)));
+    mesh.surfaces.of = of.collect();
 }
 
 /// From 0 to 1 over a sheet.

@@ -153,7 +153,7 @@ impl Shape {
     /// The mesh: positions welded, one normal per triangle (upward where it has no area), or one
     /// per position.
     fn mesh(self) -> Mesh {
-        let mut welder = Welder::default();
+        let mut welder: Welder = Welder::default();
         let mut mesh = Mesh::default();
         let mut areas = Vec::new();
         for corners in &self.corners {

@@ -39,6 +39,8 @@ const DIAGONAL: [Block; 5] = [
     [[-0.7, 0.8, 0.2], [0.9, 0.81, 0.3]],
 ];
 
+const BEAM: Block = [[-0.15, 0.0, -0.15], [0.15, 4.0, 0.15]];
+
 const SHEET: [[f32; 2]; 2] = [[-0.7, -0.6], [0.6, 0.8]];
 
 pub(crate) const CASES: &[HardCase] = &[
@@ -87,10 +89,8 @@ pub(crate) const CASES: &[HardCase] = &[
         },
     )
     .with_answer(|p| {
-        judge(
-            (0..CHAMFER.len()).filter_map(|i| in_block(p, LIGHT, chamfered(i))),
-            0.05,
-        )
+        let depths = (0..CHAMFER.len()).filter_map(|i| in_block(p, LIGHT, chamfered(i)));
+        judge(depths, 0.05)
     }),
     HardCase::closed(
         "long_thin_diagonals",
@@ -153,20 +153,13 @@ pub(crate) const CASES: &[HardCase] = &[
         || {
             Shape::default()
                 .cuboid(FLOOR)
-                .moved_cuboid([[-0.15, 0.0, -0.15], [0.15, 4.0, 0.15]], |corner| {
-                    lean(Vec3::from(corner)).to_array()
-                })
+                .moved_cuboid(BEAM, |corner| lean(Vec3::from(corner)).to_array())
         },
     )
     // Upright again, it is a box; the floor stays where it is.
     .with_answer(|p| {
         let upright = |v: DVec3| v + DVec3::new(0.6875, 0.0, 0.375) * v.y;
-        among(
-            upright(p),
-            upright(LIGHT),
-            &[[[-0.15, 0.0, -0.15], [0.15, 4.0, 0.15]]],
-            1e-3,
-        )
+        among(upright(p), upright(LIGHT), &[BEAM], 1e-3)
     }),
 ];
 

@@ -44,10 +44,8 @@ fn rim(step: u32, radius: f64, y: f64) -> DVec3 {
 /// Inside the polygon of such a rim, from straight above; its sides are within a hundredth of the
 /// circle.
 fn rim_lit(p: DVec3, radius: f64, y: f64) -> Option<bool> {
-    judge(
-        [in_disc(p, DVec3::NEG_Y, [0.0, y, 0.0], 0.99 * radius)],
-        0.0101 * radius,
-    )
+    let depth = in_disc(p, DVec3::NEG_Y, [0.0, y, 0.0], 0.99 * radius);
+    judge([depth], 0.0101 * radius)
 }
 
 pub(crate) const CASES: &[HardCase] = &[
@@ -122,13 +120,7 @@ pub(crate) const CASES: &[HardCase] = &[
             Shape::default().floor(2.0, 0.0).and(fan)
         },
     )
-    .with_answer(|p| {
-        if p.y > 0.5 {
-            None
-        } else {
-            rim_lit(p, 0.8, 0.9)
-        }
-    }),
+    .with_answer(|p| rim_lit(p, 0.8, 0.9).filter(|_| p.y <= 0.5)),
     HardCase::open(
         "helicoid_in_a_texel",
         "two turns of a spiral stair around the light's direction, all of it in one texel",
@@ -146,13 +138,7 @@ pub(crate) const CASES: &[HardCase] = &[
             Shape::default().graded_slab(0.05, 3, 0.5).and(helicoid)
         },
     )
-    .with_answer(|p| {
-        if p.y > 1e-3 {
-            None
-        } else {
-            rim_lit(p, 0.004, 0.012)
-        }
-    }),
+    .with_answer(|p| rim_lit(p, 0.004, 0.012).filter(|_| p.y <= 1e-3)),
     HardCase::open(
         "moebius_strip",
         "one side only: windings cannot agree across every edge",
@@ -184,12 +170,8 @@ pub(crate) const CASES: &[HardCase] = &[
         },
     )
     .with_answer(|p| {
-        judge(
-            SHEETS
-                .iter()
-                .map(|&(sheet, y, _)| in_sheet(p, LIGHT, sheet, y)),
-            1e-3,
-        )
+        let depths = SHEETS.map(|(sheet, y, _)| in_sheet(p, LIGHT, sheet, y));
+        judge(depths, 1e-3)
     }),
     HardCase::open(
         "duplicated_triangles",

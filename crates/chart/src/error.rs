@@ -12,49 +12,15 @@ pub enum Error {
         /// The panel's title.
         panel: String,
     },
-    /// A value that an axis has no place for.
-    #[error(
-        "panel {panel:?}, series {series:?}: ({x}, {y}) has no place on the axes; values must be \
-         finite and above 0, upwards in a front at least 0, over frames both at least 0"
-    )]
-    Value {
+    /// A mark that has no place in its panel, or a size without a meaning.
+    #[error("panel {panel:?}, series {series:?}: {why}")]
+    Mark {
         /// The panel's title.
         panel: String,
         /// The series' name.
         series: String,
-        /// The mark's place to the right.
-        x: f64,
-        /// The mark's place upwards.
-        y: f64,
-    },
-    /// A bar that belongs to no group or has no height.
-    #[error(
-        "panel {panel:?}, series {series:?}: ({x}, {y}) is no bar; expected the index of one of \
-         {groups} groups, and a finite height of at least 0"
-    )]
-    Bar {
-        /// The panel's title.
-        panel: String,
-        /// The series' name.
-        series: String,
-        /// The bar's group.
-        x: f64,
-        /// Its height.
-        y: f64,
-        /// How many groups there are.
-        groups: usize,
-    },
-    /// A mark whose size has no meaning.
-    #[error("panel {panel:?}, series {series:?}: size {size} of a mark, of {sizes} that there are")]
-    Size {
-        /// The panel's title.
-        panel: String,
-        /// The series' name.
-        series: String,
-        /// The mark's size.
-        size: usize,
-        /// How many there are.
-        sizes: usize,
+        /// Place or size of the mark, and what is expected of it.
+        why: String,
     },
     /// The library that draws gave up.
     #[error("the chart cannot be drawn: {0}")]

@@ -3,7 +3,7 @@
 use crate::{
     bars,
     canvas::{Canvas, WIDTH, words},
-    data::{Kind, Panel},
+    data::{Kind, Mark, Panel},
     error::Error,
     frames,
     legend::{Entry, Legend, Sign},
@@ -19,7 +19,7 @@ const LEFT: i32 = 12;
 const LINES: [i32; 3] = [34, 18, 8];
 
 /// A picture of panels under one title and one legend.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Figure {
     /// First line.
     pub title: String,
@@ -35,25 +35,10 @@ pub struct Figure {
     /// Panels of the figure, row by row. Panels in which a series has the same name give it the
     /// same colour and shape.
     pub panels: Vec<Panel>,
-    /// Panels beside each other, at least 1.
+    /// Panels beside each other; 0 counts as 1.
     pub columns: usize,
     /// True if panels beside each other have the same axes, so that heights can be compared.
     pub shared_axes: bool,
-}
-
-impl Default for Figure {
-    fn default() -> Self {
-        Self {
-            title: String::new(),
-            notes: Vec::new(),
-            sizes: Vec::new(),
-            looks: Vec::new(),
-            ticks: Vec::new(),
-            panels: Vec::new(),
-            columns: 1,
-            shared_axes: false,
-        }
-    }
 }
 
 impl Figure {
@@ -207,52 +192,55 @@ impl Figure {
 }
 
 fn check(panel: &Panel, sizes: usize) -> Result<(), Error> {
-    let marks = panel
-        .series
-        .iter()
-        .flat_map(|series| series.marks.iter().map(move |mark| (series, mark)));
-    for (series, mark) in marks.clone() {
-        if let Kind::Bars(groups) = &panel.kind {
-            let is_group = mark.x.fract() == 0.0 && (0.0..groups.len() as f64).contains(&mark.x);
-            if !is_group || !mark.y.is_finite() || mark.y < 0.0 {
-                return Err(Error::Bar {
-                    panel: panel.title.clone(),
-                    series: series.name.clone(),
-                    x: mark.x,
-                    y: mark.y,
-                    groups: groups.len(),
-                });
-            }
-        }
-        let is_in = |value: f64, or_zero: bool| {
-            value.is_finite() && (value > 0.0 || (or_zero && value == 0.0))
-        };
-        let zero = match panel.kind {
-            Kind::Front => [false, true],
-            Kind::Growth => [false, false],
-            Kind::Bars(_) | Kind::Frames => [true, true],
-        };
-        if !is_in(mark.x, zero[0]) || !is_in(mark.y, zero[1]) {
-            return Err(Error::Value {
-                panel: panel.title.clone(),
-                series: series.name.clone(),
-                x: mark.x,
-                y: mark.y,
-            });
-        }
-        if mark.size >= sizes.max(1) {
-            return Err(Error::Size {
-                panel: panel.title.clone(),
-                series: series.name.clone(),
-                size: mark.size,
-                sizes,
-            });
-        }
-    }
-    if marks.count() == 0 {
+    if panel.series.iter().all(|series| series.marks.is_empty()) {
         return Err(Error::Empty {
             panel: panel.title.clone(),
         });
     }
+    for series in &panel.series {
+        let mut marks = series.marks.iter();
+        if let Some(why) = marks.find_map(|mark| fault(mark, &panel.kind, sizes)) {
+            return Err(Error::Mark {
+                panel: panel.title.clone(),
+                series: series.name.clone(),
+                why,
+            });
+        }
+    }
     Ok(())
+}
+
+/// Why a mark cannot be drawn in a panel of this kind.
+fn fault(mark: &Mark, kind: &Kind, sizes: usize) -> Option<String> {
+    let &Mark { x, y, size, .. } = mark;
+    let is_in = |value: f64| value.is_finite() && value > 0.0;
+    let is_zero_or_in = y == 0.0 || is_in(y);
+    match kind {
+        Kind::Bars(groups) => {
+            let groups = groups.len();
+            let is_group = x.fract() == 0.0 && (0.0..groups as f64).contains(&x);
+            if !(is_group && is_zero_or_in) {
+                return Some(format!(
+                    "({x}, {y}) is no bar; expected the index of one of {groups} groups, and a \
+                     finite height of at least 0"
+                ));
+            }
+        }
+        Kind::Front if is_in(x) && is_zero_or_in => {}
+        Kind::Growth if is_in(x) && is_in(y) => {}
+        Kind::Frames if (x == 0.0 || is_in(x)) && is_zero_or_in => {}
+        Kind::Frames => {
+            return Some(format!(
+                "({x}, {y}) does not fit; expected the index of a frame and a finite figure of at \
+                 least 0"
+            ));
+        }
+        Kind::Front | Kind::Growth => {
+            return Some(format!(
+                "({x}, {y}) has no place on logarithmic axes; values must be finite and above 0, \
+                 upwards in a front at least 0"
+            ));
+        }
+    }
+    (size >= sizes.max(1)).then(|| format!("size {size} of a mark, of {sizes} that there are"))
 }

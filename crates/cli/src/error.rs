@@ -24,6 +24,9 @@ pub enum CliError {
     /// Methods or cases that are not as they must be; which ones was printed before.
     #[error("{0}")]
     Judged(String),
+    /// A figure is beyond a condition of `--fail-if`.
+    #[error("{0}")]
+    Gate(String),
     /// Standard output is closed or full.
     #[error("cannot write to standard output")]
     Stdout(#[source] io::Error),
@@ -55,7 +58,8 @@ impl CliError {
         match self {
             Self::Usage(_) => 2,
             Self::Compare(CompareError::NoGpu(_)) => 3,
-            Self::Compare(CompareError::Gpu { source, .. }) if is_fatal(source.as_ref()) => 3,
+            Self::Compare(CompareError::Gpu { source, .. }) if is_fatal(source) => 3,
+            Self::Gate(_) => 4,
             Self::Interrupted { .. } => 130,
             // The reader had enough, for example `skiagraph presets | head -1`.
             Self::Stdout(cause) if cause.kind() == io::ErrorKind::BrokenPipe => 0,
@@ -83,6 +87,7 @@ mod tests {
             (CompareError::Request("x".into()).into(), 2),
             (CompareError::NoGpu("x".into()).into(), 3),
             (lost.into(), 3),
+            (CliError::Gate("x".into()), 4),
             (CompareError::interrupted().into(), 130),
         ];
         for (error, code) in codes {

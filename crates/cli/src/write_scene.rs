@@ -37,6 +37,7 @@ pub fn of_mesh(args: &SceneArgs, scene: &Scene, chosen: Chosen, paths: &[CameraP
         }
     };
     SceneFile {
+        format: 1,
         name: scene.name.clone(),
         description: String::new(),
         mesh,

@@ -26,6 +26,7 @@ use crate::graphs::shadow_method;
 use crate::measuring::ground_truth::{PrimaryVisibility, REFERENCE_SAMPLES};
 use crate::measuring::view_or_path::ViewOrPath;
 use crate::pictures::run_pictures::{check_stems, reference_stem, stem};
+use crate::records::budgets::Budgets;
 use crate::records::published_row::Row;
 use crate::sink::Session;
 use itertools::Itertools;
@@ -82,6 +83,8 @@ pub struct Comparison {
     pub protocol: Protocol,
     /// Finds the visible triangles.
     pub primary: PrimaryVisibility,
+    /// Limits on methods that are to be taken.
+    pub budgets: Budgets,
     /// Figures that others have published, to stand beside the runs that they are of.
     pub published: Vec<Row>,
     /// The command that the results are to name, so that they can be measured again.
@@ -101,6 +104,7 @@ impl Comparison {
             methods,
             protocol: Protocol::default(),
             primary: PrimaryVisibility::load(&EmbeddedSources)?,
+            budgets: Budgets::default(),
             published: Vec::new(),
             command: None,
             scene,

@@ -1,19 +1,20 @@
 //! Everything that can end a comparison early, with the way out.
 //!
 //! ```
-//! use skiagraph_compare::{error::explain, graphs::preset};
+//! use skiagraph_compare::{error::with_causes, graphs::preset};
 //! use skiagraph_passes::EmbeddedSources;
 //!
 //! let error = preset::locate("light_bufer", &EmbeddedSources).unwrap_err();
-//! let text = explain(&error);
+//! let text = with_causes(&error);
 //! assert!(text.contains("light_buffer"), "{text}");
 //! ```
 
+use itertools::Itertools;
 use skiagraph_gpu::ExecuteError;
 use skiagraph_graph::{Diagnostic, diagnostics};
 use std::{
     error::Error,
-    io,
+    io, iter,
     path::{Path, PathBuf},
 };
 
@@ -47,7 +48,7 @@ pub enum CompareError {
         /// Name of the preset or path of the graph.
         graph: String,
         /// Why.
-        source: Box<dyn Error + Send + Sync>,
+        source: Box<ExecuteError>,
     },
     /// A file or folder that cannot be written.
     #[error("cannot write {}", path.display())]
@@ -89,22 +90,22 @@ pub fn rendered(faults: &[Vec<Diagnostic>], colour: bool) -> String {
 }
 
 /// True if the device is of no more use after an error, for any graph.
-pub fn is_fatal(error: &(dyn Error + 'static)) -> bool {
+pub fn is_fatal(error: &ExecuteError) -> bool {
     matches!(
-        error.downcast_ref(),
-        Some(ExecuteError::DeviceLost(_) | ExecuteError::Unfinished { .. })
+        error,
+        ExecuteError::DeviceLost(_) | ExecuteError::Unfinished { .. }
     )
 }
 
 /// Advises how to avert an error.
-pub fn advice(error: &(dyn Error + 'static)) -> Option<&'static str> {
-    match error.downcast_ref() {
-        Some(ExecuteError::OutOfMemory { .. }) => Some("use a smaller viewport or map"),
-        Some(ExecuteError::Unfinished { .. }) => Some(
+pub fn advice(error: &ExecuteError) -> Option<&'static str> {
+    match error {
+        ExecuteError::OutOfMemory { .. } => Some("use a smaller viewport or map"),
+        ExecuteError::Unfinished { .. } => Some(
             "it was given up: a loop of one of its shaders may never end; if it only takes long, \
              give it a longer timeout, or none to wait for ever",
         ),
-        Some(ExecuteError::DeviceLost(_)) => Some(
+        ExecuteError::DeviceLost(_) => Some(
             "the driver resets a GPU that does not answer in time: a shader may never end, or \
              take too long for this GPU",
         ),
@@ -131,7 +132,7 @@ pub fn io_advice(error: &io::Error) -> Option<&'static str> {
 }
 
 /// An error, its causes and what may avert it in one line.
-pub fn explain(error: &(dyn Error + 'static)) -> String {
+pub fn explain(error: &ExecuteError) -> String {
     let text = with_causes(error);
     match advice(error) {
         Some(advice) => format!("{text}; {advice}"),
@@ -140,14 +141,8 @@ pub fn explain(error: &(dyn Error + 'static)) -> String {
 }
 
 /// An error and its causes in one line.
-pub fn with_causes(error: &dyn Error) -> String {
-    let mut text = error.to_string();
-    let mut cause = error.source();
-    while let Some(error) = cause {
-        text += &format!(": {error}");
-        cause = error.source();
-    }
-    text
+pub fn with_causes(error: &(dyn Error + 'static)) -> String {
+    iter::successors(Some(error), |&error| error.source()).join(": ")
 }
 
 #[cfg(test)]

@@ -17,6 +17,21 @@ pub(crate) fn make(
     })
 }
 
+/// Makes a buffer that is mapped from the first.
+pub(crate) fn mapped(
+    device: &wgpu::Device,
+    label: &str,
+    size: u64,
+    usage: wgpu::BufferUsages,
+) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size,
+        usage,
+        mapped_at_creation: true,
+    })
+}
+
 /// Makes a buffer with a content.
 ///
 /// # Errors
@@ -28,12 +43,7 @@ pub(crate) fn filled(
     usage: wgpu::BufferUsages,
     failed: &'static str,
 ) -> Result<wgpu::Buffer, ExecuteError> {
-    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some(label),
-        size: content.len() as u64,
-        usage,
-        mapped_at_creation: true,
-    });
+    let buffer = mapped(device, label, content.len() as u64, usage);
     write(&buffer, content, failed)?;
     buffer.unmap();
     Ok(buffer)

@@ -63,12 +63,7 @@ impl Presence {
 
 /// Makes a buffer that is mapped from the first, which a lost device does not.
 fn maps_another(device: &wgpu::Device) -> bool {
-    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some(NAME),
-        size: wgpu::MAP_ALIGNMENT,
-        usage: USAGE,
-        mapped_at_creation: true,
-    });
+    let buffer = buffer::mapped(device, NAME, wgpu::MAP_ALIGNMENT, USAGE);
     buffer.get_mapped_range(..).is_ok()
 }
 

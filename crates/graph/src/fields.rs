@@ -10,31 +10,24 @@ use crate::{
     source::span::{SourceFile, Span},
 };
 use serde::{Deserialize, Deserializer, de::DeserializeOwned};
-use skiagraph_located_ron::reader::{Node, raw, read, refuse};
+use skiagraph_located_ron::reader::{raw, read, refuse};
 use std::{cell::RefCell, ops::Range};
 
-/// The range between the quotes of a string, which must have no escapes.
-fn quoted(text: &str, span: &Span) -> Option<Result<Range<usize>, SyntaxFault>> {
-    let inner = text.strip_prefix('"')?.strip_suffix('"')?;
-    let start = span.range.start + 1;
-    Some(match inner.find('\\') {
-        Some(at) => Err(SyntaxFault::Escape(
-            span.file.span(start + at..start + at + 1),
-        )),
-        None => Ok(start..start + inner.len()),
-    })
-}
-
-/// Reads a string of the language by its grammar.
+/// Reads a string of the language by its grammar; it must have no escapes.
 fn parse<T, E: serde::de::Error>(
     (text, span): (&str, &Span),
     parse: impl FnOnce(&SourceFile, Range<usize>) -> Result<T, SyntaxFault>,
 ) -> Result<T, E> {
-    let parsed = match quoted(text, span) {
-        Some(range) => range.and_then(|range| parse(&span.file, range)),
-        None => return Err(refuse(DocumentError::NoString(span.clone()))),
-    };
-    parsed.map_err(refuse)
+    let inner = text
+        .strip_prefix('"')
+        .and_then(|text| text.strip_suffix('"'));
+    let inner = inner.ok_or_else(|| refuse(DocumentError::NoString(span.clone())))?;
+    let start = span.range.start + 1;
+    if let Some(at) = inner.find('\\') {
+        let place = span.file.span(start + at..start + at + 1);
+        return Err(refuse(SyntaxFault::Escape(place)));
+    }
+    parse(&span.file, start..start + inner.len()).map_err(refuse)
 }
 
 impl<'de> Deserialize<'de> for Name {
@@ -88,7 +81,7 @@ impl<'de> Deserialize<'de> for Expr {
                 Ok(expr)
             }
             Some('(') => {
-                let parts = Node { span: span.clone() }.list();
+                let parts = span.list();
                 let parts = parts.map_err(|_| refuse(DocumentError::NoTuple(span.clone())))?;
                 let parts = parts.iter().map(|part| read(part.text()));
                 Ok(Expr::new(
@@ -180,22 +173,13 @@ impl<'de> Deserialize<'de> for Load {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let (text, span) = raw(deserializer)?;
         let unknown = || refuse(DocumentError::Load(span.clone()));
-        let node = Node { span: span.clone() };
-        let (tag, body) = node.variant().ok_or_else(unknown)?;
-        match (tag.as_str(), text.len() == tag.len()) {
-            ("Load", true) => Ok(Self::Keep),
-            ("LoadIf", false) => {
-                let values = body.list().map_err(|_| unknown())?;
-                let [condition] = &values[..] else {
-                    return Err(unknown());
-                };
-                read(condition.text()).map(Self::KeepIf)
-            }
-            ("Clear", false) => {
-                let values = body.list().map_err(|_| unknown())?;
-                if !matches!(values.len(), 1 | 4) {
-                    return Err(unknown());
-                }
+        let (tag, body) = span.variant().ok_or_else(unknown)?;
+        let is_bare = text.len() == tag.len();
+        let values = (!is_bare).then(|| body.list()).transpose();
+        match (tag.as_str(), values.map_err(|_| unknown())?.as_deref()) {
+            ("Load", None) => Ok(Self::Keep),
+            ("LoadIf", Some([condition])) => read(condition.text()).map(Self::KeepIf),
+            ("Clear", Some(values @ ([_] | [_, _, _, _]))) => {
                 let values = values.iter().map(|value| read(value.text()));
                 Ok(Self::Clear(values.collect::<Result<_, _>>()?))
             }

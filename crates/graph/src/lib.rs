@@ -89,7 +89,7 @@ pub use picture::Picture;
 pub use plan::{CulledPass, MemoryEntry, OutputSummary, PartSummary, PassSummary, Plan, text};
 pub use provided_kind::ProvidedKind;
 pub use provider::{Describe, Import, NoProvider, Provided, ProvidedBinding};
-pub use request::{Capture, PartialBackend, PlanRequest};
+pub use request::{Capture, PartialBackend, PlanRequest, Request};
 pub use resource::{
     Buffer, FRAME_BYTES, Growth, Origin, Resource, ResourceId, ResourceKind, Sampler,
     SubresourceRange, Target, Texture,

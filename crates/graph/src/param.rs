@@ -192,7 +192,7 @@ impl Param {
         &mut self,
         kept: &[Located<Name>],
         because: &str,
-    ) -> Result<(), Option<Located<String>>> {
+    ) -> Result<(), Option<Located<Name>>> {
         if !matches!(self.ty, ParamType::Choice(_)) {
             return Err(None);
         }
@@ -200,10 +200,7 @@ impl Param {
             .iter()
             .find(|word| self.words().all(|known| *known != word.value));
         if let Some(word) = unknown {
-            return Err(Some(Located::new(
-                word.value.to_string(),
-                word.span.clone(),
-            )));
+            return Err(Some(word.clone()));
         }
         let gone = self
             .words()

@@ -105,18 +105,6 @@ pub enum Import {
     },
 }
 
-impl Import {
-    /// Returns the kind in words, for messages.
-    pub(crate) fn describe(&self) -> &'static str {
-        match self {
-            Self::Texture { .. } => "a texture",
-            Self::Buffer { .. } => "a buffer",
-            Self::Sampler { compare: true, .. } => "a sampler with `compare`",
-            Self::Sampler { compare: false, .. } => "a sampler without `compare`",
-        }
-    }
-}
-
 impl std::fmt::Debug for dyn Describe + '_ {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_tuple("Describe").field(&self.names()).finish()

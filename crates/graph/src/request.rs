@@ -3,7 +3,7 @@
 use crate::{
     instantiate::params::Surroundings,
     param::ParamValue,
-    provider::{Describe, Described, Import},
+    provider::{Describe, Import},
 };
 use std::collections::BTreeMap;
 
@@ -18,13 +18,19 @@ pub struct PartialBackend {
 }
 
 /// Request for a plan.
+pub type PlanRequest<'a> = Request<&'a dyn Describe>;
+
+/// Viewport, params, limits and imports to plan a graph with. `P` describes the resources that the
+/// scene provides: a borrowed `&dyn Describe` in a [`PlanRequest`], which callers use, and a stored
+/// copy inside of a plan, to plan again.
 #[derive(Clone, Debug)]
-pub struct PlanRequest<'a> {
+pub struct Request<P> {
     /// Width and height in pixels.
     pub viewport: [u32; 2],
     /// Values of params; where missing, the document's default.
     pub params: BTreeMap<String, ParamValue>,
-    /// The outputs that are wanted; `None` = all that the document declares.
+    /// The outputs that are wanted; `None` = all that the document declares, but for those on
+    /// request that no capture names.
     pub outputs: Option<Vec<String>>,
     /// Materials that are to be read back beside the outputs.
     pub captures: Vec<Capture>,
@@ -55,7 +61,7 @@ pub struct PlanRequest<'a> {
     /// is then a warning.
     pub any_adapter: bool,
     /// Describes the provided resources.
-    pub provider: &'a dyn Describe,
+    pub provider: P,
 }
 
 impl<'a> PlanRequest<'a> {
@@ -86,52 +92,11 @@ impl<'a> PlanRequest<'a> {
     }
 }
 
-/// A [`PlanRequest`] that a plan keeps, so that it can be made again with something changed. (One
-/// with a provider that only lists could not be sent to another thread.)
-#[derive(Clone, Debug)]
-pub(crate) struct Request {
-    pub viewport: [u32; 2],
-    pub imports: BTreeMap<String, Import>,
-    pub grown: BTreeMap<String, u64>,
-    pub limits: wgt::Limits,
-    pub poison: Option<u8>,
-    pub params: BTreeMap<String, ParamValue>,
-    outputs: Option<Vec<String>>,
-    captures: Vec<Capture>,
-    features: wgt::Features,
-    partial_backend: Option<PartialBackend>,
-    memory_limit: Option<u64>,
-    any_adapter: bool,
-    provider: Described,
-}
-
-impl Request {
-    pub fn new(request: &PlanRequest<'_>) -> Self {
-        Self {
-            viewport: request.viewport,
-            imports: request.imports.clone(),
-            poison: request.poison,
-            params: request.params.clone(),
-            outputs: request.outputs.clone(),
-            captures: request.captures.clone(),
-            limits: request.limits.clone(),
-            features: request.features,
-            partial_backend: request.partial_backend.clone(),
-            memory_limit: request.memory_limit,
-            grown: request.grown.clone(),
-            any_adapter: request.any_adapter,
-            provider: Described::by(request.provider),
-        }
-    }
-
-    /// True if the host imports or provides something under this name.
-    pub fn offers(&self, name: &str) -> bool {
-        self.imports.contains_key(name) || self.provider.0.contains_key(name)
-    }
-
-    /// The request to plan with; provided resources are as they were described.
-    pub fn again(&self) -> PlanRequest<'_> {
-        PlanRequest {
+impl<P> Request<P> {
+    /// The same request to another provider. A plan keeps its request with what was described, so
+    /// that it can be sent to another thread and made again with something changed.
+    pub(crate) fn to<Q>(&self, provider: Q) -> Request<Q> {
+        Request {
             viewport: self.viewport,
             params: self.params.clone(),
             outputs: self.outputs.clone(),
@@ -144,7 +109,7 @@ impl Request {
             grown: self.grown.clone(),
             poison: self.poison,
             any_adapter: self.any_adapter,
-            provider: &self.provider,
+            provider,
         }
     }
 }

@@ -168,7 +168,7 @@ impl Texture {
     }
 
     /// All of it.
-    pub(crate) fn whole(&self) -> SubresourceRange {
+    pub fn whole(&self) -> SubresourceRange {
         SubresourceRange {
             mips: 0..self.mips,
             layers: 0..self.layers,

@@ -10,7 +10,7 @@ use crate::{
         },
         params::ParamFields,
         raw::{FORMAT, SECTIONS},
-        typed::{ClaimEntry, ClaimFields, ImportEntry, Narrow, Output, OutputFields},
+        typed::{ClaimEntry, ClaimFields, Expose, ImportEntry, Narrow, Output, OutputFields},
     },
     errors::document::PARAM_TYPES,
     fields::{Chosen, Load},
@@ -19,6 +19,7 @@ use crate::{
         name::Name,
         syntax::{Expr, Reference},
     },
+    source::span::Located,
     written::{short_or_long, written},
 };
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -112,6 +113,14 @@ written!(Data, "Data", _generator => json_schema!({
     "items": { "type": ["number", "array"] },
 }));
 
+written!(Expose, "Expose", generator => {
+    let list = generator.subschema_for::<Vec<Located<String>>>();
+    json_schema!({
+        "description": "Names of params, or `All` that are not set.",
+        "anyOf": [list, {"const": "All"}],
+    })
+});
+
 short_or_long!(Output, "Output", OutputFields);
 
 written!(ClaimEntry, "Claim", generator => {
@@ -125,11 +134,10 @@ written!(ClaimEntry, "Claim", generator => {
 /// a tuple is a list. The schema knows neither names nor values of expressions:
 /// `skiagraph check` does.
 pub fn schema(registry: &Registry) -> Value {
-    let kinds = registry.all();
     let mut generator = SchemaGenerator::default();
     let mut sections = Map::new();
     let mut kinds = Kinds {
-        kinds,
+        kinds: registry.all(),
         generator: &mut generator,
         entries: Map::new(),
     };

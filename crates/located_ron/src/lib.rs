@@ -12,7 +12,7 @@
 //! struct Lamp { height: f64 }
 //!
 //! let root = Node::root(&SourceFile::new("lamp.ron", "(hieght: 3)"));
-//! let error = from_fields::<Lamp>(&root.fields()?, &root.span).unwrap_err();
+//! let error = from_fields::<Lamp>(&root.fields()?, &root).unwrap_err();
 //! assert_eq!(error.message, "unknown field `hieght`");
 //! assert_eq!(error.labels[0].span.to_string(), "lamp.ron:1:2");
 //! assert_eq!(error.help.as_deref(), Some("did you mean `height`?"));

@@ -101,38 +101,23 @@ fn place_of(text: &str, error: &ron::error::SpannedError, base: usize) -> Range<
 }
 
 fn offset(text: &str, line: usize, column: usize) -> usize {
-    let start: usize = text
-        .split_inclusive('\n')
-        .take(line.saturating_sub(1))
-        .map(str::len)
-        .sum();
+    let lines = text.split_inclusive('\n').take(line.saturating_sub(1));
+    let start: usize = lines.map(str::len).sum();
     let rest = text.get(start..).unwrap_or("");
-    start
-        + rest
-            .chars()
-            .take(column.saturating_sub(1))
-            .map(char::len_utf8)
-            .sum::<usize>()
+    let mut characters = rest.char_indices();
+    let before = characters.nth(column.saturating_sub(1));
+    start + before.map_or(rest.len(), |(at, _)| at)
 }
 
 fn word_around(text: &str, start: usize, end: usize, base: usize) -> Range<usize> {
     let is_word = |c: char| c.is_alphanumeric() || c == '_' || c == '"';
     let mut low = start.min(text.len());
     if low == end {
-        low -= text[..low]
-            .chars()
-            .rev()
-            .take_while(|&c| is_word(c))
-            .map(char::len_utf8)
-            .sum::<usize>();
+        low = text[..low].trim_end_matches(is_word).len();
     }
-    let mut high = end.min(text.len()).max(low);
-    high += text[high..]
-        .chars()
-        .take_while(|&c| is_word(c))
-        .map(char::len_utf8)
-        .sum::<usize>();
-    base + low..base + high
+    let high = end.min(text.len()).max(low);
+    let rest = text[high..].trim_start_matches(is_word);
+    base + low..base + text.len() - rest.len()
 }
 
 /// The raw text of a value and its place in the file that is being read.
@@ -159,12 +144,8 @@ impl<'de, T: DeserializeOwned> Deserialize<'de> for Located<T> {
     }
 }
 
-/// A piece of a document: raw RON with its place.
-#[derive(Clone, Debug)]
-pub struct Node {
-    /// Where it stands.
-    pub span: Span,
-}
+/// A piece of a document: raw RON at its place.
+pub type Node = Span;
 
 /// A named field of a [`Node`].
 #[derive(Clone, Debug)]
@@ -180,37 +161,19 @@ impl Node {
     pub fn root(file: &SourceFile) -> Self {
         // Some editors begin UTF-8 with a byte order mark.
         let start = file.text.len() - file.text.trim_start_matches('\u{feff}').len();
-        Self {
-            span: file.span(start..file.text.len()),
-        }
+        file.span(start..file.text.len())
     }
 
     /// The first line of it, which stands for the whole where that is to be shown.
     pub fn head(&self) -> Span {
-        let start = self.span.range.start;
+        let start = self.range.start;
         let length = self.text().lines().next().map_or(0, str::len);
-        self.span.file.span(start..start + length)
-    }
-
-    /// Returns the node at a place.
-    pub fn at(span: &Span) -> Self {
-        Self { span: span.clone() }
-    }
-
-    /// The raw text.
-    pub fn text(&self) -> &str {
-        self.span
-            .file
-            .text
-            .get(self.span.range.clone())
-            .unwrap_or("")
+        self.file.span(start..start + length)
     }
 
     fn sub(&self, part: &str) -> Node {
-        let range = range_in(&self.span.file.text, part).unwrap_or(self.span.range.clone());
-        Node {
-            span: self.span.file.span(range),
-        }
+        let range = range_in(&self.file.text, part).unwrap_or(self.range.clone());
+        self.file.span(range)
     }
 
     /// Deserialises the piece.
@@ -223,13 +186,13 @@ impl Node {
 
     fn reading<T>(&self, read: impl FnOnce() -> Result<T, ron::Error>) -> Result<T, Diagnostic> {
         READING.set(Some(Reading {
-            file: self.span.file.clone(),
+            file: self.file.clone(),
             failed: None,
         }));
         let result = caught(read);
         let failed = READING.take().and_then(|reading| reading.failed);
         self.without_panic(result)?
-            .map_err(|error| failed.unwrap_or_else(|| explain(&error, self.span.clone())))
+            .map_err(|error| failed.unwrap_or_else(|| explain(&error, self.clone())))
     }
 
     /// A panic of ron's as a diagnostic at the piece that it read.
@@ -237,7 +200,7 @@ impl Node {
         result.map_err(|panicked| {
             let what = format!("ron panics while this is read: {}", panicked.message);
             Diagnostic::error(Code::LibraryPanic, what)
-                .at(&self.span, "this brings it about")
+                .at(self, "this brings it about")
                 .help(panicked.way_out())
         })
     }
@@ -260,7 +223,7 @@ impl Node {
         let entry = |(key, value): (Cow<'_, str>, _)| {
             let key = self.sub(&key);
             let name: String = key.parse()?;
-            Ok((Located::new(name, key.span), self.sub(value)))
+            Ok((Located::new(name, key), self.sub(value)))
         };
         self.parts(Shape::Map)?.into_iter().map(entry).collect()
     }
@@ -283,45 +246,35 @@ impl Node {
     fn parts(&self, shape: Shape) -> Result<Parts<'_>, Diagnostic> {
         self.without_panic(caught(|| options().from_str_seed(self.text(), shape)))?
             .map_err(|error| {
-                let range = place_of(self.text(), &error, self.span.range.start);
-                explain(&error.code, self.span.file.span(range))
+                let range = place_of(self.text(), &error, self.range.start);
+                explain(&error.code, self.file.span(range))
             })
     }
 
     /// The place of the field name that stands before `value`.
     fn key_span(&self, name: &str, value: &Node) -> Span {
-        let before = &self.span.file.text[self.span.range.start..value.span.range.start];
+        let before = &self.file.text[self.range.start..value.range.start];
         match before.rfind(name) {
             Some(at) => {
-                let start = self.span.range.start + at;
-                self.span.file.span(start..start + name.len())
+                let start = self.range.start + at;
+                self.file.span(start..start + name.len())
             }
-            None => value.span.clone(),
+            None => value.clone(),
         }
     }
 
     /// Splits `Tag(…)` into the tag and its body; a bare `Tag` has an empty body.
     pub fn variant(&self) -> Option<(Located<String>, Node)> {
         let text = self.text();
-        let length: usize = text
-            .chars()
-            .take_while(|c| c.is_alphanumeric() || *c == '_')
-            .map(char::len_utf8)
-            .sum();
-        if length == 0 || !text.starts_with(|c: char| c.is_alphabetic()) {
+        let end = text.find(|c: char| !c.is_alphanumeric() && c != '_');
+        let length = end.unwrap_or(text.len());
+        if !text.starts_with(|c: char| c.is_alphabetic()) {
             return None;
         }
-        let start = self.span.range.start;
-        let tag = Located::new(
-            text[..length].to_owned(),
-            self.span.file.span(start..start + length),
-        );
-        Some((
-            tag,
-            Node {
-                span: self.span.file.span(start + length..self.span.range.end),
-            },
-        ))
+        let (start, end) = (self.range.start, self.range.end);
+        let tag = self.file.span(start..start + length);
+        let body = self.file.span(start + length..end);
+        Some((Located::new(text[..length].to_owned(), tag), body))
     }
 }
 
@@ -479,7 +432,7 @@ fn read_fields<T: DeserializeOwned>(
     more: &[&str],
     fault: &Fault,
 ) -> Result<T, Diagnostic> {
-    Node::at(whole).reading(|| {
+    whole.reading(|| {
         let fields = fields.iter().enumerate();
         let access = Access {
             fields,
@@ -537,7 +490,7 @@ impl<'de> MapAccess<'de> for Access<'de> {
         let (index, field) = self.value.take().ok_or_else(without_key)?;
         // An extended document's field stands in that one's file.
         let text = field.node.text();
-        let file = field.node.span.file.clone();
+        let file = field.node.file.clone();
         READING.with_borrow_mut(|reading| {
             if let Some(reading) = reading {
                 reading.file = file;
@@ -546,7 +499,7 @@ impl<'de> MapAccess<'de> for Access<'de> {
         options().from_str_seed(text, seed).map_err(|error| {
             self.fault.field.set(Some((index, false)));
             fail(|file| {
-                let place = place_of(text, &error, field.node.span.range.start);
+                let place = place_of(text, &error, field.node.range.start);
                 Some(explain(&error.code, file.span(place)))
             });
             error.code
@@ -654,9 +607,7 @@ mod tests {
 
     #[test]
     fn a_panic_is_a_diagnostic_at_its_piece() {
-        let node = || Node {
-            span: SourceFile::new("graph.ron", "(a: 1)").span(4..5),
-        };
+        let node = || SourceFile::new("graph.ron", "(a: 1)").span(4..5);
         let diagnostic = node().parse::<Panics>().expect_err("it panics");
         assert_eq!(diagnostic.code, Code::LibraryPanic);
         assert!(

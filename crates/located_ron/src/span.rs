@@ -7,11 +7,11 @@ use std::{
 };
 
 /// A file that was read. Cheap to clone, and small: every name of a document knows its place.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SourceFile(Arc<SourceText>);
 
 /// Name and text of a [`SourceFile`].
-#[derive(Debug, PartialEq, Eq)]
+#[derive(Debug, Default, PartialEq, Eq)]
 pub struct SourceText {
     /// Path as the reader was given it.
     pub name: Arc<str>,
@@ -54,6 +54,11 @@ pub struct Span {
 }
 
 impl Span {
+    /// The text that stands there.
+    pub fn text(&self) -> &str {
+        self.file.text.get(self.range.clone()).unwrap_or("")
+    }
+
     /// Line and column of the start, counted from 1, columns in characters.
     pub fn line_column(&self) -> (usize, usize) {
         let before = self
@@ -99,6 +104,13 @@ impl<T> Located<T> {
     /// A value at a place.
     pub fn new(value: T, span: Span) -> Self {
         Self { value, span }
+    }
+}
+
+impl<T: fmt::Display> Located<T> {
+    /// The value as text, at its place.
+    pub fn text(&self) -> Located<String> {
+        Located::new(self.value.to_string(), self.span.clone())
     }
 }
 

@@ -1,6 +1,6 @@
 //! Uploaded buffers by name, each with the version of its content.
 
-use crate::{error::Error, names::*};
+use crate::{error::Error, lights, names::*};
 use std::collections::BTreeMap;
 
 /// Where to.
@@ -17,7 +17,7 @@ pub(crate) struct On<'a> {
 /// what was set for another one. Another content is another buffer.
 #[derive(Clone, Default)]
 pub(crate) struct Buffers {
-    held: BTreeMap<&'static str, (wgpu::Buffer, u64)>,
+    held: BTreeMap<String, (wgpu::Buffer, u64)>,
 }
 
 impl Buffers {
@@ -38,7 +38,7 @@ impl Buffers {
     /// Makes the buffer of that name with these items, one zero item if there are none.
     pub fn make<T: bytemuck::NoUninit + bytemuck::Zeroable>(
         &mut self,
-        name: &'static str,
+        name: &str,
         items: &[T],
         version: u64,
         on: On,
@@ -55,8 +55,16 @@ impl Buffers {
                 limit,
             });
         }
-        let buffer = buffer_of(name, content, usage_of(name, on.device), on);
-        self.held.insert(name, (buffer, version));
+        let usage = usage_of(name, on.device);
+        let buffer = on.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(name),
+            size: bytes,
+            usage: usage | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        // Nothing that was encoded reads it yet.
+        on.queue.write_buffer(&buffer, 0, content);
+        self.held.insert(name.to_owned(), (buffer, version));
         Ok(())
     }
 }
@@ -68,25 +76,11 @@ fn usage_of(name: &str, device: &wgpu::Device) -> wgpu::BufferUsages {
         POSITIONS | INDICES if features.contains(wgpu::Features::EXPERIMENTAL_RAY_QUERY) => {
             wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::BLAS_INPUT
         }
+        _ if lights::list_of(name).is_some() => {
+            wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::STORAGE
+        }
         _ => wgpu::BufferUsages::STORAGE,
     }
-}
-
-pub(crate) fn buffer_of(
-    name: &str,
-    content: &[u8],
-    usage: wgpu::BufferUsages,
-    on: On,
-) -> wgpu::Buffer {
-    let buffer = on.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some(name),
-        size: content.len() as u64,
-        usage: usage | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
-    // Nothing that was encoded reads it yet.
-    on.queue.write_buffer(&buffer, 0, content);
-    buffer
 }
 
 /// The most bytes that a storage buffer can have and be bound whole.

@@ -96,9 +96,7 @@ impl Eye {
             unprojection,
         })
     }
-}
 
-impl Eye {
     /// Itself, unless its camera was none.
     pub(crate) fn finite(&self) -> Result<&Self, Error> {
         let numbers: &[f32] = bytemuck::cast_slice(std::slice::from_ref(&self.camera));

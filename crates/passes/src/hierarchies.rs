@@ -27,8 +27,8 @@ struct Kept {
 }
 
 /// A hierarchy as shaders read it.
-pub(crate) struct Words {
-    pub nodes: Vec<[u32; 8]>,
+pub(crate) struct Tree<N> {
+    pub nodes: Vec<N>,
     /// `None` where they are those of the last time.
     pub primitives: Option<Vec<u32>>,
     pub how: How,
@@ -37,28 +37,32 @@ pub(crate) struct Words {
 impl Hierarchies {
     /// Returns the tree of a mesh; its topology is that of the last time, unless after
     /// [`forget`](Self::forget).
-    pub fn bvh(&mut self, mesh: &Mesh, most: usize, keep: bool) -> Words {
+    pub fn bvh(&mut self, mesh: &Mesh, most: usize, keep: bool) -> Tree<BvhNode> {
         if let Some(kept) = &mut self.bvh
             && kept.refit(mesh)
         {
-            return Words {
-                nodes: kept.bvh.nodes.iter().map(node_words).collect(),
+            return Tree {
+                nodes: kept.bvh.nodes.clone(),
                 primitives: None,
                 how: How::Refitted,
             };
         }
         let mut bvh = Bvh::build(mesh).merged(most);
-        let words = Words {
-            nodes: if bvh.nodes.is_empty() {
-                vec![node_words(&EMPTY)]
-            } else {
-                bvh.nodes.iter().map(node_words).collect()
-            },
-            primitives: Some(primitives_of(&mut bvh, keep)),
-            how: How::Made,
-        };
+        let mut nodes = bvh.nodes.clone();
+        if nodes.is_empty() {
+            // A leaf around a triangle without area, which no ray hits.
+            nodes.push(BvhNode {
+                count: 1,
+                ..BvhNode::default()
+            });
+        }
+        let primitives = Some(primitives_of(&mut bvh, keep));
         self.bvh = (keep && !bvh.nodes.is_empty()).then(|| Kept::new(bvh));
-        words
+        Tree {
+            nodes,
+            primitives,
+            how: How::Made,
+        }
     }
 
     /// The same along the rays to a light. Trees are kept for rays of the directions that were
@@ -72,7 +76,7 @@ impl Hierarchies {
         mesh: &Mesh,
         most: usize,
         keep: bool,
-    ) -> Result<Words, Error> {
+    ) -> Result<Tree<LightSpaceNode>, Error> {
         let too_large = || Error::LightSpace {
             triangles: mesh.triangles.len(),
         };
@@ -85,8 +89,8 @@ impl Hierarchies {
                 // If the last direction was another, so are its primitives.
                 let primitives = (!is_last).then(|| kept.bvh.primitives.clone());
                 self.light_spaces.push((direction, kept));
-                return Ok(Words {
-                    nodes: nodes.iter().map(light_space_words).collect(),
+                return Ok(Tree {
+                    nodes,
                     primitives,
                     how: How::Refitted,
                 });
@@ -94,13 +98,12 @@ impl Hierarchies {
         }
         let (mut nodes, mut bvh) = space.build(mesh, most).ok_or_else(too_large)?;
         if nodes.is_empty() {
-            nodes.push(EMPTY_LIGHT_SPACE);
+            nodes.push(LightSpaceNode {
+                link: 1,
+                ..LightSpaceNode::default()
+            });
         }
-        let words = Words {
-            nodes: nodes.iter().map(light_space_words).collect(),
-            primitives: Some(primitives_of(&mut bvh, keep)),
-            how: How::Made,
-        };
+        let primitives = Some(primitives_of(&mut bvh, keep));
         if keep && !bvh.nodes.is_empty() {
             // Its boxes are of the light's space; those of the world tell when it has become bad.
             bvh.refit(mesh);
@@ -109,7 +112,11 @@ impl Hierarchies {
             }
             self.light_spaces.push((space.direction, Kept::new(bvh)));
         }
-        Ok(words)
+        Ok(Tree {
+            nodes,
+            primitives,
+            how: How::Made,
+        })
     }
 
     /// For a mesh of another topology.
@@ -138,37 +145,4 @@ impl Kept {
         self.bvh.refit(mesh);
         self.bvh.cost() <= WORSE * self.cost
     }
-}
-
-/// A leaf around a triangle without area, which no ray hits.
-const EMPTY: BvhNode = BvhNode {
-    min: [0.0; 3],
-    first: 0,
-    max: [0.0; 3],
-    count: 1,
-};
-
-/// The same in light space.
-const EMPTY_LIGHT_SPACE: LightSpaceNode = LightSpaceNode {
-    low: [0.0; 2],
-    high: [0.0; 2],
-    farthest: [0.0; 3],
-    link: 1,
-};
-
-/// A node as the shader reads it: the floats' bits and the two counts, in the order of [`BvhNode`].
-fn node_words(node: &BvhNode) -> [u32; 8] {
-    let [low_x, low_y, low_z] = node.min.map(f32::to_bits);
-    let [high_x, high_y, high_z] = node.max.map(f32::to_bits);
-    [
-        low_x, low_y, low_z, node.first, high_x, high_y, high_z, node.count,
-    ]
-}
-
-/// The same of a node in light space.
-fn light_space_words(node: &LightSpaceNode) -> [u32; 8] {
-    let [low_x, low_y] = node.low.map(f32::to_bits);
-    let [high_x, high_y] = node.high.map(f32::to_bits);
-    let [x, y, z] = node.farthest.map(f32::to_bits);
-    [low_x, low_y, high_x, high_y, x, y, z, node.link]
 }

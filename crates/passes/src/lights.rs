@@ -70,12 +70,12 @@ pub(crate) fn content(name: &str, lights: &[LightKind], mesh: &Mesh) -> Option<V
     Some(chosen.iter().flat_map(bytes).collect())
 }
 
-/// The list that one of these names is of.
-pub(crate) fn list_of(name: &str) -> &'static str {
-    match parse(name) {
-        Some((LIGHT_AREAS, _)) => LIGHT_AREAS,
-        _ => LIGHTS,
-    }
+/// The list that a name is of, if it is one of these.
+pub(crate) fn list_of(name: &str) -> Option<&'static str> {
+    let (list, _) = parse(name)?;
+    [LIGHTS, LIGHT_AREAS]
+        .into_iter()
+        .find(|known| *known == list)
 }
 
 /// The list of a name, and which of it.

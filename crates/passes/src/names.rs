@@ -22,55 +22,42 @@ use crate::eye::Eye;
 use skiagraph_scene::LightKind;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-pub(crate) const POSITIONS: &str = "scene.positions";
-pub(crate) const INDICES: &str = "scene.indices";
-pub(crate) const NORMALS: &str = "scene.normals";
-pub(crate) const NORMAL_INDICES: &str = "scene.normal_indices";
-pub(crate) const ADJACENCY: &str = "scene.adjacency";
-pub(crate) const BVH_NODES: &str = "scene.bvh_nodes";
-pub(crate) const BVH_PRIMITIVES: &str = "scene.bvh_primitives";
-pub(crate) const LIGHT_SPACE_NODES: &str = "scene.light_space_nodes";
-pub(crate) const LIGHT_SPACE_PRIMITIVES: &str = "scene.light_space_primitives";
-pub(crate) const TLAS: &str = "scene.tlas";
-/// Name of the buffer that `shared/masks.wgsl` reads: no items in a scene where no triangle is
-/// masked or double-sided.
-pub const MASKS: &str = "scene.masks";
-pub(crate) const UVS: &str = "scene.uvs";
-pub(crate) const UV_INDICES: &str = "scene.uv_indices";
-pub(crate) const MATERIALS: &str = "scene.materials";
-pub(crate) const MATERIAL_INDICES: &str = "scene.material_indices";
-pub(crate) const TEXELS: &str = "scene.texels";
-/// The uniform of `shared/camera.wgsl`.
-pub const CAMERA: &str = "camera";
-/// The uniform of `shared/unprojection.wgsl`.
-pub const UNPROJECTION: &str = "unprojection";
-/// The uniform of `shared/light.wgsl`.
-pub const LIGHT: &str = "light";
-/// The uniform of `shared/light_area.wgsl`.
-pub const LIGHT_AREA: &str = "light_area";
+/// Names, and the list of all of them.
+macro_rules! names {
+    ($($(#[$doc:meta])* $visible:vis $name:ident = $text:literal;)+) => {
+        $($(#[$doc])* $visible const $name: &str = $text;)+
+        pub(crate) const NAMES: &[&str] = &[$($name),+];
+    };
+}
 
-pub(crate) const NAMES: [&str; 20] = [
-    POSITIONS,
-    INDICES,
-    NORMALS,
-    NORMAL_INDICES,
-    ADJACENCY,
-    BVH_NODES,
-    BVH_PRIMITIVES,
-    LIGHT_SPACE_NODES,
-    LIGHT_SPACE_PRIMITIVES,
-    TLAS,
-    MASKS,
-    UVS,
-    UV_INDICES,
-    MATERIALS,
-    MATERIAL_INDICES,
-    TEXELS,
-    CAMERA,
-    UNPROJECTION,
-    LIGHT,
-    LIGHT_AREA,
-];
+names! {
+    pub(crate) POSITIONS = "scene.positions";
+    pub(crate) INDICES = "scene.indices";
+    pub(crate) NORMALS = "scene.normals";
+    pub(crate) NORMAL_INDICES = "scene.normal_indices";
+    pub(crate) ADJACENCY = "scene.adjacency";
+    pub(crate) BVH_NODES = "scene.bvh_nodes";
+    pub(crate) BVH_PRIMITIVES = "scene.bvh_primitives";
+    pub(crate) LIGHT_SPACE_NODES = "scene.light_space_nodes";
+    pub(crate) LIGHT_SPACE_PRIMITIVES = "scene.light_space_primitives";
+    pub(crate) TLAS = "scene.tlas";
+    /// Name of the buffer that `shared/masks.wgsl` reads: no items in a scene where no triangle is
+    /// masked or double-sided.
+    pub MASKS = "scene.masks";
+    pub(crate) UVS = "scene.uvs";
+    pub(crate) UV_INDICES = "scene.uv_indices";
+    pub(crate) MATERIALS = "scene.materials";
+    pub(crate) MATERIAL_INDICES = "scene.material_indices";
+    pub(crate) TEXELS = "scene.texels";
+    /// The uniform of `shared/camera.wgsl`.
+    pub CAMERA = "camera";
+    /// The uniform of `shared/unprojection.wgsl`.
+    pub UNPROJECTION = "unprojection";
+    /// The uniform of `shared/light.wgsl`.
+    pub LIGHT = "light";
+    /// The uniform of `shared/light_area.wgsl`.
+    pub LIGHT_AREA = "light_area";
+}
 
 /// Returns a number that no provider of this process has counted yet: equal versions mean equal
 /// content, across all providers.
@@ -83,45 +70,49 @@ pub(crate) fn next_version() -> u64 {
 /// that it had: executors that have seen it have nothing to do.
 #[derive(Clone, Debug)]
 pub(crate) struct Lately<T> {
-    /// The last one is set.
+    /// The value that is set.
+    pub now: T,
+    number: u64,
+    /// Values that were set before.
     known: Vec<(T, u64)>,
 }
 
 impl<T: PartialEq> Lately<T> {
     /// How many are remembered: more than executors take turns with one provider.
-    const MOST: usize = 32;
+    const MOST: usize = 31;
 
     pub fn new(value: T) -> Self {
         Self {
-            known: vec![(value, next_version())],
+            now: value,
+            number: next_version(),
+            known: Vec::new(),
         }
     }
 
     pub fn set(&mut self, value: T) {
+        if value == self.now {
+            return;
+        }
         let known = self.known.iter().position(|(known, _)| *known == value);
-        let number = match known {
-            Some(at) => self.known.remove(at).1,
-            None => next_version(),
-        };
+        let number = known.map_or_else(next_version, |at| self.known.remove(at).1);
         if self.known.len() == Self::MOST {
             self.known.remove(0);
         }
-        self.known.push((value, number));
-    }
-
-    /// That of what is set.
-    pub fn number(&self) -> u64 {
-        self.known.last().map_or(0, |(_, number)| *number)
+        let before = std::mem::replace(&mut self.now, value);
+        self.known.push((before, self.number));
+        self.number = number;
     }
 }
 
-/// Numbers for the contents of resources.
+/// Eye and lights that the provider is set to, and a version of everything that its resources are
+/// made from: resources of equal versions have equal contents.
 #[derive(Clone, Debug)]
 pub(crate) struct Versions {
-    camera: Lately<Eye>,
-    light: Lately<LightKind>,
-    lights: Lately<Vec<LightKind>>,
-    /// The light, and the lights, each with the shape that it is laid around.
+    pub eye: Lately<Eye>,
+    pub light: Lately<LightKind>,
+    /// All lights of the scene, or the view's own.
+    pub lights: Lately<Vec<LightKind>>,
+    /// Versions of light and shape together, of resources that are made from both.
     light_over: Lately<[u64; 2]>,
     lights_over: Lately<[u64; 2]>,
     /// Places and normals of the mesh's corners.
@@ -136,19 +127,15 @@ impl Versions {
     pub fn new(eye: Eye, light: LightKind, lights: Vec<LightKind>) -> Self {
         let (light, lights, shape) = (Lately::new(light), Lately::new(lights), next_version());
         Self {
-            camera: Lately::new(eye),
-            light_over: Lately::new([light.number(), shape]),
-            lights_over: Lately::new([lights.number(), shape]),
+            eye: Lately::new(eye),
+            light_over: Lately::new([light.number, shape]),
+            lights_over: Lately::new([lights.number, shape]),
             light,
             lights,
             shape,
             winding: next_version(),
             mesh: next_version(),
         }
-    }
-
-    pub fn set_camera(&mut self, eye: Eye) {
-        self.camera.set(eye);
     }
 
     pub fn set_light(&mut self, light: LightKind) {
@@ -180,16 +167,16 @@ impl Versions {
     }
 
     fn lay(&mut self) {
-        self.light_over.set([self.light.number(), self.shape]);
-        self.lights_over.set([self.lights.number(), self.shape]);
+        self.light_over.set([self.light.number, self.shape]);
+        self.lights_over.set([self.lights.number, self.shape]);
     }
 
     /// That of a resource.
     pub fn get(&self, name: &str) -> u64 {
         match name {
-            CAMERA | UNPROJECTION => self.camera.number(),
-            LIGHT_AREA => self.light.number(),
-            LIGHT | LIGHT_SPACE_NODES | LIGHT_SPACE_PRIMITIVES => self.light_over.number(),
+            CAMERA | UNPROJECTION => self.eye.number,
+            LIGHT_AREA => self.light.number,
+            LIGHT | LIGHT_SPACE_NODES | LIGHT_SPACE_PRIMITIVES => self.light_over.number,
             POSITIONS | NORMALS | BVH_NODES | BVH_PRIMITIVES | TLAS => self.shape,
             INDICES | NORMAL_INDICES | UV_INDICES | ADJACENCY | MASKS => self.winding,
             _ => self.mesh,
@@ -198,7 +185,7 @@ impl Versions {
 
     /// That of `lights` and `light_areas`, and of what is in them.
     pub fn of_lists(&self) -> u64 {
-        self.lights_over.number()
+        self.lights_over.number
     }
 }
 

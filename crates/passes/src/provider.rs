@@ -2,11 +2,11 @@
 
 use crate::{
     atlas::Atlas,
-    buffers::{Buffers, On, binding_limit, buffer_of},
+    buffers::{Buffers, On, binding_limit},
     built::{Built, How},
     error::Error,
     eye::Eye,
-    hierarchies::{Hierarchies, Words},
+    hierarchies::{Hierarchies, Tree},
     lights,
     names::*,
     ray_query,
@@ -20,7 +20,7 @@ use skiagraph_scene::{
     Adjacency, BvhNode, Camera, Light, LightKind, LightSpace, LightSpaceNode, Mesh, Movable, Scene,
     View, packed_masks::mask_words,
 };
-use std::{collections::BTreeMap, sync::Arc, time::Instant};
+use std::{sync::Arc, time::Instant};
 
 /// Provides one scene under one view, on one device.
 ///
@@ -64,12 +64,6 @@ use std::{collections::BTreeMap, sync::Arc, time::Instant};
 #[derive(Clone)]
 pub struct SceneProvider {
     pub(crate) scene: Arc<Scene>,
-    pub(crate) eye: Eye,
-    pub(crate) light: LightKind,
-    /// All lights of the scene, or the view's own.
-    pub(crate) lights: Vec<LightKind>,
-    /// By their names, of `lights` and what is in it, with the versions of what is in them.
-    pub(crate) light_buffers: BTreeMap<String, (wgpu::Buffer, u64)>,
     pub(crate) versions: Versions,
     /// Words of [`MASKS`], made at once: plans ask how many there are.
     pub(crate) masks: Vec<u32>,
@@ -84,15 +78,11 @@ impl SceneProvider {
     /// Provides `scene`. Builds nothing; until [`set_view`](Self::set_view) the `camera` is all
     /// zeros, and the light is the scene's.
     pub fn new(scene: Arc<Scene>) -> Self {
-        let (eye, light, lights) = (Eye::default(), scene.light(), lights::from_scene(&scene));
+        let lights = lights::from_scene(&scene);
         Self {
-            versions: Versions::new(eye, light, lights.clone()),
-            light,
-            lights,
-            light_buffers: BTreeMap::new(),
+            versions: Versions::new(Eye::default(), scene.light(), lights),
             masks: mask_words(&scene.mesh),
             scene,
-            eye,
             buffers: Buffers::default(),
             tlas: None,
             hierarchies: Hierarchies::default(),
@@ -106,20 +96,7 @@ impl SceneProvider {
     /// `refresh` in its place, or to be set otherwise beside it. It is the scene as it is now: what
     /// is set in one of the two afterwards, the other one does not show.
     pub fn branch(&self) -> Self {
-        Self {
-            scene: Arc::clone(&self.scene),
-            eye: self.eye,
-            light: self.light,
-            lights: self.lights.clone(),
-            light_buffers: self.light_buffers.clone(),
-            versions: self.versions.clone(),
-            masks: self.masks.clone(),
-            buffers: self.buffers.clone(),
-            tlas: self.tlas.clone(),
-            hierarchies: self.hierarchies.clone(),
-            shape: self.shape.clone(),
-            built: self.built.clone(),
-        }
+        self.clone()
     }
 
     /// Makes what a plan's live passes read and what is not there as it is now, so that `refresh`
@@ -153,8 +130,8 @@ impl SceneProvider {
     }
 
     /// The buffer of that name with what is in it now.
-    fn buffer(&mut self, name: &'static str, on: On) -> Result<wgpu::Buffer, Error> {
-        let version = self.versions.get(name);
+    fn buffer(&mut self, name: &str, on: On) -> Result<wgpu::Buffer, Error> {
+        let version = self.version(name);
         if let Some(buffer) = self.buffers.get(name, version) {
             return Ok(buffer.clone());
         }
@@ -165,25 +142,13 @@ impl SceneProvider {
         buffer.cloned().ok_or_else(|| unknown(name))
     }
 
-    /// That of `lights`, of `light_areas`, or of what is in them.
-    fn light_buffer(&mut self, name: &str, content: &[u8], on: On) -> wgpu::Buffer {
-        let version = self.versions.of_lists();
-        if let Some((buffer, of)) = self.light_buffers.get(name)
-            && *of == version
-        {
-            return buffer.clone();
-        }
-        let began = Instant::now();
-        let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::STORAGE;
-        let buffer = buffer_of(name, content, usage, on);
-        let entry = (buffer.clone(), version);
-        self.light_buffers.insert(name.to_owned(), entry);
-        self.note(lights::list_of(name), How::Made, began);
-        buffer
-    }
-
-    fn note(&mut self, name: &'static str, how: How, began: Instant) {
+    /// Notes what was made; of lights, which list they are of.
+    fn note(&mut self, name: &str, how: How, began: Instant) {
         let time = began.elapsed();
+        let known = || NAMES.iter().copied().find(|known| *known == name);
+        let Some(name) = lights::list_of(name).or_else(known) else {
+            return;
+        };
         match self.built.iter_mut().find(|built| built.name == name) {
             Some(built) => {
                 (built.how, built.time) = (how, time);
@@ -200,11 +165,11 @@ impl SceneProvider {
 
     fn upload_items<T: bytemuck::NoUninit + bytemuck::Zeroable>(
         &mut self,
-        name: &'static str,
+        name: &str,
         items: &[T],
         on: On,
     ) -> Result<How, Error> {
-        let version = self.versions.get(name);
+        let version = self.version(name);
         self.buffers.make(name, items, version, on)?;
         Ok(How::Made)
     }
@@ -214,32 +179,32 @@ impl SceneProvider {
         // to bind, and so the smallest leaves are joined.
         let most = binding_limit(on.device) / size_of::<BvhNode>() as u64;
         let (mesh, keep) = (&self.scene.mesh, self.shape.is_deformed);
-        let words = self.hierarchies.bvh(mesh, most as usize, keep);
-        self.upload_tree([BVH_NODES, BVH_PRIMITIVES], words, on)
+        let tree = self.hierarchies.bvh(mesh, most as usize, keep);
+        self.upload_tree([BVH_NODES, BVH_PRIMITIVES], tree, on)
     }
 
-    fn upload_tree(
+    fn upload_tree<N: bytemuck::Pod>(
         &mut self,
-        [nodes, primitives]: [&'static str; 2],
-        words: Words,
+        [nodes, primitives]: [&str; 2],
+        tree: Tree<N>,
         on: On,
     ) -> Result<How, Error> {
-        self.upload_items(nodes, &words.nodes, on)?;
+        self.upload_items(nodes, &tree.nodes, on)?;
         let version = self.versions.get(primitives);
-        match words.primitives {
+        match tree.primitives {
             Some(items) => drop(self.upload_items(primitives, &items, on)?),
             None => self.buffers.still_hold(primitives, version),
         }
-        Ok(words.how)
+        Ok(tree.how)
     }
 
     fn light_uniform(&self) -> LightUniform {
-        LightUniform::new(self.light, &self.scene.mesh)
+        LightUniform::new(self.light(), &self.scene.mesh)
     }
 
     fn upload_light_space(&mut self, on: On) -> Result<How, Error> {
-        if self.light.directional().is_none() {
-            return Err(Error::LightSpaceKind(self.light.word()));
+        if self.light().directional().is_none() {
+            return Err(Error::LightSpaceKind(self.light().word()));
         }
         let light = self.light_uniform();
         let space = LightSpace {
@@ -250,11 +215,11 @@ impl SceneProvider {
         let most = binding_limit(on.device) / size_of::<LightSpaceNode>() as u64;
         let (mesh, keep) = (&self.scene.mesh, self.shape.is_deformed);
         let trees = &mut self.hierarchies;
-        let words = trees.light_space(space, mesh, most as usize, keep)?;
-        self.upload_tree([LIGHT_SPACE_NODES, LIGHT_SPACE_PRIMITIVES], words, on)
+        let tree = trees.light_space(space, mesh, most as usize, keep)?;
+        self.upload_tree([LIGHT_SPACE_NODES, LIGHT_SPACE_PRIMITIVES], tree, on)
     }
 
-    fn upload_named(&mut self, name: &'static str, on: On) -> Result<How, Error> {
+    fn upload_named(&mut self, name: &str, on: On) -> Result<How, Error> {
         let scene = Arc::clone(&self.scene);
         let mesh = &scene.mesh;
         match name {
@@ -280,16 +245,21 @@ impl SceneProvider {
             MATERIAL_INDICES => self.upload_items(name, &mesh.surfaces.of, on),
             MATERIALS => self.upload_items(name, &Atlas::new(&mesh.surfaces)?.records, on),
             TEXELS => self.upload_items(name, &Atlas::new(&mesh.surfaces)?.texels, on),
-            CAMERA => self.upload_items(name, &[self.eye.finite()?.camera], on),
-            UNPROJECTION => self.upload_items(name, &[self.eye.finite()?.unprojection], on),
+            CAMERA => self.upload_items(name, &[self.versions.eye.now.finite()?.camera], on),
+            UNPROJECTION => {
+                self.upload_items(name, &[self.versions.eye.now.finite()?.unprojection], on)
+            }
             LIGHT => {
-                self.light.check().map_err(Error::Light)?;
+                self.light().check().map_err(Error::Light)?;
                 self.upload_items(name, &[self.light_uniform()], on)
             }
-            LIGHT_AREA => self.upload_items(name, &[LightAreaUniform::from(&self.light)], on),
+            LIGHT_AREA => self.upload_items(name, &[LightAreaUniform::from(&self.light())], on),
             BVH_NODES | BVH_PRIMITIVES => self.upload_hierarchy(on),
             LIGHT_SPACE_NODES | LIGHT_SPACE_PRIMITIVES => self.upload_light_space(on),
-            _ => Err(unknown(name)),
+            _ => {
+                let content = lights::content(name, self.lights(), mesh);
+                self.upload_items(name, &content.ok_or_else(|| unknown(name))?, on)
+            }
         }
     }
 
@@ -326,10 +296,7 @@ impl SceneProvider {
         if !lights.contains(&light) {
             lights = vec![light];
         }
-        if lights != self.lights {
-            self.versions.set_lights(lights.clone());
-            self.lights = lights;
-        }
+        self.versions.set_lights(lights);
         self.set_light(light);
     }
 
@@ -341,26 +308,24 @@ impl SceneProvider {
 
     /// Another camera, by its matrices.
     pub fn set_eye(&mut self, eye: &Eye) {
-        if *eye != self.eye {
-            self.eye = *eye;
-            self.versions.set_camera(*eye);
-        }
+        self.versions.eye.set(*eye);
     }
 
     /// The light.
     pub fn light(&self) -> LightKind {
-        self.light
+        self.versions.light.now
     }
 
     /// Which of [`lights`](Self::lights) the light is; the first, if it is none of them.
     pub fn light_number(&self) -> usize {
-        let number = self.lights.iter().position(|light| *light == self.light);
+        let mut lights = self.lights().iter();
+        let number = lights.position(|light| *light == self.light());
         number.unwrap_or_default()
     }
 
     /// All lights of the scene, or the view's own.
     pub fn lights(&self) -> &[LightKind] {
-        &self.lights
+        &self.versions.lights.now
     }
 
     /// Another light. A plan depends on the light's kind: what was planned under a light of another
@@ -368,10 +333,7 @@ impl SceneProvider {
     /// [`ExecuteError::OtherThanPlanned`](skiagraph_gpu::ExecuteError::OtherThanPlanned) until
     /// then.
     pub fn set_light(&mut self, light: LightKind) {
-        if light != self.light {
-            self.light = light;
-            self.versions.set_light(light);
-        }
+        self.versions.set_light(light);
     }
 
     /// Another mesh, in one piece. A plan counts items: what was planned for a mesh of other counts
@@ -483,35 +445,29 @@ impl SceneProvider {
 fn unknown(name: &str) -> Error {
     Error::Unknown {
         name: name.to_owned(),
-        known: NAMES.map(str::to_owned).to_vec(),
+        known: NAMES.iter().copied().map(str::to_owned).collect(),
     }
 }
 
 impl Describe for SceneProvider {
     fn names(&self) -> Vec<String> {
-        let names = NAMES.into_iter().map(str::to_owned);
-        names.chain(lights::names(self.lights.len())).collect()
+        let names = NAMES.iter().copied().map(str::to_owned);
+        names.chain(lights::names(self.lights().len())).collect()
     }
 
     fn describe(&self, name: &str) -> Option<Provided> {
         let mesh = &self.scene.mesh;
         let corners = 3 * mesh.triangles.len();
-        let array = |items: Option<usize>, stride| {
+        let bound = |binding, items: Option<usize>, stride: usize| {
             Some(Provided {
                 items: items.map(|items| items as u64),
-                stride,
-                binding: ProvidedBinding::Storage,
+                stride: stride as u64,
+                binding,
                 kind: None,
             })
         };
-        let uniform = |bytes: usize| {
-            Some(Provided {
-                items: Some(1),
-                stride: bytes as u64,
-                binding: ProvidedBinding::Uniform,
-                kind: None,
-            })
-        };
+        let array = |items, stride| bound(ProvidedBinding::Storage, items, stride);
+        let uniform = |bytes| bound(ProvidedBinding::Uniform, Some(1), bytes);
         match name {
             POSITIONS => array(Some(mesh.positions.len()), 16),
             INDICES | NORMAL_INDICES | ADJACENCY => array(Some(corners), 4),
@@ -530,25 +486,25 @@ impl Describe for SceneProvider {
             CAMERA => uniform(size_of::<CameraUniform>()),
             UNPROJECTION => uniform(size_of::<UnprojectionUniform>()),
             LIGHT => uniform(size_of::<LightUniform>()).map(|light| Provided {
-                kind: Some(lights::provided_kind(&self.light)),
+                kind: Some(lights::provided_kind(&self.light())),
                 ..light
             }),
             LIGHT_AREA => uniform(size_of::<LightAreaUniform>()),
-            name => lights::describe(name, &self.lights),
+            name => lights::describe(name, self.lights()),
         }
     }
 }
 
 impl Provider for SceneProvider {
     fn version(&self, name: &str) -> u64 {
-        match lights::describe(name, &self.lights) {
+        match lights::describe(name, self.lights()) {
             Some(_) => self.versions.of_lists(),
             None => self.versions.get(name),
         }
     }
 
     fn missing(&self, name: &str) -> Option<String> {
-        let is_of_shape = is_of_shape(name) || lights::describe(name, &self.lights).is_some();
+        let is_of_shape = is_of_shape(name) || lights::describe(name, self.lights()).is_some();
         (self.shape.is_unplaced && is_of_shape).then(|| {
             "the parts of the mesh have no places yet: call `SceneProvider::set_transforms`, then \
              `Executor::refresh`"
@@ -562,13 +518,8 @@ impl Provider for SceneProvider {
         device: &wgpu::Device,
         queue: &wgpu::Queue,
     ) -> Result<wgpu::Buffer, ProviderError> {
-        let why = |error: Error| ProviderError(error.to_string());
-        if let Some(content) = lights::content(name, &self.lights, &self.scene.mesh) {
-            return Ok(self.light_buffer(name, &content, On { device, queue }));
-        }
-        let known = NAMES.into_iter().find(|&known| known == name);
-        let name = known.ok_or_else(|| why(unknown(name)))?;
-        self.buffer(name, On { device, queue }).map_err(why)
+        let buffer = self.buffer(name, On { device, queue });
+        buffer.map_err(|why| ProviderError(why.to_string()))
     }
 
     fn build_acceleration_structure(

@@ -2,9 +2,9 @@
 
 use crate::{
     error::Error,
-    ground_truth::{Answer, AreaVisibility, Class, GroundTruth, GroundTruthPixels},
+    ground_truth::{AreaVisibility, Class, GroundTruth, GroundTruthPixels},
     oracle::{Oracle, OracleMode},
-    pixels::{Progress, check_pixel_count, per_pixel},
+    pixels::Progress,
     ray::Ray,
     receiver::Receiver,
     strata::{Strata, disk},
@@ -85,8 +85,15 @@ impl Emitter {
     }
 }
 
-/// The ground truth under this light: [`Oracle::shade`] of one without extent,
-/// [`shade_area`] of one that has an extent.
+/// The ground truth under this light: [`Oracle::shade`] of one without extent; of one that is an
+/// area the share of it that each pixel sees, too, of at least `samples` shadow rays (an even
+/// number; four at least). The rays of the exact mode pass the pixel's own primitive, whichever way
+/// they go; those of the mode with an offset begin at the receiver moved towards the light's
+/// centre.
+///
+/// Which pixels face the light, the centre of the light decides: dot(n, l) ≤ 0 is facing away,
+/// though a part of the light may be above the horizon. A pixel's class is *lit* where it sees
+/// half of the light or more. Indeterminate are those whose answer to the light's centre is.
 ///
 /// # Errors
 /// Those of [`Oracle::shade`].
@@ -99,68 +106,36 @@ pub fn ground_truth(
     progress: Progress,
 ) -> Result<GroundTruth, Error> {
     let light = light.into();
-    if light.has_extent() {
-        let answer = shade_area(oracle, camera, light, primitives, (mode, samples), progress)?;
-        let (pixels, area) = (answer.0, Some(answer.1));
-        return Ok(GroundTruth { pixels, area });
+    if !light.has_extent() {
+        let pixels = oracle.shade(camera, light, primitives, mode, progress)?;
+        return Ok(GroundTruth { pixels, area: None });
     }
-    let pixels = oracle.shade(camera, light, primitives, mode, progress)?;
-    let area = None;
-    Ok(GroundTruth { pixels, area })
-}
-
-/// As [`Oracle::shade`], of a light that is an area: the share of it that each pixel sees,
-/// of at least `samples` shadow rays (an even number; four at least). The rays of the exact
-/// mode pass the pixel's own primitive, whichever way they go; those of the mode with an offset
-/// begin at the receiver moved towards the light's centre.
-///
-/// Which pixels face the light, the centre of the light decides: dot(n, l) ≤ 0 is facing away,
-/// though a part of the light may be above the horizon. A pixel's class is *lit* where it sees
-/// half of the light or more. Indeterminate are those whose answer to the light's centre is.
-///
-/// # Errors
-/// Those of [`Oracle::shade`].
-pub fn shade_area(
-    oracle: &Oracle<'_>,
-    camera: &Camera,
-    light: impl Into<LightKind>,
-    primitives: &[u32],
-    (mode, samples): (OracleMode, u32),
-    progress: Progress,
-) -> Result<(GroundTruthPixels, AreaVisibility), Error> {
-    check_pixel_count("primitives", camera.viewport, primitives.len())?;
-    let light = light.into();
-    oracle.check(&light, mode)?;
+    oracle.check_offset(mode)?;
     let strata = Strata::new(samples.div_ceil(2).max(2));
-    let pixels = per_pixel(camera.viewport, progress, |x, y, stack| {
-        let receiver = Receiver::from_pixel(oracle.mesh, primitives, camera, [x, y], &light)?;
-        let Some(receiver) = receiver else {
-            return Ok((Answer::BACKGROUND, [0.0; 2]));
-        };
+    let answer = |receiver: &Receiver, pixel: [u32; 2], stack: &mut Vec<u32>| {
         // Answer for the light's centre, for indeterminate pixels.
-        let mut answer = oracle.answer(&receiver, mode, stack);
+        let mut answer = oracle.answer(receiver, mode, stack);
         if answer.class == Class::FacingAway {
-            return Ok((answer, [0.0; 2]));
+            return (answer, [0.0; 2]);
         }
-        let emitter = Emitter::seen_from(&light, &receiver);
-        let of = share(oracle, &emitter, &strata, &receiver, mode, [x, y], stack);
+        let emitter = Emitter::seen_from(&light, receiver);
+        let of = share(oracle, &emitter, &strata, receiver, mode, pixel, stack);
         answer.class = if of[0] < 0.5 {
             Class::Shadow
         } else {
             Class::Lit
         };
-        Ok((answer, of))
-    })?;
-    let (answers, shares): (Vec<Answer>, Vec<[f64; 2]>) = pixels.into_iter().unzip();
+        (answer, of)
+    };
+    let of = (oracle.mesh, camera, &light);
+    let (pixels, shares) = GroundTruthPixels::answered(of, primitives, progress, answer)?;
     let area = AreaVisibility {
         samples: 2 * strata.count(),
         shares: shares.iter().map(|[share, _]| *share as f32).collect(),
         standard_errors: shares.iter().map(|[_, error]| *error as f32).collect(),
     };
-    Ok((
-        GroundTruthPixels::new(oracle.mesh, camera, primitives, &answers),
-        area,
-    ))
+    let area = Some(area);
+    Ok(GroundTruth { pixels, area })
 }
 
 /// Those that could stand in the light's cone; `None` if they are many, or the receiver is

@@ -26,26 +26,6 @@ pub struct BlockerCounts {
     pub none: u64,
 }
 
-impl BlockerCounts {
-    const OPEN_PART: Self = Self {
-        open_part: 1,
-        ..Self::ZERO
-    };
-    const CLOSED_PART: Self = Self {
-        closed_part: 1,
-        ..Self::ZERO
-    };
-    const NONE: Self = Self {
-        none: 1,
-        ..Self::ZERO
-    };
-    const ZERO: Self = Self {
-        open_part: 0,
-        closed_part: 0,
-        none: 0,
-    };
-}
-
 /// Finds the blockers of each of `pixels`, places in the buffer `primitives`; the other
 /// arguments are those of [`Oracle::shade`].
 ///
@@ -68,20 +48,29 @@ pub fn blockers(
     let blockers = pixels.par_iter().map_init(Vec::new, |stack, &pixel| {
         let pixel = [(pixel % width) as u32, (pixel / width) as u32];
         let receiver = Receiver::from_pixel(oracle.mesh, primitives, camera, pixel, &light)?;
-        Ok(match receiver {
-            Some(receiver) if receiver.n_dot_l > 0.0 && !receiver.outside_cone => {
-                let (origin, way, passed) = mode.ray(&receiver);
-                blocker(oracle, origin, way, passed, parts, stack)
-            }
-            _ => BlockerCounts::NONE,
-        })
+        let receiver = receiver.filter(|it| it.n_dot_l > 0.0 && !it.outside_cone);
+        Ok(receiver.and_then(|receiver| {
+            let (origin, way, passed) = mode.ray(&receiver);
+            blocker(oracle, origin, way, passed, parts, stack)
+        }))
     });
-    blockers.try_reduce(BlockerCounts::default, |mut counts, other| {
-        counts += other;
-        Ok(counts)
+    let blockers: Vec<Option<Blocker>> = blockers.collect::<Result<_, Error>>()?;
+    let count = |of| blockers.iter().filter(|it| **it == of).count() as u64;
+    Ok(BlockerCounts {
+        open_part: count(Some(Blocker::OpenPart)),
+        closed_part: count(Some(Blocker::ClosedPart)),
+        none: count(None),
     })
 }
 
+/// Part of the mesh that stands in a ray's way.
+#[derive(Clone, Copy, PartialEq)]
+enum Blocker {
+    OpenPart,
+    ClosedPart,
+}
+
+/// The blocker of a ray: a closed part, if there is one.
 fn blocker(
     oracle: &Oracle<'_>,
     origin: DVec3,
@@ -89,18 +78,18 @@ fn blocker(
     passed: u32,
     parts: &Parts,
     stack: &mut Vec<u32>,
-) -> BlockerCounts {
+) -> Option<Blocker> {
     let ray = oracle.tree.ray(origin, &way, 0.0);
-    let mut found = BlockerCounts::NONE;
+    let mut found = None;
     oracle.tree.walk(&ray, stack, |caster, _| {
         if caster.primitive == passed || !caster.blocks(&ray) {
             return ControlFlow::Continue(());
         }
         if parts.is_open(caster.primitive) {
-            found = BlockerCounts::OPEN_PART;
+            found = Some(Blocker::OpenPart);
             return ControlFlow::Continue(());
         }
-        found = BlockerCounts::CLOSED_PART;
+        found = Some(Blocker::ClosedPart);
         ControlFlow::Break(())
     });
     found

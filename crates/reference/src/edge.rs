@@ -7,7 +7,7 @@ use crate::{
     error::Error,
     ground_truth::GroundTruthPixels,
     pixels::check_pixel_count,
-    shimmer::{Seen, hit},
+    shimmer::Seen,
     statistics::{Verdict, for_each_verdict},
 };
 use rayon::prelude::*;
@@ -189,10 +189,7 @@ fn place(seen: Seen, pixel: usize) -> [u32; 2] {
 
 /// The place in the scene that a pixel shows, where it has one.
 fn receiver(seen: Seen, pixel: usize) -> Option<[f64; 3]> {
-    let primitive = seen.primitives[pixel];
-    let is_known = (primitive as usize) < seen.mesh.triangles.len();
-    let hit = is_known.then(|| hit(seen.mesh, primitive, seen.camera, place(seen, pixel)));
-    Some(hit??.to_array())
+    Some(seen.surface(pixel)?.receiver.to_array())
 }
 
 fn apart<const N: usize>(one: &[f64; N], other: &[f64; N]) -> f64 {
@@ -208,6 +205,7 @@ mod tests {
     use super::*;
     use crate::Class::{self, FacingAway, Lit, Shadow};
     use glam::{DVec3, Vec3};
+    use proptest::prelude::*;
     use skiagraph_scene::{Camera, Mesh, View};
 
     /// A wall of two triangles across a camera whose pixels are one unit wide on it.
@@ -287,6 +285,29 @@ mod tests {
         assert_eq!(of.shadow.count, 1);
         assert!((of.shadow.max_pixels - 5f64.sqrt()).abs() < 1e-12);
         assert_eq!(of.lit, Distances::default());
+    }
+
+    proptest! {
+        /// Figures of a path agree with those of its frames, however these are grouped.
+        #[test]
+        fn distances_together_are_those_of_all_pixels(
+            pixels in prop::collection::vec(prop::option::of([0.0..500.0, 0.0..80.0]), 0..60),
+            cut in 0usize..60,
+        ) {
+            let (one, other) = pixels.split_at(cut.min(pixels.len()));
+            let of = |pixels: &[Option<[f64; 2]>]| Distances::new(pixels.iter().copied());
+            let (together, whole) = (of(one).with(of(other)), of(&pixels));
+            prop_assert_eq!(
+                (together.count, together.near, together.without),
+                (whole.count, whole.near, whole.without)
+            );
+            let figures = |of: Distances| {
+                [of.mean_pixels, of.max_pixels, of.mean_world, of.max_world]
+            };
+            for (one, other) in figures(together).into_iter().zip(figures(whole)) {
+                prop_assert!((one - other).abs() < 1e-9, "{together:?} {whole:?}");
+            }
+        }
     }
 
     #[test]

@@ -90,7 +90,4 @@ pub enum Error {
          in scene units, such as `offset:0.03`"
     )]
     Mode(String),
-    /// A prebuilt hierarchy that does not belong to the mesh.
-    #[error("the hierarchy does not belong to the mesh: {0}")]
-    Hierarchy(&'static str),
 }

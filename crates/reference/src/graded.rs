@@ -130,9 +130,19 @@ impl Invalid {
     }
 }
 
+/// How many pixels the errors of a picture are means over.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct JudgedPixels {
+    /// Pixels facing the light (PFL).
+    pub facing_light: u64,
+    /// Number of these that are indeterminate.
+    pub in_band: u64,
+}
+
 impl Graded {
     /// Judges a method's `visibility` against the reference's `shares`, both one value per pixel,
-    /// row by row from the top left.
+    /// row by row from the top left. `truth` says which pixels face the light, and which of them
+    /// are indeterminate.
     ///
     /// # Errors
     /// [`Error::PixelCount`] if a buffer is not as large as the reference.
@@ -179,18 +189,7 @@ impl Graded {
         graded.flip = flip(&right, &Image::shaded(visibility, truth)?)?;
         Ok(graded)
     }
-}
 
-/// How many pixels the errors of a picture are means over.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct JudgedPixels {
-    /// Pixels facing the light (PFL).
-    pub facing_light: u64,
-    /// Number of these that are indeterminate.
-    pub in_band: u64,
-}
-
-impl Graded {
     /// Errors of several pictures together, each with its pixels. FLIP is the mean of theirs.
     pub fn together(pictures: impl IntoIterator<Item = (Self, JudgedPixels)>) -> Self {
         let mut all = Self::default();
@@ -233,6 +232,7 @@ impl Graded {
 mod tests {
     use super::*;
     use crate::Class;
+    use proptest::prelude::*;
 
     /// The last pixel is indeterminate.
     fn truth(classes: &[Class]) -> GroundTruthPixels {
@@ -323,6 +323,36 @@ mod tests {
         let one = Graded::together([parts[0]]);
         assert!((one.rmse_outside_band - parts[0].0.rmse_outside_band).abs() < 1e-12);
         assert_eq!(Graded::together([]), Graded::default());
+    }
+
+    proptest! {
+        /// Figures of a path agree with those of its frames, however these are grouped.
+        #[test]
+        fn soft_errors_together_are_those_of_all_pixels(
+            pixels in prop::collection::vec((0.0f32..=1.0, -1.0..=1.0), 0..60),
+            cut in 0usize..60,
+        ) {
+            let sum = |pixels: &[(f32, f64)]| {
+                let mut sum = SoftErrors::default();
+                for &(share, off) in pixels {
+                    sum.add(SoftErrors::of_pixel(share, off));
+                }
+                sum.means()
+            };
+            let (one, other) = pixels.split_at(cut.min(pixels.len()));
+            let (mut together, whole) = (SoftErrors::default(), sum(&pixels));
+            together.add(sum(one));
+            together.add(sum(other));
+            let together = together.means();
+            let counts = |of: SoftErrors| [of.umbra, of.light, of.penumbra];
+            prop_assert_eq!(counts(together), counts(whole));
+            let figures = |of: SoftErrors| {
+                [of.light_in_umbra, of.dark_in_light, of.penumbra_rmse, of.penumbra_bias]
+            };
+            for (one, other) in figures(together).into_iter().zip(figures(whole)) {
+                prop_assert!((one - other).abs() < 1e-9, "{together:?} {whole:?}");
+            }
+        }
     }
 
     #[test]

@@ -1,12 +1,13 @@
 //! The ground truth of a view: the oracle's answer at each pixel.
 
 use crate::{
-    pixels::BACKGROUND,
+    error::Error,
+    pixels::{BACKGROUND, Progress, check_pixel_count, per_pixel},
     receiver::{self, Receiver},
     status,
 };
 use rayon::prelude::*;
-use skiagraph_scene::{Camera, Mesh};
+use skiagraph_scene::{Camera, LightKind, Mesh};
 use std::borrow::Cow;
 
 /// Oracle's answer for a pixel.
@@ -49,20 +50,33 @@ pub struct GroundTruthPixels {
 }
 
 impl GroundTruthPixels {
-    /// Takes apart the answers of a G-buffer's pixels.
-    pub(crate) fn new(
-        mesh: &Mesh,
-        camera: &Camera,
+    /// Answers for the receivers of a G-buffer's pixels, and what else is found of each.
+    ///
+    /// # Errors
+    /// [`Error::PixelCount`], [`Error::UnknownPrimitive`], [`Error::Light`],
+    /// [`Error::Interrupted`].
+    pub(crate) fn answered<T: Default + Send>(
+        (mesh, camera, light): (&Mesh, &Camera, &LightKind),
         primitives: &[u32],
-        answers: &[Answer],
-    ) -> Self {
-        Self {
+        progress: Progress,
+        answer: impl Fn(&Receiver, [u32; 2], &mut Vec<u32>) -> (Answer, T) + Sync,
+    ) -> Result<(Self, Vec<T>), Error> {
+        check_pixel_count("primitives", camera.viewport, primitives.len())?;
+        light.check().map_err(Error::Light)?;
+        let answers = per_pixel(camera.viewport, progress, |x, y, stack| {
+            let receiver = Receiver::from_pixel(mesh, primitives, camera, [x, y], light)?;
+            let background = || (Answer::BACKGROUND, T::default());
+            Ok(receiver.map_or_else(background, |receiver| answer(&receiver, [x, y], stack)))
+        })?;
+        let (answers, more): (Vec<Answer>, _) = answers.into_iter().unzip();
+        let pixels = Self {
             viewport: camera.viewport,
             base_colors: base_colors(mesh, camera, primitives),
             classes: answers.iter().map(|answer| answer.class).collect(),
             indeterminate: answers.iter().map(|answer| answer.indeterminate).collect(),
             n_dot_l: answers.iter().map(|answer| answer.n_dot_l).collect(),
-        }
+        };
+        Ok((pixels, more))
     }
 
     /// The reference's own shares of a light without extent: 1 where lit, 0 elsewhere.

@@ -25,6 +25,20 @@ const DIM_SHADOW: Colour = [144, 144, 144];
 const DIM_FACING_AWAY: Colour = [116, 116, 116];
 const DIM_BACKGROUND: Colour = [232, 236, 240];
 
+/// Texels per pixel from 1/64 to 64, each stop four times the one before: hot where the map is too
+/// coarse for the picture, cold where it is finer.
+const TEXELS: [Colour; 7] = [
+    [128, 0, 38],
+    [227, 26, 28],
+    [253, 141, 60],
+    [255, 237, 160],
+    [127, 205, 187],
+    [29, 145, 192],
+    [8, 29, 88],
+];
+/// No texel at all.
+const OUTSIDE_MAP: Colour = [64, 64, 64];
+
 const NO_NUMBER: Colour = [255, 0, 255];
 /// The error from which on [`Image::difference`] shows its colours in full.
 pub const FULL_COLOUR: f64 = 0.25;
@@ -136,6 +150,27 @@ impl Image {
         })
     }
 
+    /// Shadow-map texels that each pixel's receiver covers, in a heat scale from dark red (1/64 and
+    /// fewer) over pale yellow (1) to dark blue (64 and more); dark grey = outside the map. Where
+    /// there is no number, as in the background: pale, or grey if facing away.
+    ///
+    /// # Errors
+    /// [`Error::PixelCount`] if `texels` does not fit the reference.
+    pub fn texels(texels: &[Option<f64>], truth: &GroundTruthPixels) -> Result<Self, Error> {
+        check_pixel_count("texels", truth.viewport, texels.len())?;
+        let colour = |(texels, class): (&Option<f64>, &Class)| match (texels, class) {
+            (Some(0.0), _) => OUTSIDE_MAP,
+            (Some(texels), _) => heat(*texels),
+            (None, Class::Background) => DIM_BACKGROUND,
+            (None, _) => DIM_FACING_AWAY,
+        };
+        let pixels = texels.iter().zip(&truth.classes);
+        Ok(Self {
+            size: truth.viewport,
+            rgb: pixels.flat_map(colour).collect(),
+        })
+    }
+
     /// A method's shadows: white = lit, black = shadow, grey in between, green = facing away,
     /// grey-blue = background.
     ///
@@ -227,6 +262,14 @@ fn mixed(from: Colour, to: Colour, share: f64) -> Colour {
         let [from, to] = [from, to].map(|colour| f64::from(colour[channel]));
         (from + (to - from) * share).round() as u8
     })
+}
+
+/// The colour of so many texels.
+fn heat(texels: f64) -> Colour {
+    let last = TEXELS.len() - 1;
+    let place = (texels.log2() / 2.0 + 3.0).clamp(0.0, last as f64);
+    let stop = (place as usize).min(last - 1);
+    mixed(TEXELS[stop], TEXELS[stop + 1], place - stop as f64)
 }
 
 /// Linear light 0..1 as a channel of sRGB (gamma 2.2 is near enough for a picture).
@@ -370,6 +413,24 @@ mod tests {
         ];
         assert_eq!(shown, expected);
         assert!(Image::difference(&shares[1..], &shares, &truth).is_err());
+    }
+
+    #[test]
+    fn texels_are_hot_where_they_are_few() {
+        let texels = [None, None, Some(1.0), Some(0.125), Some(0.0)];
+        let shown = colours(Image::texels(&texels, &truth()).expect("same size"));
+        // An eighth lies halfway between the stops of a quarter and a sixteenth.
+        let eighth = mixed(TEXELS[1], TEXELS[2], 0.5);
+        let expected = [
+            DIM_BACKGROUND,
+            DIM_FACING_AWAY,
+            TEXELS[3],
+            eighth,
+            OUTSIDE_MAP,
+        ];
+        assert_eq!(shown, expected);
+        assert_eq!([1e-9, 1e9].map(heat), [TEXELS[0], TEXELS[6]]);
+        assert!(Image::texels(&texels[1..], &truth()).is_err());
     }
 
     #[test]

@@ -5,15 +5,15 @@ use crate::{
     error::Error,
     error_bound::Uncertainty,
     ground_truth::{Answer, Class, GroundTruthPixels},
-    pixels::{BACKGROUND, Progress, check_pixel_count, per_pixel},
+    pixels::{BACKGROUND, Progress, per_pixel},
     ray::Ray,
     receiver::Receiver,
     tree::Tree,
 };
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
-use skiagraph_scene::{Bvh, Camera, LIGHT_GAP, LightKind, Mesh, Parts, Towards};
-use std::{borrow::Cow, fmt, ops::ControlFlow, str::FromStr, sync::OnceLock};
+use skiagraph_scene::{Camera, LIGHT_GAP, LightKind, Mesh, Parts, Towards};
+use std::{fmt, ops::ControlFlow, str::FromStr, sync::OnceLock};
 
 /// How a shadow ray leaves its receiver.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -100,27 +100,13 @@ impl<'a> Oracle<'a> {
     /// # Panics
     /// If a triangle's index is out of range, which [`Mesh`] forbids.
     pub fn new(mesh: &'a Mesh) -> Self {
-        let tree = Tree::new(mesh, Cow::Owned(Bvh::build(mesh)))
-            .expect("the hierarchy was built over this very mesh");
-        let parts = OnceLock::new();
+        let (tree, parts) = (Tree::new(mesh), OnceLock::new());
         Self { mesh, tree, parts }
     }
 
     /// Returns the mesh that it traces.
     pub fn mesh(&self) -> &'a Mesh {
         self.mesh
-    }
-
-    /// Uses a hierarchy that was built over `mesh` before.
-    ///
-    /// # Errors
-    /// [`Error::Hierarchy`] if it cannot have been.
-    pub fn with_bvh(mesh: &'a Mesh, bvh: &'a Bvh) -> Result<Self, Error> {
-        Ok(Self {
-            mesh,
-            tree: Tree::new(mesh, Cow::Borrowed(bvh))?,
-            parts: OnceLock::new(),
-        })
     }
 
     /// The primitive that each pixel's centre shows, row by row from the top left, [`BACKGROUND`]
@@ -175,24 +161,18 @@ impl<'a> Oracle<'a> {
         mode: OracleMode,
         progress: Progress,
     ) -> Result<GroundTruthPixels, Error> {
-        check_pixel_count("primitives", camera.viewport, primitives.len())?;
-        let light = light.into();
-        self.check(&light, mode)?;
-        let answers = per_pixel(camera.viewport, progress, |x, y, stack| {
-            let receiver = Receiver::from_pixel(self.mesh, primitives, camera, [x, y], &light)?;
-            Ok(match receiver {
-                Some(receiver) => self.answer(&receiver, mode, stack),
-                None => Answer::BACKGROUND,
-            })
-        })?;
-        Ok(GroundTruthPixels::new(
-            self.mesh, camera, primitives, &answers,
-        ))
+        self.check_offset(mode)?;
+        let of = (self.mesh, camera, &light.into());
+        let answer = |receiver: &Receiver, _, stack: &mut Vec<u32>| {
+            let answer = self.answer(receiver, mode, stack);
+            (answer, ())
+        };
+        let (pixels, _) = GroundTruthPixels::answered(of, primitives, progress, answer)?;
+        Ok(pixels)
     }
 
-    /// Checks that a light can be traced.
-    pub(crate) fn check(&self, light: &LightKind, mode: OracleMode) -> Result<(), Error> {
-        light.check().map_err(Error::Light)?;
+    /// Checks that a mode's offset can be traced.
+    pub(crate) fn check_offset(&self, mode: OracleMode) -> Result<(), Error> {
         if let OracleMode::Offset(length) = mode {
             if !(length.is_finite() && length >= 0.0) {
                 return Err(Error::Offset(length));
@@ -329,11 +309,8 @@ pub fn unshadowed(
     primitives: &[u32],
     progress: Progress,
 ) -> Result<GroundTruthPixels, Error> {
-    check_pixel_count("primitives", camera.viewport, primitives.len())?;
-    light.check().map_err(Error::Light)?;
-    let answers = per_pixel(camera.viewport, progress, |x, y, _| {
-        let receiver = Receiver::from_pixel(mesh, primitives, camera, [x, y], light)?;
-        Ok(receiver.map_or(Answer::BACKGROUND, |receiver| Answer::facing(&receiver)))
-    })?;
-    Ok(GroundTruthPixels::new(mesh, camera, primitives, &answers))
+    let of = (mesh, camera, light);
+    let answer = |receiver: &Receiver, _, _: &mut Vec<u32>| (Answer::facing(receiver), ());
+    let (pixels, _) = GroundTruthPixels::answered(of, primitives, progress, answer)?;
+    Ok(pixels)
 }

@@ -36,6 +36,42 @@ pub struct Seen<'a> {
     pub primitives: &'a [u32],
 }
 
+/// The surface that a pixel shows.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Surface {
+    /// Its place in the scene.
+    pub receiver: DVec3,
+    /// Unit normal of its primitive.
+    pub normal: DVec3,
+    /// From the eye to the receiver; as long along the eye's direction as the receiver is away.
+    pub way: DVec3,
+}
+
+impl Seen<'_> {
+    /// Returns the surface that a pixel shows; `None` for the background, and for a primitive that
+    /// is seen edge-on.
+    pub(crate) fn surface(&self, pixel: usize) -> Option<Surface> {
+        let primitive = self.primitives[pixel];
+        let width = self.camera.viewport[0];
+        let place = [pixel as u32 % width, pixel as u32 / width];
+        let is_known = (primitive as usize) < self.mesh.triangles.len();
+        let receiver = is_known.then(|| hit(self.mesh, primitive, self.camera, place))??;
+        let [a, b, c] = self.mesh.corners(primitive);
+        let normal = (b - a).cross(c - a).normalize();
+        Some(Surface {
+            receiver,
+            normal,
+            way: receiver - self.camera.eye,
+        })
+    }
+
+    /// Returns the area of a pixel on the image at distance 1.
+    pub(crate) fn pixel_area(&self) -> f64 {
+        let [width, height] = self.camera.viewport.map(f64::from);
+        4.0 * self.camera.half_width * self.camera.half_height / (width * height)
+    }
+}
+
 /// For each pixel of `now`, the pixel of the frame before that shows the same receiver;
 /// [`BACKGROUND`] where none does. The receiver keeps its place on its primitive, which may have
 /// moved: the pixel is the one where that place was seen, if it showed this primitive.

@@ -1,14 +1,13 @@
 //! Traversal of the scene's hierarchy by f64 rays.
 
 use crate::{
-    error::Error,
     masked::Masked,
     ray::{Corners, Hit, Ray},
 };
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use skiagraph_scene::{Bvh, Mesh, Towards};
-use std::{borrow::Cow, ops::ControlFlow};
+use std::ops::ControlFlow;
 
 /// A triangle as a shadow ray meets it.
 #[derive(Clone, Copy, Debug)]
@@ -64,43 +63,15 @@ impl Cone {
 
 /// A hierarchy with its triangles in leaf order.
 pub(crate) struct Tree<'a> {
-    bvh: Cow<'a, Bvh>,
+    bvh: Bvh,
     casters: Vec<Caster<'a>>,
     bounds: Option<(DVec3, DVec3)>,
 }
 
 impl<'a> Tree<'a> {
-    /// Checks that `bvh` was built over `mesh` as far as traversal depends on it.
-    pub(crate) fn new(mesh: &'a Mesh, bvh: Cow<'a, Bvh>) -> Result<Self, Error> {
-        if bvh.primitives.len() != mesh.triangles.len() {
-            return Err(Error::Hierarchy("it has another number of triangles"));
-        }
-        if bvh
-            .primitives
-            .iter()
-            .any(|&primitive| primitive as usize >= mesh.triangles.len())
-        {
-            return Err(Error::Hierarchy(
-                "a leaf names a triangle that the mesh does not have",
-            ));
-        }
-        let mut reached = vec![false; bvh.nodes.len()];
-        let mut open: Vec<usize> = bvh.nodes.first().map(|_| 0).into_iter().collect();
-        while let Some(index) = open.pop() {
-            // A node reached twice would count its triangles twice, or never let a traversal end.
-            if index >= bvh.nodes.len() || std::mem::replace(&mut reached[index], true) {
-                return Err(Error::Hierarchy(
-                    "a node's child lies outside it or belongs to another node too",
-                ));
-            }
-            let node = &bvh.nodes[index];
-            let first = node.first as usize;
-            if node.count == 0 {
-                open.extend([first, first + 1]);
-            } else if first + node.count as usize > bvh.primitives.len() {
-                return Err(Error::Hierarchy("a leaf reaches beyond its triangles"));
-            }
-        }
+    /// Builds the hierarchy of a mesh.
+    pub(crate) fn new(mesh: &'a Mesh) -> Self {
+        let bvh = Bvh::build(mesh);
         let open = open_edges(mesh);
         let casters = bvh
             .primitives
@@ -117,11 +88,11 @@ impl<'a> Tree<'a> {
         let bounds = mesh
             .bounds()
             .map(|(min, max)| (min.as_dvec3(), max.as_dvec3()));
-        Ok(Self {
+        Self {
             bvh,
             casters,
             bounds,
-        })
+        }
     }
 
     /// Distance from `origin` beyond which there is no corner.
@@ -322,7 +293,7 @@ mod tests {
     }
 
     fn tree(mesh: &Mesh) -> Tree<'_> {
-        Tree::new(mesh, Cow::Owned(Bvh::build(mesh))).expect("built over it")
+        Tree::new(mesh)
     }
 
     /// Ids of all triangles that the ray hits in front of its origin, sorted.
@@ -380,27 +351,6 @@ mod tests {
         mesh.triangles.push([3, 2, 1]);
         // The common edge (1, 2) lies opposite the first corner of both.
         assert_eq!(open_edges(&mesh), [[false, true, true]; 2]);
-    }
-
-    #[test]
-    fn a_hierarchy_of_another_mesh_is_refused() {
-        let mesh = sphere();
-        let good = Bvh::build(&mesh);
-        let refused = |spoil: &dyn Fn(&mut Bvh)| {
-            let mut bvh = good.clone();
-            spoil(&mut bvh);
-            Tree::new(&mesh, Cow::Owned(bvh)).is_err()
-        };
-        assert!(!refused(&|_| ()));
-        assert!(refused(&|bvh| bvh.primitives[7] = 1280));
-        assert!(refused(&|bvh| bvh.primitives.truncate(1279)));
-        assert!(refused(&|bvh| bvh.nodes[0].first = 0));
-        assert!(refused(&|bvh| bvh.nodes[0].first = u32::MAX - 1));
-        assert!(refused(&|bvh| bvh
-            .nodes
-            .iter_mut()
-            .filter(|node| node.count > 0)
-            .for_each(|node| node.first = 1280)));
     }
 
     /// Coordinates that often coincide, so that rays run along box faces, edges and corners.

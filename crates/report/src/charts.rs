@@ -326,7 +326,7 @@ pub fn conditions(kept: &[Kept]) -> Vec<String> {
 mod tests {
     use super::*;
     use crate::samples::results as sample;
-    use skiagraph_compare::records::sequence::Sequence;
+    use skiagraph_compare::records::sequence::{FrameCost, Sequence};
 
     fn kept() -> Kept {
         let mut results = sample();
@@ -387,8 +387,10 @@ mod tests {
             wrong_outside_band,
             graded: Default::default(),
             rays: None,
-            gpu_ms: None,
-            wall_ms: 1.0,
+            cost: FrameCost {
+                gpu_ms: None,
+                wall_ms: 1.0,
+            },
             shimmer: None,
             skipped: Vec::new(),
             remade: Vec::new(),

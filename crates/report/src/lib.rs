@@ -2,6 +2,7 @@
 //! worked out here that `records` does not hold.
 
 pub mod charts;
+pub mod gate;
 pub mod graded;
 pub mod html;
 pub mod language;

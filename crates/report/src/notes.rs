@@ -2,10 +2,10 @@
 
 use crate::graded::graded;
 use itertools::Itertools;
-use skiagraph_compare::records::results::{Results, Run};
+use skiagraph_compare::records::results::{Machine, Results, Run};
 use skiagraph_compare::records::sequence::{FrameCost, Sequence};
-use skiagraph_compare::wording::{frames, ms, thousands};
-use skiagraph_reference::BlockerCounts;
+use skiagraph_compare::wording::{frames, ms, percent, plural, thousands};
+use skiagraph_reference::{BlockerCounts, Quantiles};
 
 /// A band of more than one pixel in so many of those facing the light leaves too much open.
 const MAX_BAND: u128 = 1000;
@@ -15,6 +15,16 @@ pub fn band_warning(run: &Run) -> Option<String> {
     let is_large = u128::from(run.band) * MAX_BAND > u128::from(run.pixels.facing_light);
     let text = "warning: the band is larger than 0.1 % of PFL; what lies in it is not proven";
     is_large.then(|| text.to_owned())
+}
+
+/// That others used the machine when the comparison began, if they took much of it.
+pub fn load_warning(machine: &Machine) -> Option<String> {
+    let load = machine.load.filter(|_| machine.is_loaded())?;
+    let cores = plural(machine.cores as usize, "core");
+    Some(format!(
+        "warning: the machine was busy when this began (load {load:.1} on {cores}): times have a \
+         wide spread; ratios of methods that took turns suffer the least"
+    ))
 }
 
 /// That pixels of a view and viewport show what is not seen there, if any do. No method is to blame
@@ -34,6 +44,41 @@ pub fn wrong_surface(count: u64, all: u64) -> String {
         thousands(count),
         thousands(all)
     )
+}
+
+/// Texels of a run's map per pixel, and how errors jump between its layers, in words; `None` where
+/// its graph does not tell.
+pub fn map_figures(run: &Run) -> Option<String> {
+    let measured = run.measured.as_ref()?;
+    let of = measured.texels.as_ref()?;
+    let range = |of: &Quantiles| format!("{} to {}", digits(of.p5), digits(of.p95));
+    let mut text = format!(
+        "texels per pixel: median {}, nine tenths of the pixels {}; by distance and map {}, by \
+         angles × {}; under one in {}",
+        digits(of.texels.median),
+        range(&of.texels),
+        range(&of.perspective),
+        range(&of.projection),
+        percent(of.under_one, of.pixels),
+    );
+    if of.outside_map > 0 {
+        text += &format!("; outside the map {}", thousands(of.outside_map));
+    }
+    if let Some(jump) = &measured.layer_jump {
+        text += &format!(
+            ". Neighbours differ in error by {:.4} across layers ({}), by {:.4} elsewhere",
+            jump.across,
+            plural(jump.pairs as usize, "pair"),
+            jump.elsewhere,
+        );
+    }
+    Some(text)
+}
+
+/// A number with three significant digits.
+fn digits(number: f64) -> String {
+    let behind = 2.0 - number.abs().max(1e-6).log10().floor();
+    format!("{number:.*}", behind.max(0.0) as usize)
 }
 
 /// Says of each method that is wrong of certain pixels how many they are, and what blocks them. All
@@ -207,6 +252,19 @@ mod tests {
             "warning: 1,234 of 131,072 pixels show a surface that another one hides, or none where \
              there is one; every method is judged on the surface that is shown"
         );
+    }
+
+    #[test]
+    fn a_busy_machine_is_told() {
+        let mut machine = sample().machine;
+        assert_eq!(load_warning(&machine), None);
+        machine.load = Some(4.0);
+        let told = load_warning(&machine).unwrap();
+        assert!(
+            told.starts_with("warning: the machine was busy when this began (load 4.0 on 8 cores)")
+        );
+        machine.load = None;
+        assert_eq!(load_warning(&machine), None);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use crate::charts::Kept;
 use crate::html::{page, sources};
 use skiagraph_compare::error::CompareError;
-use skiagraph_compare::files::lock::{self, Shared};
+use skiagraph_compare::files::lock;
 use skiagraph_compare::files::write::write_whole;
 use skiagraph_compare::records::read_back;
 use skiagraph_compare::sink::Sink;
@@ -32,7 +32,7 @@ pub fn write(folders: &[PathBuf], file: &Path, sink: &dyn Sink) -> Result<(), Co
         .iter()
         .find(|folder| beside == Some(folder.as_path()));
     let _locked = match beside.filter(|folder| folder.is_dir()) {
-        Some(folder) => Some(lock::wait_for(folder, Shared::Results, sink)?),
+        Some(folder) => Some(lock::wait_for(folder, lock::RESULTS, sink)?),
         None => None,
     };
     let (mut kept, mut matrices) = (Vec::new(), Vec::new());

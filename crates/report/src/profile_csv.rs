@@ -75,10 +75,8 @@ impl Line<'_> {
     }
 
     fn cpu(&self) -> Option<&Series> {
-        Some(
-            self.pass
-                .map_or(&self.profile.frame.cpu_ms, |pass| &pass.cpu_ms),
-        )
+        let frame = &self.profile.frame.cpu_ms;
+        Some(self.pass.map_or(frame, |pass| &pass.cpu_ms))
     }
 }
 

@@ -206,16 +206,12 @@ pub fn failures(report: &Report, command_for: CommandFor) -> String {
             let with = set.map_or(String::new(), |set| format!(" with {set}"));
             let what = match (&cell.counts, &cell.failed) {
                 (Some(counts), _) => {
-                    let OutsideBand {
-                        lit,
-                        shadow,
-                        certain,
-                    } = counts.outside_band;
+                    let outside = &counts.outside_band;
                     format!(
                         "{} wrongly lit, {} wrongly in shadow; {} of them called certain",
-                        thousands(lit),
-                        thousands(shadow),
-                        thousands(certain)
+                        thousands(outside.lit),
+                        thousands(outside.shadow),
+                        thousands(outside.certain)
                     )
                 }
                 (None, Some(reason)) => reason.clone(),

@@ -6,6 +6,7 @@ use skiagraph_compare::records::results::{Measured, Part, Run, step};
 use skiagraph_compare::records::sequence::SequenceFrame;
 use skiagraph_compare::records::statistics::FrameTimes;
 use skiagraph_compare::records::steady::Cycle;
+use skiagraph_compare::records::turns::{PairedRatio, Turns};
 use skiagraph_reference::Shimmer;
 
 /// One method in one setting, over the views that it was measured on.
@@ -16,12 +17,15 @@ pub struct Row<'a> {
     /// Method and variant.
     pub method: String,
     /// Its runs, one per view, those that measured something.
-    runs: Vec<(&'a Run, &'a Measured)>,
+    runs: Vec<Measurement<'a>>,
     /// Why it could not run, where it could not at all.
     pub unavailable: Option<&'a str>,
     /// True if its times are the GPU's own, not the wall clock's.
     pub has_gpu_times: bool,
 }
+
+/// A run, and its measurements.
+type Measurement<'a> = (&'a Run, &'a Measured);
 
 /// Wrong pixels over all views.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -95,6 +99,17 @@ impl<'a> Row<'a> {
         })
     }
 
+    /// When the newest comparison began that measured it.
+    pub fn session(&self) -> &'a str {
+        let sessions = self.runs.iter().map(|(run, _)| run.session.as_str());
+        sessions.max().unwrap_or_default()
+    }
+
+    /// True unless an early end left one of its runs with a single frame.
+    pub fn is_whole(&self) -> bool {
+        self.runs.iter().all(|(run, _)| run.is_whole())
+    }
+
     /// True if no answer outside the band differs from the reference's, in any share.
     pub fn is_exact(&self) -> bool {
         let is_exact = |(_, of): &(&Run, &Measured)| {
@@ -164,6 +179,59 @@ impl<'a> Row<'a> {
         self.mean(|_, of| median(kept(of), by_wall)).filter(|_| any)
     }
 
+    /// First and third quartile of the same times as [`frame_ms`](Self::frame_ms), or with `kept`
+    /// as [`kept_ms`](Self::kept_ms): means of the views'.
+    pub fn quartiles(&self, by_wall: bool, is_kept: bool) -> Option<[f64; 2]> {
+        let times = if is_kept { kept } else { full };
+        let q1 = self.mean(|_, of| Some(times(of).spread(by_wall)?.q1))?;
+        Some([q1, self.mean(|_, of| Some(times(of).spread(by_wall)?.q3))?])
+    }
+
+    /// Milliseconds of a frame less its G-buffer, which all methods have alike, by the GPU's clock.
+    pub fn own_ms(&self) -> Option<f64> {
+        self.mean(|_, of| of.ms_without_gbuffer())
+    }
+
+    /// True if its frames were faster or slower than those of another row on the same views, with
+    /// every pass run or with what is kept. Frames that took turns are compared turn by turn;
+    /// those that did not are told apart if their quartiles do not overlap.
+    pub fn is_told_apart(&self, other: &Self, by_wall: bool, is_kept: bool) -> bool {
+        let pair = || self.runs.iter().zip(&other.runs);
+        let is_pair = |((one, of), (other, of_other)): (&Measurement, &Measurement)| {
+            one.session == other.session && are_paired(of, of_other)
+        };
+        if !is_kept && pair().all(is_pair) {
+            let mut sums: [Vec<f64>; 2] = Default::default();
+            for ((_, one), (_, other)) in pair() {
+                let times = [one, other].map(|of| full(of).frames(by_wall));
+                let [Some(one_ms), Some(other_ms)] = times else {
+                    return false;
+                };
+                let scale = anchors(one, other, by_wall);
+                for turn in 0..one_ms.len().min(other_ms.len()) {
+                    let scale = scale.as_ref().map_or(1.0, |scale| scale[turn]);
+                    let add = [one_ms[turn], other_ms[turn] * scale];
+                    for (sums, ms) in sums.iter_mut().zip(add) {
+                        match sums.get_mut(turn) {
+                            Some(sum) => *sum += ms,
+                            None => sums.push(ms),
+                        }
+                    }
+                }
+            }
+            let ratio = PairedRatio::new(&sums[0], &sums[1]);
+            return ratio.is_some_and(|ratio| ratio.is_told_apart());
+        }
+        let quartiles = [self, other].map(|row| {
+            let kept = row.quartiles(by_wall, is_kept);
+            kept.or_else(|| row.quartiles(by_wall, false))
+        });
+        match quartiles {
+            [Some([q1, q3]), Some([other_q1, other_q3])] => q3 < other_q1 || other_q3 < q1,
+            _ => false,
+        }
+    }
+
     /// Rays of a frame, if the method counts them.
     pub fn rays(&self) -> Option<f64> {
         self.mean(|_, of| of.rays.map(|rays| rays as f64 / frames(of)))
@@ -172,16 +240,14 @@ impl<'a> Row<'a> {
     /// Counts, of camera paths, answers that changed though the right ones did not, of those
     /// compared.
     pub fn shimmer(&self) -> Option<Part> {
-        let shimmers = self
-            .runs
-            .iter()
-            .map(|(_, of)| Some(of.sequence.as_ref()?.shimmer));
-        let add = |sum: Part, of: Shimmer| Part {
-            count: sum.count + of.changed,
-            of: sum.of + of.compared,
-        };
-        let all: Vec<Shimmer> = shimmers.collect::<Option<_>>()?;
-        Some(all.into_iter().fold(Part { count: 0, of: 0 }, add))
+        let mut all = Shimmer::default();
+        for (_, of) in &self.runs {
+            all += of.sequence.as_ref()?.shimmer;
+        }
+        Some(Part {
+            count: all.changed,
+            of: all.compared,
+        })
     }
 
     /// Worst frame of all camera paths, by its error.
@@ -211,6 +277,24 @@ impl<'a> Row<'a> {
     }
 }
 
+/// True if the frames of two runs of a view can be compared one by one: they took turns, or are
+/// those of one camera path.
+fn are_paired(one: &Measured, other: &Measured) -> bool {
+    one.turns.is_some() == other.turns.is_some()
+}
+
+/// How the common anchor's times in the group of `one` stand to those in the group of `other`, turn
+/// by turn; `None` of one group.
+fn anchors(one: &Measured, other: &Measured, by_wall: bool) -> Option<Vec<f64>> {
+    let (one, other) = (one.turns.as_ref()?, other.turns.as_ref()?);
+    if one.group == other.group {
+        return None;
+    }
+    let frames = |of: &Turns| Some(of.anchor.frames(by_wall)?.to_vec());
+    let pairs = frames(one)?.into_iter().zip(frames(other)?);
+    Some(pairs.map(|(one, other)| one / other.max(1e-6)).collect())
+}
+
 /// The steady state of a method that remembers, as it was judged.
 fn cycle(of: &Measured) -> Option<Cycle> {
     of.steady.as_ref()?.judged
@@ -235,11 +319,7 @@ fn kept(of: &Measured) -> &FrameTimes {
 }
 
 fn median(times: &FrameTimes, by_wall: bool) -> Option<f64> {
-    if by_wall {
-        Some(times.wall_ms.median)
-    } else {
-        times.gpu_ms.map(|gpu| gpu.median)
-    }
+    Some(times.spread(by_wall)?.median)
 }
 
 /// The rows of one viewport, the fastest first, those that could not run last.

@@ -2,13 +2,14 @@
 //! setting over all views, the fastest first.
 
 use crate::notes::{
-    band_warning, blocked_by, path_costs, remembering, surface_warning, times_missing,
+    band_warning, blocked_by, load_warning, path_costs, remembering, surface_warning, times_missing,
 };
 use crate::summary::{Row, by_wall, rows};
 use crate::verdict::{Verdict, verdict};
 use crate::{graded, results_table::timed_frames, table::terminal};
 use itertools::Itertools;
-use skiagraph_compare::lists::{place, unique};
+use skiagraph_compare::lists::unique;
+use skiagraph_compare::measuring::date::is_another_hour;
 use skiagraph_compare::records::columns::are_paths;
 use skiagraph_compare::records::results::{Results, Run};
 use skiagraph_compare::records::table::Table;
@@ -21,16 +22,63 @@ pub struct Summary<'a> {
     results: &'a Results,
     /// Its size in pixels.
     pub viewport: [u32; 2],
+    /// The light, where views were compared under several: nothing is averaged over lights.
+    light: Option<&'a str>,
     runs: Vec<&'a Run>,
     /// A row per method and setting, the fastest first.
     pub rows: Vec<Row<'a>>,
 }
 
-/// One summary per viewport, in the order of the results.
+/// One summary per viewport and light, in the order of the results.
 pub fn summaries(results: &Results) -> Vec<Summary<'_>> {
-    let all = unique(results.runs.iter().map(|run| run.viewport)).into_iter();
-    all.map(|viewport| Summary::new(results, viewport))
-        .collect()
+    let place = |run: &'_ Run| (run.viewport, run.light.clone());
+    let all = unique(results.runs.iter().map(place)).into_iter();
+    let summary = |(viewport, light)| {
+        let runs = results.runs.iter();
+        let runs = runs.filter(|run| run.viewport == viewport && run.light == light);
+        Summary::new(results, runs.collect())
+    };
+    all.map(summary).collect()
+}
+
+/// Each method under each light, of the viewports with several: wrong pixels outside the band in
+/// percent, milliseconds of a frame and memory. Each comes with its viewport.
+pub fn by_light(results: &Results) -> Vec<([u32; 2], Table)> {
+    let summaries = summaries(results);
+    let mut tables = Vec::new();
+    for viewport in unique(summaries.iter().map(|summary| summary.viewport)) {
+        let of = summaries
+            .iter()
+            .filter(|summary| summary.viewport == viewport);
+        let lights: Vec<(&str, &Summary)> = of
+            .filter_map(|summary| Some((summary.light?, summary)))
+            .collect();
+        if lights.len() < 2 {
+            continue;
+        }
+        let rows = lights.iter().flat_map(|(_, summary)| &summary.rows);
+        let labels = unique(rows.map(|row| &row.label));
+        let cells = labels.into_iter().map(|label| {
+            let cell = |(_, summary): &(&str, &Summary)| {
+                let by_wall = by_wall(&summary.rows);
+                let mut rows = summary.rows.iter().filter(|row| row.views() > 0);
+                let row = rows.find(|row| row.label == *label);
+                or_dash(row, |row| {
+                    let wrong = row.wrong();
+                    let share = percent(wrong.outside_band, wrong.facing_light);
+                    let time = or_dash(row.frame_ms(by_wall), ms);
+                    format!("{share}, {time} ms, {}", bytes(row.bytes()))
+                })
+            };
+            let cells = lights.iter().map(cell);
+            [label.clone()].into_iter().chain(cells).collect()
+        });
+        let heads = ["method"]
+            .into_iter()
+            .chain(lights.iter().map(|(light, _)| *light));
+        tables.push((viewport, Table::new(heads, 1, cells)));
+    }
+    tables
 }
 
 /// Beginning of lines that warn; the page makes them stand out by it.
@@ -43,12 +91,13 @@ pub const WRONG: &str = "wrong outside band";
 pub const NOT_THERE: &str = "n/a";
 
 impl<'a> Summary<'a> {
-    fn new(results: &'a Results, viewport: [u32; 2]) -> Self {
-        let runs = results.runs.iter();
-        let runs: Vec<&Run> = runs.filter(|run| run.viewport == viewport).collect();
+    /// The runs of one viewport and light.
+    fn new(results: &'a Results, runs: Vec<&'a Run>) -> Self {
+        let viewport = runs.first().map_or([0; 2], |run| run.viewport);
         Self {
             results,
             viewport,
+            light: runs.first().and_then(|run| run.light.as_deref()),
             rows: rows(runs.iter().copied(), viewport),
             runs,
         }
@@ -56,7 +105,13 @@ impl<'a> Summary<'a> {
 
     /// Which of its rows to take.
     pub fn verdict(&self) -> Verdict {
-        verdict(&self.rows)
+        verdict(&self.rows, &self.results.budgets)
+    }
+
+    /// True if a row was measured in another hour than the newest: it takes no part in the verdict.
+    pub fn is_old(&self, row: &Row) -> bool {
+        let sessions = self.rows.iter().map(Row::session);
+        is_another_hour(row.session(), sessions.max().unwrap_or_default())
     }
 
     /// True if the light has an extent, so that shares are what is judged.
@@ -69,7 +124,8 @@ impl<'a> Summary<'a> {
         are_paths(self.runs.iter().copied())
     }
 
-    fn views(&self) -> BTreeSet<&str> {
+    /// Names of the views or paths.
+    pub fn views(&self) -> BTreeSet<&str> {
         self.runs.iter().map(|run| run.view.as_str()).collect()
     }
 
@@ -83,7 +139,13 @@ impl<'a> Summary<'a> {
                 format!("path {view}, {frames}")
             }
             (Some(view), 1) => format!("view {view}"),
-            (_, count) => plural(count, if paths { "path" } else { "view" }),
+            (_, count) => {
+                let views = plural(count, if paths { "path" } else { "view" });
+                let light = self
+                    .light
+                    .map_or(String::new(), |light| format!(" under {light}"));
+                views + &light
+            }
         }
     }
 
@@ -144,6 +206,7 @@ impl<'a> Summary<'a> {
             ),
         ];
         let area = |run: &Run| Some(graded::area_reference(&run.area?, run.band));
+        lines.extend(load_warning(&self.results.machine));
         lines.extend(self.told(&each, band_warning));
         lines.extend(self.told(&each, area));
         lines
@@ -157,16 +220,31 @@ impl<'a> Summary<'a> {
         if are_paths {
             heads.extend(["worst frame", "shimmer"]);
         }
-        heads.extend(["frame ms", "map kept ms", "rays", "memory"]);
+        heads.extend([
+            "frame ms",
+            "quartiles",
+            "less G-buffer",
+            "map kept ms",
+            "rays",
+            "memory",
+        ]);
         let best = self.verdict().fastest_exact;
         let (views, is_soft) = (self.views().len(), self.is_soft());
         let row = |(index, row): (usize, &Row)| {
-            let mark = if best == Some(index) { " *" } else { "" };
-            let few = match row.views() {
-                some if some == views || some == 0 => String::new(),
-                some => format!(" ({some} of {})", plural(views, "view")),
-            };
-            let mut cells = vec![format!("{}{few}{mark}", row.label)];
+            let mut label = row.label.clone();
+            if row.views() != views && row.views() > 0 {
+                label += &format!(" ({} of {})", row.views(), plural(views, "view"));
+            }
+            if !row.is_whole() {
+                label += " (1 frame)";
+            }
+            if self.is_old(row) {
+                label += &format!(" (of {})", row.session());
+            }
+            if best == Some(index) {
+                label += " *";
+            }
+            let mut cells = vec![label];
             if row.views() == 0 {
                 cells.push(NOT_THERE.into());
                 cells.resize(heads.len(), "–".into());
@@ -192,6 +270,11 @@ impl<'a> Summary<'a> {
                 cells.push(or_dash(shimmer, |part| percent(part.count, part.of)));
             }
             cells.push(or_dash(row.frame_ms(by_wall), ms));
+            let quartiles = row.quartiles(by_wall, false);
+            cells.push(or_dash(quartiles, |[q1, q3]| {
+                format!("{}–{}", ms(q1), ms(q3))
+            }));
+            cells.push(or_dash(row.own_ms(), ms));
             cells.push(or_dash(row.kept_ms(by_wall), ms));
             cells.push(or_dash(row.rays(), |rays| thousands(rays.round() as u64)));
             cells.push(bytes(row.bytes()));
@@ -214,6 +297,7 @@ impl<'a> Summary<'a> {
             Some(format!("{} is unavailable: {why}", row.label))
         }));
         notes.extend(self.certain_wrong());
+        notes.extend(self.dearer_when_kept());
         notes.extend(self.told(&self.runs, graded::no_shares));
         notes.extend(self.told(&self.runs, remembering));
         notes.extend(self.told(&self.runs, path_costs));
@@ -293,6 +377,26 @@ impl<'a> Summary<'a> {
             .collect()
     }
 
+    /// Says which methods take longer with what they keep than with every pass run.
+    fn dearer_when_kept(&self) -> Vec<String> {
+        let by_wall = by_wall(&self.rows);
+        let line = |row: &Row| {
+            let [low, _] = row.quartiles(by_wall, true)?;
+            let [_, high] = row.quartiles(by_wall, false)?;
+            let (kept, frame) = (row.kept_ms(by_wall)?, row.frame_ms(by_wall)?);
+            (low > high).then(|| {
+                format!(
+                    "warning: {} takes longer while only the camera moves ({} ms) than with every \
+                     pass run ({} ms): these times are not to be relied on",
+                    row.label,
+                    ms(kept),
+                    ms(frame)
+                )
+            })
+        };
+        self.rows.iter().filter_map(line).collect()
+    }
+
     /// Says what blocks the pixels of which a method was certain and wrong, over all views.
     fn certain_wrong(&self) -> Vec<String> {
         let mut sums: BTreeMap<String, (u64, BlockerCounts)> = BTreeMap::new();
@@ -326,39 +430,31 @@ pub fn passes(results: &Results) -> String {
 }
 
 fn matrix(method: &str, runs: &[&Run]) -> String {
-    let mut columns: Vec<([u32; 2], Option<u32>)> = Vec::new();
-    let mut passes: Vec<&str> = Vec::new();
-    // A pass's place, and the sum and number of its times, by pass and column.
-    let mut times: BTreeMap<(usize, usize), (f64, u32)> = BTreeMap::new();
-
-    for run in runs {
-        let Some(measured) = &run.measured else {
-            continue;
-        };
-        let cell = (run.viewport, run.map_size);
-        let column = place(&mut columns, cell);
-        for pass in &measured.passes {
-            let row = place(&mut passes, pass.name.as_str());
-            if let Some(gpu) = pass.gpu_ms {
-                let (sum, count) = times.entry((row, column)).or_default();
-                *sum += gpu.median;
-                *count += 1;
-            }
-        }
-    }
+    let measured = || {
+        runs.iter()
+            .filter_map(|run| Some((*run, run.measured.as_ref()?)))
+    };
+    let column = |run: &Run| (run.viewport, run.map_size);
+    let columns = unique(measured().map(|(run, _)| column(run)));
+    let passes = measured().flat_map(|(_, of)| &of.passes);
+    let passes = unique(passes.map(|pass| pass.name.as_str()));
     let head = |(viewport, map): &([u32; 2], Option<u32>)| match map {
         Some(map) => format!("{}\nmap {map}", size(*viewport)),
         None => size(*viewport),
     };
     let heads = [format!("{method}, GPU ms")].into_iter();
     let heads = heads.chain(columns.iter().map(head));
-    let rows = passes.iter().enumerate().map(|(row, name)| {
-        let cell = |column| {
-            let time = times.get(&(row, column));
-            or_dash(time, |(sum, count)| ms(sum / f64::from(*count)))
+    let rows = passes.into_iter().map(|name| {
+        let cell = |of_column: &([u32; 2], Option<u32>)| {
+            let runs = measured().filter(|(run, _)| column(run) == *of_column);
+            let passes = runs.flat_map(|(_, of)| &of.passes);
+            let times = passes.filter(|pass| pass.name == name);
+            let times: Vec<f64> = times.filter_map(|pass| Some(pass.gpu_ms?.median)).collect();
+            let mean = || times.iter().sum::<f64>() / times.len() as f64;
+            or_dash((!times.is_empty()).then(mean), ms)
         };
-        let cells = (0..columns.len()).map(cell);
-        [name.to_string()].into_iter().chain(cells).collect()
+        let cells = columns.iter().map(cell);
+        [name.to_owned()].into_iter().chain(cells).collect()
     });
     terminal(&Table::new(heads, 1, rows))
 }
@@ -409,6 +505,27 @@ mod tests {
         ] {
             assert!(text.contains(part), "no {part:?} in\n{text}");
         }
+    }
+
+    #[test]
+    fn each_light_has_a_table_of_its_own_and_all_stand_in_one() {
+        let mut results = two_views();
+        for run in &mut results.runs {
+            run.light = Some("lamp".into());
+        }
+        let mut sun = results.runs[0].clone();
+        sun.light = Some("sun".into());
+        sun.measured.as_mut().unwrap().wrong.total = 6;
+        results.runs.push(sun);
+        let all = summaries(&results);
+        let whats: Vec<String> = all.iter().map(Summary::what).collect();
+        assert_eq!(whats, ["2 views under lamp", "view main"]);
+        assert_eq!(all[1].rows.len(), 1);
+        let [(_, table)] = &by_light(&results)[..] else {
+            panic!("one viewport")
+        };
+        insta::assert_snapshot!(table.markdown());
+        assert!(by_light(&two_views()).is_empty());
     }
 
     #[test]

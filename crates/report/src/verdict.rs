@@ -1,10 +1,9 @@
 //! Which method to take, in a sentence or two.
 
 use crate::summary::{Row, Wrong, by_wall};
-use skiagraph_compare::wording::{ms, percent};
-
-/// Times that differ by less than this share are level: no adapter's are surer.
-const LEVEL: f64 = 0.03;
+use skiagraph_compare::measuring::date::is_another_hour;
+use skiagraph_compare::records::budgets::Budgets;
+use skiagraph_compare::wording::{bytes, ms, percent, plural};
 
 /// The share of pixels in the band beyond which a verdict holds of the others alone: the right
 /// answer of more than one pixel in a hundred hangs on rounding.
@@ -20,24 +19,43 @@ pub struct Verdict {
     pub sentences: Vec<String>,
 }
 
-/// Judges rows that were measured on the same views, the fastest first; those on fewer views and
-/// those that could not run take no part.
-pub fn verdict(rows: &[Row]) -> Verdict {
+/// Judges rows that were measured on the same views, the fastest first; those on fewer views, those
+/// of another hour, whose machine may have been another one by its load, those that an early end
+/// left without their frames and those that could not run take no part.
+/// Those beyond a budget are not taken.
+pub fn verdict(rows: &[Row], budgets: &Budgets) -> Verdict {
     let most = rows.iter().map(Row::views).max().unwrap_or_default();
     let by_wall = by_wall(rows);
+    let newest = rows.iter().map(Row::session).max().unwrap_or_default();
     let full: Vec<Contender> = rows
         .iter()
         .enumerate()
-        .filter(|(_, row)| row.views() == most && most > 0)
+        .filter(|(_, row)| row.views() == most && most > 0 && row.is_whole())
+        .filter(|(_, row)| !is_another_hour(row.session(), newest))
         .filter_map(|(index, row)| Contender::new(index, row, by_wall))
+        .collect();
+    let within: Vec<Contender> = full
+        .iter()
+        .filter(|of| of.is_within(budgets))
+        .cloned()
         .collect();
     let mut verdict = if full.is_empty() {
         Verdict::default()
+    } else if within.is_empty() {
+        none_within(&full, budgets)
+    } else if budgets.wrong_percent.is_some() {
+        right_enough(&within)
     } else if full.iter().any(|of| of.is_soft) {
-        graded(&full, rows)
+        graded(&within, rows)
     } else {
-        hard(&full)
+        hard(&within)
     };
+    if !budgets.is_empty() && !within.is_empty() {
+        let (count, all) = (within.len(), plural(full.len(), "method"));
+        verdict
+            .sentences
+            .insert(0, format!("Within {budgets}: {count} of {all}."));
+    }
     if let Some(condition) = full.iter().find_map(|of| of.condition) {
         verdict.sentences = conditioned(condition, verdict.sentences, &full);
     }
@@ -88,9 +106,10 @@ fn conditioned(of: Condition, sentences: Vec<String>, all: &[Contender]) -> Vec<
 /// A row, with what decides.
 #[derive(Clone, Debug)]
 struct Contender<'a> {
+    row: &'a Row<'a>,
+    by_wall: bool,
     index: usize,
     label: &'a str,
-    method: &'a str,
     wrong: Wrong,
     is_exact: bool,
     rmse: f64,
@@ -110,9 +129,10 @@ impl<'a> Contender<'a> {
             return None; // Nothing was judged.
         }
         Some(Self {
+            row,
+            by_wall,
             index,
             label: &row.label,
-            method: &row.method,
             wrong,
             is_exact: row.is_exact(),
             rmse: row.rmse()?,
@@ -123,46 +143,73 @@ impl<'a> Contender<'a> {
         })
     }
 
+    /// How wrong it is, in words that stand behind `and`, or alone.
     fn error(&self) -> String {
-        if self.is_soft {
-            format!("RMSE {:.4}", self.rmse)
-        } else if self.is_exact {
-            self.right().into()
-        } else {
-            let Wrong {
-                outside_band,
-                band,
-                facing_light,
-                ..
-            } = self.wrong;
+        let Wrong {
+            outside_band,
+            band,
+            facing_light,
+            ..
+        } = self.wrong;
+        match self.condition {
+            _ if self.is_soft => format!("RMSE {:.4}", self.rmse),
+            _ if self.is_exact => self.right().into(),
+            _ if outside_band == 0 => format!("off in its shades by RMSE {:.4}", self.rmse),
             // Where much lies in the band, the others are judged.
-            let judged = match self.condition {
-                Some(_) => facing_light.saturating_sub(band),
-                None => facing_light,
-            };
-            format!("{} wrong", percent(outside_band, judged))
+            Some(_) => {
+                let judged = facing_light.saturating_sub(band);
+                format!("wrong on {} of these", percent(outside_band, judged))
+            }
+            None => {
+                let share = percent(outside_band, facing_light);
+                format!("wrong on {share} of the surfaces that face the light")
+            }
         }
+    }
+
+    fn is_within(&self, budgets: &Budgets) -> bool {
+        let is_quick = budgets.frame_ms.is_none_or(|most| self.frame <= most);
+        let is_right = budgets
+            .wrong_percent
+            .is_none_or(|most| 100.0 * self.wrong.share() < most);
+        let is_small = budgets
+            .memory_bytes
+            .is_none_or(|most| self.row.bytes() <= most);
+        is_quick && is_right && is_small
     }
 
     /// That no pixel is wrong, as far as that can be judged.
     fn right(&self) -> &'static str {
         match self.condition {
-            Some(_) => "none wrong",
-            None => "exact",
+            Some(_) => "right on all of these",
+            None => "exact here",
         }
     }
 
-    fn figures(&self) -> String {
-        let ms = ms(self.frame);
-        format!("`{}` ({}, {ms} ms)", self.label, self.error())
+    /// Milliseconds of a frame.
+    fn time(&self, when: When) -> f64 {
+        match when {
+            When::AnythingMoves => self.frame,
+            When::CameraMoves => self.kept,
+        }
+    }
+
+    fn is_told_apart(&self, other: &Self, when: When) -> bool {
+        let is_kept = when == When::CameraMoves;
+        self.row.is_told_apart(other.row, self.by_wall, is_kept)
+    }
+
+    fn name(&self) -> String {
+        format!("`{}`", self.label)
     }
 }
 
-type Time = fn(&Contender) -> f64;
-const TIMES: [(&str, Time); 2] = [
-    ("while light or meshes move", |of| of.frame),
-    ("while only the camera moves", |of| of.kept),
-];
+/// Frames that a sentence is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum When {
+    AnythingMoves,
+    CameraMoves,
+}
 
 fn least<'c, 'a>(
     of: impl IntoIterator<Item = &'c Contender<'a>>,
@@ -174,124 +221,162 @@ fn least<'c, 'a>(
 
 fn hard(all: &[Contender]) -> Verdict {
     let exact: Vec<Contender> = all.iter().filter(|of| of.is_exact).cloned().collect();
-    let Some(best) = least(&exact, TIMES[0].1) else {
+    let fastest = |when: When| least(&exact, |of| of.time(when));
+    let (Some(best), Some(kept)) = (fastest(When::AnythingMoves), fastest(When::CameraMoves))
+    else {
         return Verdict {
             fastest_exact: None,
             sentences: none_exact(all),
         };
     };
-    let mut sentences = Vec::new();
-    let kept = least(&exact, TIMES[1].1).unwrap_or(best);
-    if kept.index == best.index {
-        sentences.push(sentence(best, None, &exact, all));
-    } else {
-        for (of, (when, time)) in [best, kept].into_iter().zip(TIMES) {
-            sentences.push(sentence(of, Some((when, time)), &exact, all));
+    let any_keeps = all.iter().any(|of| of.kept < of.frame);
+    let is_one = kept.index == best.index || !best.is_told_apart(kept, When::CameraMoves);
+    let sentences = match (is_one, any_keeps) {
+        (true, false) => vec![sentence(best, "", When::AnythingMoves, &exact, all)],
+        (true, true) => {
+            let whatever = ", whatever moves";
+            vec![sentence(best, whatever, When::AnythingMoves, &exact, all)]
         }
-    }
+        (false, _) => {
+            let moving = " while light or meshes move";
+            let still = " while only the camera moves";
+            vec![
+                sentence(best, moving, When::AnythingMoves, &exact, all),
+                sentence(kept, still, When::CameraMoves, &exact, all),
+            ]
+        }
+    };
     Verdict {
         fastest_exact: Some(best.index),
         sentences,
     }
 }
 
-/// One method as the fastest exact one, with what is level with it, and beside the fastest of all
-/// and the slowest exact one.
+/// One method to take, with those that cannot be told apart from it, beside the next exact one and
+/// the fastest of all.
 fn sentence(
     best: &Contender,
-    when: Option<(&str, Time)>,
+    condition: &str,
+    when: When,
     exact: &[Contender],
     all: &[Contender],
 ) -> String {
-    let time = when.map_or(TIMES[0].1, |(_, time)| time);
-    let level = |of: &&Contender| of.index != best.index && time(of) <= time(best) * (1.0 + LEVEL);
-    let names: Vec<String> = [best]
-        .into_iter()
-        .chain(exact.iter().filter(level))
-        .map(|of| format!("`{}`", of.label))
-        .collect();
-    let mut text = match when {
-        Some((when, _)) => format!("{}{}: ", when[..1].to_uppercase(), &when[1..]),
-        None if all.iter().any(|of| of.kept < of.frame) => "Whatever moves: ".into(),
-        None => String::new(),
+    let others = || exact.iter().filter(|of| of.index != best.index);
+    let is_level = |of: &&Contender| !of.is_told_apart(best, when);
+    let level: Vec<String> = others().filter(is_level).map(Contender::name).collect();
+    let mut text = match &level[..] {
+        [] => format!("Take {}{condition}: {}", best.name(), per_frame(best, when)),
+        level => format!(
+            "Take {} or {}{condition}: their times cannot be told apart, {}",
+            best.name(),
+            level.join(" or "),
+            per_frame(best, when)
+        ),
     };
-    text += &format!(
-        "{}: {}, {} ms",
-        names.join(", level with "),
-        if best.condition.is_some() {
-            best.right()
-        } else {
-            "exact here"
-        },
-        ms(time(best))
-    );
-    if when.is_none() && best.kept < best.frame * (1.0 - LEVEL) {
+    let is_kept_told = when == When::AnythingMoves && condition.starts_with(',');
+    if is_kept_told && best.kept < best.frame {
         text += &format!(" ({} while only the camera moves)", ms(best.kept));
     }
     let all_exact = exact.len() == all.len();
-    let quickest = least(all, time).filter(|_| !all_exact);
-    if let Some(of) = quickest.filter(|of| time(of) > 0.0 && of.index != best.index) {
-        let times = ratio(time(best) / time(of));
-        text += &format!(", {times} x `{}` ({})", of.label, of.error());
-    }
-    let other_method = |of: &&Contender| of.method != best.method && !level(of);
-    let next = exact.iter().filter(other_method);
-    if let Some(of) = least(next, time) {
-        let times = ratio(time(best) / time(of));
-        let next = match best.condition {
-            Some(_) => "the next one with none wrong",
-            None => "the next exact method",
-        };
-        text += &format!(", {times} x `{}`, {next}", of.label);
-    }
-    if all_exact && all.len() > 1 {
-        text += match best.condition {
-            Some(_) => "; none of the methods is wrong there",
-            None => "; all are exact here",
+    let right = best.right();
+    let subject = if level.is_empty() {
+        "It is"
+    } else {
+        "They are"
+    };
+    text += &match least(others().filter(|of| !is_level(of)), |of| of.time(when)) {
+        Some(next) => {
+            let times = ratio(next.time(when) / best.time(when));
+            let next = next.name();
+            format!(". {subject} {right} and {times} times as fast as {next}, the next such method")
+        }
+        None if all_exact && all.len() > 1 => format!(". All are {right}"),
+        None => format!(". {subject} {right}"),
+    };
+    let quickest = least(all.iter().filter(|of| !of.is_exact), |of| of.time(when));
+    if let Some(of) = quickest {
+        let name = of.name();
+        text += &if !of.is_told_apart(best, when) {
+            format!(
+                ". {name} is as fast, as far as can be told, and {}",
+                of.error()
+            )
+        } else if of.time(when) < best.time(when) {
+            let times = ratio(best.time(when) / of.time(when));
+            format!(". {name} is {times} times as fast and {}", of.error())
+        } else {
+            ". No other is faster".into()
         };
     }
     text + "."
 }
 
+fn per_frame(of: &Contender, when: When) -> String {
+    format!("{} ms a frame", ms(of.time(when)))
+}
+
 fn none_exact(all: &[Contender]) -> Vec<String> {
+    let when = When::AnythingMoves;
     let right = all.iter().min_by(|one, other| {
         let shares = one.wrong.share().total_cmp(&other.wrong.share());
         shares.then(one.frame.total_cmp(&other.frame))
     });
-    let (Some(right), Some(fastest)) = (right, least(all, TIMES[0].1)) else {
+    let (Some(right), Some(fastest)) = (right, least(all, |of| of.frame)) else {
         return Vec::new();
     };
-    let (wrong, quick) = (right.figures(), fastest.figures());
     let none = match right.condition {
         Some(_) => "Each method is wrong on some",
         None => "None is exact here",
     };
+    let least_wrong = format!("{}, {}", right.error(), per_frame(right, when));
     vec![if right.index == fastest.index {
-        format!("{none}; the least wrong and the fastest is {wrong}.")
+        format!(
+            "{none}. {} is the least wrong and the fastest ({least_wrong}).",
+            right.name()
+        )
     } else {
-        format!("{none}; the least wrong is {wrong}, the fastest {quick}.")
+        format!(
+            "{none}. {} is the least wrong ({least_wrong}). {}.",
+            right.name(),
+            faster(fastest, right, when)
+        )
     }]
+}
+
+/// How much faster another method is, and its error.
+fn faster(fastest: &Contender, than: &Contender, when: When) -> String {
+    let (name, error) = (fastest.name(), fastest.error());
+    if fastest.is_told_apart(than, when) {
+        let times = ratio(than.time(when) / fastest.time(when));
+        format!("{name} is {times} times as fast ({error})")
+    } else {
+        format!("{name} ({error}) cannot be told apart from it in time")
+    }
 }
 
 /// Judges errors of shares: the least one, and the fastest.
 fn graded(all: &[Contender], rows: &[Row]) -> Verdict {
-    let rmse = |of: &Contender| of.rmse;
-    let (Some(right), Some(fastest)) = (least(all, rmse), least(all, TIMES[0].1)) else {
+    let when = When::AnythingMoves;
+    let (Some(right), Some(fastest)) = (least(all, |of| of.rmse), least(all, |of| of.frame)) else {
         return Verdict::default();
     };
-    let (error, quick) = (right.figures(), fastest.figures());
+    let figures = format!("{}, {}", right.error(), per_frame(right, when));
     let mut text = if right.index == fastest.index {
-        format!("The least error and the fastest: {error}")
+        format!(
+            "{} has the least error and is the fastest ({figures})",
+            right.name()
+        )
     } else {
-        format!("The least error: {error}; the fastest: {quick}")
+        let faster = faster(fastest, right, when);
+        format!("{} has the least error ({figures}). {faster}", right.name())
     };
     let own = rows
         .iter()
         .filter_map(Row::reference_error)
         .reduce(f64::max);
-    if let Some(own) = own.filter(|own| rmse(right) < 10.0 * own) {
+    if let Some(own) = own.filter(|own| right.rmse < 10.0 * own) {
         text += &format!(
-            "; the reference's own error is {own:.4}, more samples would tell more \
+            ". The reference's own error is {own:.4}: more samples would tell more \
              (--reference-samples)"
         );
     }
@@ -301,12 +386,63 @@ fn graded(all: &[Contender], rows: &[Row]) -> Verdict {
     }
 }
 
+/// The fastest of methods that are all right enough, with those that cannot be told apart from it.
+fn right_enough(all: &[Contender]) -> Verdict {
+    let when = When::AnythingMoves;
+    let Some(best) = least(all, |of| of.frame) else {
+        return Verdict::default();
+    };
+    let others = all.iter().filter(|of| of.index != best.index);
+    let level = others.filter(|of| !of.is_told_apart(best, when));
+    let figures =
+        |of: &Contender| format!("{} ({}, {})", of.name(), of.error(), per_frame(of, when));
+    let level: Vec<String> = level.map(figures).collect();
+    let level = match &level[..] {
+        [] => String::new(),
+        level => format!(". Not told apart from it in time: {}", level.join(", ")),
+    };
+    Verdict {
+        fastest_exact: best.is_exact.then_some(best.index),
+        sentences: vec![format!("Take {}{level}.", figures(best))],
+    }
+}
+
+/// That no method keeps to the budgets, and which come closest to each.
+fn none_within(all: &[Contender], budgets: &Budgets) -> Verdict {
+    let mut text = format!("No method keeps to {budgets}");
+    let mut add = |name: &str, figure: &dyn Fn(&Contender) -> f64, told: Told| {
+        if let Some(of) = least(all, figure) {
+            text += &format!("; {name} is {} ({})", of.name(), told(of));
+        }
+    };
+    if budgets.frame_ms.is_some() {
+        add("the fastest", &|of| of.frame, |of| {
+            per_frame(of, When::AnythingMoves)
+        });
+    }
+    if budgets.wrong_percent.is_some() {
+        add("the least wrong", &|of| of.wrong.share(), |of| of.error());
+    }
+    if budgets.memory_bytes.is_some() {
+        add("the smallest", &|of| of.row.bytes() as f64, |of| {
+            bytes(of.row.bytes())
+        });
+    }
+    Verdict {
+        fastest_exact: None,
+        sentences: vec![text + "."],
+    }
+}
+
+/// A figure in words.
+type Told = fn(&Contender) -> String;
+
 /// A ratio of times as it is read: two digits that count.
 fn ratio(ratio: f64) -> String {
-    match ratio {
-        _ if ratio >= 9.95 => format!("{ratio:.0}"),
-        _ if ratio >= 0.995 => format!("{ratio:.1}"),
-        _ => format!("{ratio:.2}"),
+    if ratio >= 9.95 {
+        format!("{ratio:.0}")
+    } else {
+        format!("{ratio:.1}")
     }
 }
 
@@ -315,7 +451,8 @@ mod tests {
     use super::*;
     use crate::samples::results as sample;
     use crate::summary::rows;
-    use skiagraph_compare::records::results::Run;
+    use skiagraph_compare::records::{results::Run, statistics::FrameTimes};
+    use std::time::Duration;
 
     /// A run of 100,000 pixels that face the light: method, wrong pixels outside the band, ms of a
     /// frame, and of one with the map kept.
@@ -324,8 +461,10 @@ mod tests {
         (run.preset, run.map_size) = (method.into(), None);
         let measured = run.measured.as_mut().unwrap();
         (measured.wrong.total, measured.wrong.in_band) = (wrong + 6, 6);
-        let set = |times: &mut skiagraph_compare::records::statistics::FrameTimes, ms| {
-            times.gpu_ms.as_mut().unwrap().median = ms;
+        let set = |times: &mut FrameTimes, ms: f64| {
+            let gpu = [Some(Duration::from_secs_f64(ms / 1e3)); 10];
+            let wall = [Duration::from_secs_f64(ms / 1e3); 10];
+            *times = FrameTimes::new(&gpu, &wall).unwrap();
         };
         set(&mut measured.frame, frame);
         set(&mut measured.cached.as_mut().unwrap().frame, kept);
@@ -352,8 +491,12 @@ mod tests {
 
     /// The label of the marked row, and what is said.
     fn outcome(runs: &[Run]) -> (Option<String>, Vec<String>) {
+        within(runs, &Budgets::default())
+    }
+
+    fn within(runs: &[Run], budgets: &Budgets) -> (Option<String>, Vec<String>) {
         let rows = rows(runs, [512, 256]);
-        let verdict = verdict(&rows);
+        let verdict = verdict(&rows, budgets);
         let marked = verdict.fastest_exact.map(|index| rows[index].label.clone());
         (marked, verdict.sentences)
     }
@@ -371,8 +514,9 @@ mod tests {
         assert_eq!(
             said,
             [
-                "Whatever moves: `light_buffer`: exact here, 21.0 ms, 2.1 x `nsm` (4.700 % wrong), \
-                 0.21 x `rt`, the next exact method."
+                "Take `light_buffer`, whatever moves: 21.0 ms a frame. It is exact here and 4.8 \
+                 times as fast as `rt`, the next such method. `nsm` is 2.1 times as fast and wrong \
+                 on 4.700 % of the surfaces that face the light."
             ]
         );
     }
@@ -389,10 +533,12 @@ mod tests {
         assert_eq!(
             said,
             [
-                "While light or meshes move: `rt`: exact here, 70.0 ms, 3.5 x `nsm` (0.009 % \
-                 wrong), 0.18 x `crsma_full`, the next exact method.",
-                "While only the camera moves: `crsma_full`: exact here, 34.0 ms, 3.4 x `nsm` \
-                 (0.009 % wrong), 0.49 x `rt`, the next exact method.",
+                "Take `rt` while light or meshes move: 70.0 ms a frame. It is exact here and 5.4 \
+                 times as fast as `crsma_full`, the next such method. `nsm` is 3.5 times as fast \
+                 and wrong on 0.009 % of the surfaces that face the light.",
+                "Take `crsma_full` while only the camera moves: 34.0 ms a frame. It is exact here \
+                 and 2.1 times as fast as `rt`, the next such method. `nsm` is 3.4 times as fast \
+                 and wrong on 0.009 % of the surfaces that face the light.",
             ]
         );
     }
@@ -404,25 +550,83 @@ mod tests {
         assert_eq!(
             said,
             [
-                "None is exact here; the least wrong is `crsm` (0.020 % wrong, 40.0 ms), the \
-                 fastest `nsm` (0.500 % wrong, 10.0 ms)."
+                "None is exact here. `crsm` is the least wrong (wrong on 0.020 % of the surfaces \
+                 that face the light, 40.0 ms a frame). `nsm` is 4.0 times as fast (wrong on 0.500 \
+                 % of the surfaces that face the light)."
             ]
         );
         let (_, said) = outcome(&[run("a", 0, 10.0, 10.0), run("b", 0, 10.2, 10.2)]);
         assert_eq!(
             said,
-            ["`a`, level with `b`: exact here, 10.0 ms; all are exact here."]
+            [
+                "Take `a` or `b`: their times cannot be told apart, 10.0 ms a frame. All are exact \
+                 here."
+            ]
         );
         let (_, said) = outcome(&[run("rt", 0, 10.0, 4.0)]);
         assert_eq!(
             said,
-            ["Whatever moves: `rt`: exact here, 10.0 ms (4.00 while only the camera moves)."]
+            [
+                "Take `rt`, whatever moves: 10.0 ms a frame (4.00 while only the camera moves). It \
+                 is exact here."
+            ]
         );
         assert_eq!(outcome(&[unavailable("rt_hw")]), (None, Vec::new()));
         assert_eq!(outcome(&[]), (None, Vec::new()));
         let mut dark = run("rt", 0, 10.0, 10.0);
         dark.pixels.facing_light = 0;
         assert_eq!(outcome(&[dark]), (None, Vec::new()), "nothing to judge");
+    }
+
+    #[test]
+    fn a_row_of_another_hour_takes_no_part() {
+        let mut old = run("quick", 0, 1.0, 1.0);
+        old.session = "2026-11-20T03:00:00Z".into();
+        let (marked, said) = outcome(&[run("rt", 0, 50.0, 50.0), old]);
+        assert_eq!(marked.as_deref(), Some("rt"));
+        assert_eq!(said, ["Take `rt`: 50.0 ms a frame. It is exact here."]);
+    }
+
+    #[test]
+    fn budgets_leave_methods_out_and_say_what_comes_closest() {
+        let runs = [
+            run("rt", 0, 30.0, 30.0),
+            run("pssm", 400, 8.0, 8.0),
+            run("nsm", 4_700, 5.0, 5.0),
+        ];
+        let budget = |frame_ms, wrong_percent| Budgets {
+            frame_ms,
+            wrong_percent,
+            memory_bytes: None,
+        };
+        let (_, said) = within(&runs, &budget(None, Some(1.0)));
+        assert_eq!(
+            said,
+            [
+                "Within less than 1 % wrong: 2 of 3 methods.",
+                "Take `pssm` (wrong on 0.400 % of the surfaces that face the light, 8.00 ms a \
+                 frame).",
+            ]
+        );
+        let (_, said) = within(&runs, &budget(Some(10.0), None));
+        assert!(said[1].contains("`pssm` is the least wrong"), "{said:?}");
+        let (marked, said) = within(&runs, &budget(Some(40.0), None));
+        assert_eq!(marked.as_deref(), Some("rt"), "{said:?}");
+        let (marked, said) = within(&runs, &budget(Some(6.0), Some(1.0)));
+        assert_eq!(marked, None);
+        assert_eq!(
+            said,
+            [
+                "No method keeps to at most 6 ms a frame and less than 1 % wrong; the fastest is \
+                 `nsm` (5.00 ms a frame); the least wrong is `rt` (exact here)."
+            ]
+        );
+        let memory = Budgets {
+            memory_bytes: Some(1 << 20),
+            ..Budgets::default()
+        };
+        let (_, said) = within(&runs, &memory);
+        assert!(said[0].starts_with("No method keeps to at most 1.0 MiB; the smallest is"));
     }
 
     #[test]
@@ -443,8 +647,8 @@ mod tests {
         assert_eq!(
             said,
             [
-                "Of the 42 % that can be judged: `hybrid_pcf`: none wrong, 30.0 ms, 3.3 x `nsm` \
-                 (0.121 % wrong).",
+                "Of the 42 % that can be judged: Take `hybrid_pcf`: 30.0 ms a frame. It is right \
+                 on all of these. `nsm` is 3.3 times as fast and wrong on 0.121 % of these.",
                 "On the other 58 % the right answer hangs on rounding: no method is right or wrong \
                  there. From the reference's choice differ `hybrid_pcf` 2.073 % (the least) and \
                  `nsm` 28.800 % (the most).",
@@ -469,7 +673,10 @@ mod tests {
         soft.measured.as_mut().unwrap().graded.rmse_outside_band = 0.02;
         let (marked, said) = outcome(&[soft, run("rt", 0, 50.0, 50.0)]);
         assert_eq!(marked.as_deref(), Some("rt"));
-        assert!(said[0].contains("10 x `pcf` (0 % wrong)"), "{said:?}");
+        assert!(
+            said[0].contains("`pcf` is 10 times as fast and off in its shades"),
+            "{said:?}"
+        );
     }
 
     #[test]
@@ -485,7 +692,7 @@ mod tests {
         ];
         let (marked, said) = outcome(&runs);
         assert_eq!(marked.as_deref(), Some("rt"));
-        assert_eq!(said, ["`rt`: exact here, 55.0 ms."]);
+        assert_eq!(said, ["Take `rt`: 55.0 ms a frame. It is exact here."]);
         // Wrong in one view is wrong.
         let runs = [run("rt", 0, 1.0, 1.0), elsewhere(run("rt", 7, 1.0, 1.0))];
         assert!(outcome(&runs).1[0].starts_with("None is exact here"));
@@ -494,8 +701,8 @@ mod tests {
     #[test]
     fn grades_have_a_least_error_and_a_fastest() {
         let runs = [graded("rt_area", 0.01, 90.0), graded("pcf", 0.2, 9.0)];
-        let expected = "The least error: `rt_area` (RMSE 0.0100, 90.0 ms); the fastest: `pcf` \
-            (RMSE 0.2000, 9.00 ms).";
+        let expected = "`rt_area` has the least error (RMSE 0.0100, 90.0 ms a frame). `pcf` is 10 \
+            times as fast (RMSE 0.2000).";
         assert_eq!(outcome(&runs), (None, vec![expected.into()]));
     }
 }

@@ -1,9 +1,6 @@
 //! The border to libraries that parse what others wrote.
 
-use std::{
-    any::Any,
-    panic::{AssertUnwindSafe, catch_unwind},
-};
+use skiagraph_located_ron::panics;
 
 /// Calls a library's parser. Known causes of panics are kept from it; an unknown panic is an error
 /// like any other.
@@ -11,17 +8,10 @@ use std::{
 /// # Errors
 /// Names the library, and what it said.
 pub(crate) fn caught<T>(library: &str, parse: impl FnOnce() -> T) -> Result<T, String> {
-    // The parser's unfinished results are dropped with the error.
-    catch_unwind(AssertUnwindSafe(parse)).map_err(|payload| {
-        let said = message(payload.as_ref());
+    panics::caught(parse).map_err(|panicked| {
+        let said = panicked.message;
         format!("the library `{library}` failed on it ({said}): save the file in another program")
     })
-}
-
-fn message(payload: &(dyn Any + Send)) -> &str {
-    let text = payload.downcast_ref::<String>().map(String::as_str);
-    text.or_else(|| payload.downcast_ref::<&str>().copied())
-        .unwrap_or("without a word")
 }
 
 #[cfg(test)]

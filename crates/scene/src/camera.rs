@@ -1,27 +1,44 @@
 //! Views and the cameras they make on a given viewport.
 
-use crate::{light::onto_axes, light_kind::Light};
+use crate::{
+    light::onto_axes,
+    light_kind::{Light, own_light},
+    vector::Vector,
+};
 use glam::{DMat4, DVec2, DVec3};
+use serde::Deserialize;
 
 /// A named view of a scene: a perspective camera without a viewport.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
 pub struct View {
     /// Name on the command line and in results.
     pub name: String,
-    /// Eye position, world space.
+    /// Place of the camera.
+    #[serde(with = "Vector")]
     pub eye: DVec3,
-    /// Viewing direction, any length but zero.
+    /// Direction in which it looks, of any length above 0.
+    #[serde(with = "Vector")]
     pub direction: DVec3,
-    /// Up vector, any length, not parallel to `direction`.
+    /// Direction up in the picture, not parallel to `direction`.
+    #[serde(default = "y_axis", with = "Vector")]
     pub up: DVec3,
-    /// Vertical field of view, degrees, between 0 and 180.
+    /// Opening angle from bottom to top: more than 0, less than 180.
     pub fov_y_degrees: f64,
-    /// Distance of the near plane, above 0.
+    /// Distance of the near plane, more than 0.
     pub near: f64,
-    /// Distance of the far plane, above `near`.
+    /// Distance of the far plane, more than `near`.
     pub far: f64,
-    /// Light under which this view is drawn instead of the scene's lights.
+    /// One sun in the place of the scene's lights.
+    #[serde(default, deserialize_with = "own_light")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<crate::DirectionalLight>"))]
     pub light: Option<Light>,
+}
+
+/// Up where nothing else is said.
+pub(crate) fn y_axis() -> DVec3 {
+    DVec3::Y
 }
 
 /// The least share of the far plane's distance that the near plane's may be.

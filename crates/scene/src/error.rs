@@ -42,24 +42,12 @@ pub enum SceneError {
         /// Number of faulty faces.
         total: usize,
     },
-    /// The materials of an OBJ file cannot be read.
-    #[error("{}: {place}: {reason}; {way_out}", path.display())]
-    Material {
-        /// The OBJ file.
-        path: PathBuf,
-        /// The file of materials, or the material in it.
-        place: String,
-        /// Reason.
-        reason: String,
-        /// Way out.
-        way_out: &'static str,
-    },
-    /// A glTF file that cannot be used.
+    /// A part of a mesh file, or a file that it names, that cannot be used.
     #[error("{}: {place}: {reason}", path.display())]
-    Gltf {
-        /// The glTF file.
+    Part {
+        /// The mesh file.
         path: PathBuf,
-        /// Where in it.
+        /// Where in it, or the file that it names.
         place: String,
         /// Reason, and the way out.
         reason: String,
@@ -301,11 +289,20 @@ fn download(source: Option<&str>) -> String {
 }
 
 fn list_groups(names: &[String]) -> String {
+    const SHOWN: usize = 12;
     if names.is_empty() {
-        "the file has no groups".to_owned()
-    } else {
-        format!("the file's groups are {}", shorten(names))
+        return "the file has no groups".to_owned();
     }
+    let shown: Vec<_> = names
+        .iter()
+        .take(SHOWN)
+        .map(|name| beginning(name))
+        .collect();
+    let mut text = format!("the file's groups are {}", shown.join(", "));
+    if names.len() > SHOWN {
+        text += &format!(", … ({} in all)", names.len());
+    }
+    text
 }
 
 fn list_faults(faults: &[FaceFault], total: usize) -> String {
@@ -328,18 +325,4 @@ fn list_places(places: &[PathBuf]) -> String {
         .iter()
         .map(|place| format!("  {}\n", place.display()))
         .collect()
-}
-
-fn shorten(names: &[String]) -> String {
-    const SHOWN: usize = 12;
-    let mut text = names
-        .iter()
-        .take(SHOWN)
-        .map(|name| beginning(name))
-        .collect::<Vec<_>>()
-        .join(", ");
-    if names.len() > SHOWN {
-        text += &format!(", … ({} in all)", names.len());
-    }
-    text
 }

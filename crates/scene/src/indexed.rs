@@ -65,7 +65,7 @@ impl Indexed<'_> {
     /// Indices and coordinates that are none.
     pub fn mesh(&self) -> Result<Mesh, IndexedError> {
         check(self)?;
-        let (mut positions, mut normals) = (Welder::default(), Welder::default());
+        let (mut positions, mut normals) = <(Welder, Welder)>::default();
         let at: Vec<u32> = self
             .positions
             .iter()

@@ -60,45 +60,39 @@ mod text;
 pub mod texture;
 #[cfg(feature = "files")]
 mod texture_file;
+mod vector;
 pub mod weld;
 
 pub use adjacency::{Adjacency, NO_NEIGHBOUR};
 pub use bvh::{Bvh, BvhNode, LightSpace, LightSpaceNode};
 pub use camera::{Camera, LEAST_DEPTH, View};
 pub use error::SceneError;
-#[cfg(feature = "files")]
-pub use gltf::load_gltf;
-#[cfg(feature = "files")]
-pub use ground::{Ground, add_ground, has_ground};
 pub use indexed::{Indexed, IndexedError};
-#[cfg(feature = "files")]
-pub use library::{ObjSetup, SceneLibrary, SceneListing, SceneRequest};
 pub use light::{DirectionalLight, LightFit};
 pub use light_kind::{LIGHT_GAP, Light, LightKind, PointLight, SpotLight, Towards};
-#[cfg(feature = "files")]
-pub use limit::Limit;
 pub use mask::Mask;
 pub use material::{Material, Surfaces};
-#[cfg(feature = "files")]
-pub use material_use::MaterialUse;
 pub use mesh::{Group, Mesh};
-#[cfg(feature = "files")]
-pub use mesh_file::{MeshFile, MeshFileOptions};
 pub use motion::{Motion, PartMotion, PoseKey, RigidKey};
 pub use movable::{Movable, MoveError, MovedPart, PartChange};
-#[cfg(feature = "files")]
-pub use obj::{Concave, ObjMaterials, ObjOptions, QuadDiagonal, load_obj};
 pub use parts::Parts;
 pub use path::{CameraKey, CameraPath, LightKey};
-#[cfg(feature = "files")]
-pub use pattern::Pattern;
-#[cfg(feature = "files")]
-pub use report::ImportReport;
 pub use scene::Scene;
-#[cfg(feature = "files")]
-pub use scene_file::{MeshSource, SceneFile};
-#[cfg(feature = "files")]
-pub use scene_writer::scene_text;
 #[cfg(feature = "schema")]
 pub use schema::schema;
 pub use texture::{Texture, Wrap};
+
+#[cfg(feature = "files")]
+pub use self::{
+    gltf::load_gltf,
+    ground::{Ground, add_ground, has_ground},
+    library::{ObjSetup, SceneLibrary, SceneListing, SceneRequest},
+    limit::Limit,
+    material_use::MaterialUse,
+    mesh_file::{MeshFile, MeshFileOptions},
+    obj::{Concave, ObjMaterials, ObjOptions, QuadDiagonal, load_obj},
+    pattern::Pattern,
+    report::ImportReport,
+    scene_file::{MeshSource, SceneFile},
+    scene_writer::scene_text,
+};

@@ -72,7 +72,7 @@ pub struct ObjSetup {
 }
 
 /// One row of `skiagraph scenes`.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct SceneListing {
     /// Name on the command line.
     pub name: String,
@@ -220,42 +220,32 @@ impl SceneLibrary {
             Ok((file, text)) => (file, SceneFile::parse(&text, &name)),
             Err(error) => (None, Err(error)),
         };
+        let mut listing = SceneListing {
+            name,
+            file,
+            ..SceneListing::default()
+        };
         match scene {
-            Ok(scene) => SceneListing {
-                name,
-                views: scene.views.iter().map(|view| view.name.clone()).collect(),
-                paths: scene
-                    .paths
-                    .iter()
-                    .map(|path| path.view.name.clone())
-                    .collect(),
-                mesh_found: match &scene.mesh {
+            Ok(scene) => {
+                let views = scene.views.iter().map(|view| view.name.clone());
+                let paths = scene.paths.iter().map(|path| path.view.name.clone());
+                (listing.views, listing.paths) = (views.collect(), paths.collect());
+                listing.mesh_found = match &scene.mesh {
                     MeshSource::Generated(_) => true,
-                    MeshSource::Obj { file: mesh, .. } | MeshSource::Gltf { file: mesh, .. } => {
-                        self.mesh_places(mesh, file.as_deref())
-                            .iter()
-                            .any(|place| place.is_file())
+                    MeshSource::Obj { file, .. } | MeshSource::Gltf { file, .. } => {
+                        let places = self.mesh_places(file, listing.file.as_deref());
+                        places.iter().any(|place| place.is_file())
                     }
-                },
-                description: scene.description,
-                file,
-            },
-            Err(error) => SceneListing {
-                name,
-                description: match &error {
-                    SceneError::SceneFile(found) => found
-                        .iter()
-                        .map(Diagnostic::brief)
-                        .collect::<Vec<_>>()
-                        .join("\n"),
-                    error => error.to_string(),
-                },
-                views: Vec::new(),
-                paths: Vec::new(),
-                mesh_found: false,
-                file,
-            },
+                };
+                listing.description = scene.description;
+            }
+            Err(SceneError::SceneFile(found)) => {
+                let found: Vec<String> = found.iter().map(Diagnostic::brief).collect();
+                listing.description = found.join("\n");
+            }
+            Err(error) => listing.description = error.to_string(),
         }
+        listing
     }
 
     /// The scene file of that name or path (`None` if built in) and its text.

@@ -1,14 +1,20 @@
 //! Directional lights and the orthographic light space of a shadow map.
 
+use crate::vector::Vector;
 use glam::{DMat4, DVec2, DVec3, Vec3};
+use serde::Deserialize;
 
 /// A light infinitely far away.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields, rename = "Light")]
 pub struct DirectionalLight {
-    /// Direction in which the light travels, any length but zero. Shadow rays go the other way.
+    /// Direction in which the light travels, of any length above 0.
+    #[serde(with = "Vector")]
     pub direction: DVec3,
-    /// Angular diameter of the round light as receivers see it, in degrees; 0 is a light without
-    /// extent, whose shadows are hard. The sun's is 0.53.
+    /// Diameter as seen from the scene: 0 to less than 180. A light of 0 degrees has no extent, its
+    /// shadows are hard; the sun's are 0.53.
+    #[serde(default)]
     pub angle_degrees: f64,
 }
 

@@ -2,9 +2,12 @@
 
 use crate::light::DirectionalLight;
 use glam::DVec3;
+use serde::{Deserialize, Deserializer};
 
 /// A light of a scene, with the name by which commands and results know it.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(Deserialize))]
+#[cfg_attr(feature = "files", serde(from = "crate::scene_file::NamedLightText"))]
 pub struct Light {
     /// Small letters, digits and `_`; no two of a scene are alike.
     pub name: String,
@@ -64,6 +67,11 @@ const FARTHEST: f64 = 1e18;
 /// The share of a shadow ray's way that it stays short of a positional light. So a surface on which
 /// the light lies casts no shadow, instead of being decided by rounding.
 pub const LIGHT_GAP: f64 = 1.0 / 65536.0;
+
+/// The light of a view, which checks it and says whose it is.
+pub(crate) fn own_light<'de, D: Deserializer<'de>>(of: D) -> Result<Option<Light>, D::Error> {
+    DirectionalLight::deserialize(of).map(|sun| Some(sun.into()))
+}
 
 impl Light {
     /// A light of the name that the only one of a scene file has.
@@ -214,12 +222,6 @@ impl From<DirectionalLight> for LightKind {
     }
 }
 
-impl From<&DirectionalLight> for LightKind {
-    fn from(light: &DirectionalLight) -> Self {
-        Self::Directional(*light)
-    }
-}
-
 impl From<SpotLight> for LightKind {
     fn from(light: SpotLight) -> Self {
         Self::Spot(light)
@@ -232,9 +234,9 @@ impl From<PointLight> for LightKind {
     }
 }
 
-impl From<&LightKind> for LightKind {
-    fn from(light: &LightKind) -> Self {
-        *light
+impl<L: Copy + Into<LightKind>> From<&L> for LightKind {
+    fn from(light: &L) -> Self {
+        (*light).into()
     }
 }
 

@@ -81,10 +81,14 @@ impl Mesh {
 
     /// Smallest box around all positions that a triangle uses, or `None` for an empty mesh.
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
-        let mut used = self.corner_positions();
-        let first = used.next()?;
-        Some(used.fold((first, first), |(min, max), p| (min.min(p), max.max(p))))
+        bounds(self.corner_positions())
     }
+}
+
+/// The smallest box around some points; `None` around none.
+pub(crate) fn bounds(mut points: impl Iterator<Item = Vec3>) -> Option<(Vec3, Vec3)> {
+    let first = points.next()?;
+    Some(points.fold((first, first), |(min, max), p| (min.min(p), max.max(p))))
 }
 
 pub(crate) fn names_one_twice([a, b, c]: &[u32; 3]) -> bool {

@@ -4,8 +4,10 @@ use crate::{
     keys::{not_later, spline},
     mesh::Mesh,
     movable::{Movable, MoveError},
+    vector::{Turn, Vector},
 };
 use glam::{DAffine3, DMat3, DQuat, DVec3};
+use serde::Deserialize;
 use std::f64::consts::TAU;
 
 /// A part, by the name of its groups, with its motion.
@@ -49,24 +51,32 @@ pub enum Motion {
 }
 
 /// Where a part is at a time.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
 pub struct RigidKey {
-    /// Seconds, as of the camera's keys.
+    /// Time in seconds.
     pub at: f64,
     /// From where it rests.
+    #[serde(default, with = "Vector")]
     pub translation: DVec3,
     /// Turn about the axis through the pivot, before it is shifted.
+    #[serde(default)]
     pub degrees: f64,
 }
 
 /// A pose of a part at a time: turned about the origin, then shifted.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
 pub struct PoseKey {
-    /// Seconds, as of the camera's keys.
+    /// Time in seconds.
     pub at: f64,
     /// After the turn.
+    #[serde(default, with = "Vector")]
     pub translation: DVec3,
-    /// Unit quaternion; about an axis through the origin, from where the part rests.
+    /// Quaternion x, y, z, w of the turn from where the part rests.
+    #[serde(default, with = "Turn")]
     pub rotation: DQuat,
 }
 

@@ -1,6 +1,8 @@
 //! Which triangles hang together, and whether they close.
 
 use crate::mesh::{Mesh, names_one_twice};
+use petgraph::unionfind::UnionFind;
+use std::collections::HashMap;
 
 /// The parts of a mesh: triangles that share edges over its welded positions.
 ///
@@ -27,28 +29,25 @@ impl Parts {
     pub fn new(mesh: &Mesh) -> Self {
         let mut sides = sides(mesh);
         sides.sort_unstable();
-        let mut parents: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
+        let mut joined = UnionFind::<u32>::new(mesh.triangles.len());
         let mut open: Vec<bool> = mesh.triangles.iter().map(names_one_twice).collect();
         for edge in sides.chunk_by(|one, other| one.0 == other.0) {
             let first = edge[0].2;
             for &(.., triangle) in edge {
-                join(&mut parents, first, triangle);
+                joined.union(first, triangle);
             }
             let forward = edge.iter().filter(|side| side.1).count();
             open[first as usize] |= 2 * forward != edge.len();
         }
         let mut parts = Self::default();
-        // A root is the lowest triangle of its part.
-        for triangle in 0..parents.len() as u32 {
-            let root = root(&mut parents, triangle);
-            let part = if root == triangle {
+        let mut numbers = HashMap::new();
+        for (root, is_open) in joined.into_labeling().into_iter().zip(open) {
+            let part = *numbers.entry(root).or_insert(parts.open.len());
+            if part == parts.open.len() {
                 parts.open.push(false);
-                parts.open.len() as u32 - 1
-            } else {
-                parts.of[root as usize]
-            };
-            parts.of.push(part);
-            parts.open[part as usize] |= open[triangle as usize];
+            }
+            parts.of.push(part as u32);
+            parts.open[part] |= is_open;
         }
         parts
     }
@@ -75,20 +74,6 @@ fn sides(mesh: &Mesh) -> Vec<Side> {
         );
     }
     sides
-}
-
-fn root(parents: &mut [u32], mut of: u32) -> u32 {
-    while parents[of as usize] != of {
-        let parent = parents[of as usize];
-        parents[of as usize] = parents[parent as usize];
-        of = parent;
-    }
-    of
-}
-
-fn join(parents: &mut [u32], one: u32, other: u32) {
-    let (one, other) = (root(parents, one), root(parents, other));
-    parents[one.max(other) as usize] = one.min(other);
 }
 
 #[cfg(test)]

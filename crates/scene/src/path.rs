@@ -9,8 +9,10 @@ use crate::{
     mesh::Mesh,
     motion::{PartMotion, moved},
     movable::Movable,
+    vector::Vector,
 };
 use glam::DVec3;
+use serde::Deserialize;
 
 /// The most frames that a path may have: five and a half minutes at thirty per second.
 const MOST_FRAMES: f64 = 10_000.0;
@@ -19,6 +21,8 @@ const MOST_FRAMES: f64 = 10_000.0;
 /// Rom 1974, over uneven times); two keyframes make a straight line, two equal ones a camera that
 /// stands. Its light may move likewise.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(Deserialize))]
+#[cfg_attr(feature = "files", serde(from = "crate::scene_file::PathText"))]
 pub struct CameraPath {
     /// Constants along the path, and the name; eye and direction are those of the first keyframe.
     pub view: View,
@@ -34,25 +38,34 @@ pub struct CameraPath {
 }
 
 /// Where the camera is at a time.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields, rename = "Key")]
 pub struct CameraKey {
-    /// Seconds.
+    /// Time in seconds.
     pub at: f64,
-    /// Eye position, world space.
+    /// Place of the camera.
+    #[serde(with = "Vector")]
     pub eye: DVec3,
-    /// Viewing direction, any length but zero.
+    /// Direction in which it looks, of any length above 0.
+    #[serde(with = "Vector")]
     pub direction: DVec3,
 }
 
 /// Where a light is at a time.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
 pub struct LightKey {
-    /// Seconds, as of the camera's keys.
+    /// Time in seconds.
     pub at: f64,
-    /// In which a directional light travels or a spot points, any length but zero; none of a point
-    /// light.
+    /// Direction in which the light travels, of any length above 0; none of a point light.
+    #[serde(default, deserialize_with = "Vector::some")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<Vector>"))]
     pub direction: Option<DVec3>,
-    /// World space; none of a directional light.
+    /// Place of a lamp; none of a directional light.
+    #[serde(default, deserialize_with = "Vector::some")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<Vector>"))]
     pub position: Option<DVec3>,
 }
 

@@ -20,17 +20,18 @@
 //! ```
 
 use crate::{
-    camera::View,
+    camera::{View, y_axis},
     error::SceneError,
     generate::Generator,
     light::DirectionalLight,
-    light_kind::{Light, LightKind, PointLight, SpotLight},
+    light_kind::{Light, LightKind, PointLight, SpotLight, own_light},
     material_use::MaterialUse,
     motion::{Motion, PartMotion, PoseKey, RigidKey},
     obj::options::{Concave, ObjMaterials, QuadDiagonal},
     path::{CameraKey, CameraPath, LightKey},
+    vector::Vector,
 };
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use serde::{
     Deserialize, Deserializer,
     de::{DeserializeOwned, Error},
@@ -43,47 +44,37 @@ use skiagraph_located_ron::{
 use std::collections::HashMap;
 
 /// Content of a scene file. Everything in it is checked, but no mesh is loaded yet.
-#[derive(Clone, Debug)]
-pub struct SceneFile {
-    /// Name shown in tables and results.
-    pub name: String,
-    /// One line for `skiagraph scenes`.
-    pub description: String,
-    /// Where the triangles come from.
-    pub mesh: MeshSource,
-    /// The direction up on a ground that is added below the mesh; none without.
-    pub ground: Option<DVec3>,
-    /// The lights of all views that have none of their own: at least one, no two of the same name.
-    pub lights: Vec<Light>,
-    /// At least one view, no two of the same name.
-    pub views: Vec<View>,
-    /// Ways that a camera takes, no two of the same name.
-    pub paths: Vec<CameraPath>,
-}
-
-/// All of a scene file but its lists.
-#[derive(Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, rename = "scene")]
-pub(crate) struct SceneText {
+pub struct SceneFile {
     /// Version of the format: 1.
-    #[serde(rename = "format")]
-    _format: u32,
+    pub format: u32,
     /// Shown in tables and results.
-    name: String,
+    pub name: String,
     /// One line for `skiagraph scenes`.
     #[serde(default)]
-    description: String,
+    pub description: String,
     /// The triangles.
-    mesh: MeshSource,
+    pub mesh: MeshSource,
     /// Adds a ground just below the mesh, with this direction up.
     #[serde(default, deserialize_with = "ground")]
-    #[cfg_attr(feature = "schema", schemars(with = "Option<(f64, f64, f64)>"))]
-    ground: Option<DVec3>,
-    /// One sun, in the place of `lights`.
-    #[serde(default, deserialize_with = "light")]
-    #[cfg_attr(feature = "schema", schemars(with = "Option<LightText>"))]
-    light: Option<Light>,
+    #[cfg_attr(feature = "schema", schemars(with = "Option<Vector>"))]
+    pub ground: Option<DVec3>,
+    /// The lights of all views that have none of their own: at least one, no two of the same name.
+    #[serde(default, rename = "light", deserialize_with = "only_light")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<DirectionalLight>"))]
+    #[cfg_attr(
+        feature = "schema",
+        schemars(description = "One sun, in the place of `lights`.")
+    )]
+    pub lights: Vec<Light>,
+    /// At least one view, no two of the same name.
+    #[serde(skip)]
+    pub views: Vec<View>,
+    /// Ways that a camera takes, no two of the same name.
+    #[serde(skip)]
+    pub paths: Vec<CameraPath>,
 }
 
 /// Fields of a scene file that are lists.
@@ -160,7 +151,7 @@ impl SceneFile {
             if number != 1 {
                 // Everything else in it would be a mistake, too.
                 let what = format!("format {number} is unknown; this program reads format 1");
-                told.push(Diagnostic::error(Code::FormatVersion, what).at(&format.node.span, ""));
+                told.push(Diagnostic::error(Code::FormatVersion, what).at(&format.node, ""));
                 return None;
             }
         }
@@ -187,17 +178,11 @@ impl SceneFile {
         let paths = list("paths").map_or(Some(Vec::new()), |list| named(list, told));
         let head = fields.into_iter();
         let head = head.filter(|field| !LISTS.contains(&field.name.as_str()));
-        let head: Option<SceneText> = from_all_fields(head.collect(), &root.head(), &LISTS, told);
-        let (head, lights) = (head?, lights?);
-        Some(Self {
-            name: head.name,
-            description: head.description,
-            mesh: head.mesh,
-            ground: head.ground,
-            lights: head.light.into_iter().chain(lights).collect(),
-            views: views??,
-            paths: paths?,
-        })
+        let scene: Option<Self> = from_all_fields(head.collect(), &root.head(), &LISTS, told);
+        let (mut scene, lights) = (scene?, lights?);
+        scene.lights.extend(lights);
+        (scene.views, scene.paths) = (views??, paths?);
+        Some(scene)
     }
 }
 
@@ -220,12 +205,17 @@ fn named<T: Item>(list: &Node, told: &mut Vec<Diagnostic>) -> Option<Vec<T>> {
     let (mut names, mut read) = (HashMap::new(), Vec::new());
     let mut complete = true;
     for node in items {
-        let Some(item) = T::read(&node, told) else {
+        let checked = T::read(&node, told).and_then(|item| {
+            let wrong = |why| Diagnostic::error(Code::Syntax, why).at(node.head(), "here");
+            kept(T::CHECK(&item).map_err(wrong), told).map(|()| item)
+        });
+        let Some(item) = checked else {
             complete = false;
             continue;
         };
-        if let Some(first) = names.insert(item.name().to_owned(), node.head()) {
-            let what = format!("two {} are called {:?}", T::LIST, item.name());
+        let name = T::NAME(&item);
+        if let Some(first) = names.insert(name.to_owned(), node.head()) {
+            let what = format!("two {} are called {name:?}", T::LIST);
             let twice = Diagnostic::error(Code::DuplicateName, what);
             told.push(
                 twice
@@ -244,7 +234,8 @@ trait Item: DeserializeOwned {
     const LIST: &str;
     /// True if it may not be empty.
     const NEEDED: bool;
-    fn name(&self) -> &str;
+    const NAME: fn(&Self) -> &str;
+    const CHECK: fn(&Self) -> Result<(), String>;
     fn read(node: &Node, told: &mut Vec<Diagnostic>) -> Option<Self> {
         let fields = kept(node.fields(), told)?;
         from_all_fields(fields, &node.head(), &[], told)
@@ -254,9 +245,8 @@ trait Item: DeserializeOwned {
 impl Item for Light {
     const LIST: &str = "lights";
     const NEEDED: bool = true;
-    fn name(&self) -> &str {
-        &self.name
-    }
+    const NAME: fn(&Self) -> &str = |light| &light.name;
+    const CHECK: fn(&Self) -> Result<(), String> = Self::check;
     fn read(node: &Node, told: &mut Vec<Diagnostic>) -> Option<Self> {
         kept(node.parse(), told)
     }
@@ -265,56 +255,15 @@ impl Item for Light {
 impl Item for View {
     const LIST: &str = "views";
     const NEEDED: bool = true;
-    fn name(&self) -> &str {
-        &self.name
-    }
+    const NAME: fn(&Self) -> &str = |view| &view.name;
+    const CHECK: fn(&Self) -> Result<(), String> = Self::check;
 }
 
 impl Item for CameraPath {
     const LIST: &str = "paths";
     const NEEDED: bool = false;
-    fn name(&self) -> &str {
-        &self.view.name
-    }
-}
-
-#[derive(Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields, rename = "View")]
-pub(crate) struct ViewText {
-    name: String,
-    /// Place of the camera.
-    eye: (f64, f64, f64),
-    /// Direction in which it looks, of any length above 0.
-    direction: (f64, f64, f64),
-    /// Direction up in the picture, not parallel to `direction`.
-    #[serde(default = "y_axis")]
-    up: (f64, f64, f64),
-    /// Opening angle from bottom to top: more than 0, less than 180.
-    fov_y_degrees: f64,
-    /// Distance of the near plane, more than 0.
-    near: f64,
-    /// Distance of the far plane, more than `near`.
-    far: f64,
-    /// One sun in the place of the scene's lights.
-    #[serde(default, deserialize_with = "own_light")]
-    #[cfg_attr(feature = "schema", schemars(with = "Option<LightText>"))]
-    light: Option<Light>,
-}
-
-fn y_axis() -> (f64, f64, f64) {
-    (0.0, 1.0, 0.0)
-}
-
-#[derive(Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields, rename = "Light")]
-struct LightText {
-    /// Direction in which the light travels.
-    direction: (f64, f64, f64),
-    /// Diameter as seen from the scene: 0 to less than 180.
-    #[serde(default)]
-    angle_degrees: f64,
+    const NAME: fn(&Self) -> &str = |path| &path.view.name;
+    const CHECK: fn(&Self) -> Result<(), String> = Self::check;
 }
 
 #[derive(Deserialize)]
@@ -329,7 +278,8 @@ pub(crate) enum NamedLightText {
     Directional {
         name: String,
         /// Direction in which the light travels.
-        direction: (f64, f64, f64),
+        #[serde(with = "Vector")]
+        direction: DVec3,
         /// Diameter as seen from the scene: 0 to less than 180.
         #[serde(default)]
         angle_degrees: f64,
@@ -337,9 +287,11 @@ pub(crate) enum NamedLightText {
     /// A lamp with a cone.
     Spot {
         name: String,
-        position: (f64, f64, f64),
+        #[serde(with = "Vector")]
+        position: DVec3,
         /// Direction of the cone's axis.
-        direction: (f64, f64, f64),
+        #[serde(with = "Vector")]
+        direction: DVec3,
         /// The whole opening angle: more than 0, less than 180.
         cone_degrees: f64,
         /// Radius of its disc, in the mesh's units.
@@ -349,7 +301,8 @@ pub(crate) enum NamedLightText {
     /// A lamp that shines everywhere.
     Point {
         name: String,
-        position: (f64, f64, f64),
+        #[serde(with = "Vector")]
+        position: DVec3,
         /// Radius of its ball, in the mesh's units.
         #[serde(default)]
         radius: f64,
@@ -365,7 +318,7 @@ impl From<NamedLightText> for Light {
                 angle_degrees,
             } => {
                 let light = DirectionalLight {
-                    direction: direction.into(),
+                    direction,
                     angle_degrees,
                 };
                 (name, light.into())
@@ -378,8 +331,8 @@ impl From<NamedLightText> for Light {
                 radius,
             } => {
                 let spot = SpotLight {
-                    position: position.into(),
-                    direction: direction.into(),
+                    position,
+                    direction,
                     cone_degrees,
                     radius,
                 };
@@ -389,38 +342,9 @@ impl From<NamedLightText> for Light {
                 name,
                 position,
                 radius,
-            } => {
-                let position = position.into();
-                (name, PointLight { position, radius }.into())
-            }
+            } => (name, PointLight { position, radius }.into()),
         };
         Self { name, kind }
-    }
-}
-
-impl<'de> Deserialize<'de> for Light {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let light = Self::from(NamedLightText::deserialize(deserializer)?);
-        light.check().map_err(D::Error::custom)?;
-        Ok(light)
-    }
-}
-
-impl<'de> Deserialize<'de> for View {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let text = ViewText::deserialize(deserializer)?;
-        let view = Self {
-            name: text.name,
-            eye: text.eye.into(),
-            direction: text.direction.into(),
-            up: text.up.into(),
-            fov_y_degrees: text.fov_y_degrees,
-            near: text.near,
-            far: text.far,
-            light: text.light,
-        };
-        view.check().map_err(D::Error::custom)?;
-        Ok(view)
     }
 }
 
@@ -430,8 +354,8 @@ impl<'de> Deserialize<'de> for View {
 pub(crate) struct PathText {
     name: String,
     /// Direction up in the picture.
-    #[serde(default = "y_axis")]
-    up: (f64, f64, f64),
+    #[serde(default = "y_axis", with = "Vector")]
+    up: DVec3,
     /// Opening angle from bottom to top: more than 0, less than 180.
     fov_y_degrees: f64,
     /// Distance of the near plane, more than 0.
@@ -440,18 +364,22 @@ pub(crate) struct PathText {
     far: f64,
     /// One sun in the place of the scene's lights.
     #[serde(default, deserialize_with = "own_light")]
-    #[cfg_attr(feature = "schema", schemars(with = "Option<LightText>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<DirectionalLight>"))]
     light: Option<Light>,
     #[serde(default = "thirty")]
     frames_per_second: f64,
     /// The camera's way, a smooth curve through its keys.
-    keys: Vec<KeyText>,
+    keys: Vec<CameraKey>,
     /// The light's way.
     #[serde(default)]
-    light_keys: Vec<LightKeyText>,
+    light_keys: Vec<LightKey>,
     /// Parts of the mesh that move.
     #[serde(default)]
     moves: Vec<MotionText>,
+}
+
+fn thirty() -> f64 {
+    30.0
 }
 
 #[derive(Deserialize)]
@@ -467,23 +395,24 @@ enum MotionText {
         /// Name of the part: a group or object of OBJ, a node of glTF.
         part: String,
         /// Point on the axis.
-        #[serde(default)]
-        pivot: (f64, f64, f64),
-        #[serde(default = "y_axis")]
-        axis: (f64, f64, f64),
-        keys: Vec<RigidKeyText>,
+        #[serde(default, with = "Vector")]
+        pivot: DVec3,
+        #[serde(default = "y_axis", with = "Vector")]
+        axis: DVec3,
+        keys: Vec<RigidKey>,
     },
     /// The part is turned about the origin and shifted from key to key, in a straight line.
     Posed {
         /// Name of the part.
         part: String,
-        keys: Vec<PoseKeyText>,
+        keys: Vec<PoseKey>,
     },
     /// The part bends along the axis as by wind; its foot stands.
     Sway {
         /// Name of the part.
         part: String,
-        axis: (f64, f64, f64),
+        #[serde(with = "Vector")]
+        axis: DVec3,
         /// Angle to which its top bends.
         degrees: f64,
         /// Period.
@@ -493,35 +422,15 @@ enum MotionText {
 
 impl MotionText {
     /// On a path with that direction up.
-    fn motion(self, up: (f64, f64, f64)) -> PartMotion {
+    fn motion(self, up: DVec3) -> PartMotion {
         let (part, motion) = match self {
             Self::Rigid {
                 part,
                 pivot,
                 axis,
                 keys,
-            } => {
-                let keys = keys.iter().map(|key| RigidKey {
-                    at: key.at,
-                    translation: key.translation.into(),
-                    degrees: key.degrees,
-                });
-                let motion = Motion::Rigid {
-                    pivot: pivot.into(),
-                    axis: axis.into(),
-                    keys: keys.collect(),
-                };
-                (part, motion)
-            }
-            Self::Posed { part, keys } => {
-                let keys = keys.iter().map(|key| PoseKey {
-                    at: key.at,
-                    translation: key.translation.into(),
-                    rotation: key.rotation(),
-                });
-                let keys = keys.collect();
-                (part, Motion::Posed { keys })
-            }
+            } => (part, Motion::Rigid { pivot, axis, keys }),
+            Self::Posed { part, keys } => (part, Motion::Posed { keys }),
             Self::Sway {
                 part,
                 axis,
@@ -529,8 +438,8 @@ impl MotionText {
                 seconds,
             } => {
                 let motion = Motion::Sway {
-                    axis: axis.into(),
-                    up: up.into(),
+                    axis,
+                    up,
                     degrees,
                     seconds,
                 };
@@ -541,116 +450,29 @@ impl MotionText {
     }
 }
 
-#[derive(Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields, rename = "RigidKey")]
-struct RigidKeyText {
-    /// Time in seconds.
-    at: f64,
-    #[serde(default)]
-    translation: (f64, f64, f64),
-    #[serde(default)]
-    degrees: f64,
-}
-
-#[derive(Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields, rename = "PoseKey")]
-struct PoseKeyText {
-    /// Time in seconds.
-    at: f64,
-    #[serde(default)]
-    translation: (f64, f64, f64),
-    /// Quaternion x, y, z, w.
-    #[serde(default = "no_turn")]
-    rotation: (f64, f64, f64, f64),
-}
-
-impl PoseKeyText {
-    /// Brings it to length 1, unless it has that already or has none.
-    fn rotation(&self) -> DQuat {
-        let (x, y, z, w) = self.rotation;
-        let rotation = DQuat::from_xyzw(x, y, z, w);
-        if rotation.is_normalized() || rotation.length_squared() == 0.0 {
-            rotation
-        } else {
-            rotation.normalize()
-        }
-    }
-}
-
-fn no_turn() -> (f64, f64, f64, f64) {
-    (0.0, 0.0, 0.0, 1.0)
-}
-
-#[derive(Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields, rename = "LightKey")]
-struct LightKeyText {
-    /// Time in seconds.
-    at: f64,
-    /// Direction in which the light travels.
-    #[serde(default)]
-    direction: Option<(f64, f64, f64)>,
-    /// Place of a lamp.
-    #[serde(default)]
-    position: Option<(f64, f64, f64)>,
-}
-
-fn thirty() -> f64 {
-    30.0
-}
-
-#[derive(Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields, rename = "Key")]
-struct KeyText {
-    /// Time in seconds.
-    at: f64,
-    eye: (f64, f64, f64),
-    direction: (f64, f64, f64),
-}
-
-impl<'de> Deserialize<'de> for CameraPath {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let text = PathText::deserialize(deserializer)?;
-        let keys = text.keys.iter().map(|key| CameraKey {
-            at: key.at,
-            eye: key.eye.into(),
-            direction: key.direction.into(),
-        });
-        let keys: Vec<CameraKey> = keys.collect();
-        let first = keys.first();
-        let path = Self {
+impl From<PathText> for CameraPath {
+    fn from(text: PathText) -> Self {
+        let first = text.keys.first();
+        Self {
             view: View {
                 name: text.name,
                 eye: first.map_or(DVec3::ZERO, |key| key.eye),
                 direction: first.map_or(DVec3::ZERO, |key| key.direction),
-                up: text.up.into(),
+                up: text.up,
                 fov_y_degrees: text.fov_y_degrees,
                 near: text.near,
                 far: text.far,
                 light: text.light,
             },
             frames_per_second: text.frames_per_second,
-            keys,
-            light_keys: text
-                .light_keys
-                .iter()
-                .map(|key| LightKey {
-                    at: key.at,
-                    direction: key.direction.map(DVec3::from),
-                    position: key.position.map(DVec3::from),
-                })
-                .collect(),
+            keys: text.keys,
+            light_keys: text.light_keys,
             moves: text
                 .moves
                 .into_iter()
                 .map(|motion| motion.motion(text.up))
                 .collect(),
-        };
-        path.check().map_err(D::Error::custom)?;
-        Ok(path)
+        }
     }
 }
 
@@ -660,7 +482,7 @@ fn generator<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Generator, D:
 }
 
 fn ground<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<DVec3>, D::Error> {
-    let up = DVec3::from(<(f64, f64, f64)>::deserialize(deserializer)?);
+    let up = Vector::deserialize(deserializer)?;
     if up.try_normalize().is_none() {
         let text = format!("ground is {up}, expected a direction up, such as (0, 1, 0)");
         return Err(D::Error::custom(text));
@@ -668,21 +490,8 @@ fn ground<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<DVec3>, D
     Ok(Some(up))
 }
 
-fn light<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Light>, D::Error> {
-    let light = Light::only(any_light(deserializer)?);
+fn only_light<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Light>, D::Error> {
+    let light = Light::only(DirectionalLight::deserialize(deserializer)?);
     light.check().map_err(D::Error::custom)?;
-    Ok(Some(light))
-}
-
-/// That of a view, which checks it and says whose it is.
-fn own_light<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Light>, D::Error> {
-    any_light(deserializer).map(|light| Some(light.into()))
-}
-
-fn any_light<'de, D: Deserializer<'de>>(deserializer: D) -> Result<DirectionalLight, D::Error> {
-    let text = LightText::deserialize(deserializer)?;
-    Ok(DirectionalLight {
-        direction: text.direction.into(),
-        angle_degrees: text.angle_degrees,
-    })
+    Ok(vec![light])
 }

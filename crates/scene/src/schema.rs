@@ -1,6 +1,9 @@
 //! The JSON Schema of scene files (feature `schema`).
 
-use crate::scene_file::{NamedLightText, PathText, SceneText, ViewText};
+use crate::{
+    camera::View,
+    scene_file::{NamedLightText, PathText, SceneFile},
+};
 use schemars::{JsonSchema, SchemaGenerator};
 use serde_json::{Value, json};
 use skiagraph_located_ron::schema::plain;
@@ -10,9 +13,9 @@ use skiagraph_located_ron::schema::plain;
 /// list.
 pub fn schema() -> Value {
     let mut generator = SchemaGenerator::default();
-    let head = SceneText::json_schema(&mut generator).to_value();
+    let head = SceneFile::json_schema(&mut generator).to_value();
     let lights = generator.subschema_for::<Vec<NamedLightText>>().to_value();
-    let views = generator.subschema_for::<Vec<ViewText>>().to_value();
+    let views = generator.subschema_for::<Vec<View>>().to_value();
     let paths = generator.subschema_for::<Vec<PathText>>().to_value();
     let mut properties = head["properties"].clone();
     for (name, mut list, description) in [

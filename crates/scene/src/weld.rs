@@ -5,15 +5,27 @@ use std::collections::HashMap;
 
 /// Vectors met so far, each once, in the order of their first appearance.
 #[derive(Clone, Debug, Default)]
-pub struct Welder {
+pub struct Welder<V = Vec3, const N: usize = 3> {
     /// The vectors.
-    pub values: Vec<Vec3>,
-    by_bits: HashMap<[u32; 3], u32>,
+    pub values: Vec<V>,
+    by_bits: HashMap<[u32; N], u32>,
 }
 
 /// Vectors to which others are welded.
 #[derive(Clone, Debug, Default)]
 pub struct Known(HashMap<[u32; 3], u32>);
+
+impl<V: Copy + Into<[f32; N]>, const N: usize> Welder<V, N> {
+    fn place(&mut self, value: V) -> u32 {
+        let next = self.values.len() as u32;
+        let key = value.into().map(f32::to_bits);
+        let index = *self.by_bits.entry(key).or_insert(next);
+        if index == next {
+            self.values.push(value);
+        }
+        index
+    }
+}
 
 impl Welder {
     /// Welds to other vectors from now on, and returns those that were known before: a part that
@@ -24,37 +36,16 @@ impl Welder {
 
     /// Index of a vector; −0 counts (and is stored) as 0.
     pub fn index(&mut self, value: Vec3) -> u32 {
-        let value = value + Vec3::ZERO; // −0 + 0 = 0
-        let next = self.values.len() as u32;
-        let index = *self
-            .by_bits
-            .entry(value.to_array().map(f32::to_bits))
-            .or_insert(next);
-        if index == next {
-            self.values.push(value);
-        }
-        index
+        self.place(value + Vec3::ZERO) // −0 + 0 = 0
     }
 }
 
 /// The same of texture coordinates.
-#[derive(Clone, Debug, Default)]
-pub struct UvWelder {
-    /// The coordinates.
-    pub values: Vec<Vec2>,
-    by_bits: HashMap<[u32; 2], u32>,
-}
+pub type UvWelder = Welder<Vec2, 2>;
 
 impl UvWelder {
     /// Index of a pair; one that is not finite counts as (0, 0).
     pub fn index(&mut self, value: Vec2) -> u32 {
-        let value = if value.is_finite() { value } else { Vec2::ZERO };
-        let next = self.values.len() as u32;
-        let key = value.to_array().map(f32::to_bits);
-        let index = *self.by_bits.entry(key).or_insert(next);
-        if index == next {
-            self.values.push(value);
-        }
-        index
+        self.place(if value.is_finite() { value } else { Vec2::ZERO })
     }
 }

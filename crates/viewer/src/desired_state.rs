@@ -1,13 +1,14 @@
 //! The desired state and the frames that come of it: the messages between the window and the thread
 //! of the graphs.
 
+use crate::ground_truth::Question;
 use skiagraph_compare::graphs::method::ParamValues;
 use skiagraph_compare::measuring::frame::Contents;
 use skiagraph_compare::pictures::save::Decoding;
 use skiagraph_gpu::PassStatistics;
 use skiagraph_graph::{Capture, Param, ParamValue};
 use skiagraph_reference::GroundTruthPixels;
-use skiagraph_scene::{Camera, LightKind, Scene, View};
+use skiagraph_scene::{Scene, View};
 use std::{collections::BTreeMap, sync::Arc};
 
 /// The state that the window asks for.
@@ -61,16 +62,10 @@ pub struct Loaded {
 pub struct FrameSnapshot {
     /// The state that it shows.
     pub desired: DesiredState,
-    /// From where.
-    pub camera: Camera,
-    /// Under which light.
-    pub light: LightKind,
-    /// Which of the view's lights that is.
+    /// The question to the oracle about it: of this scene, camera, light and these primitives.
+    pub question: Question,
+    /// Which of the view's lights it is under.
     pub light_number: usize,
-    /// The scene whose mesh it shows.
-    pub scene: Arc<Scene>,
-    /// The primitive of each pixel.
-    pub primitives: Arc<Vec<u32>>,
     /// Pixels that face the light, as if nothing stood in its way.
     pub facing: Arc<GroundTruthPixels>,
     /// One for each method.

@@ -169,7 +169,7 @@ fn difference(
     })
 }
 
-/// Which pixels a reference is of.
+/// Words for a legend: the pixels of which there is a reference yet, at this stride.
 pub fn of_pixels(stride: u32) -> &'static str {
     match stride {
         1 => "of all pixels",
@@ -247,7 +247,7 @@ fn material(method: &MethodSnapshot, name: &str, reading: &Reading) -> Drawn {
     let part = &parts[reading.part.min(parts.len() - 1)];
     let texels = Texels::new(part, decoding.planes);
     let channel = |desired: usize| {
-        let last = texels.as_ref().map_or(0, |texels| texels.channels() - 1);
+        let last = texels.as_ref().map_or(0, |texels| texels.channels - 1);
         desired.min(last)
     };
     let histogram = texels

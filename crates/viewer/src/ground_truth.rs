@@ -1,12 +1,10 @@
 //! The thread of the reference: the oracle's answer to what is shown, of every ninth pixel of each
 //! row and column first, then of every third, then of all. What is traced is exact for its pixels.
 
-use crate::desired_state::FrameSnapshot;
 use glam::DVec2;
 use skiagraph_reference::{Error, GroundTruth, Oracle, OracleMode, Progress, ground_truth};
 use skiagraph_scene::{Camera, LightKind, Scene};
 use std::{
-    ops::ControlFlow,
     sync::{
         Arc,
         atomic::{AtomicBool, Ordering},
@@ -25,31 +23,24 @@ pub const SAMPLES: u32 = 64;
 /// Question to the oracle.
 #[derive(Clone)]
 pub struct Question {
-    scene: Arc<Scene>,
-    camera: Camera,
-    light: LightKind,
-    primitives: Arc<Vec<u32>>,
+    /// The scene whose mesh is seen.
+    pub scene: Arc<Scene>,
+    /// From where.
+    pub camera: Camera,
+    /// Under which light.
+    pub light: LightKind,
+    /// The primitive of each pixel.
+    pub primitives: Arc<Vec<u32>>,
     /// Raised when the answer is not wanted any more.
-    outdated: Arc<AtomicBool>,
+    pub outdated: Arc<AtomicBool>,
 }
 
 impl Question {
-    /// About a frame.
-    pub fn new(snapshot: &FrameSnapshot) -> Self {
-        Self {
-            scene: snapshot.scene.clone(),
-            camera: snapshot.camera,
-            light: snapshot.light,
-            primitives: snapshot.primitives.clone(),
-            outdated: Arc::default(),
-        }
-    }
-
-    /// True if it asks for the same.
-    pub fn is_about(&self, snapshot: &FrameSnapshot) -> bool {
-        Arc::ptr_eq(&self.scene, &snapshot.scene)
-            && (self.camera, self.light) == (snapshot.camera, snapshot.light)
-            && self.primitives == snapshot.primitives
+    /// True if both ask for the same.
+    pub fn is_like(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.scene, &other.scene)
+            && (self.camera, self.light) == (other.camera, other.light)
+            && self.primitives == other.primitives
     }
 }
 
@@ -86,16 +77,14 @@ impl GroundTruthThread {
     }
 
     /// Asks about a frame, if that was not the last question; what was asked before is given up.
-    pub fn ask(&mut self, snapshot: &FrameSnapshot) {
+    pub fn ask(&mut self, question: &Question) {
         let mut last = self.last.iter();
-        if last.any(|last| last.is_about(snapshot)) {
+        if last.any(|last| last.is_like(question)) {
             return;
         }
         self.forget();
-        let question = Question::new(snapshot);
-        // The thread ends before this only by a panic, which has been printed.
         let _ = self.questions.send(question.clone());
-        self.last = Some(question);
+        self.last = Some(question.clone());
     }
 
     /// Gives up what was asked last.
@@ -135,10 +124,10 @@ fn work(asked: &mpsc::Receiver<Question>, tell: &impl Fn(Answer)) {
 }
 
 fn answer(oracle: &Oracle, question: &Question, tell: &impl Fn(Answer)) {
-    let _ = STRIDES.into_iter().try_for_each(|stride| {
+    for stride in STRIDES {
         let Some((camera, primitives)) = thinned(&question.camera, &question.primitives, stride)
         else {
-            return ControlFlow::Continue(());
+            continue;
         };
         let progress = Progress {
             rows_done: &|_| (),
@@ -148,16 +137,14 @@ fn answer(oracle: &Oracle, question: &Question, tell: &impl Fn(Answer)) {
         let ground_truth =
             ground_truth(oracle, &camera, question.light, &primitives, how, progress);
         if matches!(ground_truth, Err(Error::Interrupted)) {
-            return ControlFlow::Break(());
+            return;
         }
-        let question = question.clone();
         tell(Answer {
-            question,
+            question: question.clone(),
             stride,
             ground_truth: ground_truth.map_err(|error| error.to_string()),
         });
-        ControlFlow::Continue(())
-    });
+    }
 }
 
 /// How many pixels of a row or column are left; the middle one of each `stride` is.
@@ -165,7 +152,7 @@ pub fn thinned_size(size: [u32; 2], stride: u32) -> [u32; 2] {
     size.map(|edge| edge / stride)
 }
 
-/// One value of `stride` in each row and column.
+/// Keeps the middle one of every `stride` values in each row and column, row by row.
 pub fn thin<T: Copy>(values: &[T], size: [u32; 2], stride: u32) -> Vec<T> {
     let [width, height] = thinned_size(size, stride).map(|edge| edge as usize);
     let place = |at: usize| at * stride as usize + stride as usize / 2;

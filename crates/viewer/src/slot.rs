@@ -28,7 +28,8 @@ struct PlannedFor {
 /// One method.
 #[derive(Default)]
 pub struct Slot {
-    name: String,
+    /// The preset or path.
+    pub name: String,
     preset: Option<Preset>,
     executor: Option<Executor>,
     planned: Option<PlannedFor>,
@@ -51,11 +52,6 @@ impl Slot {
             name: name.to_owned(),
             ..Self::default()
         }
-    }
-
-    /// The preset or path.
-    pub fn name(&self) -> &str {
-        &self.name
     }
 
     /// The graph that runs.

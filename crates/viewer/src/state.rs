@@ -80,7 +80,8 @@ pub struct Viewer {
     pub loaded: Option<Loaded>,
     /// The newest frame.
     pub snapshot: Option<FrameSnapshot>,
-    answer: Option<Answer>,
+    /// The newest answer, if it is to the newest frame.
+    pub answer: Option<Answer>,
     /// The pictures; as many are shown as there are methods.
     pub panes: [Pane; 2],
     /// Meaning of a drag.
@@ -144,7 +145,7 @@ impl Viewer {
     /// True if an answer is about what is shown.
     fn fits(&self, answer: &Answer) -> bool {
         let mut shown = self.snapshot.iter();
-        shown.any(|snapshot| answer.question.is_about(snapshot))
+        shown.any(|snapshot| answer.question.is_like(&snapshot.question))
     }
 
     fn on_event(&mut self, event: Event) {
@@ -191,15 +192,10 @@ impl Viewer {
         let is_shown = shown.into_iter().any(|pane| pane.show == Show::Difference);
         match &self.snapshot {
             Some(snapshot) if self.is_judged || is_shown => {
-                self.channels.ground_truth.ask(snapshot)
+                self.channels.ground_truth.ask(&snapshot.question)
             }
             _ => self.channels.ground_truth.forget(),
         }
-    }
-
-    /// The newest answer, if it is to the newest frame.
-    pub fn answer(&self) -> Option<&Answer> {
-        self.answer.as_ref()
     }
 
     /// True if the picture is of the desired state.
@@ -273,22 +269,10 @@ impl Viewer {
         self.panes[index].history.clear();
     }
 
-    /// Takes the second method away.
-    pub fn close_second(&mut self) {
-        self.desired.methods.truncate(1);
-    }
-
     /// Sets a param; one at its default stays named, so that only its value changes.
     pub fn set_param(&mut self, index: usize, name: &str, value: ParamValue) {
         if let Some(method) = self.desired.methods.get_mut(index) {
             method.params.insert(name.to_owned(), value);
-        }
-    }
-
-    /// All params of a method back to their defaults.
-    pub fn reset_params(&mut self, index: usize) {
-        if let Some(method) = self.desired.methods.get_mut(index) {
-            method.params.clear();
         }
     }
 

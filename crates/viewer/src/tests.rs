@@ -263,7 +263,10 @@ fn the_reference_becomes_finer_and_tells_what_is_wrong() {
     desk.state_mut().viewer.show(0, Show::Difference);
     desk.state_mut().viewer.show(1, Show::Difference);
     until(&mut desk, "the reference of all pixels", |viewer| {
-        viewer.answer().is_some_and(|answer| answer.stride == 1)
+        viewer
+            .answer
+            .as_ref()
+            .is_some_and(|answer| answer.stride == 1)
     });
     let legend =
         |desk: &Harness<Desk>, index: usize| desk.state().viewer.panes[index].drawn.legend.clone();
@@ -286,7 +289,11 @@ fn the_reference_becomes_finer_and_tells_what_is_wrong() {
     desk.state_mut().viewer.dragged(Drag::Look, [0.3, 0.0]);
     desk.step();
     until(&mut desk, "a frame from elsewhere", |viewer| {
-        viewer.is_current() && viewer.answer().is_some_and(|answer| answer.stride == 1)
+        viewer.is_current()
+            && viewer
+                .answer
+                .as_ref()
+                .is_some_and(|answer| answer.stride == 1)
     });
 }
 
@@ -356,7 +363,15 @@ fn another_scene_and_a_scene_that_is_not_there() {
     desk.state_mut().viewer.choose_scene("forest:10000");
     settled(&mut desk);
     assert_eq!(desk.state().viewer.notice, None);
-    let scene = desk.state().viewer.snapshot.as_ref().unwrap().scene.clone();
+    let scene = desk
+        .state()
+        .viewer
+        .snapshot
+        .as_ref()
+        .unwrap()
+        .question
+        .scene
+        .clone();
     assert_eq!(scene.name, "forest");
 }
 
@@ -395,7 +410,11 @@ fn pictures_for_the_documents() {
         two.state_mut().viewer.show(index, Show::Difference);
     }
     until(&mut two, "the reference of all pixels", |viewer| {
-        viewer.is_current() && viewer.answer().is_some_and(|answer| answer.stride == 1)
+        viewer.is_current()
+            && viewer
+                .answer
+                .as_ref()
+                .is_some_and(|answer| answer.stride == 1)
     });
     keep(&mut two, "view-difference.png");
 }

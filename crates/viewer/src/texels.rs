@@ -12,7 +12,8 @@ pub const BINS: usize = 64;
 pub struct Texels {
     /// Width and height.
     pub size: [u32; 2],
-    channels: usize,
+    /// Values of a texel.
+    pub channels: usize,
     values: Vec<f64>,
     is_whole: bool,
     is_depth: bool,
@@ -56,11 +57,6 @@ impl Texels {
             is_depth: format.is_depth_stencil_format(),
             planes,
         })
-    }
-
-    /// Values of a texel.
-    pub fn channels(&self) -> usize {
-        self.channels
     }
 
     /// Returns the value of a texel as it is stored; `None` outside of the picture.

@@ -2,6 +2,7 @@
 //! state changes. It has a device of its own, so that the window never waits for a method.
 
 use crate::desired_state::{DesiredState, Event, FrameSnapshot, Loaded};
+use crate::ground_truth::Question;
 use crate::slot::{How, Lost, Slot};
 use skiagraph_compare::error::{CompareError, explain, with_causes};
 use skiagraph_compare::measuring::{
@@ -15,7 +16,7 @@ use skiagraph_gpu::{Content, Executor, device::Gpu, timing::Trust};
 use skiagraph_graph::Sources;
 use skiagraph_passes::SceneProvider;
 use skiagraph_reference::{Progress, unshadowed};
-use skiagraph_scene::{Camera, Scene, View};
+use skiagraph_scene::{Scene, View};
 use std::{
     error::Error,
     sync::{Arc, mpsc},
@@ -167,7 +168,7 @@ impl Worker {
     fn fill_slots(&mut self, desired: &DesiredState) -> Result<(), CompareError> {
         let mut before = std::mem::take(&mut self.slots);
         for method in &desired.methods {
-            let known = before.iter().position(|slot| slot.name() == method.name);
+            let known = before.iter().position(|slot| slot.name == method.name);
             self.slots.push(match known {
                 Some(known) => before.swap_remove(known),
                 None => {
@@ -218,7 +219,9 @@ impl Worker {
         let camera = view.camera(desired.size);
         let primitives = stage.primitives(session, &*self.sources, desired.size)?;
         let light = stage.provider.light();
-        let facing = stage.facing(&camera, &primitives)?;
+        let (scene, progress) = (&stage.loaded.scene, Progress::default());
+        let facing = unshadowed(&scene.mesh, &camera, &light, &primitives, progress);
+        let facing = facing.map_err(|error| CompareError::Input(error.to_string()))?;
         let how = How {
             size: desired.size,
             timing: self.timing,
@@ -235,11 +238,14 @@ impl Worker {
         }
         Ok(Ok(FrameSnapshot {
             desired: desired.clone(),
-            camera,
-            light,
+            question: Question {
+                scene: scene.clone(),
+                camera,
+                light,
+                primitives: Arc::new(primitives),
+                outdated: Arc::default(),
+            },
             light_number: stage.provider.light_number(),
-            scene: stage.loaded.scene.clone(),
-            primitives: Arc::new(primitives),
             facing: Arc::new(facing),
             methods,
         }))
@@ -273,16 +279,5 @@ impl Stage {
         })?;
         let ids = contents.get("primitive").and_then(Content::as_u32);
         ids.ok_or_else(|| wrong("its primitives are not integers".into()))
-    }
-
-    /// Computes which pixels face the light.
-    fn facing(
-        &self,
-        camera: &Camera,
-        primitives: &[u32],
-    ) -> Result<skiagraph_reference::GroundTruthPixels, CompareError> {
-        let (mesh, light) = (&self.loaded.scene.mesh, self.provider.light());
-        unshadowed(mesh, camera, &light, primitives, Progress::default())
-            .map_err(|error| CompareError::Input(error.to_string()))
     }
 }

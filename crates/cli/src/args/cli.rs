@@ -1,5 +1,5 @@
 //! The program, its commands and their examples. Exit codes: 0 fine, 1 the input is wrong, 2 usage,
-//! 3 no usable GPU, or it was lost or hangs.
+//! 3 no usable GPU, or it was lost or hangs, 4 a condition of `--fail-if` does not hold.
 
 use crate::args::{
     commands::{
@@ -20,7 +20,7 @@ use clap::{Parser, Subcommand};
         Progress goes to standard error: a bar on a terminal, a line every five seconds in a \
         pipe, or with SKIAGRAPH_PROGRESS=lines one at the begin and the end of each step.\n\n\
         Exit codes: 0 fine, 1 the input is wrong, 2 wrong usage, 3 no usable GPU, \
-        or it was lost or hangs, 130 stopped by Ctrl-C."
+        or it was lost or hangs, 4 a condition of --fail-if does not hold, 130 stopped by Ctrl-C."
 )]
 pub struct Cli {
     /// Command to run.
@@ -283,6 +283,9 @@ mod tests {
             "skiagraph compare --look 0,0,0",
             "skiagraph compare --oracle offset:-1",
             "skiagraph compare --oracle embree",
+            "skiagraph compare --under 3",
+            "skiagraph compare --below 200%",
+            "skiagraph compare --fail-if wrong>1%",
             "skiagraph profile",
             "skiagraph profile nsm --frames 0",
             "skiagraph check a.ron --format yaml",

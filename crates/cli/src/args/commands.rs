@@ -2,7 +2,7 @@
 
 use crate::args::{
     shared::{MethodArgs, SceneArgs},
-    values::{frames, texels},
+    values::{bytes, frames, gate, milliseconds, percent, texels},
 };
 use clap::{Args, ValueEnum};
 use skiagraph_compare::graphs::argument::Assignment;
@@ -11,6 +11,7 @@ use skiagraph_compare::pictures::save::Save;
 use skiagraph_compare::records::published_row::PublishedFile;
 use skiagraph_compare::size::Size;
 use skiagraph_reference::OracleMode;
+use skiagraph_report::gate::Gate;
 use std::path::PathBuf;
 
 /// `skiagraph compare`.
@@ -18,9 +19,13 @@ use std::path::PathBuf;
 pub struct CompareArgs {
     /// Presets by name, or graphs (.ron) with the output `visibility`, and perhaps `status`.
     /// With settings of its own a method stands beside itself: `crsm@n=1,depth=plane`. Without any:
-    /// all presets, those in ./pipelines and the built-in ones.
+    /// the eight that one would ship (rt, light_buffer, nsm, pcf, pssm, vsm, hybrid_pcf, crsm) and
+    /// one's own in ./pipelines.
     #[arg(value_name = "PRESET|FILE.ron[@NAME=VALUE,…]")]
     pub presets: Vec<String>,
+    /// Compare all presets, those in ./pipelines and the built-in ones.
+    #[arg(long, conflicts_with = "presets")]
+    pub all: bool,
     /// The scene and the place that it is seen from.
     #[command(flatten)]
     pub scene: SceneArgs,
@@ -73,6 +78,20 @@ pub struct CompareArgs {
     #[arg(long, value_name = "N", default_value_t = REFERENCE_SAMPLES,
           value_parser = clap::value_parser!(u32).range(4..=1_048_576))]
     pub reference_samples: u32,
+    /// Take no method whose frame takes longer with every pass run: `3ms`, `800us`.
+    #[arg(long, value_name = "TIME", value_parser = milliseconds)]
+    pub under: Option<f64>,
+    /// Take no method that is wrong on so many of the pixels that face the light, or more: `1%`.
+    /// The fastest one that is right enough is taken, not the fastest exact one.
+    #[arg(long, value_name = "SHARE", value_parser = percent)]
+    pub below: Option<f64>,
+    /// Take no method that needs more memory, with what it reads of the scene: `64MiB`.
+    #[arg(long, value_name = "SIZE", value_parser = bytes)]
+    pub memory: Option<u64>,
+    /// End with exit code 4 if a figure of a method is greater: `nsm: wrong > 0.1%`, `rmse > 0.05`,
+    /// `flip > 0.02`, `frame > 3ms`, `memory > 64MiB`. May be repeated.
+    #[arg(long, value_name = "METHOD: FIGURE > VALUE", value_parser = gate)]
+    pub fail_if: Vec<Gate>,
     /// Folder for results.json, results.csv and the pictures.
     #[arg(long, default_value = "compare", value_name = "DIR")]
     pub out: PathBuf,

@@ -6,6 +6,7 @@
 
 use clap::{builder::RangedI64ValueParser, value_parser};
 use glam::DVec3;
+use skiagraph_report::gate::{Figure, Gate};
 
 /// A number of texels along an edge: at least one.
 pub fn texels() -> RangedI64ValueParser<u32> {
@@ -93,6 +94,58 @@ pub fn bytes(text: &str) -> Result<u64, String> {
     }
 }
 
+/// A time in milliseconds above zero: `3ms`, `0.8 ms`, `800us`.
+pub fn milliseconds(text: &str) -> Result<f64, String> {
+    let expected = "expected a time, for example 3ms or 800us";
+    let text = text.trim();
+    let (number, scale) = match (text.strip_suffix("ms"), text.strip_suffix("us")) {
+        (Some(number), _) => (number, 1.0),
+        (_, Some(number)) => (number, 1e-3),
+        _ => return Err(format!("no unit; {expected}")),
+    };
+    positive(number.trim())
+        .map(|number| number * scale)
+        .map_err(|why| format!("{why}; {expected}"))
+}
+
+/// A share in percent above zero and at most 100: `1%`, `0.05 %`.
+pub fn percent(text: &str) -> Result<f64, String> {
+    let expected = "expected a share above 0 % and at most 100 %, for example 1%";
+    let number = text.trim().strip_suffix('%');
+    let number = number.ok_or_else(|| format!("no sign for percent; {expected}"))?;
+    match positive(number.trim()) {
+        Ok(share) if share <= 100.0 => Ok(share),
+        _ => Err(expected.into()),
+    }
+}
+
+/// A figure that must not be greater: `nsm: wrong > 0.1%`.
+pub fn gate(text: &str) -> Result<Gate, String> {
+    let expected = "expected METHOD: FIGURE > VALUE, for example `nsm: wrong > 0.1%`";
+    let parts = || {
+        let (method, condition) = text.rsplit_once(": ")?;
+        let (figure, value) = condition.split_once('>')?;
+        Some([method, figure, value].map(str::trim))
+    };
+    let [method, figure, value] = parts().ok_or(expected)?;
+    let mut figures = Figure::ALL.into_iter();
+    let Some(known) = figures.find(|known| known.word() == figure) else {
+        let all = Figure::ALL.map(Figure::word).join(", ");
+        return Err(format!("unknown figure `{figure}`; expected one of {all}"));
+    };
+    let most = match known {
+        Figure::Wrong => percent(value),
+        Figure::Frame => milliseconds(value),
+        Figure::Memory => bytes(value).map(|bytes| bytes as f64),
+        Figure::Rmse | Figure::Flip => positive(value),
+    };
+    Ok(Gate {
+        method: method.into(),
+        figure: known,
+        most: most.map_err(|why| format!("{figure}: {why}"))?,
+    })
+}
+
 /// A finite number above zero.
 pub fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
@@ -113,6 +166,42 @@ pub fn degrees(text: &str) -> Result<f64, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn times_and_shares_have_units() {
+        assert_eq!(milliseconds("3ms"), Ok(3.0));
+        assert_eq!(milliseconds("800 us"), Ok(0.8));
+        assert_eq!(percent("0.05 %"), Ok(0.05));
+        for text in ["3", "ms", "-1ms", "0ms", "infms"] {
+            assert!(
+                milliseconds(text).unwrap_err().contains("3ms or 800us"),
+                "{text}"
+            );
+        }
+        for text in ["1", "%", "0%", "101%", "nan%"] {
+            assert!(
+                percent(text).unwrap_err().contains("for example 1%"),
+                "{text}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_condition_has_a_method_a_figure_and_a_value_with_its_unit() {
+        let most = |text| gate(text).map(|gate| (gate.method, gate.most));
+        assert_eq!(most("nsm: wrong > 0.1%"), Ok(("nsm".into(), 0.1)));
+        assert_eq!(most("crsm@n=1: frame>3ms"), Ok(("crsm@n=1".into(), 3.0)));
+        for (text, told) in [
+            ("nsm wrong > 1%", "METHOD: FIGURE > VALUE"),
+            ("nsm: wrong < 1%", "METHOD: FIGURE > VALUE"),
+            ("nsm: wrnog > 1%", "wrong, rmse, flip, frame, memory"),
+            ("nsm: wrong > 1", "wrong: no sign for percent"),
+            ("nsm: frame > 1", "frame: no unit"),
+        ] {
+            let error = gate(text).unwrap_err();
+            assert!(error.contains(told), "{text}: {error}");
+        }
+    }
 
     #[test]
     fn bytes_have_units() {

@@ -26,15 +26,17 @@ use skiagraph_compare::measuring::{
     view_or_path::{ViewOrPath, under_lights},
 };
 use skiagraph_compare::pictures::run_pictures::graph_name;
-use skiagraph_compare::records::{published, results::Results};
+use skiagraph_compare::records::{budgets::Budgets, published, results::Results};
 use skiagraph_compare::sink::Session;
 use skiagraph_compare::size::Size;
-use skiagraph_compare::wording::{command_line, size};
+use skiagraph_compare::wording::{command_line, size, unknown};
 use skiagraph_draw::{from_plan, to_svg};
 use skiagraph_passes::SceneProvider;
 use skiagraph_report::{
+    gate::Gate,
     markdown, page, results_table,
     summary_table::{self, Summary},
+    table::terminal,
 };
 use skiagraph_scene::Scene;
 use std::sync::Arc;
@@ -47,9 +49,14 @@ use std::sync::Arc;
 pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let published = published::read(&args.published)?;
     let sources = preset::sources(&Terminal);
-    let names = preset::named_or_all(&args.presets, &sources);
+    let names = if args.presets.is_empty() && !args.all {
+        preset::shipped_and_own(&sources)
+    } else {
+        preset::named_or_all(&args.presets, &sources)
+    };
     let methods = shadow_method::load_methods(&names, &args.params, &args.map_size, &sources)?;
     note_without_map(&methods, &args.map_size);
+    check_gates(&args.fail_if, &methods)?;
     let primary = PrimaryVisibility::load(&sources)?;
     let loaded = methods.iter().map(|method| &method.preset.graph);
     let gpu = device::open(&gpu.request(), loaded)?;
@@ -83,6 +90,11 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
             pictures: args.images == Images::All,
         },
         primary,
+        budgets: Budgets {
+            frame_ms: args.under,
+            wrong_percent: args.below,
+            memory_bytes: args.memory,
+        },
         published,
         command: Some(command_line(std::env::args_os())),
         scene,
@@ -106,6 +118,23 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     interrupt::install()?;
     let outcome = run(args, &comparison, &mut series);
     finish(args, series, outcome)
+}
+
+/// Refuses conditions on methods that are not compared.
+fn check_gates(gates: &[Gate], methods: &[Method]) -> Result<(), CliError> {
+    let names = || methods.iter().map(|method| method.name.as_str());
+    let is_unknown = |gate: &&Gate| !names().contains(&*gate.method);
+    let Some(gate) = gates.iter().find(is_unknown) else {
+        return Ok(());
+    };
+    let what = format!("--fail-if: `{}` is not compared", gate.method);
+    let known: Vec<&str> = names().unique().collect();
+    Err(CliError::Input(unknown(
+        &what,
+        &gate.method,
+        "methods",
+        &known,
+    )))
 }
 
 /// Says on which methods `--map-size` has no effect.
@@ -197,12 +226,26 @@ fn print_summary(args: &CompareArgs, results: &Results) -> Result<(), CliError> 
     match args.format {
         Format::Table => {
             print(&summaries.iter().map(Summary::text).join("\n"))?;
+            for (viewport, lights) in summary_table::by_light(results) {
+                let head = format!("By light, {}: wrong pixels, frame, memory", size(viewport));
+                print(&format!("\n{head}\n{}\n", terminal(&lights)))?;
+            }
             if args.passes {
                 print(&format!("\n{}\n", summary_table::passes(results)))?;
             }
             Ok(())
         }
-        Format::Markdown => print(&summaries.iter().map(Summary::markdown).collect::<String>()),
+        Format::Markdown => {
+            print(&summaries.iter().map(Summary::markdown).collect::<String>())?;
+            for (viewport, lights) in summary_table::by_light(results) {
+                print(&format!(
+                    "\n## By light, {}\n\n{}",
+                    size(viewport),
+                    lights.markdown()
+                ))?;
+            }
+            Ok(())
+        }
         Format::Json => print(&json::to_text(results)),
     }
 }
@@ -258,6 +301,8 @@ fn finish(
         );
     }
     note(&format!("{files} are in {}", args.out.display()));
+    let failures = args.fail_if.iter().flat_map(|gate| gate.failures(&results));
+    let failures: Vec<String> = failures.collect();
     let runs = results.runs.iter().filter_map(|run| run.measured.as_ref());
     let bare = runs.filter(|run| run.images.is_none()).count();
     if args.images == Images::All && bare > 0 {
@@ -265,6 +310,9 @@ fn finish(
             "{bare} of the runs that were kept have no pictures: they were measured with --images \
              none"
         ));
+    }
+    if !failures.is_empty() {
+        return Err(CliError::Gate(failures.join("\n")));
     }
     Ok(())
 }

@@ -10,6 +10,7 @@ use skiagraph_gpu::{
     timing::Trust,
 };
 use skiagraph_scene::{SceneLibrary, library::ASSETS_VARIABLE};
+use wgpu::Features as F;
 
 /// Prints adapters, limits, features, whether timestamps are true, and where meshes are searched.
 ///
@@ -71,32 +72,26 @@ fn chosen(gpu: &Gpu) -> String {
         let has = if features.contains(feature) {
             "yes"
         } else {
-            "no "
+            "no"
         };
-        text += &format!("  {has} {use_of_it}\n");
+        text += &format!("  {has:<3} {use_of_it}\n");
     }
     text
 }
 
-const FEATURES: [(wgpu::Features, &str); 5] = [
+const FEATURES: [(F, &str); 5] = [
+    (F::TIMESTAMP_QUERY, "timestamps: GPU time of each pass"),
     (
-        wgpu::Features::TIMESTAMP_QUERY,
-        "timestamps: GPU time of each pass",
-    ),
-    (
-        wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS,
+        F::TIMESTAMP_QUERY_INSIDE_ENCODERS,
         "timestamps between passes: GPU time of copies and clears",
     ),
     (
-        wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES,
+        F::TIMESTAMP_QUERY_INSIDE_PASSES,
         "timestamps inside passes: the way around drivers that time compute wrongly",
     ),
+    (F::FLOAT32_FILTERABLE, "filtering of 32-bit float textures"),
     (
-        wgpu::Features::FLOAT32_FILTERABLE,
-        "filtering of 32-bit float textures",
-    ),
-    (
-        wgpu::Features::EXPERIMENTAL_RAY_QUERY,
+        F::EXPERIMENTAL_RAY_QUERY,
         "ray queries: `Trace` with `engine: RayQuery`",
     ),
 ];

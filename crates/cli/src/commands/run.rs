@@ -2,7 +2,7 @@
 
 use crate::args::commands::RunArgs;
 use crate::args::shared::GpuArgs;
-use crate::commands::run_sequence::{PoseSequence, of_frame};
+use crate::commands::run_sequence::{of_frame, record, sequence};
 use crate::error::CliError;
 use crate::scene_selection::SceneSelection;
 use crate::terminal::{Terminal, console::print};
@@ -13,7 +13,7 @@ use skiagraph_compare::graphs::preset;
 use skiagraph_compare::measuring::{device, frame, poison};
 use skiagraph_compare::pictures::colours::ClipPlanes;
 use skiagraph_compare::pictures::save::{
-    Save, capture, captures, check_encodings, decodings, names, write_all,
+    Save, captures, check_encodings, decodings, names, write_all,
 };
 use skiagraph_compare::sink::Session;
 use skiagraph_compare::wording::bytes;
@@ -40,12 +40,8 @@ pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     } else {
         saves.clone()
     };
-    let files = files.iter().map(|save| {
-        (
-            format!("--save {}", capture(save).name()),
-            save.file.as_path(),
-        )
-    });
+    let name = |save: &Save| format!("--save {}", save.capture.name());
+    let files = files.iter().map(|save| (name(save), save.file.as_path()));
     check_writable(&files.collect::<Vec<_>>())?;
     let gpu = device::open(&gpu.request(), [&preset.graph])?;
     let session = Session::new(&gpu, &Terminal);
@@ -54,21 +50,20 @@ pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         mut views,
         paths,
     } = SceneSelection::load(&args.scene)?;
-    let poses = PoseSequence::new(args, &scene, &views, &paths)?;
-    if let Some(first) = poses.as_ref().and_then(PoseSequence::first) {
-        views = vec![first.clone()];
-    }
+    let sequence = sequence(args, &scene, &views, &paths)?;
     let scene = Arc::new(scene);
     let mut provider = SceneProvider::new(scene.clone());
-    if let Some(poses) = &poses {
-        poses.begin(&mut provider);
+    if let Some(sequence) = &sequence {
+        let first = sequence.poses.iter().take(1);
+        views = first.map(|pose| pose.view.clone()).collect();
+        sequence.begin(&mut provider);
     }
     let mut idle = IdleParams::default();
     for view in &views {
         provider.set_view(view, method.size.0);
         let mut request = Capabilities::new(&gpu).request(method.size.0, &provider);
         request.params = params.clone();
-        request.captures = captures(&preset.graph.outputs(), saves);
+        request.captures = captures(&preset.graph.default_outputs(), saves);
         let plan = preset.plan(&request, &Terminal)?;
         idle.note_of(&Terminal, &preset.name, &plan, provider.light());
         check_encodings(&plan, saves)?;
@@ -84,8 +79,8 @@ pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         let poisoned = args
             .poison
             .then(|| poison::check(session, &plan, &mut provider, preset));
-        if let Some(poses) = &poses {
-            poses.record(session, (preset, plan), &mut provider, saves)?;
+        if let Some(sequence) = &sequence {
+            record(sequence, session, (preset, plan), &mut provider, saves)?;
         } else {
             let (graph, names) = (&preset.name, names(saves));
             let names: Vec<&str> = names.iter().map(String::as_str).collect();

@@ -8,7 +8,7 @@ use crate::terminal::{Terminal, interrupt, progress};
 use itertools::Itertools;
 use skiagraph_cases::{Casters, HardCase};
 use skiagraph_compare::files::json::to_text;
-use skiagraph_compare::files::lock::{self, Locked, Shared};
+use skiagraph_compare::files::lock::{self, Locked};
 use skiagraph_compare::files::write::{check_folder, write_whole};
 use skiagraph_compare::graphs::faults::reasons;
 use skiagraph_compare::graphs::method::Method;
@@ -56,10 +56,17 @@ pub fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let gpu = device::open(&gpu.request(), graphs)?;
     let session = Session::new(&gpu, &Terminal);
     primary.plan(session, viewport, &provider)?;
-    let methods: Vec<MethodRun> = methods
+    let with_guarantee = |method: Method| -> Result<MethodRun, CliError> {
+        let method = method.at(viewport).settled(gpu.device.features());
+        let plan = method.plan(viewport, Capabilities::new(&gpu), &provider);
+        let mut run = MethodRun::new(method, &args.exact)?;
+        run.column.unavailable = plan.err().map(|faults| reasons(&faults));
+        Ok(run)
+    };
+    let methods = methods
         .into_iter()
-        .map(|method| method_run(method, args, &gpu, &provider))
-        .collect::<Result<_, _>>()?;
+        .map(with_guarantee)
+        .collect::<Result<Vec<_>, _>>()?;
     check_abilities(&methods, &gpu)?;
     if let Some(folder) = &args.save {
         check_pictures(&methods, &cases, viewport)?;
@@ -82,7 +89,7 @@ pub fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         // Nothing is timed, so whether timestamps can be trusted is of no interest.
         adapter: device::describe(&gpu, Trust::Trusted),
         viewport,
-        methods: methods.iter().map(MethodRun::column).collect(),
+        methods: methods.iter().map(|run| run.column.clone()).collect(),
         cases: Vec::new(),
     };
     interrupt::install()?;
@@ -93,7 +100,7 @@ pub fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
 /// The folder for stress.json, which no other process may write meanwhile.
 fn claim(folder: &Path) -> Result<Locked, CliError> {
     check_folder(folder)?;
-    lock::claim(folder, Shared::Stress, &Terminal)?.ok_or_else(|| {
+    lock::claim(folder, lock::STRESS, &Terminal)?.ok_or_else(|| {
         CliError::Input(format!(
             "another `skiagraph stress` is writing stress.json into {}\n  wait for its end, or \
              give another --out",
@@ -165,25 +172,10 @@ fn finish(
     }
 }
 
-/// The method with what it guarantees, and why this adapter cannot run it, if it cannot.
-fn method_run(
-    method: Method,
-    args: &StressArgs,
-    gpu: &Gpu,
-    provider: &SceneProvider,
-) -> Result<MethodRun, CliError> {
-    let method = method.at(args.size.0).settled(gpu.device.features());
-    let plan = method.plan(args.size.0, Capabilities::new(gpu), provider);
-    Ok(MethodRun {
-        unavailable: plan.err().map(|faults| reasons(&faults)),
-        ..MethodRun::new(method, &args.exact)?
-    })
-}
-
 /// Refuses to run where there is nothing to run.
 fn check_abilities(methods: &[MethodRun], gpu: &Gpu) -> Result<(), CliError> {
     let reasons = methods.iter().map(|run| {
-        let reason = run.unavailable.as_ref()?;
+        let reason = run.column.unavailable.as_ref()?;
         Some(format!("\n  {}: {reason}", run.method.name))
     });
     match reasons.collect::<Option<String>>() {

@@ -6,6 +6,7 @@ use skiagraph_gpu::ExecuteError;
 use std::{
     error::Error,
     io::{self, IsTerminal, Write},
+    iter,
     process::ExitCode,
 };
 
@@ -49,19 +50,17 @@ pub fn report(error: &CliError) -> ExitCode {
             _ => format!("{} {error}", style("error:", "1;31")),
         };
         let mut line = |line: &str| text += &format!("\n  {}", line.replace('\n', "\n  "));
-        let mut cause = error.source();
-        while let Some(error) = cause {
+        for error in iter::successors(error.source(), |&error| error.source()) {
             line(&format!("because: {error}"));
             if let Some(way_out) = error.downcast_ref().and_then(io_advice) {
                 line(way_out);
             }
-            cause = error.source();
         }
         if let CliError::Compare(CompareError::Gpu { source, .. }) = error {
-            if let Some(way_out) = advice(source.as_ref()) {
+            if let Some(way_out) = advice(source) {
                 line(way_out);
             }
-            if let Some(ExecuteError::OutOfMemory { table, .. }) = source.downcast_ref() {
+            if let ExecuteError::OutOfMemory { table, .. } = &**source {
                 line(table);
             }
         }

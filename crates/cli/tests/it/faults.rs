@@ -233,16 +233,20 @@ fn ctrl_c_in_a_frame_that_never_ends_keeps_finished_runs_and_resume_goes_on() {
     assert!(out.join("results.csv").is_file());
     // The author mends the shader; only that method has to be measured.
     method(folder.path(), "endless", "Over(\"visibility.size\")", LIGHT);
+    // The other one lacks its turns.
+    assert!(kept[0].get("turns").is_none());
     let (code, _, stderr) = run(folder.path(), &format!("{line} --resume"));
     assert_eq!(code, 0, "{stderr}");
-    assert!(!stderr.contains("starting light.ron"), "{stderr}");
     let all = runs(&out);
-    assert_eq!((all.len(), &all[0]), (2, &kept[0]));
+    assert_eq!((all.len(), &all[0]["wrong"]), (2, &kept[0]["wrong"]));
     assert_eq!(all[1]["preset"], "endless.ron");
+    let (_, _, stderr) = run(folder.path(), &format!("{line} --resume"));
+    assert!(stderr.contains("2 of 2 runs are kept"), "{stderr}");
+    assert!(!stderr.contains("starting"), "{stderr}");
 }
 
 #[test]
-fn ctrl_c_between_frames_keeps_no_run_that_lacks_some() {
+fn ctrl_c_between_frames_keeps_what_is_judged_and_resume_times_it() {
     let folder = folder();
     for frames in [
         "--frames 100000 --cached-frames 0",
@@ -252,10 +256,15 @@ fn ctrl_c_between_frames_keeps_no_run_that_lacks_some() {
         // So long that the one frame is over and the cached ones have begun; where they have not,
         // this still holds.
         let after = Duration::from_secs(1);
-        let (code, stderr) = interrupted(folder.path(), &line, "starting nsm", after);
+        let (code, stderr) = interrupted(folder.path(), &line, "starting 1 method in turns", after);
         assert_eq!(code, 130, "{frames}: {stderr}");
-        assert!(stderr.contains("no run was finished"), "{frames}: {stderr}");
-        assert!(!folder.path().join("o/results.json").exists(), "{frames}");
+        assert!(
+            stderr.contains("1 of 1 runs are kept"),
+            "{frames}: {stderr}"
+        );
+        let kept = runs(&folder.path().join("o"));
+        assert!(kept[0]["wrong"].is_object() && kept[0].get("turns").is_none());
+        fs::remove_dir_all(folder.path().join("o")).unwrap();
     }
 }
 

@@ -19,4 +19,5 @@ mod report;
 mod stress;
 mod together;
 mod tutorial;
+mod verdict;
 mod watch;

@@ -70,10 +70,10 @@ fn preset_names(entries: &Value) -> Vec<&str> {
 }
 
 #[test]
-fn a_bare_compare_takes_the_presets_that_presets_lists() {
+fn compare_all_takes_the_presets_that_presets_lists() {
     let (folder, listed) = presets_on_disk();
-    let line = "compare --size 8x8 --map-size 8 --frames 1 --warmup 0 --cached-frames 0 --images \
-        none --out . --format json";
+    let line = "compare --all --size 8x8 --map-size 8 --frames 1 --warmup 0 --cached-frames 0 \
+        --images none --out . --format json";
     let printed = skiagraph(folder.path(), line).stdout;
     let file = fs::read(folder.path().join("results.json")).unwrap();
     assert!(printed == file, "--format json prints the file");

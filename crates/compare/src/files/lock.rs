@@ -1,13 +1,13 @@
 //! One process at a time where several may write the same files of a folder.
 //!
 //! ```
-//! use skiagraph_compare::{files::lock::{Shared, claim, wait_for}, sink::Silent};
+//! use skiagraph_compare::{files::lock::{RESULTS, claim, wait_for}, sink::Silent};
 //!
 //! let folder = tempfile::tempdir()?;
-//! let locked = wait_for(folder.path(), Shared::Results, &Silent)?;
-//! assert!(claim(folder.path(), Shared::Results, &Silent)?.is_none(), "it is taken");
+//! let locked = wait_for(folder.path(), RESULTS, &Silent)?;
+//! assert!(claim(folder.path(), RESULTS, &Silent)?.is_none(), "it is taken");
 //! drop(locked);
-//! assert!(claim(folder.path(), Shared::Results, &Silent)?.is_some());
+//! assert!(claim(folder.path(), RESULTS, &Silent)?.is_some());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -22,26 +22,13 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// The files of a folder that one process writes at a time. A file beside them,
-/// `.skiagraph-results.lock` for one, is locked; it stays there, as taking it away would let two
-/// processes lock two files of that name.
-#[derive(Clone, Copy, Debug)]
-pub enum Shared {
-    /// results.json, what is written beside it (results.csv, report.html) and the pictures of its
-    /// runs. It is held for as long as that takes, not while runs are measured.
-    Results,
-    /// stress.json, which holds one command's matrix: it is held to the command's end.
-    Stress,
-}
+/// Locks results.json, what is written beside it (results.csv, report.html) and the pictures of its
+/// runs. It is held for as long as that takes, not while runs are measured. The file that is locked
+/// stays there, as taking it away would let two processes lock two files of that name.
+pub const RESULTS: &str = ".skiagraph-results.lock";
 
-impl Shared {
-    fn file(self) -> &'static str {
-        match self {
-            Self::Results => ".skiagraph-results.lock",
-            Self::Stress => ".skiagraph-stress.lock",
-        }
-    }
-}
+/// Locks stress.json, which holds one command's matrix: it is held to the command's end.
+pub const STRESS: &str = ".skiagraph-stress.lock";
 
 /// No other process has the files until this is dropped, or the process ends in whatever way.
 #[derive(Debug)]
@@ -59,7 +46,7 @@ const PATIENCE: Duration = Duration::from_secs(2);
 ///
 /// # Errors
 /// An early end, a folder that takes no file.
-pub fn wait_for(folder: &Path, files: Shared, sink: &dyn Sink) -> Result<Locked, CompareError> {
+pub fn wait_for(folder: &Path, files: &str, sink: &dyn Sink) -> Result<Locked, CompareError> {
     let began = Instant::now();
     let mut is_told = false;
     loop {
@@ -85,12 +72,8 @@ pub fn wait_for(folder: &Path, files: Shared, sink: &dyn Sink) -> Result<Locked,
 ///
 /// # Errors
 /// A folder that takes no file.
-pub fn claim(
-    folder: &Path,
-    files: Shared,
-    sink: &dyn Sink,
-) -> Result<Option<Locked>, CompareError> {
-    let path = folder.join(files.file());
+pub fn claim(folder: &Path, files: &str, sink: &dyn Sink) -> Result<Option<Locked>, CompareError> {
+    let path = folder.join(files);
     let opened = File::options()
         .create(true)
         .truncate(false)
@@ -120,14 +103,14 @@ mod tests {
     fn one_has_the_files_until_it_lets_go() {
         let folder = tempfile::tempdir().unwrap();
         let claim = |files| claim(folder.path(), files, &Silent).unwrap();
-        let first = claim(Shared::Results);
+        let first = claim(RESULTS);
         assert!(first.is_some());
-        assert!(claim(Shared::Results).is_none());
-        assert!(claim(Shared::Stress).is_some(), "files of their own");
+        assert!(claim(RESULTS).is_none());
+        assert!(claim(STRESS).is_some(), "files of their own");
         drop(first);
-        assert!(claim(Shared::Results).is_some());
+        assert!(claim(RESULTS).is_some());
         let nowhere = folder.path().join("nowhere");
-        let error = super::claim(&nowhere, Shared::Results, &Silent).unwrap_err();
+        let error = super::claim(&nowhere, RESULTS, &Silent).unwrap_err();
         assert!(error.to_string().contains("nowhere"), "{error}");
     }
 }

@@ -2,10 +2,10 @@
 //! mistakes, fingerprints of what was read, locks.
 //!
 //! ```
-//! use skiagraph_compare::{files::{lock::{Shared, wait_for}, write::write_whole}, sink::Silent};
+//! use skiagraph_compare::{files::{lock::{RESULTS, wait_for}, write::write_whole}, sink::Silent};
 //!
 //! let folder = tempfile::tempdir()?;
-//! let locked = wait_for(folder.path(), Shared::Results, &Silent)?;
+//! let locked = wait_for(folder.path(), RESULTS, &Silent)?;
 //! write_whole(&folder.path().join("notes.txt"), b"measured at night")?;
 //! drop(locked);
 //! assert_eq!(std::fs::read(folder.path().join("notes.txt"))?, b"measured at night");

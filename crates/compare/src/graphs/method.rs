@@ -55,8 +55,8 @@ impl Method {
         Self::on(preset, params, [1024, 1024], wgpu::Features::all())
     }
 
-    /// Creates a method of a preset and the params set for it, in so many pixels on an adapter with
-    /// these features.
+    /// Creates a method of a preset with these params, for a viewport in pixels on an adapter with
+    /// these features. Params are checked when it is planned.
     pub fn on(
         preset: Arc<Preset>,
         params: ParamValues,
@@ -111,10 +111,23 @@ impl Method {
         capabilities: Capabilities,
         provider: &dyn Provider,
     ) -> Result<Plan, Diagnostics> {
+        self.plan_of(&self.preset.judged(), viewport, capabilities, provider)
+    }
+
+    /// The plan of some outputs alone.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it.
+    pub fn plan_of(
+        &self,
+        outputs: &[&str],
+        viewport: [u32; 2],
+        capabilities: Capabilities,
+        provider: &dyn Provider,
+    ) -> Result<Plan, Diagnostics> {
         let mut request = capabilities.request(viewport, provider);
         request.params = self.params.clone();
-        let judged = self.preset.judged().into_iter();
-        request.outputs = Some(judged.map(str::to_owned).collect());
+        request.outputs = Some(outputs.iter().map(|&name| name.to_owned()).collect());
         self.preset.graph.plan(&request)
     }
 

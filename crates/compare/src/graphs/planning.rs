@@ -91,7 +91,7 @@ pub fn check(
     // over, unless nothing else is wrong with it.
     let lights = match Graph::load(path, registry, sources) {
         Ok(graph) => stand_ins(&graph),
-        Err(_) => ALL.map(stand_in).to_vec(),
+        Err(_) => of_each_kind().to_vec(),
     };
     let mut provider = described(VIEWPORT);
     let (mut checked, mut refused) = (None, None);
@@ -133,38 +133,25 @@ fn check_under(
     Graph::check(path, registry, sources, &request)
 }
 
-/// A light that stands in for a scene's.
-#[derive(Clone, Copy)]
-enum StandIn {
-    Directional,
-    Spot,
-    Point,
-}
-
-/// In the order of [`LIGHT_KINDS`](skiagraph_passes::uniforms::LIGHT_KINDS).
-const ALL: [StandIn; 3] = [StandIn::Directional, StandIn::Spot, StandIn::Point];
-
-fn stand_in(kind: StandIn) -> LightKind {
-    let position = DVec3::Z;
-    match kind {
-        StandIn::Directional => DirectionalLight::new(DVec3::NEG_Z).into(),
-        StandIn::Spot => LightKind::Spot(SpotLight {
+/// A light of each kind, in the order of [`LIGHT_KINDS`](skiagraph_passes::uniforms::LIGHT_KINDS).
+fn of_each_kind() -> [LightKind; 3] {
+    let (position, radius) = (DVec3::Z, 0.0);
+    [
+        DirectionalLight::new(DVec3::NEG_Z).into(),
+        LightKind::Spot(SpotLight {
             position,
             direction: DVec3::NEG_Z,
             cone_degrees: 90.0,
-            radius: 0.0,
+            radius,
         }),
-        StandIn::Point => LightKind::Point(PointLight {
-            position,
-            radius: 0.0,
-        }),
-    }
+        LightKind::Point(PointLight { position, radius }),
+    ]
 }
 
 /// A light of each kind that a graph takes, at least one: all of them, if it takes none that there
 /// is.
 pub fn stand_ins(graph: &Graph) -> Vec<LightKind> {
-    let all = ALL.map(stand_in);
+    let all = of_each_kind();
     let taken = all.iter().filter(|it| light_kinds::takes(graph, it.word()));
     let taken: Vec<LightKind> = taken.copied().collect();
     if taken.is_empty() {
@@ -210,7 +197,7 @@ fn described(viewport: [u32; 2]) -> SceneProvider {
         views: vec![view.clone()],
         lights: vec![Light {
             name: "light".into(),
-            kind: stand_in(StandIn::Directional),
+            kind: of_each_kind()[0],
         }],
     };
     let mut provider = SceneProvider::new(Arc::new(scene));

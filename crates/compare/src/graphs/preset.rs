@@ -38,6 +38,11 @@ pub const VISIBILITY: &str = "visibility";
 pub const STATUS: &str = "status";
 /// The optional output with the number of rays traced in the frame.
 pub const RAY_COUNT: &str = "ray_count";
+/// The optional output with the density of the shadow map at each pixel's receiver: texels on a
+/// unit of area across the light's ray, 0 outside the map.
+pub const TEXEL_DENSITY: &str = "texel_density";
+/// The optional output with the layer of the shadow map that each pixel asks.
+pub const MAP_LAYER: &str = "map_layer";
 
 /// Where graphs and shaders are read from: the working directory, then what is built in. Tells the
 /// sink, once in a process, which files of the working directory stand in for others that are built
@@ -94,6 +99,28 @@ pub fn names(sources: &dyn Sources) -> Vec<String> {
     names.sorted().dedup().map(Into::into).collect()
 }
 
+/// The built-in presets that one would ship: those that a comparison takes unless it is told
+/// others.
+pub const SHIPPED: [&str; 8] = [
+    "rt",
+    "light_buffer",
+    "nsm",
+    "pcf",
+    "pssm",
+    "vsm",
+    "hybrid_pcf",
+    "crsm",
+];
+
+/// Names of the presets that a comparison takes by itself: those that one would ship, and one's own
+/// in `./pipelines`.
+pub fn shipped_and_own(sources: &dyn Sources) -> Vec<String> {
+    let built_in = names(&EmbeddedSources);
+    let own = names(sources).into_iter();
+    let own = own.filter(|name| !built_in.contains(name));
+    SHIPPED.map(str::to_owned).into_iter().chain(own).collect()
+}
+
 /// The presets that a command is to take: those that its arguments name, else all.
 pub fn named_or_all(arguments: &[String], sources: &dyn Sources) -> Vec<String> {
     match arguments {
@@ -115,10 +142,19 @@ pub struct Preset {
 impl Preset {
     /// Names of the outputs by which a shadow method is judged, as far as the graph has them.
     pub fn judged(&self) -> Vec<&'static str> {
+        self.outputs_of(&[VISIBILITY, STATUS, RAY_COUNT])
+    }
+
+    /// Names of the outputs that tell of its shadow map, as far as the graph has them: nothing of a
+    /// timed frame.
+    pub fn diagnostics(&self) -> Vec<&'static str> {
+        self.outputs_of(&[TEXEL_DENSITY, MAP_LAYER])
+    }
+
+    fn outputs_of(&self, names: &[&'static str]) -> Vec<&'static str> {
         let outputs = self.graph.outputs();
-        let mut names = vec![VISIBILITY, STATUS, RAY_COUNT];
-        names.retain(|name| outputs.contains(name));
-        names
+        let names = names.iter().copied();
+        names.filter(|name| outputs.contains(name)).collect()
     }
 
     /// The param that the graph declares under this name.
@@ -230,13 +266,9 @@ pub fn locate(argument: &str, sources: &dyn Sources) -> Result<String, CompareEr
         Ok(None) => {
             let known = names(sources);
             let known: Vec<&str> = known.iter().map(String::as_str).collect();
-            let text = unknown(
-                &format!("unknown preset `{argument}`"),
-                argument,
-                "presets",
-                &known,
-            );
-            text + "\n  a graph of your own is given as a path that ends in .ron"
+            let what = format!("unknown preset `{argument}`");
+            unknown(&what, argument, "presets", &known)
+                + "\n  a graph of your own is given as a path that ends in .ron"
         }
     };
     Err(CompareError::Input(missing))

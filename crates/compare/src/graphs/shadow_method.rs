@@ -17,7 +17,9 @@ use crate::graphs::faults::GraphFaults;
 use crate::graphs::light_kinds;
 use crate::graphs::method::{self, Method};
 use crate::graphs::planning::Capabilities;
-use crate::graphs::preset::{self, Preset, RAY_COUNT, STATUS, VISIBILITY};
+use crate::graphs::preset::{
+    self, MAP_LAYER, Preset, RAY_COUNT, STATUS, TEXEL_DENSITY, VISIBILITY,
+};
 use crate::wording::size;
 use skiagraph_gpu::Content;
 use skiagraph_graph::{Code, Plan, Sources};
@@ -85,7 +87,16 @@ pub fn check_plans(
         for method in methods {
             match method.plan(viewport, Capabilities::greatest(), provider) {
                 Ok(plan) => {
-                    mismatches.extend(mismatch(&method.preset, &plan, viewport, lights));
+                    let mut check = |plan: &Plan| {
+                        mismatches.extend(mismatch(&method.preset, plan, viewport, lights));
+                    };
+                    check(&plan);
+                    let diagnostics = method.preset.diagnostics();
+                    let greatest = Capabilities::greatest();
+                    match method.plan_of(&diagnostics, viewport, greatest, provider) {
+                        Ok(plan) => check(&plan),
+                        Err(diagnostics) => faults.add(&method.name, &diagnostics),
+                    }
                     if let Some(device) = device {
                         match method.plan(viewport, device.clone(), provider) {
                             Ok(_) => can_run_one = true,
@@ -145,9 +156,10 @@ fn mismatch(preset: &Preset, plan: &Plan, viewport: [u32; 2], lights: usize) -> 
     use wgpu::TextureFormat as F;
     plan.outputs().into_iter().find_map(|output| {
         let fits = match (output.name.as_str(), output.format) {
-            (VISIBILITY | STATUS, Some(F::R8Uint | F::R16Uint | F::R32Uint))
-            | (VISIBILITY, Some(F::R8Unorm | F::R16Unorm | F::R16Float | F::R32Float)) => true,
-            (VISIBILITY | STATUS, _) => false,
+            (VISIBILITY | STATUS | MAP_LAYER, Some(F::R8Uint | F::R16Uint | F::R32Uint))
+            | (VISIBILITY, Some(F::R8Unorm | F::R16Unorm | F::R16Float | F::R32Float))
+            | (TEXEL_DENSITY, Some(F::R32Float)) => true,
+            (VISIBILITY | STATUS | TEXEL_DENSITY | MAP_LAYER, _) => false,
             _ => return None,
         };
         let kind = output
@@ -155,16 +167,17 @@ fn mismatch(preset: &Preset, plan: &Plan, viewport: [u32; 2], lights: usize) -> 
             .map_or("a buffer".into(), |format| format!("{format:?}"));
         let fits_lights = output.layers == 1 || output.layers as usize == lights;
         (!fits || !fits_lights || output.size != viewport).then(|| {
-            let floats = match output.name.as_str() {
-                VISIBILITY => format!(" (0 or 1), {FLOATS} (0 to 1)"),
-                _ => String::new(),
+            let expected = match output.name.as_str() {
+                VISIBILITY => format!("{INTEGERS} (0 or 1), {FLOATS} (0 to 1)"),
+                TEXEL_DENSITY => "R32Float".to_owned(),
+                _ => INTEGERS.to_owned(),
             };
             let layers = match output.layers {
                 1 => String::new(),
                 layers => format!(" and {layers} layers"),
             };
             format!(
-                "`{}`: the output `{}` is {kind} of {}{layers}; expected {INTEGERS}{floats} of \
+                "`{}`: the output `{}` is {kind} of {}{layers}; expected {expected} of \
                  the viewport's {}, in one layer or one for each of {lights} lights",
                 preset.name,
                 output.name,
@@ -197,14 +210,7 @@ impl Outputs {
         light: usize,
         truth: &GroundTruthPixels,
     ) -> Result<Self, String> {
-        let of = |(name, content): (String, Content)| {
-            let mut layers = content.split();
-            let content = match layers.len() {
-                0 | 1 => content,
-                count => layers.swap_remove(light.min(count - 1)),
-            };
-            (name, content)
-        };
+        let of = |(name, content): (String, Content)| (name, of_light(content, light));
         Self::decode(&contents.into_iter().map(of).collect(), truth)
     }
 
@@ -248,6 +254,15 @@ impl Outputs {
             Some(shares) => Cow::Borrowed(shares),
             None => Cow::Owned(self.visibility.iter().map(|&lit| lit.share()).collect()),
         }
+    }
+}
+
+/// The part of an output that is of one light, where it has a layer for each.
+pub(crate) fn of_light(content: Content, light: usize) -> Content {
+    let mut layers = content.split();
+    match layers.len() {
+        0 | 1 => content,
+        count => layers.swap_remove(light.min(count - 1)),
     }
 }
 

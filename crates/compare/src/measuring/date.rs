@@ -14,6 +14,16 @@ pub fn now() -> String {
     format!("{:.0}", Timestamp::now())
 }
 
+/// True if two moments, as [`now`] writes them, lie an hour apart or more; moments that cannot be
+/// read do not.
+pub fn is_another_hour(one: &str, other: &str) -> bool {
+    let seconds = |text: &str| Some(text.parse::<Timestamp>().ok()?.as_second());
+    match (seconds(one), seconds(other)) {
+        (Some(one), Some(other)) => one.abs_diff(other) >= 3600,
+        _ => false,
+    }
+}
+
 /// `2026-11-21`, today.
 pub fn today() -> String {
     Timestamp::now().strftime("%F").to_string()
@@ -22,6 +32,13 @@ pub fn today() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_hour_apart_is_another_hour() {
+        let apart = |other| is_another_hour("2026-11-21T04:30:12Z", other);
+        assert!(apart("2026-11-21T05:30:12Z") && apart("2026-11-20T04:30:12Z"));
+        assert!(!apart("2026-11-21T05:30:11Z") && !apart("long ago"));
+    }
 
     #[test]
     fn a_day_and_a_second_are_written_as_records_pin_them() {

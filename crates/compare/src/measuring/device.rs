@@ -20,13 +20,14 @@
 //! ```
 
 use crate::error::{CompareError, with_causes};
-use crate::records::results::Adapter;
+use crate::records::results::{Adapter, Machine};
 use skiagraph_gpu::{
     device::{self, Gpu, GpuError, Wanted},
     timing::{self, Trust},
 };
 use skiagraph_graph::Graph;
 use std::time::Duration;
+use sysinfo::{CpuRefreshKind, System};
 
 /// The GPU to open, and how much of it and of our time a graph may take.
 #[derive(Clone, Debug, Default)]
@@ -71,7 +72,7 @@ pub fn open<'a>(
 /// systems before it is there, and a process that then uses it is killed. `None` where the system
 /// does not say.
 fn free_memory() -> Option<u64> {
-    let mut system = sysinfo::System::new();
+    let mut system = System::new();
     system.refresh_memory();
     if system.total_memory() == 0 {
         return None;
@@ -81,6 +82,23 @@ fn free_memory() -> Option<u64> {
         limits.total_memory.saturating_sub(limits.rss)
     });
     Some(system.available_memory().min(of_group))
+}
+
+/// The machine as it is now.
+pub fn machine() -> Machine {
+    let mut system = System::new();
+    system.refresh_cpu_list(CpuRefreshKind::nothing());
+    let cpus = system.cpus();
+    let load = System::load_average().one;
+    Machine {
+        host: System::host_name(),
+        processor: cpus
+            .first()
+            .map_or(String::new(), |cpu| cpu.brand().trim().into()),
+        cores: cpus.len() as u32,
+        // Windows has no such mean.
+        load: cfg!(unix).then_some(load),
+    }
 }
 
 /// How results name the adapter; `trust` says whether its timestamps are true.

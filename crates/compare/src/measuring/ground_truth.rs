@@ -1,21 +1,17 @@
 //! The ground truth of one view and viewport: the GPU's primitive ids, judged by the oracle.
 //!
 //! ```
-//! use skiagraph_compare::{
-//!     measuring::ground_truth::{Tracing, ground_truth, heard},
-//!     sink::Silent,
-//! };
+//! use skiagraph_compare::{measuring::ground_truth::GroundTruthView, sink::Silent};
 //! use skiagraph_reference::{Oracle, OracleMode};
 //!
 //! let scene = skiagraph_cases::case("box_on_floor").ok_or("it is in the catalogue")?.scene();
 //! let (view, light) = (&scene.views[0], scene.light_of(&scene.views[0]));
 //! // Every pixel shows the first triangle: a GPU says which ones they show.
 //! let ids = vec![0; 8 * 8];
-//! let oracle = Oracle::new(&scene.mesh);
-//! let tracing = Tracing { mode: OracleMode::Exact, samples: 1 };
-//! let (camera, progress) = (view.camera([8, 8]), heard(&Silent, &|_rows| {}));
-//! let truth = ground_truth(&oracle, &camera, &light, &ids, tracing, progress, "main")?;
-//! assert_eq!(truth.pixels.classes.len(), 64);
+//! let oracle = Oracle::new(&scene.mesh).into();
+//! let (camera, how) = (view.camera([8, 8]), (OracleMode::Exact, 1));
+//! let answer = GroundTruthView::new(oracle, camera, light, ids, how, ("main", &Silent))?;
+//! assert_eq!(answer.ground_truth.pixels.classes.len(), 64);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -25,13 +21,16 @@ use crate::graphs::faults::GraphFaults;
 use crate::graphs::planning::Capabilities;
 use crate::graphs::shadow_method::Outputs;
 use crate::measuring::frame;
+use crate::measuring::frame_sequence::FrameSequence;
 use crate::sink::{Session, Sink, Step};
 use skiagraph_gpu::{Content, Provider};
 use skiagraph_graph::{Graph, Plan, Sources};
 use skiagraph_passes::registry;
 use skiagraph_reference::{
-    BlockerCounts, EdgeDistances, Error, GroundTruth, GroundTruthPixels, Oracle, OracleMode,
-    Progress, Statistics, area, shimmer::Seen,
+    BlockerCounts, EdgeDistances, Error, Footprint, GroundTruth, GroundTruthPixels, LayerJump,
+    Oracle, OracleMode, Progress, Statistics, area,
+    shimmer::{Seen, same_receivers},
+    texels, wrong_surfaces,
 };
 use skiagraph_scene::{Camera, LightKind};
 use std::rc::Rc;
@@ -111,15 +110,6 @@ pub fn own_counts(truth: &GroundTruthPixels) -> Statistics {
 /// Rays to a light that has an extent, unless said otherwise.
 pub const REFERENCE_SAMPLES: u32 = 512;
 
-/// How the oracle traces.
-#[derive(Clone, Copy, Debug)]
-pub struct Tracing {
-    /// How rays leave their receivers.
-    pub mode: OracleMode,
-    /// How many to a light that has an extent.
-    pub samples: u32,
-}
-
 /// The ground truth of one view and viewport, and what it was traced from.
 pub struct GroundTruthView<'a> {
     oracle: Rc<Oracle<'a>>,
@@ -134,50 +124,45 @@ pub struct GroundTruthView<'a> {
 }
 
 impl<'a> GroundTruthView<'a> {
-    /// Runs the oracle; the sink hears how far it is.
+    /// Runs the oracle in a mode, with this many rays to a light that has an extent; the sink hears
+    /// how far it is.
     ///
     /// # Errors
-    /// Those of [`ground_truth`].
+    /// An early end, ids of another mesh, an impossible light.
     pub fn new(
         oracle: Rc<Oracle<'a>>,
         camera: Camera,
         light: LightKind,
         primitives: Vec<u32>,
-        tracing: Tracing,
+        how: (OracleMode, u32),
         (what, sink): (&str, &dyn Sink),
     ) -> Result<Self, CompareError> {
         let begin = |of: &str| {
             let (name, rows) = (format!("{of}, {what}"), camera.viewport[1]);
             Step::begin(sink, &name, rows.into(), "rows")
         };
+        let failed = |error: Error| match error {
+            Error::Interrupted => CompareError::interrupted(),
+            error => CompareError::Input(format!("no reference for {what}: {error}")),
+        };
         let step = begin("reference");
         let rows_done = |rows| step.set_done(rows);
-        let ground_truth = ground_truth(
-            &oracle,
-            &camera,
-            &light,
-            &primitives,
-            tracing,
-            heard(sink, &rows_done),
-            what,
-        )?;
+        let progress = heard(sink, &rows_done);
+        let truth = area::ground_truth(&oracle, &camera, light, &primitives, how, progress);
+        let ground_truth = truth.map_err(failed)?;
         step.end();
         let step = begin("what is visible");
         let rows_done = |rows| step.set_done(rows);
-        let wrong_surfaces = skiagraph_reference::wrong_surfaces(
-            &oracle,
-            &camera,
-            &primitives,
-            heard(sink, &rows_done),
-        );
-        let wrong_surfaces = wrong_surfaces.map_err(|error| named(error, what))?;
+        let progress = heard(sink, &rows_done);
+        let wrong_surfaces = wrong_surfaces(&oracle, &camera, &primitives, progress);
+        let wrong_surfaces = wrong_surfaces.map_err(failed)?;
         step.end();
         Ok(Self {
             oracle,
             camera,
             light,
             primitives,
-            mode: tracing.mode,
+            mode: how.0,
             ground_truth,
             wrong_surfaces,
         })
@@ -219,6 +204,83 @@ impl<'a> GroundTruthView<'a> {
         let edges = EdgeDistances::measured(self.seen(), visibility, status, truth);
         edges.map_err(|error| CompareError::Input(format!("no distances from edges: {error}")))
     }
+
+    /// Finds what each pixel covers of a shadow map with this density.
+    ///
+    /// # Errors
+    /// A density that does not fit the reference.
+    pub fn footprints(&self, density: &[f32]) -> Result<Vec<Option<Footprint>>, CompareError> {
+        let truth = &self.ground_truth.pixels;
+        let footprints = texels::footprints(self.seen(), &self.light, density, truth);
+        footprints.map_err(|error| CompareError::Input(format!("no texels per pixel: {error}")))
+    }
+
+    /// Measures how a method's errors jump where pixels beside each other ask different layers of
+    /// its map.
+    ///
+    /// # Errors
+    /// Outputs or layers that do not fit the reference.
+    pub fn layer_jump(
+        &self,
+        outputs: &Outputs,
+        layers: &[u32],
+    ) -> Result<Option<LayerJump>, CompareError> {
+        let (truth, shares) = (&self.ground_truth.pixels, self.ground_truth.shares());
+        let shown = outputs.shown();
+        let jump = LayerJump::measured(self.seen(), [&shown, &shares], layers, truth);
+        jump.map_err(|error| CompareError::Input(format!("no jump between layers: {error}")))
+    }
+}
+
+/// The frames of a view or path with their ground truth.
+pub struct GroundTruthFrames<'a> {
+    /// From where each is seen, and its mesh.
+    pub frames: &'a FrameSequence,
+    /// The ground truth of each.
+    pub truth_views: Vec<GroundTruthView<'a>>,
+    /// `same[i]` belongs to frame `i + 1`: for each of its pixels the number of the pixel of frame
+    /// `i` that shows the same receiver, or [`BACKGROUND`](skiagraph_reference::BACKGROUND).
+    pub same: Vec<Vec<u32>>,
+}
+
+impl<'a> GroundTruthFrames<'a> {
+    /// Matches the receivers of each frame with those of the frame before.
+    ///
+    /// # Errors
+    /// Ctrl-C.
+    pub fn new(
+        frames: &'a FrameSequence,
+        truth_views: Vec<GroundTruthView<'a>>,
+        sink: &dyn Sink,
+    ) -> Result<Self, CompareError> {
+        let progress = heard(sink, &|_| ());
+        let pairs = truth_views.windows(2);
+        let same = pairs.map(|pair| same_receivers(pair[0].seen(), pair[1].seen(), progress));
+        let same = same.collect::<Result<_, _>>();
+        let same = same.map_err(|_| CompareError::interrupted())?;
+        Ok(Self {
+            frames,
+            truth_views,
+            same,
+        })
+    }
+
+    /// Pixels of all frames that show a surface which is not seen there.
+    pub fn wrong_surfaces(&self) -> u64 {
+        self.truth_views
+            .iter()
+            .map(|truth_view| truth_view.wrong_surfaces)
+            .sum()
+    }
+
+    /// The reference's pixels of all frames together.
+    pub fn own_counts(&self) -> Statistics {
+        let mut all = Statistics::default();
+        for truth_view in &self.truth_views {
+            all += own_counts(&truth_view.ground_truth.pixels);
+        }
+        all
+    }
 }
 
 /// The progress of an oracle that `rows_done` hears and a sink may stop.
@@ -226,31 +288,5 @@ pub fn heard<'a>(sink: &'a dyn Sink, rows_done: &'a (dyn Fn(u64) + Sync)) -> Pro
     Progress {
         rows_done,
         interrupted: sink.stop(),
-    }
-}
-
-/// Runs the oracle.
-///
-/// # Errors
-/// An early end, ids of another mesh, an impossible light.
-pub fn ground_truth(
-    oracle: &Oracle,
-    camera: &Camera,
-    light: &LightKind,
-    primitives: &[u32],
-    Tracing { mode, samples }: Tracing,
-    progress: Progress,
-    what: &str,
-) -> Result<GroundTruth, CompareError> {
-    let ground_truth =
-        area::ground_truth(oracle, camera, light, primitives, (mode, samples), progress);
-    ground_truth.map_err(|error| named(error, what))
-}
-
-/// Why there is no reference of a view.
-pub(crate) fn named(error: Error, what: &str) -> CompareError {
-    match error {
-        Error::Interrupted => CompareError::interrupted(),
-        error => CompareError::Input(format!("no reference for {what}: {error}")),
     }
 }

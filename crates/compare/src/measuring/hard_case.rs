@@ -36,32 +36,33 @@ use crate::graphs::planning::Capabilities;
 use crate::graphs::shadow_method::Outputs;
 use crate::measuring::frame;
 use crate::measuring::ground_truth::{
-    PrimaryVisibility, REFERENCE_SAMPLES, Tracing, ground_truth, heard, named, own_counts,
+    GroundTruthView, PrimaryVisibility, REFERENCE_SAMPLES, own_counts,
 };
 use crate::measuring::guarantee::{self, WITHOUT_CULLING};
 use crate::measuring::steady;
 use crate::measuring::stop::Stop;
 use crate::pictures::run_pictures::{PicturePlace, draw_pictures, stem, write_pictures};
-use crate::records::stress::{Case, Casters, Cell, Column, Counts, Guarantee, Verdict};
-use crate::sink::Session;
+use crate::records::stress::{Case, Casters, Cell, Column, Counts, Verdict};
+use crate::sink::{Session, Sink};
 use skiagraph_cases::HardCase;
 use skiagraph_passes::SceneProvider;
 use skiagraph_reference::{
     Class, Error, GroundTruth, GroundTruthPixels, Oracle, OracleMode, PixelCounts, Statistics,
 };
-use skiagraph_scene::{Scene, View};
-use std::{path::Path, sync::Arc};
+use skiagraph_scene::Scene;
+use std::{
+    path::Path,
+    sync::{Arc, atomic::AtomicBool},
+};
 
 /// A method and what is guaranteed of it.
 pub struct MethodRun {
     /// As the user wants it.
     pub method: Method,
-    /// Which pixels must be right, and why they will be.
-    pub guarantee: Option<(Guarantee, String)>,
     /// The same with all faces as casters, if it is not that one already.
     pub without_culling: Option<Method>,
-    /// Why it cannot run on this adapter.
-    pub unavailable: Option<String>,
+    /// Its column of the report: what is guaranteed of it, and why it cannot run here.
+    pub column: Column,
 }
 
 impl MethodRun {
@@ -71,24 +72,19 @@ impl MethodRun {
     /// # Errors
     /// Those of [`guarantee::find`].
     pub fn new(method: Method, exact: &[String]) -> Result<Self, CompareError> {
+        let (guarantee, because) = guarantee::find(&method, exact)?.unzip();
         Ok(Self {
-            guarantee: guarantee::find(&method, exact)?,
             without_culling: guarantee::without_culling(&method),
+            column: Column {
+                preset: method.name.clone(),
+                map_size: method.map_size,
+                params: method.all_params(),
+                guarantee,
+                because,
+                unavailable: None,
+            },
             method,
-            unavailable: None,
         })
-    }
-
-    /// As a column of the report.
-    pub fn column(&self) -> Column {
-        Column {
-            preset: self.method.name.clone(),
-            map_size: self.method.map_size,
-            params: self.method.all_params(),
-            guarantee: self.guarantee.as_ref().map(|(guarantee, _)| *guarantee),
-            because: self.guarantee.as_ref().map(|(_, reason)| reason.clone()),
-            unavailable: self.unavailable.clone(),
-        }
     }
 
     /// The ways in which it runs on such casters.
@@ -98,7 +94,7 @@ impl MethodRun {
             set: None,
             culls: self.without_culling.is_some(),
         };
-        let is_judged = casters == Casters::Open && self.guarantee.is_some();
+        let is_judged = casters == Casters::Open && self.column.guarantee.is_some();
         let judged = self.without_culling.iter().filter(|_| is_judged);
         let judged = judged.map(|method| Variant {
             method,
@@ -110,7 +106,7 @@ impl MethodRun {
 
     /// Returns the beginnings of the names of its pictures of a case, and whose they are.
     pub fn stems(&self, case: &HardCase, viewport: [u32; 2]) -> Vec<(String, String)> {
-        let variants = self.variants(casters(case)).into_iter();
+        let variants = self.variants(case.casters).into_iter();
         let owner = format!("`{}` on `{}`", self.method.name, case.name);
         variants
             .map(|variant| (variant.stem(case, viewport), owner.clone()))
@@ -136,10 +132,16 @@ impl Variant<'_> {
     }
 }
 
-fn casters(case: &HardCase) -> Casters {
-    match case.casters {
-        skiagraph_cases::Casters::Closed => Casters::Closed,
-        skiagraph_cases::Casters::Open => Casters::Open,
+/// Hears remarks and is asked for an early end, but not of steps: a case is one.
+struct WithoutSteps<'a>(&'a dyn Sink);
+
+impl Sink for WithoutSteps<'_> {
+    fn note(&self, text: &str) {
+        self.0.note(text);
+    }
+
+    fn stop(&self) -> &AtomicBool {
+        self.0.stop()
     }
 }
 
@@ -168,7 +170,7 @@ impl HardCaseContext<'_> {
         let mut case = Case {
             name: hard.name.into(),
             reason: hard.reason.into(),
-            casters: casters(hard),
+            casters: hard.casters,
             band_cap: hard.indeterminate_cap,
             verdict: Verdict::Fail,
             failed: None,
@@ -177,23 +179,24 @@ impl HardCaseContext<'_> {
             wrong_surface: 0,
             cells: Vec::new(),
         };
-        let (ground_truth, wrong_surface) = match self.ground_truth(&scene, &mut provider) {
-            Ok(answer) => answer,
+        let truth_view = match self.truth_view(&scene, &mut provider) {
+            Ok(truth_view) => truth_view,
             Err(error) if ends_all(&error) => return Err(error),
             Err(error) => {
                 case.failed = Some(with_causes(&error));
                 return Ok(case);
             }
         };
+        let ground_truth = &truth_view.ground_truth;
         let counts = own_counts(&ground_truth.pixels);
         (case.pixels, case.band) = (counts.pixels, counts.band);
-        case.wrong_surface = wrong_surface;
+        case.wrong_surface = truth_view.wrong_surfaces;
         if !case.exceeds_cap() {
             case.verdict = Verdict::Pass;
         }
         let light = scene.light().word();
         let can_run = |run: &&MethodRun| {
-            run.unavailable.is_none() && light_kinds::takes(&run.method.preset.graph, light)
+            run.column.unavailable.is_none() && light_kinds::takes(&run.method.preset.graph, light)
         };
         for run in self.methods.iter().filter(can_run) {
             for variant in run.variants(case.casters) {
@@ -207,9 +210,9 @@ impl HardCaseContext<'_> {
                     failed: None,
                     images: None,
                 };
-                match self.count(variant.method, &mut provider, &ground_truth) {
+                match self.count(variant.method, &mut provider, ground_truth) {
                     Ok((outputs, whole, counts)) => {
-                        let guarantee = run.guarantee.as_ref().map(|(guarantee, _)| *guarantee);
+                        let guarantee = run.column.guarantee;
                         let certain = case.pixels.facing_light.saturating_sub(counts.uncertain);
                         let (culls, outside) = (variant.culls, &counts.outside_band);
                         cell.verdict =
@@ -222,7 +225,7 @@ impl HardCaseContext<'_> {
                                 frame: None,
                             };
                             let (images, files) =
-                                draw_pictures(&place, &ground_truth, &outputs, &whole)?;
+                                draw_pictures(&place, ground_truth, (&outputs, &whole), None)?;
                             write_pictures(folder, &files)?;
                             cell.images = Some(images);
                         }
@@ -236,40 +239,25 @@ impl HardCaseContext<'_> {
         Ok(case)
     }
 
-    /// The ground truth, and how many pixels show a surface which is not seen there.
-    fn ground_truth(
+    /// The ground truth of a case's only view.
+    fn truth_view<'s>(
         &self,
-        scene: &Scene,
+        scene: &'s Scene,
         provider: &mut SceneProvider,
-    ) -> Result<(GroundTruth, u64), CompareError> {
+    ) -> Result<GroundTruthView<'s>, CompareError> {
         let [view] = &scene.views[..] else {
-            return Err(CompareError::Input(format!(
-                "{} has no single view",
-                scene.name
-            )));
+            let what = format!("{} has no single view", scene.name);
+            return Err(CompareError::Input(what));
         };
-        let view: &View = view;
         provider.set_view(view, self.viewport);
         let ids = self.primary.ids(self.session, self.viewport, provider)?;
-        let oracle = Oracle::new(&scene.mesh);
-        let tracing = Tracing {
-            mode: OracleMode::Exact,
-            samples: REFERENCE_SAMPLES,
-        };
-        let camera = view.camera(self.viewport);
-        let silent = heard(self.session.sink, &|_| ());
-        let ground_truth = ground_truth(
-            &oracle,
-            &camera,
-            &scene.light_of(view),
-            &ids,
-            tracing,
-            silent,
-            &scene.name,
-        )?;
-        let wrong = skiagraph_reference::wrong_surfaces(&oracle, &camera, &ids, silent);
-        let wrong = wrong.map_err(|error| named(error, &scene.name))?;
-        Ok((ground_truth, wrong))
+        let (oracle, how) = (
+            Oracle::new(&scene.mesh),
+            (OracleMode::Exact, REFERENCE_SAMPLES),
+        );
+        let (camera, light) = (view.camera(self.viewport), scene.light_of(view));
+        let sink = WithoutSteps(self.session.sink);
+        GroundTruthView::new(oracle.into(), camera, light, ids, how, (&scene.name, &sink))
     }
 
     /// One frame of a method, counted; of one that remembers, the worst of its steady state.
@@ -319,13 +307,10 @@ fn strict(outputs: &Outputs, ground_truth: &GroundTruth) -> Vec<u32> {
     let Some(shown) = &outputs.shares else {
         return outputs.visibility.clone();
     };
-    let answers = ground_truth
-        .pixels
-        .classes
-        .iter()
-        .zip(ground_truth.shares().to_vec());
+    let shares = ground_truth.shares();
+    let answers = ground_truth.pixels.classes.iter().zip(&*shares);
     let pixels = shown.iter().zip(answers);
-    let strict = |(&shown, (&class, share)): (&f32, (&Class, f32))| {
+    let strict = |(&shown, (&class, &share)): (&f32, (&Class, &f32))| {
         let is_right = f64::from((shown - share).abs()) <= 1.0 / 255.0;
         u32::from(is_right == (class == Class::Lit))
     };
@@ -351,7 +336,7 @@ fn right_in_band(visibility: &[u32], truth: &GroundTruthPixels) -> Vec<u32> {
 fn ends_all(error: &CompareError) -> bool {
     match error {
         CompareError::Interrupted { .. } => true,
-        CompareError::Gpu { source, .. } => is_fatal(source.as_ref()),
+        CompareError::Gpu { source, .. } => is_fatal(source),
         _ => false,
     }
 }

@@ -24,11 +24,12 @@
 pub mod camera_pose;
 pub mod date;
 pub mod device;
+mod diagnostics;
 pub mod frame;
+pub mod frame_sequence;
 pub mod ground_truth;
 pub mod guarantee;
 pub mod hard_case;
-pub mod mesh_frames;
 pub mod poison;
 pub mod profiling;
 mod results_folder;

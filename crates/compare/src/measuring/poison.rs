@@ -48,7 +48,7 @@ pub fn check(
     provider: &mut dyn Provider,
     preset: &Preset,
 ) -> Result<String, CompareError> {
-    let outputs = preset.graph.outputs();
+    let outputs = preset.graph.default_outputs();
     let mut render = |pattern: u8| {
         let plan = plan
             .with(|request| request.poison = Some(pattern))

@@ -49,13 +49,14 @@ pub fn profile(
     request.params = method.params.clone();
     let plan = preset.plan(&request, session.sink)?;
 
+    let build = if cfg!(debug_assertions) {
+        "debug"
+    } else {
+        "release"
+    };
     let conditions = Conditions {
         program: PROGRAM.into(),
-        build: if cfg!(debug_assertions) {
-            "debug".into()
-        } else {
-            "release".into()
-        },
+        build: build.into(),
         date: date::now(),
         adapter: device::describe(session.gpu, device::timestamp_trust(session.gpu)),
         scene: (&**scene).into(),

@@ -2,22 +2,21 @@
 //! meanwhile stays.
 
 use crate::error::CompareError;
-use crate::files::lock::{self, Shared};
+use crate::files::lock;
 use crate::lists::unique;
-use crate::measuring::resume;
 use crate::pictures::run_pictures::{PictureFile, write_pictures};
-use crate::records::read_back;
+use crate::records::read_back::{self, WITHOUT_RESULTS};
 use crate::records::results::{Results, Run};
 use crate::records::results_csv::save;
 use crate::sink::Sink;
 use std::path::{Path, PathBuf};
 
 /// `results.json` of a folder, with what is written beside it.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct ResultsFolder {
     folder: PathBuf,
     /// Runs that were in it at the begin and do not stay.
-    dropped: Vec<Run>,
+    pub dropped: Vec<Run>,
     /// The file as this process has read or written it last; none if there was none, or one that
     /// cannot be read.
     known: Option<String>,
@@ -26,24 +25,19 @@ pub struct ResultsFolder {
     /// Runs of others that stay.
     pub others: Vec<Run>,
     /// The commands that measured them.
-    commands: Vec<String>,
+    pub commands: Vec<String>,
 }
 
 impl ResultsFolder {
-    /// A folder as it stands: the runs in it that are dropped, those that stay, and the commands
-    /// that measured these. A file that cannot be read is overwritten: where it must not be, that
-    /// was refused before.
-    pub fn new(folder: &Path, [dropped, others]: [Vec<Run>; 2], commands: Vec<String>) -> Self {
+    /// A folder as it stands, of which nothing stays yet. A file that cannot be read is
+    /// overwritten: where it must not be, that is refused besides.
+    pub fn new(folder: &Path) -> Self {
         let file = read_back::results_file(&folder.join("results.json"));
-        let is_unreadable = file.is_err();
-        let known = file.ok().flatten();
         Self {
             folder: folder.to_path_buf(),
-            dropped,
-            known: known.map(|file| file.text.to_string()),
-            is_unreadable,
-            others,
-            commands,
+            is_unreadable: file.is_err(),
+            known: file.ok().flatten().map(|file| file.text.to_string()),
+            ..Self::default()
         }
     }
 
@@ -69,7 +63,7 @@ impl ResultsFolder {
         pictures: &[PictureFile],
         sink: &dyn Sink,
     ) -> Result<(), CompareError> {
-        let _locked = lock::wait_for(&self.folder, Shared::Results, sink)?;
+        let _locked = lock::wait_for(&self.folder, lock::RESULTS, sink)?;
         self.merge(own)?;
         write_pictures(&self.folder, pictures)?;
         self.known = Some(save(&self.whole(own), &self.folder)?);
@@ -89,7 +83,7 @@ impl ResultsFolder {
         };
         if self.known.as_deref() != Some(&*file.text) {
             let found = read_back::results_of(&file)?;
-            resume::check_alike(&path, &found, own)?;
+            check_alike(&path, &found, own)?;
             self.commands = unique([found.commands, self.commands.clone()].concat());
             self.others = found.runs;
             self.others.retain(|run| !self.dropped.contains(run));
@@ -99,6 +93,48 @@ impl ResultsFolder {
         self.others.retain(|run| !is_own(run));
         Ok(())
     }
+}
+
+/// Refuses earlier results that were measured under other conditions.
+///
+/// # Errors
+/// Lists how they differ.
+pub fn check_alike(path: &Path, earlier: &Results, now: &Results) -> Result<(), CompareError> {
+    match &differences(earlier, now)[..] {
+        [] => Ok(()),
+        lines => Err(CompareError::Input(format!(
+            "{} was measured under other conditions\n  {}\n  ask for the same, \
+             {WITHOUT_RESULTS}",
+            path.display(),
+            lines.join("\n  ")
+        ))),
+    }
+}
+
+/// Conditions in which both were not measured alike.
+fn differences(earlier: &Results, now: &Results) -> Vec<String> {
+    // Why timestamps are not trusted may hold figures of the check that found it out.
+    let trusted = |results: &Results| match results.adapter.gpu_unavailable {
+        None => "measured",
+        Some(_) => "not to be had",
+    };
+    let facts = |results: &Results| {
+        [
+            ("program", results.program.clone()),
+            ("adapter", results.adapter.to_string()),
+            ("GPU times", trusted(results).to_owned()),
+            ("scene", results.scene.to_string()),
+            ("oracle", results.oracle.clone()),
+            ("frames", results.frames.to_string()),
+            ("warmup", results.warmup.to_string()),
+            ("cached frames", results.cached_frames.to_string()),
+        ]
+    };
+    let pairs = facts(earlier).into_iter().zip(facts(now));
+    pairs
+        .filter(|((_, earlier), (_, now))| earlier != now)
+        .map(|((what, earlier), (_, now))| format!("{what}: there {earlier}, here {now}"))
+        .collect()
 }
 
 #[cfg(test)]
@@ -125,7 +161,10 @@ mod tests {
     }
 
     fn begin(folder: &Path, dropped: Vec<Run>) -> ResultsFolder {
-        ResultsFolder::new(folder, [dropped, Vec::new()], Vec::new())
+        ResultsFolder {
+            dropped,
+            ..ResultsFolder::new(folder)
+        }
     }
 
     #[test]
@@ -166,7 +205,8 @@ mod tests {
         let folder = folder.path();
         save(&sample(), folder).unwrap();
         let mut replaces = begin(folder, sample().runs);
-        let mut adds = ResultsFolder::new(folder, [Vec::new(), sample().runs], Vec::new());
+        let mut adds = begin(folder, Vec::new());
+        adds.others = sample().runs;
         let mut own = only(0, "adds");
         own.runs[0].preset = "crsm".into();
         adds.save(&own, &[], &Silent).unwrap();

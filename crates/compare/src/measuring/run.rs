@@ -1,30 +1,32 @@
 //! One run: a method on one view, executed, timed, judged and pictured.
 
+use crate::comparison::Protocol;
 use crate::error::CompareError;
-use crate::files::fingerprint::Fingerprint;
-use crate::graphs::faults::reasons;
 use crate::graphs::ground_truth::{Judgement, judged};
 use crate::graphs::method::Method;
-use crate::graphs::planning::Capabilities;
 use crate::graphs::shadow_method::Outputs;
-use crate::measuring::ground_truth::GroundTruthView;
+use crate::measuring::diagnostics::{Diagnostics, diagnose};
+use crate::measuring::ground_truth::{GroundTruthFrames, GroundTruthView};
 use crate::measuring::steady;
 use crate::measuring::stop::{Stop, attempt};
 use crate::measuring::timing::{self, FrameMode, Times};
+use crate::measuring::view_or_path::ViewOrPath;
 use crate::measuring::{
     date,
     frame::{self, Contents},
     guarantee,
 };
-use crate::pictures::run_pictures::{PictureFile, PicturePlace, conditions, draw_pictures, stem};
+use crate::pictures::run_pictures::{PictureFile, PicturePlace, draw_pictures, stem};
 use crate::records::results::{Answer, AreaReference, Images, Measured, Run};
 use crate::records::statistics::FrameTimes;
 use crate::records::steady::Steady;
-use crate::sink::{Session, Step};
+use crate::records::turns::Turns;
+use crate::sink::Session;
 use skiagraph_gpu::{ExecuteError, Executor, Provider};
 use skiagraph_graph::Plan;
-use skiagraph_passes::SceneProvider;
-use skiagraph_reference::{GroundTruth, Statistics};
+use skiagraph_reference::{
+    BlockerCounts, EdgeDistances, GroundTruth, LayerJump, Statistics, TexelsPerPixel,
+};
 use std::cell::RefCell;
 
 /// Context shared by all methods on one view and viewport.
@@ -33,26 +35,45 @@ pub struct MeasureContext<'a> {
     pub session: Session<'a>,
     /// True if its timestamps are true.
     pub timestamps: bool,
-    /// Name of the view.
-    pub view: &'a str,
+    /// View or path on which it is measured.
+    pub view: &'a ViewOrPath,
+    /// Its frames with their ground truth.
+    pub path: &'a GroundTruthFrames<'a>,
+    /// The ground truth of the first frame.
+    pub truth_view: &'a GroundTruthView<'a>,
     /// Which of the view's lights it is under.
     pub light: usize,
-    /// Hash of mesh, light and view.
-    pub fingerprint: Fingerprint,
-    /// The ground truth, and where it is from; of a path's first frame.
-    pub truth_view: &'a GroundTruthView<'a>,
-    /// The reference's own pixels, of all frames of a path.
+    /// The reference's own pixels, of all frames.
     pub own: Statistics,
-    /// Pixels that show a surface which is not seen there, of all frames of a path.
-    pub wrong_surfaces: u64,
-    /// Timed frames.
-    pub frames: u64,
-    /// Frames before them.
-    pub warmup: u32,
-    /// Timed frames in which only the camera moves.
-    pub cached_frames: u32,
+    /// How long it is measured.
+    pub protocol: Protocol,
     /// The pictures of the last run, if there are to be any.
     pub pictures: Option<RefCell<Vec<PictureFile>>>,
+}
+
+/// A method that was judged on a view, and not timed yet.
+pub struct Judged {
+    /// The method.
+    pub method: Method,
+    planned: Run,
+    prepared: Prepared,
+    judgement: Judgement,
+    edges: EdgeDistances,
+    rays: Option<u64>,
+    answers_in_shares: bool,
+    blockers: Option<BlockerCounts>,
+    texels: Option<TexelsPerPixel>,
+    layer_jump: Option<LayerJump>,
+    images: Option<Images>,
+    /// Its pictures, to be written with its run.
+    pub pictures: Vec<PictureFile>,
+}
+
+impl Judged {
+    /// Bytes of its own materials.
+    pub fn bytes(&self) -> u64 {
+        self.prepared.memory[0]
+    }
 }
 
 /// A method whose buffers have grown, in its steady state where it remembers.
@@ -66,53 +87,19 @@ pub struct Prepared {
 }
 
 impl MeasureContext<'_> {
-    /// Plans and runs a method by `run`: [`still`](Self::still), or
-    /// [`follow`](crate::measuring::sequence). One that this adapter cannot run yields a [`Run`]
-    /// that says why.
+    /// Runs and judges a method on one view; [`times`](Self::times) times it together with others.
+    /// A method that remembers is judged in its steady state: what is timed behind that does not
+    /// change what it shows.
     ///
     /// # Errors
-    /// Ctrl-C, a lost device, a picture that cannot be written, outputs that are not a shadow
-    /// method's ([`CompareError::InvalidOutputs`]).
-    pub fn measure(
+    /// A method that the device refuses, outputs that are not a shadow method's
+    /// ([`CompareError::InvalidOutputs`]).
+    pub fn judge(
         &self,
-        method: &Method,
-        provider: &mut SceneProvider,
-        run: impl FnOnce(&Method, Plan, &mut SceneProvider, &Step) -> Result<Measured, Stop>,
-    ) -> Result<Run, CompareError> {
-        let viewport = self.truth_view.ground_truth.pixels.viewport;
-        let plan = match method.plan(viewport, Capabilities::new(self.session.gpu), provider) {
-            Ok(plan) => plan,
-            // The graph itself is sound: that was checked before anything ran.
-            Err(diagnostics) => return Ok(self.unavailable(method, reasons(&diagnostics))),
-        };
-        let name = conditions(method, self.view, viewport);
-        let name = format!("{}, {name}", method.name);
-        let frames = u64::from(self.warmup) + self.frames;
-        let step = Step::begin(self.session.sink, &name, frames, "frames");
-        let came = run(method, plan, provider, &step);
-        let run = match attempt(self.session, method, came)? {
-            Ok(measured) => Run {
-                measured: Some(measured),
-                ..self.empty(method)
-            },
-            Err(reason) => self.unavailable(method, reason),
-        };
-        step.end();
-        Ok(run)
-    }
-
-    /// Runs, times and judges a method on one view. A method that remembers is judged first, in its
-    /// steady state: what is timed behind that does not change what it shows.
-    ///
-    /// # Errors
-    /// A method that the device refuses, and those of [`measure`](Self::measure).
-    pub fn still(
-        &self,
-        method: &Method,
+        (method, planned): (&Method, &Run),
         plan: Plan,
         provider: &mut dyn Provider,
-        step: &Step,
-    ) -> Result<Measured, Stop> {
+    ) -> Result<Judged, Stop> {
         let mut prepared = self.prepare(plan, provider)?;
         let executor = &mut prepared.executor;
         let ground_truth = &self.truth_view.ground_truth;
@@ -121,40 +108,126 @@ impl MeasureContext<'_> {
             let outputs = self.decode(contents, self.truth_view);
             judged(&method.preset, outputs, ground_truth)
         };
-        let worst = match &mut prepared.steady {
-            Some(steady) => Some(steady::judge(
-                self.session,
-                executor,
-                &names,
-                steady,
-                judge,
-            )?),
-            None => None,
-        };
-        let (count, all) = ([self.warmup, self.frames as u32], FrameMode::AllPasses);
-        let set_done = |frames| step.set_done(frames);
-        let times = timing::times(self.session, executor, all, count, set_done)?;
-        let mut cached = timing::cached(self.session, executor, self.cached_frames)?;
-        if let Some(cached) = &mut cached {
-            self.distrust(&mut cached.frame);
-        }
-        let (outputs, judgement) = match worst {
-            Some(worst) => worst,
-            // Only now: a readback would be timed, too.
+        let (outputs, judgement) = match &mut prepared.steady {
+            Some(steady) => steady::judge(self.session, executor, &names, steady, judge)?,
             None => judge(frame::read(self.session, executor, &names)?)?,
         };
-        let counts = &judgement.counts;
-        let has_blockers = judgement.is_hard && counts.wrong.certain > 0;
+        let has_blockers = judgement.is_hard && judgement.counts.wrong.certain > 0;
         let blockers = has_blockers.then(|| self.truth_view.blockers(&outputs));
-        Ok(Measured {
-            rays: outputs.rays,
-            certain_wrong_blockers: blockers.transpose()?,
-            graded: judgement.graded,
+        let found = diagnose(
+            self.session,
+            method,
+            self.truth_view,
+            (&outputs, self.light),
+            provider,
+        )?;
+        let images = self.draw(method, None, ground_truth, (&outputs, &judgement, &found))?;
+        Ok(Judged {
+            method: method.clone(),
+            planned: planned.clone(),
+            prepared,
             edges: self.truth_view.edges(&outputs)?,
-            cached,
-            images: self.draw(method, None, ground_truth, (&outputs, &judgement))?,
-            ..self.measured(prepared, times, counts, outputs.shares.is_some())
+            rays: outputs.rays,
+            answers_in_shares: outputs.shares.is_some(),
+            blockers: blockers.transpose()?,
+            texels: found.texels,
+            layer_jump: found.layer_jump,
+            pictures: self
+                .pictures
+                .as_ref()
+                .map(RefCell::take)
+                .unwrap_or_default(),
+            images,
+            judgement,
         })
+    }
+
+    /// The run of a judged method with a single timed frame: what is kept of it if nothing follows.
+    ///
+    /// # Errors
+    /// Ctrl-C, a lost device.
+    pub fn first_frame(&self, of: &mut Judged) -> Result<Run, CompareError> {
+        let executors = &mut [&mut of.prepared.executor];
+        let timed = timing::in_turns(
+            self.session,
+            executors,
+            FrameMode::AllPasses,
+            [0, 1],
+            |_| (),
+        );
+        let timed = timed?.pop().unwrap_or_else(|| Ok(Vec::new()));
+        let times = timed
+            .map_err(Stop::from)
+            .and_then(|timed| Ok(Times::new(timed)?));
+        let measured = times.map(|times| self.timed(of, times));
+        Ok(match attempt(self.session, &of.method, measured)? {
+            Ok(measured) => self.run(&of.method, &of.planned, measured),
+            Err(reason) => self.unavailable(&of.method, &of.planned, reason),
+        })
+    }
+
+    /// Times judged methods in turns, and returns the run of each. `group` is their place among
+    /// those of the view and viewport, the first of them is their anchor. `done` hears how many
+    /// turns are over.
+    ///
+    /// # Errors
+    /// Ctrl-C, a lost device.
+    pub fn times(
+        &self,
+        methods: &mut [Judged],
+        group: u32,
+        done: impl Fn(u64),
+    ) -> Result<Vec<Run>, CompareError> {
+        let executors = methods.iter_mut().map(|of| &mut of.prepared.executor);
+        let mut executors: Vec<&mut Executor> = executors.collect();
+        let (warmup, frames) = (self.protocol.warmup, self.protocol.frames);
+        let (count, all) = ([warmup, frames], FrameMode::AllPasses);
+        let timed = timing::in_turns(self.session, &mut executors, all, count, done)?;
+        let cached = timing::cached(self.session, &mut executors, self.protocol.cached_frames)?;
+        let mut anchor = None;
+        let mut runs = Vec::new();
+        for ((of, timed), cached) in methods.iter().zip(timed).zip(cached) {
+            let times = timed
+                .map_err(Stop::from)
+                .and_then(|timed| Ok(Times::new(timed)?));
+            let measured = times.and_then(|times| {
+                let mut measured = self.timed(of, times);
+                let anchor = anchor.get_or_insert_with(|| measured.frame.clone());
+                measured.turns = Some(Turns {
+                    group,
+                    anchor: anchor.clone(),
+                });
+                measured.cached = cached.transpose()?;
+                if let Some(cached) = &mut measured.cached {
+                    self.distrust(&mut cached.frame);
+                }
+                Ok(measured)
+            });
+            runs.push(match attempt(self.session, &of.method, measured)? {
+                Ok(measured) => self.run(&of.method, &of.planned, measured),
+                Err(reason) => self.unavailable(&of.method, &of.planned, reason),
+            });
+        }
+        Ok(runs)
+    }
+
+    /// The measurements of a judged method.
+    fn timed(&self, of: &Judged, times: Times) -> Measured {
+        Measured {
+            rays: of.rays,
+            certain_wrong_blockers: of.blockers,
+            graded: of.judgement.graded,
+            edges: of.edges,
+            texels: of.texels,
+            layer_jump: of.layer_jump,
+            images: of.images.clone(),
+            ..self.measured(
+                &of.prepared,
+                times,
+                &of.judgement.counts,
+                of.answers_in_shares,
+            )
+        }
     }
 
     /// Makes a method's executor, and lets it run until it is in its steady state where it
@@ -182,7 +255,7 @@ impl MeasureContext<'_> {
     /// The part of the measurements that a view and a path have alike.
     pub fn measured(
         &self,
-        prepared: Prepared,
+        prepared: &Prepared,
         mut times: Times,
         counts: &Statistics,
         answers_in_shares: bool,
@@ -213,7 +286,10 @@ impl MeasureContext<'_> {
             memory_bytes,
             saved_bytes,
             scene_bytes: prepared.scene_bytes,
-            steady: prepared.steady,
+            steady: prepared.steady.clone(),
+            turns: None,
+            texels: None,
+            layer_jump: None,
             sequence: None,
             images: None,
         }
@@ -221,14 +297,24 @@ impl MeasureContext<'_> {
 
     /// Leaves out the GPU's time of a frame if timestamps are not true.
     pub fn distrust(&self, frame: &mut FrameTimes) {
-        frame.gpu_ms = frame.gpu_ms.filter(|_| self.timestamps);
+        if !self.timestamps {
+            frame.without_gpu();
+        }
+    }
+
+    /// The run of a method with its measurements.
+    pub fn run(&self, method: &Method, planned: &Run, measured: Measured) -> Run {
+        Run {
+            measured: Some(measured),
+            ..self.empty(method, planned)
+        }
     }
 
     /// A run that says why there are no measurements.
-    pub fn unavailable(&self, method: &Method, reason: String) -> Run {
+    pub fn unavailable(&self, method: &Method, planned: &Run, reason: String) -> Run {
         Run {
             unavailable: Some(reason),
-            ..self.empty(method)
+            ..self.empty(method, planned)
         }
     }
 
@@ -269,42 +355,39 @@ impl MeasureContext<'_> {
         method: &Method,
         frame: Option<usize>,
         ground_truth: &GroundTruth,
-        (outputs, judgement): (&Outputs, &Judgement),
+        (outputs, judgement, found): (&Outputs, &Judgement, &Diagnostics),
     ) -> Result<Option<Images>, CompareError> {
         let Some(pictures) = &self.pictures else {
             return Ok(None);
         };
         let place = PicturePlace {
-            stem: stem(method, self.view, ground_truth.pixels.viewport),
-            view: self.view,
+            stem: stem(method, self.view.name(), ground_truth.pixels.viewport),
+            view: self.view.name(),
             frame,
         };
-        let (images, files) = draw_pictures(&place, ground_truth, outputs, judgement)?;
+        let (images, files) = draw_pictures(
+            &place,
+            ground_truth,
+            (outputs, judgement),
+            found.footprints.as_deref(),
+        )?;
         pictures.replace(files);
         Ok(Some(images))
     }
 
     /// The run with nothing measured.
-    fn empty(&self, method: &Method) -> Run {
+    fn empty(&self, method: &Method, planned: &Run) -> Run {
         let ground_truth = &self.truth_view.ground_truth;
         let (truth, area) = (&ground_truth.pixels, ground_truth.area.as_ref());
-        let counts = self.own;
         Run {
-            preset: method.name.clone(),
-            view: self.view.into(),
-            viewport: truth.viewport,
-            map_size: method.map_size,
-            params: method.all_params(),
-            fingerprint: method.fingerprint(self.fingerprint),
             date: date::today(),
             promise: guarantee::promise(method),
-            pixels: counts.pixels,
-            band: counts.band,
-            wrong_surface: self.wrong_surfaces,
+            pixels: self.own.pixels,
+            band: self.own.band,
+            wrong_surface: self.path.wrong_surfaces(),
             area: area.map(|area| AreaReference::new(area, truth)),
-            measured: None,
             unavailable: None,
-            published: Vec::new(),
+            ..planned.clone()
         }
     }
 }

@@ -24,27 +24,27 @@
 //! # }
 //! ```
 
-use crate::comparison::Comparison;
+use crate::comparison::{Comparison, Protocol};
 use crate::error::CompareError;
-use crate::files::fingerprint::Fingerprint;
 use crate::graphs::faults::reasons;
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
 use crate::measuring::camera_pose::CameraPose;
-use crate::measuring::device;
-use crate::measuring::ground_truth::{GroundTruthView, Tracing};
-use crate::measuring::mesh_frames::MeshFrames;
+use crate::measuring::frame_sequence::FrameSequence;
+use crate::measuring::ground_truth::{GroundTruthFrames, GroundTruthView};
 use crate::measuring::results_folder::ResultsFolder;
-use crate::measuring::resume::{Earlier, Kept, RunKey, earlier};
-use crate::measuring::run::MeasureContext;
-use crate::measuring::sequence;
+use crate::measuring::resume::{Kept, earlier};
+use crate::measuring::run::{Judged, MeasureContext};
+use crate::measuring::sequence::follow;
+use crate::measuring::stop::{Stop, attempt};
 use crate::measuring::view_or_path::ViewOrPath;
-use crate::pictures::run_pictures::PictureFile;
+use crate::measuring::{date, device};
+use crate::pictures::run_pictures::{PictureFile, conditions};
 use crate::records::published::attach;
-use crate::records::read_back;
 use crate::records::results::{PROGRAM, Results, Run};
 use crate::sink::{Runs, Session, Step};
-use crate::wording::{size, thousands};
+use crate::wording::{plural, size, thousands};
+use skiagraph_graph::Plan;
 use skiagraph_passes::SceneProvider;
 use skiagraph_reference::{Oracle, PixelCounts};
 use std::{
@@ -60,15 +60,16 @@ pub struct Series<'a> {
     session: Session<'a>,
     /// The methods as they run here.
     methods: Vec<Method>,
-    /// Hash of everything that all runs depend on.
-    fingerprint: Fingerprint,
     provider: SceneProvider,
     /// True if the provider has the mesh of a path on which parts move, not the scene's own.
     is_moved: bool,
     /// The oracle of the scene's own mesh; built when the first run needs it.
     oracle: OnceCell<Rc<Oracle<'a>>>,
-    /// State of each planned run.
-    states: Vec<RunState>,
+    /// Every run with nothing measured, in the order of the results. One that could not run the
+    /// last time says so: the reference's pixels are known from then.
+    planned: Vec<Run>,
+    /// Which of them are done.
+    is_done: Vec<bool>,
     /// Holds the runs that are done, in the order in which they were planned.
     pub results: Results,
     /// Where they are kept, with what is in the folder besides; `None` to keep them in memory.
@@ -97,12 +98,8 @@ pub fn run(comparison: &Comparison, session: Session) -> Result<Results, Compare
     }
 }
 
-enum RunState {
-    Pending,
-    /// The method could not run the last time; the reference's pixels are known from then.
-    Unavailable(Box<Run>),
-    Done,
-}
+/// Bytes of methods that are timed in turns, where the device does not tell what it has.
+const ROOM: u64 = 1 << 30;
 
 impl<'a> Series<'a> {
     /// Begins with nothing yet, or with what an earlier one left in a folder.
@@ -115,29 +112,32 @@ impl<'a> Series<'a> {
         kept_in: Option<(&Path, Kept)>,
     ) -> Result<Self, CompareError> {
         let methods = comparison.settled(session);
-        let fingerprint = comparison.fingerprint();
-        let planned = planned(comparison, &methods, fingerprint);
+        let began = date::now();
+        let planned = planned(comparison, &methods, &began);
         let protocol = &comparison.protocol;
         let results = Results {
             schema: 1,
             program: PROGRAM.into(),
             adapter: device::describe(session.gpu, device::timestamp_trust(session.gpu)),
+            machine: device::machine(),
             scene: (&*comparison.scene).into(),
             oracle: protocol.oracle.to_string(),
             frames: protocol.frames,
             warmup: protocol.warmup,
             cached_frames: protocol.cached_frames,
+            began,
+            budgets: comparison.budgets,
             commands: comparison.command.iter().cloned().collect(),
             runs: Vec::new(),
         };
         let mut series = Self {
             comparison,
             session,
-            fingerprint,
             provider: SceneProvider::new(comparison.scene.clone()),
             is_moved: false,
             oracle: OnceCell::new(),
-            states: planned.iter().map(|_| RunState::Pending).collect(),
+            is_done: vec![false; planned.len()],
+            planned,
             results,
             folder: None,
             broken: Vec::new(),
@@ -145,52 +145,25 @@ impl<'a> Series<'a> {
             methods,
         };
         if let Some((folder, keep)) = kept_in {
-            series.take_over(folder, keep, &planned)?;
+            let (results, planned) = (&series.results, &series.planned);
+            let (folder, kept) = earlier(folder, keep, results, planned, session.sink)?;
+            series.folder = Some(folder);
+            for (place, run) in kept.into_iter().enumerate() {
+                match run {
+                    Some(run) if run.measured.is_some() => series.done(place, run),
+                    Some(run) => series.planned[place] = run,
+                    None => {}
+                }
+            }
         }
-        let done = series.results.runs.len();
-        series.progress = Runs::begin(session.sink, (planned.len() - done) as u64);
+        let left = series.planned() - series.results.runs.len();
+        series.progress = Runs::begin(session.sink, left as u64);
         Ok(series)
-    }
-
-    /// Takes over what stays of an earlier comparison in a folder.
-    fn take_over(
-        &mut self,
-        folder: &Path,
-        keep: Kept,
-        planned: &[RunKey],
-    ) -> Result<(), CompareError> {
-        let Earlier {
-            kept,
-            others,
-            dropped,
-            commands,
-        } = if keep == Kept::Nothing {
-            Earlier {
-                // A file that cannot be read is overwritten as well.
-                dropped: match read_back::results(&folder.join("results.json")) {
-                    Ok(Some(earlier)) => earlier.runs,
-                    _ => Vec::new(),
-                },
-                ..Earlier::default()
-            }
-        } else {
-            let resumes = keep == Kept::All;
-            earlier(folder, &self.results, planned, resumes, self.session.sink)?
-        };
-        self.folder = Some(ResultsFolder::new(folder, [dropped, others], commands));
-        for (place, run) in kept.into_iter().enumerate() {
-            match run {
-                Some(run) if run.measured.is_some() => self.done(place, run),
-                Some(run) => self.states[place] = RunState::Unavailable(run.into()),
-                None => {}
-            }
-        }
-        Ok(())
     }
 
     /// How many runs there are to be.
     pub fn planned(&self) -> usize {
-        self.states.len()
+        self.planned.len()
     }
 
     /// The runs that are done of a view and viewport, both by their index.
@@ -216,72 +189,195 @@ impl<'a> Series<'a> {
             &self.comparison.views[view],
             self.comparison.viewports[viewport],
         );
-        let poses = view.poses(self.comparison.protocol.jitter);
-        let Some(first) = poses.first() else {
-            return Ok(());
-        };
-        let mesh_frames = view.mesh_frames(&self.comparison.scene, poses.len())?;
-        self.set_mesh(mesh_frames.as_ref());
-        first.show(&mut self.provider, viewport);
+        let (scene, protocol) = (&self.comparison.scene, self.comparison.protocol);
+        let frames = FrameSequence::new(view, scene, protocol.jitter, None)?;
+        match &frames.meshes {
+            Some(_) => frames.begin(&mut self.provider),
+            None if self.is_moved => self.provider.set_mesh(scene.mesh.clone()),
+            None => {}
+        }
+        self.is_moved = frames.meshes.is_some();
+        frames.show(0, viewport, &mut self.provider)?;
         let methods = self.methods.iter();
         let methods: Vec<Method> = methods.map(|method| method.at(viewport)).collect();
         for (place, method) in places.clone().zip(&methods) {
             self.plan_again(place, method, viewport)?;
         }
-        let is_done = |state: &RunState| matches!(state, RunState::Done);
-        if self.states[places.clone()].iter().all(is_done) {
+        if self.is_done[places.clone()].iter().all(|is_done| *is_done) {
             return Ok(());
         }
-        let truth_views = self.truth_views(mesh_frames.as_ref(), &poses, viewport)?;
-        let frames = sequence::Path::new(
-            (poses, view.frames_per_second()),
-            mesh_frames.as_ref(),
-            truth_views,
-            self.session.sink,
-        )?;
-        let Some(truth_view) = frames.truth_views.first() else {
+        let truth_views = self.truth_views(&frames, viewport)?;
+        let path = GroundTruthFrames::new(&frames, truth_views, self.session.sink)?;
+        let Some(truth_view) = path.truth_views.first() else {
             return Ok(());
         };
-        let own = frames.own_counts();
+        let own = path.own_counts();
         if let Some(text) = unlit(view.name(), &own.pixels) {
             self.session.sink.note(&text);
         }
-        let protocol = self.comparison.protocol;
         let context = MeasureContext {
             session: self.session,
             timestamps: self.results.adapter.gpu_unavailable.is_none(),
-            view: view.name(),
-            light: self.provider.light_number(),
-            fingerprint: view.fingerprint(self.fingerprint),
+            view,
+            path: &path,
             truth_view,
+            light: self.provider.light_number(),
             own,
-            wrong_surfaces: frames.wrong_surfaces(),
-            frames: match view {
-                ViewOrPath::Still(_) => protocol.frames.into(),
-                ViewOrPath::Path(_) => frames.poses.len() as u64,
-            },
-            warmup: protocol.warmup,
-            cached_frames: self.results.cached_frames,
+            protocol,
             pictures: protocol.pictures.then(RefCell::default),
         };
-        for (place, method) in places.zip(&methods) {
-            if is_done(&self.states[place]) {
-                continue;
-            }
-            let run = match measured(&context, method, view, &frames, &mut self.provider) {
-                // The others are worth measuring all the same.
-                Err(CompareError::InvalidOutputs(reason)) => {
-                    let run = context.unavailable(method, reason.clone());
-                    self.broken.push(reason);
-                    run
-                }
-                run => run?,
+        let missing = places.zip(&methods);
+        let missing: Vec<(usize, &Method)> =
+            missing.filter(|(place, _)| !self.is_done[*place]).collect();
+        match view {
+            ViewOrPath::Still(_) => self.measure_still(&context, &missing),
+            ViewOrPath::Path(_) => self.follow_path(&context, &missing),
+        }
+    }
+
+    /// Judges methods on a view one by one, each with a frame timed by itself, so that an early end
+    /// keeps it; then times them in turns, as many at once as fit the memory, with the first of all
+    /// in each group.
+    fn measure_still(
+        &mut self,
+        context: &MeasureContext,
+        missing: &[(usize, &Method)],
+    ) -> Result<(), CompareError> {
+        let room = self.session.gpu.memory.map_or(ROOM, |bytes| bytes / 2);
+        let (mut places, mut group): (Vec<usize>, Vec<Judged>) = Default::default();
+        let mut groups = 0;
+        for &(place, method) in missing {
+            let planned = self.planned[place].clone();
+            let judge = |plan, provider: &mut SceneProvider, step: &Step| {
+                let judged = context.judge((method, &planned), plan, provider);
+                step.set_done(1);
+                judged
             };
-            self.done(place, run);
+            let mut judged = match self.attempt(context, (place, method), 1, judge)? {
+                Ok(judged) => judged,
+                Err(run) => {
+                    self.keep(place, *run, &[])?;
+                    continue;
+                }
+            };
+            let bytes: u64 = group.iter().map(Judged::bytes).sum();
+            if group.len() > 1 && bytes + judged.bytes() > room {
+                self.time(context, &places, &mut group, groups)?;
+                // The anchor stays.
+                places.truncate(1);
+                group.truncate(1);
+                groups += 1;
+            }
+            let run = context.first_frame(&mut judged)?;
+            let is_measured = run.measured.is_some();
+            self.keep(place, run, &std::mem::take(&mut judged.pictures))?;
+            if is_measured {
+                places.push(place);
+                group.push(judged);
+            }
+        }
+        self.time(context, &places, &mut group, groups)
+    }
+
+    /// Times a group of methods in turns, and keeps their runs.
+    fn time(
+        &mut self,
+        context: &MeasureContext,
+        places: &[usize],
+        group: &mut [Judged],
+        index: u32,
+    ) -> Result<(), CompareError> {
+        if group.is_empty() {
+            return Ok(());
+        }
+        let turns = context.protocol.warmup + context.protocol.frames;
+        let viewport = size(context.truth_view.ground_truth.pixels.viewport);
+        let methods = plural(group.len(), "method");
+        let name = format!("{methods} in turns, {} {viewport}", context.view.name());
+        let step = Step::begin(self.session.sink, &name, turns.into(), "turns");
+        let set_done = |turns| step.set_done(turns);
+        let runs = context.times(group, index, set_done)?;
+        step.end();
+        // The anchor's run is that of its first group.
+        let anchors = usize::from(index > 0);
+        for (place, mut run) in places.iter().zip(runs).skip(anchors) {
+            let (published, scene) = (&self.comparison.published, &self.results.scene.name);
+            attach(published, scene, &mut run);
+            let kept = self.done_before(*place);
+            self.results.runs[kept] = run;
+        }
+        self.save(&[])
+    }
+
+    /// Measures methods along a camera path, one after the other.
+    fn follow_path(
+        &mut self,
+        context: &MeasureContext,
+        missing: &[(usize, &Method)],
+    ) -> Result<(), CompareError> {
+        let frames = context.path.frames.poses.len() as u64;
+        let frames = u64::from(context.protocol.warmup) + frames;
+        for &(place, method) in missing {
+            let walk = |plan, provider: &mut SceneProvider, step: &Step| {
+                follow(context, method, plan, provider, step)
+            };
+            let run = match self.attempt(context, (place, method), frames, walk)? {
+                Ok(measured) => context.run(method, &self.planned[place], measured),
+                Err(run) => *run,
+            };
             let pictures = context.pictures.as_ref().map(RefCell::take);
-            self.save(&pictures.unwrap_or_default())?;
+            self.keep(place, run, &pictures.unwrap_or_default())?;
         }
         Ok(())
+    }
+
+    /// Plans and runs a method by `run`, whose step has so many frames. One that this adapter
+    /// cannot run, or whose outputs are not a shadow method's, yields a [`Run`] that says why: the
+    /// others are worth measuring all the same.
+    ///
+    /// # Errors
+    /// Ctrl-C, a lost device, a picture that cannot be written.
+    fn attempt<T>(
+        &mut self,
+        context: &MeasureContext,
+        (place, method): (usize, &Method),
+        frames: u64,
+        run: impl FnOnce(Plan, &mut SceneProvider, &Step) -> Result<T, Stop>,
+    ) -> Result<Result<T, Box<Run>>, CompareError> {
+        let planned = &self.planned[place];
+        let unavailable = |reason| Box::new(context.unavailable(method, planned, reason));
+        let capabilities = Capabilities::new(self.session.gpu);
+        let plan = match method.plan(planned.viewport, capabilities, &self.provider) {
+            Ok(plan) => plan,
+            // The graph itself is sound: that was checked before anything ran.
+            Err(diagnostics) => return Ok(Err(unavailable(reasons(&diagnostics)))),
+        };
+        let name = conditions(method, context.view.name(), planned.viewport);
+        let name = format!("{}, {name}", method.name);
+        let step = Step::begin(self.session.sink, &name, frames, "frames");
+        let came = run(plan, &mut self.provider, &step);
+        match attempt(self.session, method, came) {
+            Err(CompareError::InvalidOutputs(reason)) => {
+                let run = unavailable(reason.clone());
+                self.broken.push(reason);
+                Ok(Err(run))
+            }
+            came => {
+                step.end();
+                Ok(came?.map_err(unavailable))
+            }
+        }
+    }
+
+    /// Keeps a run, and writes what is done.
+    fn keep(
+        &mut self,
+        place: usize,
+        run: Run,
+        pictures: &[PictureFile],
+    ) -> Result<(), CompareError> {
+        self.done(place, run);
+        self.save(pictures)
     }
 
     /// The runs that are done, with those in the folder that stay.
@@ -312,14 +408,15 @@ impl<'a> Series<'a> {
         method: &Method,
         viewport: [u32; 2],
     ) -> Result<(), CompareError> {
-        let RunState::Unavailable(run) = &self.states[place] else {
+        let run = &self.planned[place];
+        if run.unavailable.is_none() || self.is_done[place] {
             return Ok(());
-        };
+        }
         let capabilities = Capabilities::new(self.session.gpu);
         if let Err(diagnostics) = method.plan(viewport, capabilities, &self.provider) {
             let run = Run {
                 unavailable: Some(reasons(&diagnostics)),
-                ..(**run).clone()
+                ..run.clone()
             };
             self.done(place, run);
             self.save(&[])?;
@@ -327,45 +424,42 @@ impl<'a> Series<'a> {
         Ok(())
     }
 
-    /// The mesh of a path's begin, or the scene's own again.
-    fn set_mesh(&mut self, mesh_frames: Option<&MeshFrames>) {
-        match mesh_frames {
-            Some(mesh_frames) => mesh_frames.begin(&mut self.provider),
-            None if self.is_moved => self.provider.set_mesh(self.comparison.scene.mesh.clone()),
-            None => {}
-        }
-        self.is_moved = mesh_frames.is_some();
-    }
-
     /// The ground truth of each frame.
     fn truth_views<'m>(
         &mut self,
-        mesh_frames: Option<&'m MeshFrames>,
-        poses: &[CameraPose],
+        frames: &'m FrameSequence,
         viewport: [u32; 2],
     ) -> Result<Vec<GroundTruthView<'m>>, CompareError>
     where
         'a: 'm,
     {
-        if let ([pose], None) = (poses, mesh_frames) {
-            let oracle = self.still_oracle();
-            let truth_view = self.truth_view(pose, viewport, &pose.view.name, oracle)?;
-            return Ok(vec![truth_view]);
-        }
-        let frames = poses.len();
-        let named = |(index, pose): (usize, &CameraPose)| {
-            let what = format!("{} {} of {frames}", pose.view.name, index + 1);
-            pose.show(&mut self.provider, viewport);
-            let oracle: Rc<Oracle<'m>> = match mesh_frames {
-                Some(mesh_frames) => {
-                    mesh_frames.show(index, &mut self.provider)?;
-                    Rc::new(Oracle::new(mesh_frames.mesh(index)))
-                }
+        let Protocol {
+            oracle: mode,
+            reference_samples,
+            ..
+        } = self.comparison.protocol;
+        let (session, count) = (self.session, frames.poses.len());
+        let truth_view = |(index, pose): (usize, &CameraPose)| {
+            frames.show(index, viewport, &mut self.provider)?;
+            let oracle: Rc<Oracle<'m>> = match &frames.meshes {
+                Some(meshes) => Rc::new(Oracle::new(&meshes[index])),
                 None => self.still_oracle(),
             };
-            self.truth_view(pose, viewport, &what, oracle)
+            let name = match (count, &frames.meshes) {
+                (1, None) => pose.view.name.clone(),
+                _ => format!("{} {} of {count}", pose.view.name, index + 1),
+            };
+            let what = format!("{name} {}", size(viewport));
+            let name = format!("visible triangles, {what}");
+            let step = Step::begin(session.sink, &name, 1, "frames");
+            let primary = &self.comparison.primary;
+            let ids = primary.ids(session, viewport, &mut self.provider)?;
+            step.end();
+            let (camera, light) = (pose.camera(viewport), self.provider.light());
+            let (how, heard) = ((mode, reference_samples), (&*what, session.sink));
+            GroundTruthView::new(oracle, camera, light, ids, how, heard)
         };
-        poses.iter().enumerate().map(named).collect()
+        frames.poses.iter().enumerate().map(truth_view).collect()
     }
 
     /// Returns the oracle of the scene's own mesh.
@@ -381,35 +475,6 @@ impl<'a> Series<'a> {
         oracle.clone()
     }
 
-    /// The ground truth of one frame.
-    fn truth_view<'m>(
-        &mut self,
-        pose: &CameraPose,
-        viewport: [u32; 2],
-        name: &str,
-        oracle: Rc<Oracle<'m>>,
-    ) -> Result<GroundTruthView<'m>, CompareError> {
-        let primary = &self.comparison.primary;
-        let what = format!("{name} {}", size(viewport));
-        let step_name = format!("visible triangles, {what}");
-        let step = Step::begin(self.session.sink, &step_name, 1, "frames");
-        let ids = primary.ids(self.session, viewport, &mut self.provider)?;
-        step.end();
-        let tracing = Tracing {
-            mode: self.comparison.protocol.oracle,
-            samples: self.comparison.protocol.reference_samples,
-        };
-        let (camera, light) = (pose.camera(viewport), self.provider.light());
-        GroundTruthView::new(
-            oracle,
-            camera,
-            light,
-            ids,
-            tracing,
-            (&what, self.session.sink),
-        )
-    }
-
     fn done(&mut self, place: usize, mut run: Run) {
         attach(
             &self.comparison.published,
@@ -418,33 +483,34 @@ impl<'a> Series<'a> {
         );
         let index = self.done_before(place);
         self.results.runs.insert(index, run);
-        self.states[place] = RunState::Done;
+        self.is_done[place] = true;
         self.progress.count();
     }
 
     /// How many runs of earlier places are done.
     fn done_before(&self, place: usize) -> usize {
-        let states = self.states[..place].iter();
-        states
-            .filter(|state| matches!(state, RunState::Done))
-            .count()
+        let earlier = self.is_done[..place].iter();
+        earlier.filter(|is_done| **is_done).count()
     }
 }
 
-/// Every run, in the order of the results.
-fn planned(comparison: &Comparison, methods: &[Method], fingerprint: Fingerprint) -> Vec<RunKey> {
-    let mut planned = Vec::new();
+/// Every run with nothing measured, in the order of the results.
+fn planned(comparison: &Comparison, methods: &[Method], began: &str) -> Vec<Run> {
+    let (mut planned, fingerprint) = (Vec::new(), comparison.fingerprint());
     for view in &comparison.views {
         let fingerprint = view.fingerprint(fingerprint);
         for &viewport in &comparison.viewports {
             let methods = methods.iter().map(|method| method.at(viewport));
-            planned.extend(methods.map(|method| RunKey {
+            planned.extend(methods.map(|method| Run {
                 preset: method.name.clone(),
                 view: view.name().to_owned(),
+                light: view.one_of_lights().map(str::to_owned),
                 viewport,
                 map_size: method.map_size,
                 params: method.all_params(),
                 fingerprint: method.fingerprint(fingerprint),
+                session: began.to_owned(),
+                ..Run::default()
             }));
         }
     }
@@ -480,21 +546,3 @@ fn unlit(view: &str, pixels: &PixelCounts) -> Option<String> {
 
 /// Share of the pixels facing the light below which a view has hardly any shadow.
 const HARDLY_ANY: f64 = 0.05;
-
-/// Measures a method on a still view, or along the frames of a path.
-fn measured(
-    context: &MeasureContext,
-    method: &Method,
-    view: &ViewOrPath,
-    frames: &sequence::Path,
-    provider: &mut SceneProvider,
-) -> Result<Run, CompareError> {
-    context.measure(
-        method,
-        provider,
-        |method, plan, provider, step| match view {
-            ViewOrPath::Still(_) => context.still(method, plan, provider, step),
-            ViewOrPath::Path(_) => sequence::follow(context, method, plan, frames, provider, step),
-        },
-    )
-}

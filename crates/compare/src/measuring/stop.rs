@@ -3,7 +3,6 @@
 use crate::error::{CompareError, explain, is_fatal};
 use crate::graphs::method::Method;
 use crate::measuring::frame;
-use crate::records::results::Measured;
 use crate::sink::Session;
 use skiagraph_gpu::ExecuteError;
 
@@ -41,15 +40,14 @@ impl From<CompareError> for Stop {
 ///
 /// # Errors
 /// Ctrl-C, a lost device, and what else ends more than this method.
-pub fn attempt(
+pub fn attempt<T>(
     session: Session,
     method: &Method,
-    came: Result<Measured, Stop>,
-) -> Result<Result<Measured, String>, CompareError> {
+    came: Result<T, Stop>,
+) -> Result<Result<T, String>, CompareError> {
     match came {
-        Ok(measured) => Ok(Ok(measured)),
-        // The box is an error, too, but not the one that is asked for.
-        Err(Stop::Refused(error)) if !is_fatal(&*error) => Ok(Err(explain(&*error))),
+        Ok(came) => Ok(Ok(came)),
+        Err(Stop::Refused(error)) if !is_fatal(&error) => Ok(Err(explain(&error))),
         Err(stop) => Err(stop.into_error(session, &method.name)),
     }
 }

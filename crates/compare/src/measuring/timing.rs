@@ -2,7 +2,6 @@
 
 use crate::error::CompareError;
 use crate::measuring::frame;
-use crate::measuring::stop::Stop;
 use crate::records::results::{Cached, Pass};
 use crate::records::samples::{PassSamples, Samples, TimedFrame};
 use crate::records::statistics::{FrameTimes, Spread};
@@ -40,27 +39,76 @@ pub fn sample(
         if index == u64::from(warmup) {
             first = Instant::now();
         }
-        let began = first.elapsed();
         // Warm-up frames are timed too: they then do the same work, only their figures are not
         // kept.
-        if mode == FrameMode::CameraMoves && executor.plan().provided().contains(&"camera") {
-            executor.touch("camera")?;
-        }
-        let request = Frame {
-            timing: true,
-            all: mode == FrameMode::AllPasses,
-            ..Frame::default()
-        };
-        let (report, wall) = match frame::run(session, executor, &request) {
+        let frame = match one_frame(session, executor, mode, first) {
             Err(ExecuteError::Unfinished { .. }) if session.is_stopped() => break,
             done => done?,
         };
         if index >= u64::from(warmup) {
-            timed.push(timed_frame(report, began, wall)?);
+            timed.push(frame);
         }
         done(index + 1);
     }
     Ok(timed)
+}
+
+/// Times a frame; `first` is the begin of the first one.
+fn one_frame(
+    session: Session,
+    executor: &mut Executor,
+    mode: FrameMode,
+    first: Instant,
+) -> Result<TimedFrame, ExecuteError> {
+    let began = first.elapsed();
+    if mode == FrameMode::CameraMoves && executor.plan().provided().contains(&"camera") {
+        executor.touch("camera")?;
+    }
+    let request = Frame {
+        timing: true,
+        all: mode == FrameMode::AllPasses,
+        ..Frame::default()
+    };
+    let (report, wall) = frame::run(session, executor, &request)?;
+    timed_frame(report, began, wall)
+}
+
+/// Runs frames of several executors in turns: `warmup` turns, then `frames` timed ones. Each turn
+/// begins with another of them, so that none always follows the same one. `done` hears how many
+/// turns are over. An executor that fails takes no further part.
+///
+/// # Errors
+/// Ctrl-C.
+pub fn in_turns(
+    session: Session,
+    executors: &mut [&mut Executor],
+    mode: FrameMode,
+    [warmup, frames]: [u32; 2],
+    done: impl Fn(u64),
+) -> Result<Vec<Result<Vec<TimedFrame>, ExecuteError>>, CompareError> {
+    let mut all: Vec<Result<Vec<TimedFrame>, ExecuteError>> =
+        executors.iter().map(|_| Ok(Vec::new())).collect();
+    let first = Instant::now();
+    let turns = u64::from(warmup) + u64::from(frames);
+    for turn in 0..turns {
+        for place in 0..executors.len() {
+            session.check_stopped()?;
+            let index = (place + turn as usize) % executors.len();
+            let Ok(timed) = &mut all[index] else {
+                continue;
+            };
+            match one_frame(session, executors[index], mode, first) {
+                Err(ExecuteError::Unfinished { .. }) if session.is_stopped() => {
+                    return Err(CompareError::interrupted());
+                }
+                Err(error) => all[index] = Err(error),
+                Ok(_) if turn < u64::from(warmup) => {}
+                Ok(frame) => timed.push(frame),
+            }
+        }
+        done(turn + 1);
+    }
+    Ok(all)
 }
 
 /// The times of a frame that was run with timing.
@@ -99,63 +147,59 @@ impl Times {
     /// # Errors
     /// Ctrl-C came before there were any.
     pub fn new(timed: Vec<TimedFrame>) -> Result<Self, CompareError> {
-        Self::of_some(timed).ok_or_else(CompareError::interrupted)
-    }
-
-    fn of_some(timed: Vec<TimedFrame>) -> Option<Self> {
         let samples = Samples::new(&timed);
         let pass = |PassSamples { name, gpu, cpu }| Pass {
             name,
             gpu_ms: Spread::from_all(&gpu),
             cpu_ms: Spread::new(&cpu).expect("a pass is named by its first sample"),
         };
-        Some(Self {
-            frame: FrameTimes {
-                gpu_ms: Spread::from_all(&samples.gpu),
-                wall_ms: Spread::new(&samples.wall)?,
-            },
+        let first = timed.into_iter().next();
+        Ok(Self {
+            frame: FrameTimes::new(&samples.gpu, &samples.wall)
+                .ok_or_else(CompareError::interrupted)?,
             passes: samples.passes.into_iter().map(pass).collect(),
-            skipped: timed.into_iter().next()?.skipped,
+            skipped: first.map_or_else(Vec::new, |first| first.skipped),
         })
     }
 }
 
-/// [`sample`] in short.
+/// The times of frames in which only the camera moves, of executors in turns; none of one whose
+/// passes all run then, too.
 ///
 /// # Errors
-/// Those of the executor, Ctrl-C.
-pub fn times(
-    session: Session,
-    executor: &mut Executor,
-    mode: FrameMode,
-    [warmup, frames]: [u32; 2],
-    done: impl Fn(u64),
-) -> Result<Times, Stop> {
-    let timed = sample(session, executor, mode, [warmup, frames], done)?;
-    if timed.len() < frames as usize {
-        return Err(CompareError::interrupted().into());
-    }
-    Ok(Times::new(timed)?)
-}
-
-/// The times of frames in which only the camera moves; none if every pass runs then too.
-///
-/// # Errors
-/// Those of the executor, Ctrl-C.
+/// Ctrl-C.
 pub fn cached(
     session: Session,
-    executor: &mut Executor,
+    executors: &mut [&mut Executor],
     frames: u32,
-) -> Result<Option<Cached>, Stop> {
+) -> Result<Vec<Option<Result<Cached, ExecuteError>>>, CompareError> {
+    let mut all: Vec<Option<Result<Cached, ExecuteError>>> =
+        executors.iter().map(|_| None).collect();
     if frames == 0 {
-        return Ok(None);
+        return Ok(all);
     }
     let moves = FrameMode::CameraMoves;
-    let mut times = |frames| times(session, executor, moves, [0, frames], |_| {});
-    let skipped = times(1)?.skipped;
-    if skipped.is_empty() {
-        return Ok(None);
+    let tried = in_turns(session, executors, moves, [0, 1], |_| {})?;
+    let skips = |timed: &Result<Vec<TimedFrame>, ExecuteError>| match timed {
+        Ok(frames) => frames.iter().any(|frame| !frame.skipped.is_empty()),
+        Err(_) => true,
+    };
+    let skips: Vec<bool> = tried.iter().map(skips).collect();
+    let executors = executors.iter_mut().zip(&skips);
+    let mut those: Vec<&mut Executor> = executors
+        .filter(|(_, skips)| **skips)
+        .map(|(executor, _)| &mut **executor)
+        .collect();
+    let places = (0..skips.len()).filter(|index| skips[*index]);
+    let timed = in_turns(session, &mut those, moves, [0, frames], |_| {})?;
+    for (place, timed) in places.zip(timed) {
+        let times = timed
+            .map(Times::new)
+            .map(|times| times.map(|Times { frame, skipped, .. }| Cached { frame, skipped }));
+        all[place] = match times {
+            Ok(times) => Some(Ok(times?)),
+            Err(error) => Some(Err(error)),
+        };
     }
-    let frame = times(frames)?.frame;
-    Ok(Some(Cached { frame, skipped }))
+    Ok(all)
 }

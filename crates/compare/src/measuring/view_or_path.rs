@@ -11,7 +11,7 @@
 //! let views = under_lights(&scene, scene.views.clone(), None)?;
 //! places.extend(views.into_iter().map(ViewOrPath::Still));
 //! for place in &places {
-//!     println!("{}: {} frames", place.name(), place.poses(None).len());
+//!     println!("{}: {:?}", place.name(), place.light(&scene));
 //! }
 //! assert!(places.len() > scene.views.len());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -19,8 +19,6 @@
 
 use crate::error::CompareError;
 use crate::files::fingerprint::Fingerprint;
-use crate::measuring::camera_pose::CameraPose;
-use crate::measuring::mesh_frames::MeshFrames;
 use crate::wording::unknown;
 use skiagraph_scene::{CameraPath, LightKind, Scene, View};
 
@@ -44,42 +42,17 @@ impl ViewOrPath {
         view
     }
 
-    /// The camera of each frame. `jitter`: how many frames are blended; each then looks through
-    /// another point of its pixels.
-    pub fn poses(&self, jitter: Option<u32>) -> Vec<CameraPose> {
-        let views = match self {
-            Self::Still(view) => vec![view.clone()],
-            Self::Path(path) => path.views().collect(),
-        };
-        CameraPose::numbered(views, jitter)
-    }
-
-    /// The mesh of its first frames; `None` where it stands.
-    ///
-    /// # Errors
-    /// A part that the mesh has not, or that is welded to others.
-    pub fn mesh_frames(
-        &self,
-        scene: &Scene,
-        frames: usize,
-    ) -> Result<Option<MeshFrames>, CompareError> {
-        match self {
-            Self::Still(_) => Ok(None),
-            Self::Path(path) => MeshFrames::new(path, &scene.mesh, frames),
-        }
-    }
-
-    /// Frames per second of its own time.
-    pub fn frames_per_second(&self) -> f64 {
-        match self {
-            Self::Still(_) => 30.0,
-            Self::Path(path) => path.frames_per_second,
-        }
-    }
-
     /// Its light.
     pub fn light(&self, scene: &Scene) -> LightKind {
         scene.light_of(self.view())
+    }
+
+    /// The name of its light, where it is one of several views that differ in it.
+    pub fn one_of_lights(&self) -> Option<&str> {
+        let view = self.view();
+        let light = &view.light.as_ref()?.name;
+        let view = view.name.strip_suffix(light.as_str())?;
+        view.ends_with('@').then_some(light)
     }
 
     /// With what it depends on.

@@ -41,35 +41,23 @@ impl Picture {
             .iter()
             .map(|size| size[0] as usize * size[1] as usize)
             .sum::<usize>();
-        let (channels, aspects) = (
-            usize::from(format.components()),
-            format.is_depth_stencil_format(),
-        );
-        let is_whole = |length: usize| length == texels * channels;
-        let (rgb, legend) = match (content.as_u32(), content.as_i32(), content.as_f32()) {
-            (Some(values), ..) if channels == 1 && is_whole(values.len()) => {
-                integers(name, &values)
-            }
-            (Some(values), ..) if is_whole(values.len()) => floats(
-                &values.iter().map(|&value| value as f32).collect::<Vec<_>>(),
-                channels,
-            ),
-            (_, Some(values), _) if is_whole(values.len()) => floats(
-                &values.iter().map(|&value| value as f32).collect::<Vec<_>>(),
-                channels,
-            ),
-            (.., Some(values)) if aspects && is_whole(values.len()) => depths(&values, planes),
-            (.., Some(values)) if is_whole(values.len()) => {
-                if is_unorm(*format) {
-                    fractions(&values, channels)
-                } else {
-                    floats(&values, channels)
-                }
-            }
-            _ => {
-                return Err(format!(
+        let channels = usize::from(format.components());
+        let ids = content
+            .as_u32()
+            .filter(|ids| channels == 1 && ids.len() == texels);
+        let (rgb, legend) = if let Some(ids) = ids {
+            integers(name, &ids)
+        } else {
+            let numbers = numbers(content).filter(|all| all.len() == texels * channels);
+            let numbers = numbers.ok_or_else(|| {
+                format!(
                     "has the format {format:?}, of which no picture can be made; save it as .bin"
-                ));
+                )
+            })?;
+            match () {
+                () if format.is_depth_stencil_format() => depths(&numbers, planes),
+                () if is_unorm(*format) => fractions(&numbers, channels),
+                () => floats(&numbers, channels),
             }
         };
         Ok(Self {
@@ -80,6 +68,13 @@ impl Picture {
             },
         })
     }
+}
+
+/// The channels of all texels, whatever their type is.
+fn numbers(content: &Content) -> Option<Vec<f32>> {
+    let unsigned = || Some(content.as_u32()?.into_iter().map(|it| it as f32).collect());
+    let signed = || Some(content.as_i32()?.into_iter().map(|it| it as f32).collect());
+    content.as_f32().or_else(unsigned).or_else(signed)
 }
 
 /// The mips and layers of a texture, one below the other.

@@ -4,8 +4,8 @@
 //! use skiagraph_compare::pictures::save::{Encoding, Save};
 //!
 //! let save: Save = "position@gbuffer.surface=position.png".parse()?;
-//! assert_eq!(save.material, "position");
-//! assert_eq!(save.after.as_deref(), Some("gbuffer.surface"));
+//! assert_eq!(save.capture.material, "position");
+//! assert_eq!(save.capture.after.as_deref(), Some("gbuffer.surface"));
 //! assert!(matches!(save.encoding, Encoding::Png));
 //! # Ok::<(), String>(())
 //! ```

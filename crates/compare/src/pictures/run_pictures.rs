@@ -16,7 +16,7 @@ use crate::graphs::shadow_method::Outputs;
 use crate::pictures::png;
 use crate::records::results::Images;
 use crate::wording::size;
-use skiagraph_reference::{Error, GroundTruth, Image};
+use skiagraph_reference::{Error, Footprint, GroundTruth, Image};
 use std::{
     collections::BTreeMap,
     path::{Path, PathBuf},
@@ -59,73 +59,65 @@ impl PicturePlace<'_> {
     }
 }
 
-/// Draws the pictures of a frame, and that of the reference beside it.
+/// Draws the pictures of a frame, and that of the reference beside it; with `footprints` in a
+/// shadow map one of its texels, too.
 ///
 /// # Errors
 /// Outputs that do not fit the reference.
 pub fn draw_pictures(
     place: &PicturePlace,
     ground_truth: &GroundTruth,
-    outputs: &Outputs,
-    judgement: &Judgement,
+    (outputs, judgement): (&Outputs, &Judgement),
+    footprints: Option<&[Option<Footprint>]>,
 ) -> Result<(Images, Vec<PictureFile>), CompareError> {
     let counts = &judgement.counts;
     let (truth, visibility, status) = (&ground_truth.pixels, &outputs.shown(), &outputs.status);
-    let of_reference = draw_reference(place.view, place.frame, ground_truth)?;
     let mut files = Vec::new();
-    let mut draw = |kind: &str, image| -> Result<String, CompareError> {
-        let file = drawn(place.file(format!("{}-{kind}.png", place.stem)), image)?;
-        let name = file.name.clone();
-        files.push(file);
+    let mut draw = |name: String, image: Result<Image, Error>| -> Result<String, CompareError> {
+        let name = place.file(name);
+        let image =
+            image.map_err(|error| CompareError::Input(format!("no picture {name}: {error}")))?;
+        let png = png::encode(Path::new(&name), &image)?;
+        files.push(PictureFile {
+            name: name.clone(),
+            png,
+        });
         Ok(name)
     };
+    let (viewport, shares) = (truth.viewport, &ground_truth.shares());
+    let own = |kind: &str| format!("{}-{kind}.png", place.stem);
+    let reference = Image::visibility(viewport, shares, &truth.status());
+    let shown = Image::visibility(viewport, visibility, status);
     let error = if judgement.is_hard {
         Image::error(&outputs.visibility, status, truth)
     } else {
-        Image::difference(visibility, &ground_truth.shares(), truth)
+        Image::difference(visibility, shares, truth)
     };
-    let images = Images {
+    let uncertain = || Image::uncertain(visibility, status, truth);
+    let mut images = Images {
         frame: place.frame,
-        reference: of_reference.name.clone(),
-        shaded: draw("shaded", Image::shaded(visibility, truth))?,
-        visibility: draw(
-            "visibility",
-            Image::visibility(truth.viewport, visibility, status),
-        )?,
-        error: draw("error", error)?,
+        reference: draw(reference_name(place.view, viewport), reference)?,
+        shaded: draw(own("shaded"), Image::shaded(visibility, truth))?,
+        visibility: draw(own("visibility"), shown)?,
+        error: draw(own("error"), error)?,
         uncertain: match counts.certain.lit + counts.certain.shadow + counts.uncertain {
             0 => None,
-            _ => Some(draw(
-                "uncertain",
-                Image::uncertain(visibility, status, truth),
-            )?),
+            _ => Some(draw(own("uncertain"), uncertain())?),
         },
+        texels: None,
+        perspective: None,
+        projection: None,
     };
-    files.push(of_reference);
+    if let Some(footprints) = footprints {
+        let mut heat = |kind: &str, part: fn(Footprint) -> f64| {
+            let values: Vec<_> = footprints.iter().map(|of| of.map(part)).collect();
+            draw(own(kind), Image::texels(&values, truth))
+        };
+        images.texels = Some(heat("texels", Footprint::texels)?);
+        images.perspective = Some(heat("perspective", |of| of.perspective)?);
+        images.projection = Some(heat("projection", |of| of.projection)?);
+    }
     Ok((images, files))
-}
-
-/// Draws the picture of the reference of a view or case, or of a frame of a path.
-fn draw_reference(
-    view: &str,
-    frame: Option<usize>,
-    ground_truth: &GroundTruth,
-) -> Result<PictureFile, CompareError> {
-    let truth = &ground_truth.pixels;
-    let image = Image::visibility(truth.viewport, &ground_truth.shares(), &truth.status());
-    let place = PicturePlace {
-        stem: String::new(),
-        view,
-        frame,
-    };
-    drawn(place.file(reference_name(view, truth.viewport)), image)
-}
-
-fn drawn(name: String, image: Result<Image, Error>) -> Result<PictureFile, CompareError> {
-    let image =
-        image.map_err(|error| CompareError::Input(format!("no picture {name}: {error}")))?;
-    let png = png::encode(Path::new(&name), &image)?;
-    Ok(PictureFile { name, png })
 }
 
 /// The file of a frame: `visibility.0003.png` of `visibility.png`.

@@ -1,7 +1,7 @@
 //! `run --save`: what of a graph is read back, and how it is written.
 //!
 //! ```no_run
-//! use skiagraph_compare::pictures::{colours::ClipPlanes, save::{Decoding, Save, capture, write}};
+//! use skiagraph_compare::pictures::{colours::ClipPlanes, save::{Decoding, Save, write}};
 //! use skiagraph_gpu::Content;
 //! use skiagraph_graph::Plan;
 //! use skiagraph_scene::View;
@@ -9,7 +9,7 @@
 //! # type Done = Result<(), Box<dyn std::error::Error>>;
 //! # fn save(plan: &Plan, view: &View, content: &Content) -> Done {
 //! let save: Save = "depth=out/depth.png".parse()?;
-//! let decoding = Decoding::new(plan, &capture(&save).name(), ClipPlanes::new(view));
+//! let decoding = Decoding::new(plan, &save.capture.name(), ClipPlanes::new(view));
 //! println!("{}", write(&save, content, &decoding)?);
 //! # Ok(())
 //! # }
@@ -41,10 +41,8 @@ pub enum Encoding {
 /// `--save MATERIAL[@PASS]=FILE.png|.bin|.csv`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Save {
-    /// An output or a material of the graph.
-    pub material: String,
-    /// The pass after which it is read; `None`: at the end of the frame.
-    pub after: Option<String>,
+    /// An output or a material of the graph, and the pass after which it is read.
+    pub capture: Capture,
     /// Where to.
     pub file: PathBuf,
     /// From the file's extension.
@@ -79,35 +77,21 @@ impl FromStr for Save {
                 ));
             }
         };
+        let material = material.to_owned();
         Ok(Self {
-            material: material.into(),
-            after,
+            capture: Capture { material, after },
             file,
             encoding,
         })
     }
 }
 
-/// Returns the capture to read back for a save.
-pub fn capture(save: &Save) -> Capture {
-    Capture {
-        material: save.material.clone(),
-        after: save.after.clone(),
-    }
-}
-
-/// Returns captures of those saves that are not outputs of the graph anyway.
+/// Returns captures of those saves that are not `outputs`, which the graph gives anyway.
 pub fn captures(outputs: &[&str], saves: &[Save]) -> Vec<Capture> {
-    let wanted: BTreeMap<String, Capture> = saves
-        .iter()
-        .map(capture)
-        .map(|capture| (capture.name(), capture))
-        .collect();
-    wanted
-        .into_iter()
-        .filter(|(name, _)| !outputs.contains(&name.as_str()))
-        .map(|(_, capture)| capture)
-        .collect()
+    let wanted = saves.iter().map(|save| &save.capture);
+    let wanted = wanted.filter(|capture| !outputs.contains(&&*capture.name()));
+    let wanted = wanted.sorted_by_key(|capture| capture.name()).dedup();
+    wanted.cloned().collect()
 }
 
 /// Refuses the picture of a buffer and the items of a texture before anything is rendered.
@@ -117,7 +101,7 @@ pub fn captures(outputs: &[&str], saves: &[Save]) -> Vec<Capture> {
 pub fn check_encodings(plan: &Plan, saves: &[Save]) -> Result<(), CompareError> {
     let outputs = plan.outputs();
     for save in saves {
-        let name = capture(save).name();
+        let name = save.capture.name();
         let Some(output) = outputs.iter().find(|output| output.name == name) else {
             continue;
         };
@@ -182,13 +166,13 @@ impl Decoding {
 
 /// Names of the materials that are saved, each once.
 pub fn names(saves: &[Save]) -> Vec<String> {
-    let names = saves.iter().map(|save| capture(save).name());
+    let names = saves.iter().map(|save| save.capture.name());
     names.sorted().dedup().collect()
 }
 
 /// How to decode each of the materials that are saved.
 pub fn decodings(plan: &Plan, saves: &[Save], planes: ClipPlanes) -> Vec<Decoding> {
-    let decoding = |save| Decoding::new(plan, &capture(save).name(), planes);
+    let decoding = |save: &Save| Decoding::new(plan, &save.capture.name(), planes);
     saves.iter().map(decoding).collect()
 }
 
@@ -200,7 +184,7 @@ pub fn write_all<'a>(
     contents: &'a BTreeMap<String, Content>,
 ) -> impl Iterator<Item = Result<String, CompareError>> + 'a {
     saves.iter().zip(decodings).map(move |(save, decoding)| {
-        let name = capture(save).name();
+        let name = save.capture.name();
         let missing = || CompareError::Input(format!("`{graph}` has no `{name}` to save"));
         write(save, contents.get(&name).ok_or_else(missing)?, decoding)
     })
@@ -214,9 +198,9 @@ pub fn write(save: &Save, content: &Content, reading: &Decoding) -> Result<Strin
     let part = reading.part_text(content);
     let said = match save.encoding {
         Encoding::Png => {
-            let picture = Picture::new(&save.material, content, reading.planes);
+            let picture = Picture::new(&save.capture.material, content, reading.planes);
             let Picture { image, legend } = picture.map_err(|reason| {
-                let name = &save.material;
+                let name = &save.capture.material;
                 CompareError::Input(format!("`{name}` {reason}"))
             })?;
             png::save(&save.file, &image)?;
@@ -257,8 +241,8 @@ mod tests {
     #[test]
     fn saves_name_a_material_and_a_file_of_a_known_kind() {
         let save: Save = "shadow_map@create_shadow_map=out/a=b.PNG".parse().unwrap();
-        assert_eq!(save.material, "shadow_map");
-        assert_eq!(save.after.as_deref(), Some("create_shadow_map"));
+        assert_eq!(save.capture.material, "shadow_map");
+        assert_eq!(save.capture.after.as_deref(), Some("create_shadow_map"));
         assert_eq!(
             (save.file, save.encoding),
             (PathBuf::from("out/a=b.PNG"), Encoding::Png)

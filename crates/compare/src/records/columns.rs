@@ -24,7 +24,7 @@ use crate::records::steady::Steady;
 use crate::wording::{ms, thousands};
 use Source::{Always, Measure};
 use Value::{Count, OfPicture, Rate, Real, Share, Text, Time, Unknown};
-use skiagraph_reference::{BlockerCounts, Distances, SoftErrors};
+use skiagraph_reference::{BlockerCounts, Distances, LayerJump, SoftErrors, TexelsPerPixel};
 
 /// A name, and where the figure of that name comes from.
 type Figure = (&'static str, Source);
@@ -147,6 +147,22 @@ const CSV: &[Figure] = &[
     ("edge_max_pixels", Measure(|of| edge(of, |all| all.max_pixels))),
     ("edge_mean_world", Measure(|of| edge(of, |all| all.mean_world))),
     ("edge_max_world", Measure(|of| edge(of, |all| all.max_world))),
+    ("texel_pixels", Measure(|of| texels(of, |by| Count(by.pixels)))),
+    ("texels_under_one", Measure(|of| texels(of, |by| Count(by.under_one)))),
+    ("texels_outside_map", Measure(|of| texels(of, |by| Count(by.outside_map)))),
+    ("texels_p5", Measure(|of| texels(of, |by| Real(by.texels.p5)))),
+    ("texels_median", Measure(|of| texels(of, |by| Real(by.texels.median)))),
+    ("texels_p95", Measure(|of| texels(of, |by| Real(by.texels.p95)))),
+    ("perspective_p5", Measure(|of| texels(of, |by| Real(by.perspective.p5)))),
+    ("perspective_median", Measure(|of| texels(of, |by| Real(by.perspective.median)))),
+    ("perspective_p95", Measure(|of| texels(of, |by| Real(by.perspective.p95)))),
+    ("projection_p5", Measure(|of| texels(of, |by| Real(by.projection.p5)))),
+    ("projection_median", Measure(|of| texels(of, |by| Real(by.projection.median)))),
+    ("projection_p95", Measure(|of| texels(of, |by| Real(by.projection.p95)))),
+    ("layer_pairs", Measure(|of| layers(of, |by| Count(by.pairs)))),
+    ("layer_differ", Measure(|of| layers(of, |by| Real(by.across)))),
+    ("layer_differ_elsewhere", Measure(|of| layers(of, |by| Real(by.elsewhere)))),
+    ("layer_jump", Measure(|of| layers(of, |by| Real(by.jump())))),
 ];
 
 /// Figures that only tables show.
@@ -340,6 +356,16 @@ fn edge(measured: &Measured, figure: fn(&Distances) -> f64) -> Value {
         all if all.count == 0 => Unknown,
         all => Real(figure(&all)),
     }
+}
+
+/// A figure of the map's texels, where the graph tells it.
+fn texels(measured: &Measured, figure: fn(&TexelsPerPixel) -> Value) -> Value {
+    measured.texels.as_ref().map_or(Unknown, figure)
+}
+
+/// A figure of the borders between layers, where there are any.
+fn layers(measured: &Measured, figure: fn(&LayerJump) -> Value) -> Value {
+    measured.layer_jump.as_ref().map_or(Unknown, figure)
 }
 
 /// A figure of the reference of a light with extent.

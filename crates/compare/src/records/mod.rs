@@ -20,6 +20,7 @@
 //! ```
 
 pub mod baseline;
+pub mod budgets;
 pub mod check;
 pub mod columns;
 pub mod profile;
@@ -34,3 +35,4 @@ pub mod statistics;
 pub mod steady;
 pub mod stress;
 pub mod table;
+pub mod turns;

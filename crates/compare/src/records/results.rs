@@ -18,14 +18,16 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+use crate::records::budgets::Budgets;
 use crate::records::sequence::Sequence;
 use crate::records::statistics::{FrameTimes, Spread};
 use crate::records::steady::Steady;
+use crate::records::turns::Turns;
 use crate::wording::{size, thousands};
 use serde::{Deserialize, Serialize};
 use skiagraph_reference::{
     AreaVisibility, BlockerCounts, CertainCounts, EdgeDistances, Graded, GroundTruthPixels,
-    PixelCounts, Split, WrongCounts,
+    LayerJump, PixelCounts, Split, TexelsPerPixel, WrongCounts,
 };
 use std::{collections::BTreeMap, fmt};
 
@@ -39,8 +41,10 @@ pub struct Results {
     pub schema: u32,
     /// The program that measured, `skiagraph 0.1.0`.
     pub program: String,
-    /// Where it ran.
+    /// The GPU that it ran on.
     pub adapter: Adapter,
+    /// The machine that it ran on.
+    pub machine: Machine,
     /// The scene that was drawn.
     pub scene: Scene,
     /// The oracle's mode, `exact` or `offset:LENGTH`.
@@ -51,6 +55,11 @@ pub struct Results {
     pub warmup: u32,
     /// Timed frames in which only the camera moves, per run.
     pub cached_frames: u32,
+    /// When the comparison began that measured the newest runs, `2026-11-21T04:30:12Z`.
+    pub began: String,
+    /// Limits on methods that are to be taken; absent without any.
+    #[serde(default, skip_serializing_if = "Budgets::is_empty")]
+    pub budgets: Budgets,
     /// The commands that measured it, the first one first.
     pub commands: Vec<String>,
     /// One entry per view, viewport, preset and map size, in this order.
@@ -71,6 +80,28 @@ pub struct Adapter {
     /// Why all `gpu_ms` are null; absent where they are not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gpu_unavailable: Option<String>,
+}
+
+/// The machine, as it was when a comparison began.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Machine {
+    /// Its name in its network; null where the system does not say.
+    pub host: Option<String>,
+    /// Name of its processor; empty where the system does not say.
+    pub processor: String,
+    /// Logical processors.
+    pub cores: u32,
+    /// Mean number of processes that ran or waited to run over the minute before; null where the
+    /// system does not say.
+    pub load: Option<f64>,
+}
+
+impl Machine {
+    /// True if other processes took half of the processors and more: they slow down what is timed.
+    pub fn is_loaded(&self) -> bool {
+        self.load
+            .is_some_and(|load| load >= 0.5 * f64::from(self.cores))
+    }
 }
 
 /// The scene.
@@ -132,14 +163,17 @@ impl fmt::Display for Scene {
     }
 }
 
-/// One preset on one view, viewport and map size.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// One preset in one setting on one view and viewport, with its measurements or why there are none.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Run {
     /// Name of the preset, or path of the graph, with what tells one setting of it from its others:
     /// `crsm@n=1,depth=plane`.
     pub preset: String,
     /// Name of the view.
     pub view: String,
+    /// Name of the light, where the view is compared under several; absent elsewhere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub light: Option<String>,
     /// Width and height in pixels.
     pub viewport: [u32; 2],
     /// Value of the param `map_size`; null where the graph has none.
@@ -152,6 +186,8 @@ pub struct Run {
     pub fingerprint: String,
     /// The day on which it was measured, `2026-11-21` (UTC).
     pub date: String,
+    /// When the comparison began that measured it, `2026-11-21T04:30:12Z`.
+    pub session: String,
     /// The document's promise of its answers with these params; absent where it has none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub promise: Option<Promise>,
@@ -160,8 +196,8 @@ pub struct Run {
     /// Pixels facing the light whose answer flips within the rounding error of receiver and
     /// casters.
     pub band: u64,
-    /// Pixels that show a surface which is not seen there: another one stands before it by more
-    /// than rounding. All methods are judged on what is shown.
+    /// Pixels whose primitive, as rasterised, is hidden behind another one by more than rounding.
+    /// All methods are judged on the rasterised one.
     pub wrong_surface: u64,
     /// Sampling of the reference, of a light that has an extent; absent where it has none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -182,6 +218,12 @@ impl Run {
     pub fn is_hard(&self) -> bool {
         let measured = self.measured.as_ref();
         self.area.is_none() && measured.is_none_or(|of| of.answer == Answer::Hard)
+    }
+
+    /// True unless it was kept at an early end, with a single frame that was timed by itself.
+    pub fn is_whole(&self) -> bool {
+        let measured = self.measured.as_ref();
+        measured.is_none_or(|of| of.sequence.is_some() || of.turns.is_some())
     }
 
     /// Method, view, viewport and map in words.
@@ -314,7 +356,8 @@ pub struct Measured {
     pub certain: CertainCounts,
     /// Pixels that it left to rays, or all that it traced.
     pub uncertain: u64,
-    /// Both by the reference's class, with those that are wrong.
+    /// Certain and uncertain pixels, apart for those that the reference lights and those in its
+    /// shadow, each with how many are wrong.
     pub split: Split,
     /// Rays traced per frame; null where the graph does not count them.
     pub rays: Option<u64>,
@@ -326,8 +369,8 @@ pub struct Measured {
     pub certain_wrong_blockers: Option<BlockerCounts>,
     /// Pixels that face the light by the reference but not by the method, or the other way round.
     pub facing_mismatch: u64,
-    /// In what the method answers. Of shares, `certain`, `split` and `wrong` are counted as if they
-    /// were cut at one half.
+    /// Kind of the answers: 0 and 1, or shares of light. Of shares, `certain`, `split` and
+    /// `wrong` count as lit what is one half or more.
     pub answer: Answer,
     /// How far the shares of light that it shows are from the reference's; a hard answer shows 0 or
     /// 1.
@@ -347,9 +390,21 @@ pub struct Measured {
     pub saved_bytes: u64,
     /// Bytes of the scene's resources: positions, indices, hierarchy …
     pub scene_bytes: u64,
+    /// The methods that it took turns with, frame by frame; absent of a camera path, which each
+    /// method follows by itself.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub turns: Option<Turns>,
     /// How a method that remembers came to its steady state; absent of one that does not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub steady: Option<Steady>,
+    /// Texels of its shadow map per pixel, of a path's worst frame; absent where the graph has no
+    /// output `texel_density`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub texels: Option<TexelsPerPixel>,
+    /// How errors jump where two layers of its shadow map meet, in a path's worst frame; absent
+    /// where the graph has no output `map_layer`, or no two layers meet.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub layer_jump: Option<LayerJump>,
     /// The frames of a camera path; all other fields are their sums and spreads. Absent of a still
     /// view.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -457,13 +512,23 @@ pub struct Images {
     /// uncertain.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub uncertain: Option<String>,
+    /// Shadow-map texels per pixel, from red (few) over pale yellow (1) to blue (many); absent
+    /// where the graph has no output `texel_density`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub texels: Option<String>,
+    /// Their part of distance and map alone; absent as `texels` is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub perspective: Option<String>,
+    /// Their part of angles alone; absent as `texels` is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub projection: Option<String>,
 }
 
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
     use crate::files::json;
-    use skiagraph_reference::ClassSplit;
+    use skiagraph_reference::{ClassSplit, Quantiles};
 
     /// An adapter that no machine has.
     pub(crate) fn adapter() -> Adapter {
@@ -495,12 +560,21 @@ pub(crate) mod tests {
     pub(crate) fn sample() -> Results {
         let spread = |ms: f64| Spread {
             min: ms,
+            q1: ms * 1.25,
             median: ms * 1.5,
+            q3: ms * 1.75,
             p95: ms * 2.0,
+        };
+        let times = |gpu: Option<f64>, wall: f64| FrameTimes {
+            gpu_ms: gpu.map(spread),
+            wall_ms: spread(wall),
+            gpu_frames: gpu.map(|ms| vec![ms * 2.0, ms, ms * 1.5]),
+            wall_frames: vec![wall * 2.0, wall, wall * 1.5],
         };
         let run = |preset: &str, map_size| Run {
             preset: preset.into(),
             view: "main".into(),
+            light: None,
             viewport: [512, 256],
             map_size,
             params: BTreeMap::from([
@@ -509,6 +583,7 @@ pub(crate) mod tests {
             ]),
             fingerprint: "85944171f73967e8".into(),
             date: "2026-11-20".into(),
+            session: "2026-11-20T04:30:12Z".into(),
             promise: None,
             pixels: PixelCounts {
                 background: 72,
@@ -581,21 +656,36 @@ pub(crate) mod tests {
                     cpu_ms: spread(0.01),
                 })
                 .into(),
-            frame: FrameTimes {
-                gpu_ms: gpu.then(|| spread(1.0)),
-                wall_ms: spread(2.0),
-            },
+            frame: times(gpu.then_some(1.0), 2.0),
             cached: gpu.then(|| Cached {
-                frame: FrameTimes {
-                    gpu_ms: Some(spread(0.5)),
-                    wall_ms: spread(1.0),
-                },
+                frame: times(Some(0.5), 1.0),
                 skipped: vec!["create_shadow_map".into()],
             }),
             memory_bytes: 12_582_912,
             saved_bytes: 1_048_576,
             scene_bytes: 2_000_000,
+            turns: Some(Turns {
+                group: 0,
+                anchor: times(Some(1.0), 2.0),
+            }),
             steady: None,
+            texels: gpu.then(|| TexelsPerPixel {
+                pixels: 99_990,
+                under_one: 25_000,
+                outside_map: 10,
+                texels: Quantiles {
+                    p5: 0.25,
+                    median: 2.5,
+                    p95: 40.0,
+                },
+                ..TexelsPerPixel::default()
+            }),
+            layer_jump: gpu.then_some(LayerJump {
+                pairs: 500,
+                across: 0.0625,
+                pairs_elsewhere: 198_000,
+                elsewhere: 0.015625,
+            }),
             sequence: None,
             images: gpu.then(|| Images {
                 frame: None,
@@ -604,17 +694,28 @@ pub(crate) mod tests {
                 visibility: format!("{name}-visibility.png"),
                 error: format!("{name}-error.png"),
                 uncertain: Some(format!("{name}-uncertain.png")),
+                texels: Some(format!("{name}-texels.png")),
+                perspective: Some(format!("{name}-perspective.png")),
+                projection: Some(format!("{name}-projection.png")),
             }),
         };
         Results {
             schema: 1,
             program: "skiagraph 0.1.0".into(),
             adapter: adapter(),
+            machine: Machine {
+                host: Some("bench".into()),
+                processor: "Some CPU".into(),
+                cores: 8,
+                load: Some(0.25),
+            },
             scene: scene(),
             oracle: "exact".into(),
             frames: 10,
             warmup: 2,
             cached_frames: 10,
+            began: "2026-11-20T04:30:12Z".into(),
+            budgets: Budgets::default(),
             commands: vec!["skiagraph compare nsm rt rt_hw --size 512x256".into()],
             runs: vec![
                 Run {

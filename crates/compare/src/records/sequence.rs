@@ -49,10 +49,9 @@ pub struct SequenceFrame {
     pub graded: Graded,
     /// Rays traced; null where the graph does not count them.
     pub rays: Option<u64>,
-    /// From the first pass's begin to the last one's end; null where it cannot be had or trusted.
-    pub gpu_ms: Option<f64>,
-    /// From the start of encoding until the outputs were read back.
-    pub wall_ms: f64,
+    /// Its times; they stand beside its other figures.
+    #[serde(flatten)]
+    pub cost: FrameCost,
     /// Beside the frame before; absent in the first.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shimmer: Option<Shimmer>,
@@ -101,42 +100,28 @@ impl SequenceFrame {
     pub fn error(&self) -> f64 {
         self.graded.rmse
     }
-
-    /// Its times as it is, with what is kept.
-    pub fn cost(&self) -> FrameCost {
-        FrameCost {
-            gpu_ms: self.gpu_ms,
-            wall_ms: self.wall_ms,
-        }
-    }
 }
 
 impl Sequence {
     /// The frame with the largest [error](SequenceFrame::error), the first of equal ones, with its
     /// index: the one that columns name and that pictures are of.
     pub fn worst(&self) -> Option<(usize, &SequenceFrame)> {
-        let frames = self.frames.iter().enumerate();
-        frames.reduce(|worst, other| {
-            if other.1.error() > worst.1.error() {
-                other
-            } else {
-                worst
-            }
-        })
+        greatest(self.frames.iter(), |frame| frame.error())
     }
 
     /// The frame that takes the longest as it is, the first of equal ones, with its index.
     pub fn slowest(&self) -> Option<(usize, FrameCost)> {
-        slowest(self.frames.iter().map(SequenceFrame::cost))
+        greatest(self.frames.iter().map(|frame| frame.cost), |cost| cost.ms())
     }
 
     /// The frame that takes the longest with every pass run.
     pub fn slowest_with_every_pass(&self) -> Option<(usize, FrameCost)> {
-        slowest(self.frames.iter().filter_map(|frame| frame.every_pass))
+        greatest(
+            self.frames.iter().filter_map(|frame| frame.every_pass),
+            |cost| cost.ms(),
+        )
     }
-}
 
-impl Sequence {
     /// Lists resources of the scene whose remaking took a tenth of a millisecond or more, each with
     /// how, in how many frames, and the median time in ms.
     pub fn remade<'s>(&'s self) -> Vec<(&'s str, &'s str, usize, f64)> {
@@ -154,12 +139,10 @@ impl Sequence {
     }
 }
 
-fn slowest(frames: impl Iterator<Item = FrameCost>) -> Option<(usize, FrameCost)> {
-    frames.enumerate().reduce(|worst, other| {
-        if other.1.ms() > worst.1.ms() {
-            other
-        } else {
-            worst
-        }
+/// The first item of the greatest figure, with its index.
+fn greatest<T>(items: impl Iterator<Item = T>, figure: impl Fn(&T) -> f64) -> Option<(usize, T)> {
+    items.enumerate().reduce(|most, other| {
+        let is_more = figure(&other.1) > figure(&most.1);
+        if is_more { other } else { most }
     })
 }

@@ -7,6 +7,7 @@
 //! let times = [7, 5, 6, 20].map(Duration::from_millis);
 //! let spread = Spread::new(&times).ok_or("no samples")?;
 //! assert_eq!((spread.min, spread.median, spread.p95), (5.0, 6.5, 20.0));
+//! assert_eq!([spread.q1, spread.q3], [5.75, 10.25]);
 //! assert_eq!(Series::from_times(&times).ok_or("no samples")?.max, 20.0);
 //! # Ok::<(), &str>(())
 //! ```
@@ -14,13 +15,17 @@
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
-/// Least, median and 95th percentile over frames, milliseconds.
+/// Order statistics over frames, milliseconds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
     /// Least.
     pub min: f64,
+    /// First quartile, linear between the samples beside it.
+    pub q1: f64,
     /// Middle one, or the mean of the two in the middle.
     pub median: f64,
+    /// Third quartile.
+    pub q3: f64,
     /// The smallest sample that at least 95 % of the samples do not exceed.
     pub p95: f64,
 }
@@ -33,6 +38,48 @@ pub struct FrameTimes {
     pub gpu_ms: Option<Spread>,
     /// From the start of encoding until the GPU was done, by the CPU's clock.
     pub wall_ms: Spread,
+    /// The GPU's times of all frames in their order; null where one has none.
+    pub gpu_frames: Option<Vec<f64>>,
+    /// The same by the CPU's clock.
+    pub wall_frames: Vec<f64>,
+}
+
+impl FrameTimes {
+    /// Creates the times of frames; `None` if there are none. `gpu`: `None` where timestamps cannot
+    /// be had or trusted.
+    pub fn new(gpu: &[Option<Duration>], wall: &[Duration]) -> Option<Self> {
+        let gpu_frames = all(gpu)
+            .map(|gpu| in_ms(&gpu))
+            .filter(|gpu| !gpu.is_empty());
+        let wall_frames = in_ms(wall);
+        let spread = |frames: &[f64]| Spread::from_ms(frames.iter().copied());
+        Some(Self {
+            gpu_ms: gpu_frames.as_deref().and_then(spread),
+            wall_ms: spread(&wall_frames)?,
+            gpu_frames,
+            wall_frames,
+        })
+    }
+
+    /// The times of all frames by the GPU's clock, or by the CPU's if `by_wall`.
+    pub fn frames(&self, by_wall: bool) -> Option<&[f64]> {
+        let wall = by_wall.then_some(&self.wall_frames[..]);
+        wall.or(self.gpu_frames.as_deref().filter(|_| !by_wall))
+    }
+
+    /// Their spread.
+    pub fn spread(&self, by_wall: bool) -> Option<Spread> {
+        if by_wall {
+            Some(self.wall_ms)
+        } else {
+            self.gpu_ms
+        }
+    }
+
+    /// Leaves out the GPU's times.
+    pub fn without_gpu(&mut self) {
+        (self.gpu_ms, self.gpu_frames) = (None, None);
+    }
 }
 
 impl Spread {
@@ -47,9 +94,12 @@ impl Spread {
         ms.sort_by(f64::total_cmp);
         let last = ms.len().checked_sub(1)?;
         let rank = (ms.len() as f64 * 0.95).ceil() as usize;
+        let [q1, q3] = quartiles(&ms);
         Some(Self {
             min: ms[0],
+            q1,
             median: (ms[last / 2] + ms[ms.len() / 2]) * 0.5,
+            q3,
             p95: ms[rank.clamp(1, ms.len()) - 1],
         })
     }
@@ -58,6 +108,25 @@ impl Spread {
     pub fn from_all(samples: &[Option<Duration>]) -> Option<Self> {
         Self::new(&all(samples)?)
     }
+}
+
+/// First and third quartile of sorted samples, linear between those beside them.
+fn quartiles(sorted: &[f64]) -> [f64; 2] {
+    [0.25, 0.75].map(|share| {
+        let place = share * sorted.len().saturating_sub(1) as f64;
+        let at = |index: f64| sorted.get(index as usize).copied().unwrap_or(f64::NAN);
+        let (below, above) = (at(place.floor()), at(place.ceil()));
+        below + (above - below) * place.fract()
+    })
+}
+
+/// Whole nanoseconds in milliseconds, so that a sample has no more than six digits behind the
+/// point.
+pub fn in_ms(times: &[Duration]) -> Vec<f64> {
+    times
+        .iter()
+        .map(|time| time.as_nanos() as f64 / 1e6)
+        .collect()
 }
 
 fn all(samples: &[Option<Duration>]) -> Option<Vec<Duration>> {
@@ -82,7 +151,10 @@ pub struct Series {
 impl Series {
     /// Creates a series of some milliseconds; `None` if there are none.
     pub fn new(samples: Vec<f64>) -> Option<Self> {
-        let Spread { min, median, p95 } = Spread::from_ms(samples.iter().copied())?;
+        let spread = Spread::from_ms(samples.iter().copied())?;
+        let Spread {
+            min, median, p95, ..
+        } = spread;
         Some(Self {
             min,
             median,
@@ -94,9 +166,7 @@ impl Series {
 
     /// Creates a series of some samples; `None` if there are none.
     pub fn from_times(times: &[Duration]) -> Option<Self> {
-        // From whole nanoseconds, so that a sample has no more than six digits behind the point.
-        let ms = times.iter().map(|time| time.as_nanos() as f64 / 1e6);
-        Self::new(ms.collect())
+        Self::new(in_ms(times))
     }
 
     /// Creates a series of samples of which any may be missing; `None` if one is.
@@ -108,12 +178,7 @@ impl Series {
     pub fn quartiles(&self) -> [f64; 2] {
         let mut sorted = self.samples.clone();
         sorted.sort_by(f64::total_cmp);
-        [0.25, 0.75].map(|share| {
-            let place = share * sorted.len().saturating_sub(1) as f64;
-            let at = |index: f64| sorted.get(index as usize).copied().unwrap_or(f64::NAN);
-            let (below, above) = (at(place.floor()), at(place.ceil()));
-            below + (above - below) * place.fract()
-        })
+        quartiles(&sorted)
     }
 }
 
@@ -140,7 +205,9 @@ pub(crate) mod tests {
             ms(&[7]),
             Some(Spread {
                 min: 7.0,
+                q1: 7.0,
                 median: 7.0,
+                q3: 7.0,
                 p95: 7.0
             })
         );
@@ -148,7 +215,9 @@ pub(crate) mod tests {
             ms(&[4, 1, 2, 9]),
             Some(Spread {
                 min: 1.0,
+                q1: 1.75,
                 median: 3.0,
+                q3: 5.25,
                 p95: 9.0
             })
         );
@@ -157,7 +226,9 @@ pub(crate) mod tests {
             ms(&hundred),
             Some(Spread {
                 min: 1.0,
+                q1: 25.75,
                 median: 50.5,
+                q3: 75.25,
                 p95: 95.0
             })
         );

@@ -20,6 +20,7 @@
 use crate::records::results::{Adapter, Images};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
+pub use skiagraph_cases::Casters;
 use skiagraph_reference::{PixelCounts, Statistics, WrongCounts};
 use std::collections::BTreeMap;
 
@@ -106,16 +107,6 @@ pub struct Case {
     pub wrong_surface: u64,
     /// One per method that runs, and one more without culling where that is what is judged.
     pub cells: Vec<Cell>,
-}
-
-/// Kinds of casters of a case.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Casters {
-    /// Closed, wound outward, apart from each other.
-    Closed,
-    /// Anything else.
-    Open,
 }
 
 /// One method on one case.
@@ -216,18 +207,13 @@ impl Counts {
     /// Counts a picture: `whole` counts all of its pixels, `settled` the same with the reference's
     /// answer wherever that is in the band.
     pub fn new(whole: &Statistics, settled: &Statistics, rays: Option<u64>) -> Self {
-        let WrongCounts {
-            lit,
-            shadow,
-            certain,
-            ..
-        } = settled.wrong;
+        let outside = settled.wrong;
         Self {
             wrong: whole.wrong,
             outside_band: OutsideBand {
-                lit,
-                shadow,
-                certain,
+                lit: outside.lit,
+                shadow: outside.shadow,
+                certain: outside.certain,
             },
             uncertain: whole.uncertain,
             uncertain_share: whole.uncertain_share(),

@@ -53,7 +53,7 @@ fn what_is_guaranteed_is_judged_and_pictured() {
     let folder = tempfile::tempdir().unwrap();
     let side = 32;
     let methods = method_runs(NOWHERE.as_ref(), &["rt", "nsm"], &[], side);
-    let promises = methods.iter().map(|run| run.column().guarantee);
+    let promises = methods.iter().map(|run| run.column.guarantee);
     assert_eq!(promises.collect::<Vec<_>>(), [Some(Guarantee::Exact), None]);
     let case = judge(&methods, "box_on_floor", side, Some(folder.path()));
     assert_eq!(

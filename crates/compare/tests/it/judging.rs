@@ -84,6 +84,7 @@ fn every_run_is_measured_judged_and_pictured() {
 
 /// Counts of a run are parts of a whole; its times are there.
 fn fits_together(run: &Value) {
+    assert_eq!(run["unavailable"], Value::Null);
     let pixels = &run["pixels"];
     let classes = ["background", "facing_away", "facing_light"].map(|class| count(&pixels[class]));
     let [width, height] = [0, 1].map(|axis| count(&run["viewport"][axis]));

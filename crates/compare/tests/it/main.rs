@@ -3,6 +3,7 @@
 mod support;
 
 mod checking;
+mod diagnostics;
 mod dissertation;
 mod engine;
 mod foreign_files;

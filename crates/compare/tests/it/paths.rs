@@ -1,7 +1,9 @@
 //! Every frame of a camera path, judged.
 
 use crate::support::{NOWHERE, along, count, keep, park, park_comparison, runs, scene, timed};
-use skiagraph_compare::measuring::{resume::Kept, view_or_path::ViewOrPath};
+use skiagraph_compare::measuring::{
+    frame_sequence::FrameSequence, resume::Kept, view_or_path::ViewOrPath,
+};
 use skiagraph_scene::SceneLibrary;
 use std::fs;
 
@@ -174,7 +176,8 @@ fn a_part_that_is_not_there_is_refused_with_those_that_are() {
         SceneLibrary::default().paths(file).unwrap(),
     );
     let paths = ViewOrPath::paths(&scene, paths, "p", None).unwrap();
-    let told = paths[0].mesh_frames(&scene, 2).err().unwrap().to_string();
+    let told = FrameSequence::new(&paths[0], &scene, None, Some(2));
+    let told = told.err().unwrap().to_string();
     assert!(
         told.contains("path \"p\": moves: no part of the mesh is called \"tree 9\"; known here:")
             && told.contains("tree 1"),

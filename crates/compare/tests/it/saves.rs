@@ -8,7 +8,7 @@ use skiagraph_compare::{
     measuring::frame,
     pictures::{
         colours::ClipPlanes,
-        save::{Decoding, Save, capture, captures, check_encodings, write},
+        save::{Decoding, Save, captures, check_encodings, write},
     },
     sink::{Session, Silent},
 };
@@ -98,7 +98,7 @@ fn saved_of(
     let plan = preset.plan(&request, &Silent)?;
     check_encodings(&plan, &saves)?;
     let decodings = saves.iter().map(|save| {
-        let name = capture(save).name();
+        let name = save.capture.name();
         (
             save,
             Decoding::new(&plan, &name, ClipPlanes::new(&view)),

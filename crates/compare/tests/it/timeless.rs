@@ -8,7 +8,12 @@ pub fn timeless(mut value: Value) -> Value {
         match value {
             Value::Object(fields) if fields.contains_key("p95") => *value = Value::Null,
             Value::Object(fields) => {
-                fields.remove("date");
+                for of_the_hour in ["began", "date", "machine", "session", "turns"] {
+                    fields.remove(of_the_hour);
+                }
+                for frames in ["gpu_frames", "wall_frames"] {
+                    fields.remove(frames);
+                }
                 fields.remove("commands");
                 // The reason has times in it.
                 fields.remove("gpu_unavailable");

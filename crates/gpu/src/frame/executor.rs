@@ -27,9 +27,7 @@ use crate::{
     presence::Presence,
     provider::Provider,
 };
-use skiagraph_graph::{
-    LinkedPass, Origin, ParamValue, Plan, Resource, ResourceId, ResourceKind, Target,
-};
+use skiagraph_graph::{LinkedPass, Origin, ParamValue, Plan, Resource, ResourceKind};
 use std::{
     sync::Arc,
     time::{Duration, Instant},
@@ -40,10 +38,11 @@ const CALLBACK: Duration = Duration::from_secs(10);
 
 /// A plan on a device.
 ///
-/// A frame is [`encode`](Self::encode), the host's submission, and, for times and readbacks,
-/// [`poll`](Self::poll) in this frame or a later one, or [`finish`](Self::finish), which waits.
-/// Every encoder that a frame was encoded into must be submitted, in order: later frames use what a
-/// skipped pass kept there, and read it as `.previous`.
+/// For each frame call [`encode`](Self::encode), then submit the encoder. Only if times or
+/// readbacks were asked for, call [`poll`](Self::poll), which does not wait, in this frame or a
+/// later one, or [`finish`](Self::finish), which waits. Submit every such encoder, in the order of
+/// encoding: later frames use what earlier ones wrote, in passes that are skipped and as
+/// `.previous`.
 pub struct Executor {
     device: wgpu::Device,
     presence: Presence,
@@ -381,10 +380,7 @@ impl Executor {
         if let Some(id) = live.filter(|id| of_host(self.plan().resource(*id))) {
             self.state.contents.touch(id);
         } else if !self.plan().offers(name) {
-            let used = self.plan().schedule().lifetimes.keys();
-            let used = used
-                .map(|id| self.plan().resource(*id))
-                .filter(|used| of_host(used));
+            let used = self.plan().used().filter(|used| of_host(used));
             let used: Vec<&str> = used.map(|resource| resource.name.as_str()).collect();
             return Err(ExecuteError::NotOfHost {
                 name: name.to_owned(),
@@ -421,10 +417,9 @@ impl Executor {
     }
 
     fn refresh_live(&mut self, provider: &mut dyn Provider) -> Result<(), ExecuteError> {
-        let known: Vec<(ResourceId, Option<u64>)> = self.state.memory.provided().collect();
-        for (id, version) in known {
+        for (id, version) in self.state.memory.provided().clone() {
             let state = &mut self.state;
-            if Some(provider.version(&state.plan.resource(id).name)) == version {
+            if Ok(provider.version(&state.plan.resource(id).name)) == version {
                 continue;
             }
             self.presence.check()?;
@@ -456,7 +451,7 @@ impl Executor {
     /// also read as it was in the frame before has another view in every frame, and
     /// [`resize`](Self::resize) and the like make new ones.
     pub fn output_view(&self, name: &str) -> Option<wgpu::TextureView> {
-        let target = self.readable(name)?;
+        let target = self.plan().readable_target(name)?;
         let dimension = match &self.plan().resource(target.id).kind {
             ResourceKind::Texture(texture) if texture.is_3d => wgpu::TextureViewDimension::D3,
             _ if target.part.layers.len() == 1 => wgpu::TextureViewDimension::D2,
@@ -470,19 +465,12 @@ impl Executor {
 
     /// A buffer among the outputs and captures as the last frame left it.
     pub fn output_buffer(&self, name: &str) -> Option<wgpu::Buffer> {
-        let target = self.readable(name)?;
+        let target = self.plan().readable_target(name)?;
         self.state
             .memory
             .buffer(target.id, &self.ping_pong)
             .ok()
             .cloned()
-    }
-
-    fn readable(&self, name: &str) -> Option<&Target> {
-        let mut readable = self.plan().readable().iter();
-        readable
-            .find(|(known, _)| known == name)
-            .map(|(_, target)| target)
     }
 
     /// Another viewport. Textures that follow it are made anew: last frame's versions are zero
@@ -714,14 +702,9 @@ impl Executor {
         let Some(plan) = self.larger() else {
             return Ok(());
         };
-        let memory = &self.state.memory;
-        let known = memory.provided().map(|(id, version)| {
-            let missing = || memory.missing(id).unwrap_or_default().to_owned();
-            (
-                self.plan().resource(id).name.clone(),
-                version.ok_or_else(missing),
-            )
-        });
+        let known = self.state.memory.provided().iter();
+        let known =
+            known.map(|(id, version)| (self.plan().resource(*id).name.clone(), version.clone()));
         let mut unchanged = Unchanged(known.collect());
         self.grow_to(plan, &mut unchanged).map(drop)
     }

@@ -14,7 +14,7 @@ use crate::{
     },
     pipelines::{bind::Binder, handles::GpuAttachment},
 };
-use skiagraph_graph::{Origin, Plan, ResourceId, ResourceKind, SubresourceRange, Target, Texture};
+use skiagraph_graph::{Origin, Plan, ResourceId, ResourceKind, Target, Texture};
 
 /// Fills by position in the schedule; of a resource with two allocations one for each of them.
 pub(super) struct Poison {
@@ -125,11 +125,7 @@ fn fill(binder: &Binder<'_>, id: ResourceId, byte: u8) -> Result<Option<Fill>, E
             Fill::Buffer(binder.memory.buffer(id, binder.ping_pong)?.clone())
         }
         ResourceKind::Texture(texture) => {
-            let part = SubresourceRange {
-                mips: 0..texture.mips,
-                layers: 0..texture.layers,
-                aspect: wgpu::TextureAspect::All,
-            };
+            let part = texture.whole();
             if texture.format.is_depth_stencil_format() || texture.samples > 1 {
                 let views = binder.single_views(&Target { id, part })?;
                 return Ok(Some(Fill::Views(

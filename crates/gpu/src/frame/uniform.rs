@@ -19,16 +19,10 @@ pub(super) struct FrameUniform {
 
 impl FrameUniform {
     fn new(device: &wgpu::Device) -> Result<Self, ExecuteError> {
-        let staging = scoped(device, "frame", || {
-            device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("frame"),
-                size: FRAME_BYTES,
-                usage: wgpu::BufferUsages::MAP_WRITE | wgpu::BufferUsages::COPY_SRC,
-                mapped_at_creation: true,
-            })
-        })?;
+        let usage = wgpu::BufferUsages::MAP_WRITE | wgpu::BufferUsages::COPY_SRC;
+        let make = || buffer::mapped(device, "frame", FRAME_BYTES, usage);
         Ok(Self {
-            staging,
+            staging: scoped(device, "frame", make)?,
             mapped: Signal::default(),
         })
     }

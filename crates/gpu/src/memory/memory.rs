@@ -28,10 +28,9 @@ pub(crate) struct Memory {
     /// Imports that no live pass uses, for plans in which one does.
     spare: BTreeMap<String, Physical>,
     samplers: BTreeMap<ResourceId, wgpu::Sampler>,
-    /// Versions of the provided resources; none of those that the provider cannot build yet.
-    provided: BTreeMap<ResourceId, Option<u64>>,
-    /// The missing part of the latter, in the provider's words.
-    missing: BTreeMap<ResourceId, String>,
+    /// Versions of the provided resources; of those that the provider cannot build yet, the missing
+    /// part in its words.
+    provided: BTreeMap<ResourceId, Result<u64, String>>,
 }
 
 /// A buffer or texture, and the larger one that goes on with its content.
@@ -73,10 +72,7 @@ impl Memory {
         for &id in plan.schedule().lifetimes.keys() {
             memory.enter(plan, id, old, factory)?;
         }
-        let used = |name: &String| {
-            let mut live = plan.schedule().lifetimes.keys();
-            live.any(|id| plan.resource(*id).name == *name)
-        };
+        let used = |name: &String| plan.used().any(|used| used.name == *name);
         for name in plan.imports().keys().filter(|name| !used(name)) {
             if let Some(import) = old.and_then(|old| kept_import(plan, name, old)) {
                 memory.spare.insert(name.clone(), import);
@@ -267,7 +263,7 @@ impl Memory {
             && memory.version(known) == Some(version)
         {
             self.host.insert(id, physical.clone());
-            self.provided.insert(id, Some(version));
+            self.provided.insert(id, Ok(version));
             return Ok(());
         }
         // The plan has counted items and sized buffers by what was described to it.
@@ -286,8 +282,7 @@ impl Memory {
         }
         if let Some(why) = provider.missing(&resource.name) {
             self.host.remove(&id);
-            self.provided.insert(id, None);
-            self.missing.insert(id, why);
+            self.provided.insert(id, Err(why));
             return Ok(());
         }
         let built = scoped(device, &resource.name, || match resource.kind {
@@ -312,24 +307,23 @@ impl Memory {
         }
         // Only now: what could not be built is asked for again.
         self.host.insert(id, built);
-        self.provided.insert(id, Some(version));
-        self.missing.remove(&id);
+        self.provided.insert(id, Ok(version));
         Ok(())
     }
 
-    /// The provided resources with the versions that are there; none of those that are missing.
-    pub fn provided(&self) -> impl Iterator<Item = (ResourceId, Option<u64>)> + '_ {
-        self.provided.iter().map(|(id, version)| (*id, *version))
+    /// The provided resources with the versions that are there, or what is missing of them.
+    pub fn provided(&self) -> &BTreeMap<ResourceId, Result<u64, String>> {
+        &self.provided
     }
 
     /// The version that a provided resource was built of.
     pub fn version(&self, id: ResourceId) -> Option<u64> {
-        self.provided.get(&id).copied().flatten()
+        self.provided.get(&id)?.as_ref().ok().copied()
     }
 
     /// The part of a resource that the provider could not build, in its words.
     pub fn missing(&self, id: ResourceId) -> Option<&str> {
-        self.missing.get(&id).map(String::as_str)
+        self.provided.get(&id)?.as_ref().err().map(String::as_str)
     }
 
     /// Returns the host's memory for a provided resource or an import.
@@ -397,8 +391,8 @@ fn is_copyable(built: &Physical) -> bool {
 
 /// Returns true if a live pass reads a provided resource as it was in the frame before.
 fn is_read_as_before(id: ResourceId, plan: &Plan) -> bool {
-    let mut live = plan.schedule().lifetimes.keys();
-    live.any(|other| plan.resource(*other).origin == Origin::Previous(id))
+    plan.used()
+        .any(|other| other.origin == Origin::Previous(id))
 }
 
 /// The bytes of a buffer that a part of a resource is.

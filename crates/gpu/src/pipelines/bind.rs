@@ -15,7 +15,7 @@ use crate::{
 };
 use skiagraph_graph::{
     Attachment, BindTarget, Ids, LinkedProgram, Plan, ResourceKind, SubresourceRange, Target,
-    step::{ColorTarget, DepthTarget, Dispatch, Draw, DrawCall, Groups, StencilTarget, Step},
+    step::{ColorTarget, DepthTarget, Dispatch, Draw, Groups, StencilTarget, Step},
 };
 
 /// The uniform buffer of a step's `params`, if its shader has one.
@@ -187,16 +187,7 @@ impl Binder<'_> {
             stencil: draw.stencil.as_ref().map(stencil).transpose()?,
             canvas: draw.canvas.as_ref().map(attachment).transpose()?,
             area: draw.area,
-            call: match &draw.call {
-                DrawCall::Direct {
-                    vertices,
-                    instances,
-                } => DrawCall::Direct {
-                    vertices: *vertices,
-                    instances: *instances,
-                },
-                DrawCall::Indirect(target) => DrawCall::Indirect(self.arguments(target)?),
-            },
+            call: draw.call.in_stage(|target| self.arguments(target))?,
             primitive: draw.primitive,
         })
     }

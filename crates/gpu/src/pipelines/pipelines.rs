@@ -174,7 +174,6 @@ fn same_program(a: &LinkedProgram, b: &LinkedProgram) -> bool {
     };
     a.shader == b.shader
         && a.entries == b.entries
-        && a.stages == b.stages
         && a.constants == b.constants
         && slots(a) == slots(b)
 }
@@ -189,11 +188,8 @@ fn render_pipeline(
     let program = &draw.program;
     let constants = constants(program);
     let entry = |stage: ShaderStage| {
-        program
-            .stages
-            .iter()
-            .position(|known| *known == stage)
-            .map(|index| program.shader.entry_name(program.entries[index]))
+        let entry = program.entry(stage)?;
+        Some(program.shader.entry_name(entry))
     };
     let fullscreen = draw.fullscreen.then(|| {
         device.create_shader_module(wgpu::ShaderModuleDescriptor {

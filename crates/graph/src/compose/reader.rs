@@ -11,7 +11,7 @@ use crate::{
         extend::extend,
         raw::{self, Invalid, RawDocument},
         read,
-        typed::{Document, Entry, Include, What},
+        typed::{Document, Entry, Include, What, each_include},
     },
     errors::compose::ComposeError,
     kinds::registry::Registry,
@@ -35,14 +35,8 @@ use std::{
 /// stack.
 const DEEPEST: usize = 64;
 
-/// Where a document is asked for: by an include or by `extends`.
-#[derive(Clone, Debug)]
-pub(crate) struct IncludeSite {
-    /// The path of the document.
-    pub path: String,
-    pub span: Span,
-    pub is_extended: bool,
-}
+/// Where a document is asked for: its path, the place, and what asks there in words.
+pub(crate) type IncludeSite = (String, Span, &'static str);
 
 /// Reads documents.
 pub(crate) struct Reader<'a> {
@@ -87,17 +81,12 @@ impl<'a> Reader<'a> {
     pub fn root(&mut self, path: &str) -> Result<Document, ErrorGuaranteed> {
         let file = self.file(path)?;
         let document = self.document(file, None)?;
-        let known: Vec<String> = document
-            .openings()
-            .into_iter()
-            .map(|(name, _)| name.value.to_string())
-            .collect();
+        let openings = document.openings();
+        let known: Vec<String> = openings.map(|(name, _)| name.to_string()).collect();
         for name in self.chosen.keys().filter(|name| !known.contains(name)) {
-            self.reports.report(ComposeError::NoOpening {
-                name: name.clone(),
-                document: path.to_owned(),
-                known: known.clone(),
-            });
+            let (name, known) = (name.clone(), known.clone());
+            self.reports
+                .report(ComposeError::NoOpening(name, path.to_owned(), known));
         }
         Ok(document)
     }
@@ -109,20 +98,16 @@ impl<'a> Reader<'a> {
     }
 
     fn file(&mut self, path: &str) -> Result<SourceFile, ErrorGuaranteed> {
-        let text = match sources::read(self.sources, path) {
-            Ok(Some(text)) => text,
+        let error = match sources::read(self.sources, path) {
+            Ok(Some(text)) => return Ok(SourceFile::new(path, text)),
             Ok(None) => {
                 let (folder, name) = path.rsplit_once('/').unwrap_or(("", path));
                 let known = self.documents_in(folder);
-                let error = ComposeError::NoDocument(path.to_owned(), likeness(name, known));
-                return Err(self.reports.report(error));
+                ComposeError::NoDocument(path.to_owned(), likeness(name, known))
             }
-            Err(why) => {
-                let error = ComposeError::Unreadable(path.to_owned(), why);
-                return Err(self.reports.report(error));
-            }
+            Err(why) => ComposeError::Unreadable(path.to_owned(), why),
         };
-        Ok(SourceFile::new(path, text))
+        Err(self.reports.report(error))
     }
 
     fn documents_in(&self, folder: &str) -> Vec<String> {
@@ -164,9 +149,7 @@ impl<'a> Reader<'a> {
         let Some(node) = own.extends.take() else {
             return Ok(own);
         };
-        let name: Result<String, Diagnostic> = node.parse();
-        let name = name.map_err(|error| self.reports.report(error))?;
-        let name = Located::new(name, node.span.clone());
+        let name = Located::new(self.reports.check(node.parse())?, node);
         let base = self.find(&name)?;
         let path = base.name.to_string();
         chain.push(own.file.name.to_string());
@@ -177,13 +160,9 @@ impl<'a> Reader<'a> {
             return Err(self.reports.report(error));
         }
         if chain.len() > DEEPEST {
-            return Err(self.reports.report(ComposeError::TooDeep(name, DEEPEST)));
+            return Err(self.too_deep(&name));
         }
-        self.include_sites.push(IncludeSite {
-            path,
-            span: name.span,
-            is_extended: true,
-        });
+        self.include_sites.push((path, name.span, "extended here"));
         let base = self.raw(base, chain)?;
         Ok(extend(base, own, self.reports))
     }
@@ -192,19 +171,12 @@ impl<'a> Reader<'a> {
     /// below it.
     fn attach(&mut self, entries: &mut [Result<Entry, Invalid>]) -> usize {
         let mut depth = 0;
-        for entry in entries.iter_mut().flatten() {
-            let below = match &mut entry.what {
-                What::Include(include) => {
-                    include.document = Some(self.include(include));
-                    let document = include.document();
-                    // A document that could not be read was reported; it counts as depth 0.
-                    document.map_or(0, |document| document.include_depth + 1)
-                }
-                What::Group(entries) => self.attach(entries),
-                What::Pass(_) => 0,
-            };
-            depth = depth.max(below);
-        }
+        each_include(entries, &mut |include| {
+            include.document = Some(self.include(include));
+            // A document that could not be read was reported; it counts as depth 0.
+            let document = include.document();
+            depth = depth.max(document.map_or(0, |document| document.include_depth + 1));
+        });
         depth
     }
 
@@ -219,20 +191,14 @@ impl<'a> Reader<'a> {
         let path = file.name.to_string();
         let span = include.graph.span.clone();
         if let Some(first) = self.open.iter().position(|(open, _)| *open == path) {
-            let error = ComposeError::Cycle {
-                graph: include.graph.clone(),
-                open: self.open[first..].to_vec(),
-            };
+            let open = self.open[first..].to_vec();
+            let error = ComposeError::Cycle(include.graph.clone(), open);
             return Err(self.reports.report(error));
         }
-        self.include_sites.push(IncludeSite {
-            path: path.clone(),
-            span: span.clone(),
-            is_extended: false,
-        });
+        let site = (path.clone(), span.clone(), "included here");
+        self.include_sites.push(site);
         if self.open.len() > DEEPEST {
-            let graph = include.graph.clone();
-            return Err(self.reports.report(ComposeError::TooDeep(graph, DEEPEST)));
+            return Err(self.too_deep(&include.graph));
         }
         if !self.read.contains_key(&path) {
             // Without its params nothing of the document has a size.
@@ -243,10 +209,14 @@ impl<'a> Reader<'a> {
         }
         let document = self.read[&path].clone()?;
         if self.open.len() + document.include_depth > DEEPEST {
-            let graph = include.graph.clone();
-            return Err(self.reports.report(ComposeError::TooDeep(graph, DEEPEST)));
+            return Err(self.too_deep(&include.graph));
         }
         Ok(document)
+    }
+
+    fn too_deep(&mut self, graph: &Located<String>) -> ErrorGuaranteed {
+        let error = ComposeError::TooDeep(graph.clone(), DEEPEST);
+        self.reports.report(error)
     }
 
     /// The path of the document that was asked for in the place of an open include's own. Included
@@ -261,18 +231,13 @@ impl<'a> Reader<'a> {
     /// names no lights takes those of any that names none.
     fn fewer_lights(&mut self, document: &mut Document) {
         let mut lights = std::mem::take(&mut document.lights);
-        for (_, include) in document.openings() {
-            let Some(inner) = include.document() else {
-                continue;
-            };
+        for (_, include, inner) in document.includes().filter(|(_, it, _)| it.open.is_some()) {
             let had_some = !lights.is_empty();
             lights.retain(|light| inner.lights.iter().any(|known| known.value == light.value));
             if had_some && lights.is_empty() && !inner.lights.is_empty() {
-                let takes = inner.lights.iter().map(|light| light.value.to_string());
-                self.reports.report(ComposeError::NoCommonLight {
-                    graph: include.graph.clone(),
-                    takes: takes.collect(),
-                });
+                let takes = inner.lights.iter().map(|light| light.to_string()).collect();
+                let error = ComposeError::NoCommonLight(include.graph.clone(), takes);
+                self.reports.report(error);
             }
         }
         document.lights = lights;
@@ -314,26 +279,17 @@ impl<'a> Reader<'a> {
         for (name, narrow) in std::mem::take(&mut document.narrow) {
             let mut params = document.params.iter_mut();
             let Some(param) = params.find(|param| *param.name.value == *name) else {
-                let known = document.params.iter().map(|param| param.name.value.clone());
-                let error = ComposeError::NoParam {
-                    name,
-                    document: document.file.name.to_string(),
-                    known: known.collect(),
-                };
-                if document.invalid_params.is_none() {
-                    self.reports.report(error);
-                }
+                self.no_param(name, document);
                 continue;
             };
             if let Err(word) = param.narrow(&narrow.words, &narrow.because) {
                 let declared = param.name.span.clone();
                 self.reports.report(match word {
                     None => ComposeError::NarrowOfOther { name, declared },
-                    Some(word) => ComposeError::NarrowWord {
-                        known: param.words().map(Name::to_string).collect(),
-                        declared,
-                        word,
-                    },
+                    Some(word) => {
+                        let known = param.words().map(Name::to_string).collect();
+                        ComposeError::NarrowWord(word, declared, known)
+                    }
                 });
             }
         }
@@ -349,28 +305,15 @@ impl<'a> Reader<'a> {
         let own = own.chain(values).collect();
         expose_all(&mut document.entries, &own, &BTreeSet::new());
         let mut exposed: Vec<(Param, Span)> = Vec::new();
-        collect(&document.entries, &mut |entry, include| {
-            let Some(inner) = include.document() else {
-                return;
-            };
-            for name in &include.expose {
-                let Some(param) = inner
-                    .params
-                    .iter()
-                    .find(|param| *param.name.value == **name)
-                else {
-                    let known = inner.params.iter().map(|param| param.name.value.clone());
-                    self.reports.report(ComposeError::NoParam {
-                        name: name.clone(),
-                        document: inner.file.name.to_string(),
-                        known: known.collect(),
-                    });
+        for (entry, include, inner) in document.includes() {
+            for name in &include.expose.names {
+                let mut params = inner.params.iter();
+                let Some(param) = params.find(|param| *param.name.value == **name) else {
+                    self.reports.report(no_param(name.clone(), inner));
                     continue;
                 };
                 let mut param = param.clone();
-                if include.is_named {
-                    param.name.value = format!("{}.{}", *entry.name, **name);
-                }
+                param.name.value = entry.outer_name(include, name);
                 if !has_constant_default(&param) {
                     self.reports
                         .report(ComposeError::ExposedDefault(name.clone()));
@@ -378,7 +321,7 @@ impl<'a> Reader<'a> {
                 }
                 exposed.push((param, name.span.clone()));
             }
-        });
+        }
         for (mut param, span) in exposed {
             let mut params = document.params.iter();
             let known = params.position(|known| known.name.value == param.name.value);
@@ -399,10 +342,8 @@ impl<'a> Reader<'a> {
                     document.params.push(param);
                     continue;
                 }
-                let error = ComposeError::ExposedTwice {
-                    name: Located::new(param.name.value, span),
-                    first: known.name.span.clone(),
-                };
+                let name = Located::new(param.name.value, span);
+                let error = ComposeError::ExposedTwice(name, known.name.span.clone());
                 document.invalid_params = Some(self.reports.report(error));
                 continue;
             }
@@ -417,20 +358,22 @@ impl<'a> Reader<'a> {
             let mut params = document.params.iter_mut();
             match params.find(|param| *param.name.value == *name) {
                 Some(param) => param.default = Some(value),
-                None => {
-                    let known = document.params.iter().map(|param| param.name.value.clone());
-                    let error = ComposeError::NoParam {
-                        name,
-                        document: document.file.name.to_string(),
-                        known: known.collect(),
-                    };
-                    if document.invalid_params.is_none() {
-                        self.reports.report(error);
-                    }
-                }
+                None => self.no_param(name, document),
             }
         }
     }
+
+    /// Reports a name that is no param of a document whose own are all read.
+    fn no_param(&mut self, name: Located<String>, document: &Document) {
+        if document.invalid_params.is_none() {
+            self.reports.report(no_param(name, document));
+        }
+    }
+}
+
+fn no_param(name: Located<String>, document: &Document) -> ComposeError {
+    let known = document.params.iter().map(|param| param.name.value.clone());
+    ComposeError::NoParam(name, document.file.name.to_string(), known.collect())
 }
 
 /// Writes out which params `expose: All` exposes: those that neither the include nor a group around
@@ -445,7 +388,7 @@ fn expose_all(
         let set: BTreeSet<String> = set.chain(set_around.iter().cloned()).collect();
         match &mut entry.what {
             What::Group(inner) => expose_all(inner, own, &set),
-            What::Include(include) if include.exposes_all => {
+            What::Include(include) if include.expose.all => {
                 let span = include.graph.span.clone();
                 let Some(document) = include.document() else {
                     continue;
@@ -455,7 +398,7 @@ fn expose_all(
                     !set.contains(name) && (param.default.is_some() || !own.contains(name))
                 };
                 let free = document.params.iter().filter(is_free);
-                include.expose = free
+                include.expose.names = free
                     .map(|param| Located::new(param.name.value.clone(), span.clone()))
                     .collect();
             }
@@ -471,35 +414,13 @@ fn value_outputs(document: &Document) -> BTreeSet<String> {
         .iter()
         .map(|(name, _)| name.value.to_string());
     let mut values: BTreeSet<String> = own.collect();
-    collect(&document.entries, &mut |entry, include| {
-        let Some(inner) = include.document() else {
-            return;
-        };
-        values.extend(inner.gives_values.iter().map(|name| {
-            if include.is_named {
-                format!("{}.{name}", *entry.name)
-            } else {
-                name.clone()
-            }
-        }));
-    });
+    for (entry, include, inner) in document.includes() {
+        let given = inner.gives_values.iter();
+        values.extend(given.map(|name| entry.outer_name(include, name)));
+    }
     let outputs = document.outputs.iter();
     let values = outputs.filter(|output| values.contains(&output.material.path()));
     values.map(|output| output.name.value.to_string()).collect()
-}
-
-/// Calls `each` with every include, those in groups, too.
-fn collect<'e>(
-    entries: &'e [Result<Entry, Invalid>],
-    each: &mut dyn FnMut(&'e Entry, &'e Include),
-) {
-    for entry in entries.iter().flatten() {
-        match &entry.what {
-            What::Include(include) => each(entry, include),
-            What::Group(inner) => collect(inner, each),
-            What::Pass(_) => {}
-        }
-    }
 }
 
 /// True if a param's default asks for no other param.
@@ -525,24 +446,12 @@ pub(crate) fn label(diagnostics: &mut [Diagnostic], root: &str, include_sites: &
         // A document may be included by one that is included itself.
         while let Some(label) = diagnostic.labels.get(at) {
             let file = label.span.file.name.clone();
-            let asking = include_sites
-                .iter()
-                .filter(|include_sites| *include_sites.path == *file)
-                .take(SHOWN);
-            for include_sites in asking {
-                if diagnostic
-                    .labels
-                    .iter()
-                    .all(|label| label.span != include_sites.span)
-                {
-                    let text = if include_sites.is_extended {
-                        "extended here"
-                    } else {
-                        "included here"
-                    };
+            let asking = include_sites.iter().filter(|(path, ..)| **path == *file);
+            for (_, span, text) in asking.take(SHOWN) {
+                if diagnostic.labels.iter().all(|label| label.span != *span) {
                     diagnostic.labels.push(Label {
-                        span: include_sites.span.clone(),
-                        text: text.to_owned(),
+                        span: span.clone(),
+                        text: (*text).to_owned(),
                     });
                 }
             }

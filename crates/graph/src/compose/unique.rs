@@ -9,7 +9,7 @@ use crate::{
     },
     errors::compose::ComposeError,
     language::name::{Name, wgsl_identifier},
-    source::span::{Located, Span},
+    source::span::Located,
 };
 use std::collections::HashMap;
 
@@ -17,14 +17,13 @@ use std::collections::HashMap;
 pub(super) fn check(document: &Document, reports: &mut Reports) {
     let mut materials = Names::new("material");
     for input in &document.inputs {
-        materials.add(&input.name.value, &input.name.span, reports);
+        materials.add(input.name.text(), reports);
     }
     for material in &document.materials {
-        let name = material.name();
-        materials.add(&name.value, &name.span, reports);
+        materials.add(material.name().text(), reports);
     }
     for (name, _) in &document.values {
-        materials.add(&name.value, &name.span, reports);
+        materials.add(name.text(), reports);
         check_value(document, name, reports);
     }
     check_entries(
@@ -37,7 +36,7 @@ pub(super) fn check(document: &Document, reports: &mut Reports) {
     check_openings(document, reports);
     let mut outputs = Names::new("output");
     for output in &document.outputs {
-        outputs.add(&output.name.value, &output.name.span, reports);
+        outputs.add(output.name.text(), reports);
     }
 }
 
@@ -45,19 +44,11 @@ pub(super) fn check(document: &Document, reports: &mut Reports) {
 fn check_value(document: &Document, name: &Located<Name>, reports: &mut Reports) {
     for param in &document.params {
         if *param.name.value == *name.value.as_str() {
-            reports.report(ComposeError::SameName {
-                what: "value",
-                name: name.value.to_string(),
-                span: name.span.clone(),
-                first: param.name.span.clone(),
-            });
+            let first = param.name.span.clone();
+            reports.report(ComposeError::SameName("value", name.text(), first));
         }
         if param.words().any(|word| *word == name.value) {
-            reports.report(ComposeError::ValueIsWord {
-                name: Located::new(name.value.to_string(), name.span.clone()),
-                param: param.name.value.clone(),
-                declared: param.name.span.clone(),
-            });
+            reports.report(ComposeError::ValueIsWord(name.clone(), param.name.clone()));
         }
     }
 }
@@ -67,12 +58,8 @@ fn check_openings(document: &Document, reports: &mut Reports) {
     for (name, _) in document.openings() {
         let mut params = document.params.iter();
         if let Some(param) = params.find(|param| *param.name.value == *name.value.as_str()) {
-            reports.report(ComposeError::SameName {
-                what: "param and open include",
-                name: name.value.to_string(),
-                span: name.span.clone(),
-                first: param.name.span.clone(),
-            });
+            let (what, first) = ("param and open include", param.name.span.clone());
+            reports.report(ComposeError::SameName(what, name.text(), first));
         }
     }
 }
@@ -85,12 +72,15 @@ fn check_entries(
     reports: &mut Reports,
 ) {
     for entry in entries.iter().flatten() {
-        let (name, span) = (&entry.name.value, &entry.name.span);
+        let name = &entry.name;
         match &entry.what {
-            What::Pass(_) => drop(passes.add(&format!("{prefix}{name}"), span, reports)),
+            What::Pass(_) => {
+                let name = Located::new(format!("{prefix}{name}"), name.span.clone());
+                passes.add(name, reports);
+            }
             What::Group(inner) => {
                 let prefix = format!("{prefix}{name}.");
-                materials.add(name, span, reports);
+                materials.add(name.text(), reports);
                 match entry.repeat {
                     // Materials of a repetition have names of their own outside.
                     Some(_) => {
@@ -101,40 +91,30 @@ fn check_entries(
                 }
             }
             What::Include(include) => {
-                let is_first = materials.add(name, span, reports);
+                let is_first = materials.add(name.text(), reports);
                 // Which repetitions there are, and so their names, is not known yet.
                 if entry.repeat.is_some() || !is_first {
                     continue;
                 }
-                let namespace = if include.is_named {
-                    format!("{name}.")
-                } else {
-                    String::new()
-                };
                 let Some(document) = include.document() else {
                     continue;
                 };
                 for (number, output) in document.outputs.iter().enumerate() {
+                    let output = &output.name;
                     // Two of a name are told in that document.
                     let others = &document.outputs[..number];
-                    if others
-                        .iter()
-                        .any(|other| other.name.value == output.name.value)
-                    {
-                        continue;
-                    }
-                    let is_own = |input: &crate::document::materials::Input| {
-                        input.name.value == output.name.value
-                    };
-                    let bound = entry
-                        .bind
-                        .iter()
-                        .any(|(name, _)| name.value == output.name.as_str());
-                    let full = format!("{namespace}{}", output.name.value);
+                    let is_second = others.iter().any(|other| other.name.value == output.value);
+                    let full = entry.outer_name(include, output);
+                    let mut bound = entry.bind.iter();
+                    let mut inputs = document.inputs.iter();
                     // Without a name of its own the include is known by what it gives.
-                    let is_own_name = full == **name;
-                    if !bound && !is_own_name && !document.inputs.iter().any(is_own) {
-                        materials.add(&full, &include.graph.span, reports);
+                    if !is_second
+                        && full != *name.value
+                        && bound.all(|(name, _)| name.value != output.as_str())
+                        && inputs.all(|input| input.name.value != output.value)
+                    {
+                        let full = Located::new(full, include.graph.span.clone());
+                        materials.add(full, reports);
                     }
                 }
             }
@@ -142,10 +122,10 @@ fn check_entries(
     }
 }
 
-/// The names of one namespace, each with the place of the first one.
+/// The names of one namespace, by their spelling, each as the first one has it.
 struct Names {
     what: &'static str,
-    seen: HashMap<String, (String, Span)>,
+    seen: HashMap<String, Located<String>>,
 }
 
 impl Names {
@@ -157,33 +137,20 @@ impl Names {
     }
 
     /// Adds a name. True if it was free.
-    fn add(&mut self, name: &str, span: &Span, reports: &mut Reports) -> bool {
+    fn add(&mut self, name: Located<String>, reports: &mut Reports) -> bool {
         let spelling = match self.what {
-            "material" => wgsl_identifier(name),
-            _ => name.to_owned(),
+            "material" => wgsl_identifier(&name),
+            _ => name.value.clone(),
         };
-        if let Some((known, first)) = self.seen.get(&spelling) {
-            let (span, first) = (span.clone(), first.clone());
-            let (name, known) = (name.to_owned(), known.clone());
-            reports.report(if name == known {
-                let what = self.what;
-                ComposeError::SameName {
-                    what,
-                    name,
-                    span,
-                    first,
-                }
-            } else {
-                ComposeError::Clash {
-                    name,
-                    known,
-                    span,
-                    first,
-                }
-            });
-            return false;
-        }
-        self.seen.insert(spelling, (name.to_owned(), span.clone()));
-        true
+        let Some(known) = self.seen.get(&spelling) else {
+            self.seen.insert(spelling, name);
+            return true;
+        };
+        reports.report(if name.value == known.value {
+            ComposeError::SameName(self.what, name, known.span.clone())
+        } else {
+            ComposeError::Clash(name, known.clone())
+        });
+        false
     }
 }

@@ -2,12 +2,9 @@
 
 use crate::{
     diagnostics::reports::Reports,
-    document::{
-        raw::Invalid,
-        typed::{Document, Entry, Include, What, each_entry},
-    },
+    document::typed::{Document, each_include},
     errors::compose::ComposeError,
-    language::syntax::Leaf,
+    language::{name::Name, syntax::Leaf},
     shader::{reflect::Shader, store::Shaders},
     source::span::{Located, Span},
 };
@@ -32,28 +29,22 @@ impl Used {
             Leaf::Material(of) => drop(used.materials.insert(of.segments[0].name.to_string())),
             Leaf::Constant(_) | Leaf::Has(_) => {}
         });
-        each_entry(&document.entries, &mut |entry| match &entry.what {
-            What::Pass(pass) => {
-                let variants = pass.shaders.iter();
-                for shader in variants.flat_map(|shader| shaders.variants(document, shader)) {
-                    used.params.extend(shader.params().map(str::to_owned));
-                    used.materials
-                        .extend(shader.global_names().map(str::to_owned));
-                    used.choices(document, shader);
-                }
+        for pass in document.passes() {
+            let variants = pass.shaders.iter();
+            for shader in variants.flat_map(|shader| shaders.variants(document, shader)) {
+                used.params.extend(shader.params().map(str::to_owned));
+                used.materials
+                    .extend(shader.global_names().map(str::to_owned));
+                used.choices(document, shader);
             }
-            What::Include(include) => {
-                let Some(inner) = include.document() else {
-                    return;
-                };
-                let inputs = inner.inputs.iter().map(|input| input.name.to_string());
-                used.materials.extend(inputs);
-                let asked = inner.params.iter().filter(|param| param.default.is_none());
-                used.params
-                    .extend(asked.map(|param| param.name.value.clone()));
-            }
-            What::Group(_) => {}
-        });
+        }
+        for (_, _, inner) in document.includes() {
+            let inputs = inner.inputs.iter().map(|input| input.name.to_string());
+            used.materials.extend(inputs);
+            let asked = inner.params.iter().filter(|param| param.default.is_none());
+            used.params
+                .extend(asked.map(|param| param.name.value.clone()));
+        }
         used
     }
 
@@ -91,7 +82,7 @@ pub(crate) fn drop_unused(
         }
         *inner = Arc::clone(&known[&path]);
         let is_there = |name: &Located<String>| inner.params.iter().any(|it| *it.name == **name);
-        include.expose.retain(is_there);
+        include.expose.names.retain(is_there);
         given.extend(inner.params.iter().map(|param| param.name.span.clone()));
     });
     let exposed = document.params.split_off(document.declared);
@@ -100,19 +91,14 @@ pub(crate) fn drop_unused(
     loop {
         let used = Used::new(document, shaders);
         let is_used = |name: &str| used.params.contains(name) || used.materials.contains(name);
+        let is_kept = |name: &Located<Name>| is_own(&name.span) || is_used(name.as_str());
         let count = |it: &Document| {
             it.params.len() + it.values.len() + it.inputs.len() + it.materials.len()
         };
         let before = count(document);
-        document
-            .materials
-            .retain(|it| is_own(&it.name().span) || is_used(it.name().as_str()));
-        document
-            .inputs
-            .retain(|it| is_own(&it.name.span) || is_used(it.name.as_str()));
-        document
-            .values
-            .retain(|(name, _)| is_own(&name.span) || is_used(name.as_str()));
+        document.materials.retain(|it| is_kept(it.name()));
+        document.inputs.retain(|it| is_kept(&it.name));
+        document.values.retain(|(name, _)| is_kept(name));
         document.params.retain(|param| {
             let is_kept = is_own(&param.name.span) || used.params.contains(&param.name.value);
             let default = param
@@ -134,15 +120,4 @@ pub(crate) fn drop_unused(
     document
         .params
         .extend(exposed.filter(|param| given.contains(&param.name.span)));
-}
-
-/// Calls `each` with every include, those in groups, too.
-fn each_include(entries: &mut [Result<Entry, Invalid>], each: &mut dyn FnMut(&mut Include)) {
-    for entry in entries.iter_mut().flatten() {
-        match &mut entry.what {
-            What::Include(include) => each(include),
-            What::Group(inner) => each_include(inner, each),
-            What::Pass(_) => {}
-        }
-    }
 }

@@ -14,6 +14,9 @@ const HINTED: usize = 50;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ErrorGuaranteed(());
 
+/// A value, or the proof that something is wrong with it.
+pub(crate) type Reported<T> = Result<T, ErrorGuaranteed>;
+
 /// The mistakes found so far.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Reports {
@@ -28,10 +31,7 @@ pub(crate) struct Reports {
 
 impl Reports {
     /// A result whose mistake is reported.
-    pub fn check<T>(
-        &mut self,
-        result: Result<T, impl Into<Diagnostic>>,
-    ) -> Result<T, ErrorGuaranteed> {
+    pub fn check<T>(&mut self, result: Result<T, impl Into<Diagnostic>>) -> Reported<T> {
         result.map_err(|mistake| self.report(mistake))
     }
 

@@ -2,7 +2,7 @@
 
 use super::{
     raw::{Invalid, RawEntry, RawMap, stem},
-    typed::{Entry, Include, Pass, Run, What},
+    typed::{Entry, Expose, Include, Pass, Run, What},
 };
 use crate::{
     diagnostics::{diagnostic::Diagnostic, reports::Reports},
@@ -19,10 +19,9 @@ use crate::{
     },
     source::span::Located,
 };
-use serde::{Deserialize, Deserializer};
+use serde::Deserialize;
 use skiagraph_located_ron::reader::{
-    Field, Node, from_fields, from_some_fields, missing_field, raw, read as read_text, refuse,
-    unknown_field,
+    Field, Node, from_fields, from_some_fields, missing_field, unknown_field,
 };
 
 /// The tags that are no pass kinds.
@@ -97,42 +96,6 @@ pub(crate) struct IncludeFields {
     #[serde(default)]
     expose: Expose,
 }
-
-/// Params of an included document that are params of this one.
-#[derive(Debug)]
-enum Expose {
-    /// Those that neither the include nor a group around it sets.
-    All,
-    List(Vec<Located<String>>),
-}
-
-impl Default for Expose {
-    fn default() -> Self {
-        Self::List(Vec::new())
-    }
-}
-
-impl<'de> Deserialize<'de> for Expose {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let (text, span) = raw(deserializer)?;
-        if text == "All" {
-            Ok(Self::All)
-        } else if text.starts_with('[') {
-            read_text(text).map(Self::List)
-        } else {
-            Err(refuse(DocumentError::Expose(span)))
-        }
-    }
-}
-
-#[cfg(feature = "schema")]
-crate::written::written!(Expose, "Expose", generator => {
-    let list = generator.subschema_for::<Vec<Located<String>>>();
-    schemars::json_schema!({
-        "description": "Names of params, or `All` that are not set.",
-        "anyOf": [list, {"const": "All"}],
-    })
-});
 
 const HEADER: [&str; 4] = ["name", "if", "repeat", "run"];
 
@@ -269,16 +232,11 @@ fn include(
             Located::new(name?, span)
         }
     };
-    let (exposes_all, expose) = match fields.expose {
-        Expose::All => (true, Vec::new()),
-        Expose::List(names) => (false, names),
-    };
     let include = Include {
         graph: fields.graph,
         open: fields.open,
         is_named,
-        expose,
-        exposes_all,
+        expose: fields.expose,
         document: None,
     };
     Ok((include, name))

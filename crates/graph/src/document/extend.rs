@@ -2,7 +2,7 @@
 
 use super::{
     raw::{Invalid, REMOVE, RawDocument, RawEntry, RawItem, RawMap},
-    typed::Narrow,
+    typed::{Narrow, Output},
 };
 use crate::{diagnostics::reports::Reports, errors::edit::EditError, source::span::Located};
 use skiagraph_located_ron::reader::{Field, Node};
@@ -15,38 +15,43 @@ pub(crate) const PLACES: [&str; 3] = ["before", "after", "instead"];
 
 /// Applies the edits of `own` to `base`. An edit that cannot be made is reported and left out.
 pub(crate) fn extend(base: RawDocument, own: RawDocument, reports: &mut Reports) -> RawDocument {
-    let inputs = without(base.inputs, &own.materials);
-    let materials = without(base.materials, &own.inputs);
+    let mut inputs = without(base.inputs, &own.materials);
+    let mut materials = without(base.materials, &own.inputs);
+    put(&mut inputs, own.inputs, is_named_as);
+    put(&mut materials, own.materials, is_named_as);
     let mut document = RawDocument {
         file: own.file,
         extended: [vec![base.file.name.clone()], base.extended].concat(),
         description: own.description.or(base.description),
-        extends: None,
         requires: [base.requires, own.requires].concat(),
-        params: merge(base.params, own.params),
-        values: redefine(base.values, own.values),
         narrow: narrower(base.narrow, own.narrow, reports),
         imports: [base.imports, own.imports].concat(),
-        inputs: merge(inputs, own.inputs),
-        materials: merge(materials, own.materials),
-        passes: base.passes,
+        inputs,
+        materials,
         outputs: if own.outputs.is_empty() {
-            base.outputs
+            inherited(base.outputs)
         } else {
             own.outputs
         },
-        set: base.set,
-        // Lights and claims belong to a method as written, not to methods that extend it.
+        // Lights, claims and outputs on request belong to a method as written, not to methods that
+        // extend it.
         lights: own.lights,
         proven_on: own.proven_on,
         claims: own.claims,
         invalid_params: base.invalid_params.or(own.invalid_params),
         incomplete: base.incomplete.or(own.incomplete),
+        ..base
     };
+    put(&mut document.params, own.params, is_named_as);
+    put(&mut document.values, own.values, is_same_key);
     for (name, value) in own.set {
         let known = |item: &&mut RawItem| item.name().is_some_and(|own| *own == *name);
         match document.params.iter_mut().find(known) {
-            Some(param) => put(&mut param.fields, default_field(&name, value)),
+            Some(param) => put(
+                &mut param.fields,
+                [default_field(&name, value)],
+                is_same_field,
+            ),
             None => {
                 document.set.retain(|(known, _)| **known != *name);
                 document.set.push((name, value));
@@ -78,20 +83,33 @@ fn default_field(name: &Located<String>, node: Node) -> Field {
     }
 }
 
-/// A value of the same name is replaced where it stands, the rest is added.
-fn redefine(base: RawMap, own: RawMap) -> RawMap {
-    let mut values = base;
-    for (name, value) in own {
-        match values.iter_mut().find(|(known, _)| **known == *name) {
-            Some(known) => *known = (name, value),
-            None => values.push((name, value)),
+/// Outputs of a document that those have that extend it: diagnostics may not be true of these.
+fn inherited(outputs: Vec<Node>) -> Vec<Node> {
+    let is_on_request = |node: &Node| node.parse::<Output>().is_ok_and(|it| it.on_request);
+    let (_, inherited) = outputs.into_iter().partition::<Vec<_>, _>(is_on_request);
+    inherited
+}
+
+/// Puts each of `own` into the place of the one that is the same in the list, or behind the others.
+fn put<T>(list: &mut Vec<T>, own: impl IntoIterator<Item = T>, is_same: fn(&T, &T) -> bool) {
+    for item in own {
+        match list.iter_mut().find(|known| is_same(known, &item)) {
+            Some(known) => *known = item,
+            None => list.push(item),
         }
     }
-    values
+}
+
+fn is_same_key((known, _): &(Located<String>, Node), (key, _): &(Located<String>, Node)) -> bool {
+    **known == **key
+}
+
+fn is_same_field(known: &Field, field: &Field) -> bool {
+    *known.name == *field.name
 }
 
 /// Narrows params of the base further. A word that the base has taken away stays away.
-fn narrower(base: RawMap, own: RawMap, reports: &mut Reports) -> RawMap {
+fn narrower(mut base: RawMap, own: RawMap, reports: &mut Reports) -> RawMap {
     for (name, node) in &own {
         let Some((first, before)) = base.iter().find(|(known, _)| **known == **name) else {
             continue;
@@ -102,27 +120,12 @@ fn narrower(base: RawMap, own: RawMap, reports: &mut Reports) -> RawMap {
         };
         for word in now.words {
             if before.words.iter().all(|known| known.value != word.value) {
-                reports.report(EditError::Widens {
-                    name: name.clone(),
-                    word,
-                    first: first.span.clone(),
-                });
+                reports.report(EditError::Widens(name.clone(), word, first.span.clone()));
             }
         }
     }
-    redefine(base, own)
-}
-
-/// Merges two lists. An item of the same name is replaced, the rest is added.
-fn merge(base: Vec<RawItem>, own: Vec<RawItem>) -> Vec<RawItem> {
-    let mut merged = base;
-    for item in own {
-        match merged.iter_mut().find(|known| is_named_as(known, &item)) {
-            Some(known) => *known = item,
-            None => merged.push(item),
-        }
-    }
-    merged
+    put(&mut base, own, is_same_key);
+    base
 }
 
 /// The items but those of a name that is another item's now: a material may take the place of an
@@ -135,14 +138,6 @@ fn without(items: Vec<RawItem>, others: &[RawItem]) -> Vec<RawItem> {
 fn is_named_as(item: &RawItem, other: &RawItem) -> bool {
     let name = |item: &RawItem| item.name().map(|name| name.value);
     name(item).is_some_and(|own| Some(own) == name(other))
-}
-
-/// Puts a field into the place of the one of its name, or behind the others.
-fn put(fields: &mut Vec<Field>, field: Field) {
-    match fields.iter_mut().find(|known| *known.name == *field.name) {
-        Some(known) => *known = field,
-        None => fields.push(field),
-    }
 }
 
 /// Edits of a list of entries.
@@ -181,17 +176,9 @@ impl Edits<'_> {
         if edit.passes.is_some() {
             return Err(EditError::Passes(edit.tag.span));
         }
-        for field in edit.fields {
-            put(&mut entry.fields, field);
-        }
-        for (map, own) in [(&mut entry.bind, edit.bind), (&mut entry.set, edit.set)] {
-            for (key, value) in own {
-                match map.iter_mut().find(|(known, _)| **known == *key) {
-                    Some(known) => *known = (key, value),
-                    None => map.push((key, value)),
-                }
-            }
-        }
+        put(&mut entry.fields, edit.fields, is_same_field);
+        put(&mut entry.bind, edit.bind, is_same_key);
+        put(&mut entry.set, edit.set, is_same_key);
         Ok(())
     }
 
@@ -241,7 +228,7 @@ fn path_of(edit: &mut RawEntry, field: &'static str) -> Result<Located<String>, 
     let found = edit.take(field);
     let found = found.ok_or_else(|| EditError::NoPath(edit.tag.clone(), field))?;
     let path: Result<String, _> = found.node.parse();
-    let span = found.node.span;
+    let span = found.node;
     path.map(|path| Located::new(path, span.clone()))
         .map_err(|_| EditError::NoString(span))
 }
@@ -262,11 +249,7 @@ fn find<'e>(
         };
         let Some(at) = list.iter().position(named) else {
             let known = list.iter().flatten().filter_map(RawEntry::name).collect();
-            return Err(EditError::NoSuchEntry {
-                path: path.clone(),
-                name: name.to_owned(),
-                known,
-            });
+            return Err(EditError::NoSuchEntry(path.clone(), name.to_owned(), known));
         };
         if names.peek().is_none() {
             return Ok((list, at));
@@ -276,10 +259,7 @@ fn find<'e>(
             .as_mut()
             .ok()
             .and_then(|entry| entry.passes.as_mut());
-        list = inside.ok_or_else(|| EditError::Behind {
-            path: path.clone(),
-            entry: walked.join("."),
-        })?;
+        list = inside.ok_or_else(|| EditError::Behind(path.clone(), walked.join(".")))?;
     }
     Err(EditError::NoString(path.span.clone()))
 }
@@ -294,14 +274,13 @@ pub(crate) fn no_edits(entries: &mut Entries, reports: &mut Reports) {
             .fields
             .iter()
             .find(|field| PLACES.contains(&field.name.as_str()));
-        let mistake = match (entry.tag.as_str(), place) {
-            ("Change" | REMOVE, _) => Some(EditError::NotExtending(entry.tag.clone())),
-            (_, Some(place)) => Some(EditError::NotExtending(place.name.clone())),
-            _ => None,
+        let word = match (entry.tag.as_str(), place) {
+            ("Change" | REMOVE, _) => Some(&entry.tag),
+            (_, place) => place.map(|field| &field.name),
         };
-        if let Some(mistake) = mistake {
+        if let Some(word) = word {
             let is_include = *entry.tag == "Include";
-            let reported = reports.report(mistake);
+            let reported = reports.report(EditError::NotExtending(word.clone()));
             *slot = Err(Invalid {
                 is_include,
                 reported,

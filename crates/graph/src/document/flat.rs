@@ -13,24 +13,22 @@ pub(crate) fn flat(document: &RawDocument) -> String {
     flat.line(0, "(", &[]);
     flat.line(1, "format: 3,", &[]);
     if let Some(node) = &document.description {
-        flat.line(1, &format!("description: {},", node.text()), &[&node.span]);
+        flat.line(1, &format!("description: {},", node.text()), &[node]);
     }
-    flat.nodes("requires", &document.requires);
-    flat.items("params", &document.params);
+    flat.list("requires", &document.requires, Flat::node);
+    flat.list("params", &document.params, Flat::item);
     flat.map(1, "set", &document.set);
     flat.map(1, "narrow", &document.narrow);
-    flat.nodes("imports", &document.imports);
+    flat.list("imports", &document.imports, Flat::node);
     flat.map(1, "values", &document.values);
-    flat.items("inputs", &document.inputs);
-    flat.items("materials", &document.materials);
-    if !document.passes.is_empty() {
-        flat.line(1, "passes: [", &[]);
-        flat.entries(2, &document.passes);
-        flat.line(1, "],", &[]);
-    }
-    flat.nodes("outputs", &document.outputs);
-    flat.nodes("lights", &document.lights);
-    flat.nodes("proven_on", &document.proven_on);
+    flat.list("inputs", &document.inputs, Flat::item);
+    flat.list("materials", &document.materials, Flat::item);
+    flat.list("passes", &document.passes, |flat, entry| {
+        flat.entry(2, entry)
+    });
+    flat.list("outputs", &document.outputs, Flat::node);
+    flat.list("lights", &document.lights, Flat::node);
+    flat.list("proven_on", &document.proven_on, Flat::node);
     flat.map(1, "claims", &document.claims);
     flat.line(0, ")", &[]);
     flat.text
@@ -78,27 +76,21 @@ impl Flat {
         self.text.push('\n');
     }
 
-    fn nodes(&mut self, section: &str, nodes: &[Node]) {
-        if nodes.is_empty() {
-            return;
+    fn list<T>(&mut self, section: &str, list: &[T], write: impl Fn(&mut Self, &T)) {
+        if !list.is_empty() {
+            self.line(1, &format!("{section}: ["), &[]);
+            list.iter().for_each(|part| write(self, part));
+            self.line(1, "],", &[]);
         }
-        self.line(1, &format!("{section}: ["), &[]);
-        for node in nodes {
-            self.line(2, &format!("{},", node.text()), &[&node.span]);
-        }
-        self.line(1, "],", &[]);
     }
 
-    fn items(&mut self, section: &str, items: &[RawItem]) {
-        if items.is_empty() {
-            return;
-        }
-        self.line(1, &format!("{section}: ["), &[]);
-        for item in items {
-            let content = format!("{}({}),", *item.tag, fields(&item.fields));
-            self.line(2, &content, &origins(&item.tag.span, &item.fields));
-        }
-        self.line(1, "],", &[]);
+    fn node(&mut self, node: &Node) {
+        self.line(2, &format!("{},", node.text()), &[node]);
+    }
+
+    fn item(&mut self, item: &RawItem) {
+        let content = format!("{}({}),", *item.tag, fields(&item.fields));
+        self.line(2, &content, &origins(&item.tag.span, &item.fields));
     }
 
     fn map(&mut self, depth: usize, section: &str, map: &RawMap) {
@@ -107,19 +99,16 @@ impl Flat {
         }
         self.line(depth, &format!("{section}: {{"), &[]);
         for (key, value) in map {
-            let content = format!("{}: {},", Node::at(&key.span).text(), value.text());
+            let content = format!("{}: {},", key.span.text(), value.text());
             self.line(depth + 1, &content, &[&key.span]);
         }
         self.line(depth, "},", &[]);
     }
 
-    fn entries(&mut self, depth: usize, entries: &[Result<RawEntry, Invalid>]) {
-        for entry in entries.iter().flatten() {
-            self.entry(depth, entry);
-        }
-    }
-
-    fn entry(&mut self, depth: usize, entry: &RawEntry) {
+    fn entry(&mut self, depth: usize, entry: &Result<RawEntry, Invalid>) {
+        let Ok(entry) = entry else {
+            return;
+        };
         let origins = origins(&entry.tag.span, &entry.fields);
         let head = format!("{}({}", *entry.tag, fields(&entry.fields));
         if entry.bind.is_empty() && entry.set.is_empty() && entry.passes.is_none() {
@@ -132,7 +121,7 @@ impl Flat {
         self.map(depth + 1, "set", &entry.set);
         if let Some(passes) = &entry.passes {
             self.line(depth + 1, "passes: [", &[]);
-            self.entries(depth + 2, passes);
+            passes.iter().for_each(|entry| self.entry(depth + 2, entry));
             self.line(depth + 1, "],", &[]);
         }
         self.line(depth, "),", &[]);

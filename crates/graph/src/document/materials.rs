@@ -42,16 +42,7 @@ impl Material {
 
     /// Calls `each` with everything that its size and format are made of.
     pub fn visit<'a>(&'a self, each: &mut dyn FnMut(Leaf<'a>)) {
-        let grow = match self {
-            Self::Texture(texture) => texture.grow.as_deref(),
-            Self::Buffer(buffer) => buffer.grow.as_ref(),
-            Self::Sampler(_) => None,
-        };
-        if let Some(grow) = grow {
-            each(Leaf::Material(&grow.counter));
-            grow.max.visit(each);
-        }
-        let exprs = match self {
+        let (grow, exprs) = match self {
             Self::Texture(texture) => {
                 let format = match &texture.format {
                     FormatEntry::Expr(format) => Some(format),
@@ -62,11 +53,16 @@ impl Material {
                     Mips::One | Mips::All => None,
                 };
                 let (size, layers) = (texture.size.as_ref(), texture.layers.as_ref());
-                [format, mips, size, layers, texture.samples.as_ref()]
+                let exprs = vec![format, mips, size, layers, texture.samples.as_ref()];
+                (texture.grow.as_deref(), exprs)
             }
-            Self::Buffer(buffer) => [buffer.count.as_ref(), None, None, None, None],
-            Self::Sampler(_) => [None; 5],
+            Self::Buffer(buffer) => (buffer.grow.as_ref(), vec![buffer.count.as_ref()]),
+            Self::Sampler(_) => return,
         };
+        if let Some(grow) = grow {
+            grow.counter.visit(each);
+            grow.max.visit(each);
+        }
         exprs
             .into_iter()
             .flatten()
@@ -191,7 +187,7 @@ impl<'de> Deserialize<'de> for Data {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let (_, span) = raw(deserializer)?;
         let wrong = || refuse(DocumentError::Data(span.clone()));
-        let items = Node { span: span.clone() }.list().map_err(|_| wrong())?;
+        let items = span.list().map_err(|_| wrong())?;
         let mut data = Vec::new();
         for item in items {
             let mut numbers = Vec::new();
@@ -303,10 +299,10 @@ impl InputKind {
 #[serde(deny_unknown_fields)]
 pub(crate) struct TextureInput {
     /// Name of the input in this document.
-    name: Located<Name>,
+    pub name: Located<Name>,
     /// The format that it must have; any without it.
     #[serde(default)]
-    format: Option<FormatEntry>,
+    pub format: Option<FormatEntry>,
 }
 
 /// A buffer that the includer, or the host, gives.
@@ -315,7 +311,7 @@ pub(crate) struct TextureInput {
 #[serde(deny_unknown_fields)]
 pub(crate) struct BufferInput {
     /// Name of the input in this document.
-    name: Located<Name>,
+    pub name: Located<Name>,
 }
 
 /// A sampler that the includer, or the host, gives.
@@ -324,43 +320,8 @@ pub(crate) struct BufferInput {
 #[serde(deny_unknown_fields)]
 pub(crate) struct SamplerInput {
     /// Name of the input in this document.
-    name: Located<Name>,
+    pub name: Located<Name>,
     /// True for a comparison sampler.
     #[serde(default)]
-    compare: bool,
-}
-
-impl TryFrom<TextureInput> for Input {
-    type Error = DocumentError;
-    fn try_from(input: TextureInput) -> Result<Self, DocumentError> {
-        let format = match input.format {
-            None => None,
-            Some(FormatEntry::Named(format)) => Some(format),
-            Some(FormatEntry::Expr(expr)) => return Err(DocumentError::InputFormat(expr.span)),
-        };
-        Ok(Self {
-            name: input.name,
-            kind: InputKind::Texture(format),
-        })
-    }
-}
-
-impl From<BufferInput> for Input {
-    fn from(input: BufferInput) -> Self {
-        Self {
-            name: input.name,
-            kind: InputKind::Buffer,
-        }
-    }
-}
-
-impl From<SamplerInput> for Input {
-    fn from(input: SamplerInput) -> Self {
-        Self {
-            name: input.name,
-            kind: InputKind::Sampler {
-                compare: input.compare,
-            },
-        }
-    }
+    pub compare: bool,
 }

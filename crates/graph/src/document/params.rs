@@ -40,10 +40,7 @@ pub(crate) struct ParamFields {
 /// Reads the entry of a param: its type, and its fields.
 pub(super) fn read(tag: &Located<String>, fields: &[Field]) -> Result<Param, Diagnostic> {
     let fields: ParamFields = from_fields(fields, &tag.span)?;
-    let wrong = |why: &str| DocumentError::Param {
-        name: fields.name.clone(),
-        why: why.to_owned(),
-    };
+    let wrong = |why: &str| DocumentError::Param(fields.name.clone(), why.to_owned());
     let ty = match tag.as_str() {
         "F32" => ParamType::F32,
         "I32" => ParamType::I32,
@@ -79,7 +76,7 @@ pub(super) fn read(tag: &Located<String>, fields: &[Field]) -> Result<Param, Dia
         return Err(wrong(why).into());
     }
     Ok(Param {
-        name: Located::new(fields.name.value.to_string(), fields.name.span),
+        name: fields.name.text(),
         ty,
         default: fields.default,
         min: fields.min,

@@ -82,7 +82,7 @@ pub(crate) struct Invalid {
 fn name_of(fields: &[Field]) -> Option<Located<String>> {
     let field = fields.iter().find(|field| *field.name == "name")?;
     let name: String = field.node.parse().ok()?;
-    Some(Located::new(name, field.node.span.clone()))
+    Some(Located::new(name, field.node.clone()))
 }
 
 impl RawItem {
@@ -170,8 +170,7 @@ pub(crate) fn split(
     if !file.text.contains('(') {
         return Err(reports.report(DocumentError::NoDocument(file)));
     }
-    let fields = Node::root(&file).fields();
-    let fields = fields.map_err(|error| reports.report(error))?;
+    let fields = reports.check(Node::root(&file).fields())?;
     let mut sections = Sections {
         nodes: sections(fields, reports),
         incomplete: None,
@@ -183,13 +182,13 @@ pub(crate) fn split(
     let materials = sections.items("materials").0;
     // Without its params nothing of a document is looked at.
     let incomplete = sections.incomplete;
-    let params = sections.items("params");
+    let (params, invalid_params) = sections.items("params");
     sections.incomplete = incomplete;
-    let mut document = RawDocument {
+    Ok(RawDocument {
         description: sections.nodes.remove("description"),
         extends: sections.nodes.remove("extends"),
         requires: sections.list("requires"),
-        params: Vec::new(),
+        params,
         values: sections.map("values"),
         narrow: sections.map("narrow"),
         imports: sections.list("imports"),
@@ -201,13 +200,11 @@ pub(crate) fn split(
         proven_on: sections.list("proven_on"),
         claims: sections.map("claims"),
         passes: entries(passes, sections.reports),
-        invalid_params: None,
+        invalid_params,
         incomplete: sections.incomplete,
         extended: Vec::new(),
         file,
-    };
-    (document.params, document.invalid_params) = params;
-    Ok(document)
+    })
 }
 
 fn sections(fields: Vec<Field>, reports: &mut Reports) -> HashMap<String, Node> {
@@ -241,16 +238,12 @@ impl Sections<'_> {
             self.reports.report(DocumentError::NoFormat(begin));
             return Ok(());
         };
-        match node.parse::<u32>() {
-            Ok(FORMAT) => Ok(()),
+        match self.reports.check(node.parse::<u32>()) {
+            Ok(FORMAT) | Err(_) => Ok(()),
             // Everything else in it would be a mistake, too.
             Ok(other) => {
-                let place = node.span.clone();
+                let place = node.clone();
                 Err(self.reports.report(DocumentError::Format(place, other)))
-            }
-            Err(error) => {
-                self.reports.report(error);
-                Ok(())
             }
         }
     }
@@ -287,21 +280,16 @@ impl Sections<'_> {
         let mut seen: HashMap<String, Span> = HashMap::new();
         // The first of two is the one that counts, so that the second raises no more complaints.
         items.retain(|item: &RawItem| {
-            let Some(Located { value: name, span }) = item.name() else {
+            let Some(name) = item.name() else {
                 return true;
             };
-            let Some(first) = seen.get(&name) else {
-                seen.insert(name, span);
+            let Some(first) = seen.get(&name.value) else {
+                seen.insert(name.value, name.span);
                 return true;
             };
             let what = section.strip_suffix('s').unwrap_or(section);
-            let first = first.clone();
-            self.reports.report(DocumentError::Twice {
-                what,
-                name,
-                span,
-                first,
-            });
+            let twice = DocumentError::Twice(what, name, first.clone());
+            self.reports.report(twice);
             false
         });
         (items, broken)
@@ -309,44 +297,38 @@ impl Sections<'_> {
 }
 
 fn item(node: &Node, section: &'static str) -> Result<RawItem, crate::diagnostics::Diagnostic> {
-    let untagged = || DocumentError::Untagged {
-        span: node.span.clone(),
-        section,
-    };
+    let untagged = || DocumentError::Untagged(node.clone(), section);
     let (tag, body) = node.variant().ok_or_else(untagged)?;
     let fields = body.fields()?;
     Ok(RawItem { tag, fields })
 }
 
 fn list(node: &Node, reports: &mut Reports) -> Result<Vec<Node>, ErrorGuaranteed> {
-    let nodes = node.list().map_err(|error| reports.report(error))?;
-    if let Some(first) = nodes.get(MOST_ENTRIES) {
-        let span = first.span.clone();
-        let count = nodes.len();
-        return Err(reports.report(DocumentError::TooMany {
-            what: "list",
-            span,
-            count,
+    let nodes = reports.check(node.list())?;
+    few("list", nodes, |node| node, reports)
+}
+
+/// The entries of a list or map, if they are not too many.
+fn few<T>(
+    what: &'static str,
+    entries: Vec<T>,
+    span: fn(&T) -> &Span,
+    reports: &mut Reports,
+) -> Result<Vec<T>, ErrorGuaranteed> {
+    match entries.get(MOST_ENTRIES) {
+        None => Ok(entries),
+        Some(first) => Err(reports.report(DocumentError::TooMany {
+            what,
+            span: span(first).clone(),
+            count: entries.len(),
             most: MOST_ENTRIES,
-        }));
+        })),
     }
-    Ok(nodes)
 }
 
 fn map(node: &Node, reports: &mut Reports) -> RawMap {
-    let entries = node.map().map_err(|error| reports.report(error));
-    let entries = entries.unwrap_or_default();
-    if let Some((first, _)) = entries.get(MOST_ENTRIES) {
-        let span = first.span.clone();
-        let count = entries.len();
-        reports.report(DocumentError::TooMany {
-            what: "map",
-            span,
-            count,
-            most: MOST_ENTRIES,
-        });
-        return Vec::new();
-    }
+    let entries = reports.check(node.map()).unwrap_or_default();
+    let entries = few("map", entries, |(key, _)| &key.span, reports).unwrap_or_default();
     let mut seen = HashSet::new();
     let mut once = Vec::new();
     for (key, value) in entries {

@@ -3,7 +3,7 @@
 use super::{
     entries,
     extend::no_edits,
-    materials::{BufferInput, Input, Material, SamplerInput, TextureInput},
+    materials::{BufferInput, FormatEntry, Input, InputKind, Material, SamplerInput, TextureInput},
     params,
     raw::{RawDocument, RawItem, RawMap},
     typed::Document,
@@ -22,47 +22,23 @@ use crate::{
     },
     source::span::Located,
 };
+use serde::de::DeserializeOwned;
 use skiagraph_located_ron::reader::{Node, from_fields};
-use std::collections::BTreeSet;
 
 /// Reads a document and reports its mistakes. Its readable part is returned all the same, so that
 /// later phases find more mistakes in one go.
 pub(crate) fn document(raw: RawDocument, registry: &Registry, reports: &mut Reports) -> Document {
+    let description = raw.description.map(|node| reports.check(node.parse()));
+    let description: String = description.and_then(Result::ok).unwrap_or_default();
     let mut document = Document {
-        description: String::new(),
-        requires: Vec::new(),
-        params: Vec::new(),
-        declared: 0,
-        defaults: Vec::new(),
-        values: Vec::new(),
-        narrow: Vec::new(),
-        imports: Vec::new(),
-        inputs: Vec::new(),
-        materials: Vec::new(),
-        entries: Vec::new(),
-        outputs: Vec::new(),
-        lights: Vec::new(),
-        proven_on: Vec::new(),
-        claims: Vec::new(),
-        broken_materials: Vec::new(),
+        description: one_line(&description),
+        requires: read_list(&raw.requires, feature, reports),
         invalid_params: raw.invalid_params,
-        broken_outputs: None,
         incomplete: raw.incomplete,
-        gives_values: BTreeSet::new(),
-        include_depth: 0,
         extended: raw.extended,
         file: raw.file,
+        ..Document::default()
     };
-    if let Some(node) = &raw.description {
-        keep(node.parse(), reports, |text: String| {
-            document.description = one_line(&text);
-        });
-    }
-    for node in &raw.requires {
-        keep(feature(node), reports, |feature| {
-            document.requires.push(feature)
-        });
-    }
     for item in &raw.params {
         match params::read(&item.tag, &item.fields) {
             Ok(param) => document.params.push(param),
@@ -93,65 +69,35 @@ pub(crate) fn document(raw: RawDocument, registry: &Registry, reports: &mut Repo
             Err(error) => document.broken_outputs = Some(reports.report(error)),
         }
     }
-    for (name, node) in raw.set {
-        keep(node.parse(), reports, |value| {
-            document.defaults.push((name, value))
-        });
+    document.defaults = read_map(raw.set, reports);
+    for (name, node) in raw.values {
+        match value(name.clone(), &node) {
+            Ok(value) => document.values.push(value),
+            Err(error) => lacks(&mut document, Some(name), reports.report(error)),
+        }
     }
-    values(&mut document, raw.values, raw.narrow, &raw.imports, reports);
-    promises(
-        &mut document,
-        (&raw.lights, &raw.proven_on),
-        raw.claims,
-        reports,
-    );
+    document.narrow = read_map(raw.narrow, reports);
+    document.imports = read_list(&raw.imports, Node::parse, reports);
+    document.lights = read_list(&raw.lights, Node::parse, reports);
+    document.proven_on = read_list(&raw.proven_on, Node::parse, reports);
+    document.claims = read_map(raw.claims, reports);
     document
 }
 
-/// Reads what expressions and shaders are given by name.
-fn values(
-    document: &mut Document,
-    values: RawMap,
-    narrow: RawMap,
-    imports: &[Node],
+/// The entries of a list that can be read.
+fn read_list<T>(
+    list: &[Node],
+    read: impl Fn(&Node) -> Result<T, Diagnostic>,
     reports: &mut Reports,
-) {
-    for (name, node) in values {
-        match value(name.clone(), &node) {
-            Ok(value) => document.values.push(value),
-            Err(error) => lacks(document, Some(name), reports.report(error)),
-        }
-    }
-    for (name, node) in narrow {
-        keep(node.parse(), reports, |narrow| {
-            document.narrow.push((name, narrow))
-        });
-    }
-    for node in imports {
-        keep(node.parse(), reports, |entry| document.imports.push(entry));
-    }
+) -> Vec<T> {
+    let read = |node| reports.check(read(node)).ok();
+    list.iter().filter_map(read).collect()
 }
 
-/// Reads what the document says of itself as a method.
-fn promises(
-    document: &mut Document,
-    (lights, proven_on): (&[Node], &[Node]),
-    claims: RawMap,
-    reports: &mut Reports,
-) {
-    for node in lights {
-        keep(node.parse(), reports, |kind| document.lights.push(kind));
-    }
-    for node in proven_on {
-        keep(node.parse(), reports, |backend| {
-            document.proven_on.push(backend)
-        });
-    }
-    for (name, node) in claims {
-        keep(node.parse(), reports, |value| {
-            document.claims.push((name, value))
-        });
-    }
+/// The entries of a map that can be read.
+fn read_map<T: DeserializeOwned>(map: RawMap, reports: &mut Reports) -> Vec<(Located<String>, T)> {
+    let read = |(name, node): (_, Node)| Some((name, reports.check(node.parse()).ok()?));
+    map.into_iter().filter_map(read).collect()
 }
 
 /// Notes what cannot be read, by its name if that can.
@@ -159,13 +105,6 @@ fn lacks(document: &mut Document, name: Option<Located<String>>, reported: Error
     match name {
         Some(name) => document.broken_materials.push((name.value, reported)),
         None => document.incomplete = Some(reported),
-    }
-}
-
-fn keep<T>(result: Result<T, Diagnostic>, reports: &mut Reports, keep: impl FnOnce(T)) {
-    match result {
-        Ok(value) => keep(value),
-        Err(error) => drop(reports.report(error)),
     }
 }
 
@@ -188,7 +127,7 @@ fn free<T>(name: Located<Name>, of: T) -> Result<T, Diagnostic> {
 }
 
 fn feature(node: &Node) -> Result<(Located<String>, wgt::Features), Diagnostic> {
-    let name = Located::new(node.parse::<String>()?, node.span.clone());
+    let name = Located::new(node.parse::<String>()?, node.clone());
     match wgt::Features::from_name(&name) {
         Some(flag) => Ok((name, flag)),
         None => Err(SyntaxFault::Feature(name).into()),
@@ -207,13 +146,27 @@ fn material(item: &RawItem) -> Result<Material, Diagnostic> {
 
 fn input(item: &RawItem) -> Result<Input, Diagnostic> {
     let (fields, tag) = (&item.fields, &item.tag);
-    match tag.as_str() {
+    let (name, kind) = match tag.as_str() {
         "Texture" => {
-            let texture: TextureInput = from_fields(fields, &tag.span)?;
-            Ok(Input::try_from(texture)?)
+            let TextureInput { name, format } = from_fields(fields, &tag.span)?;
+            let format = match format {
+                None => None,
+                Some(FormatEntry::Named(format)) => Some(format),
+                Some(FormatEntry::Expr(expr)) => {
+                    return Err(DocumentError::InputFormat(expr.span).into());
+                }
+            };
+            (name, InputKind::Texture(format))
         }
-        "Buffer" => from_fields::<BufferInput>(fields, &tag.span).map(Input::from),
-        "Sampler" => from_fields::<SamplerInput>(fields, &tag.span).map(Input::from),
-        _ => Err(DocumentError::UnknownMaterial(tag.clone()).into()),
-    }
+        "Buffer" => {
+            let BufferInput { name } = from_fields(fields, &tag.span)?;
+            (name, InputKind::Buffer)
+        }
+        "Sampler" => {
+            let SamplerInput { name, compare } = from_fields(fields, &tag.span)?;
+            (name, InputKind::Sampler { compare })
+        }
+        _ => return Err(DocumentError::UnknownMaterial(tag.clone()).into()),
+    };
+    Ok(Input { name, kind })
 }

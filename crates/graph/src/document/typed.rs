@@ -6,6 +6,7 @@ use super::{
 };
 use crate::{
     diagnostics::reports::ErrorGuaranteed,
+    errors::document::DocumentError,
     fields::{Mentions, prose, short_or_long},
     kinds::{kind::PassKind, step::ShaderUse},
     language::{
@@ -16,11 +17,11 @@ use crate::{
     source::span::{Located, SourceFile, Span},
 };
 use serde::{Deserialize, Deserializer};
-use skiagraph_located_ron::reader::{raw, read};
+use skiagraph_located_ron::reader::{raw, read, refuse};
 use std::{collections::BTreeSet, sync::Arc};
 
 /// A document as its author wrote it.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Document {
     pub file: SourceFile,
     /// The paths of the documents that it extends, the nearest first.
@@ -126,11 +127,8 @@ impl<'de> Deserialize<'de> for ClaimEntry {
                 because: String::new(),
             });
         }
-        let long: ClaimFields = read(text)?;
-        Ok(Self {
-            condition: long.condition,
-            because: long.because,
-        })
+        let ClaimFields { condition, because } = read(text)?;
+        Ok(Self { condition, because })
     }
 }
 
@@ -141,6 +139,8 @@ pub(crate) struct Output {
     pub material: Reference,
     /// Condition under which it exists.
     pub condition: Option<Expr>,
+    /// True if a host has to name it to get it.
+    pub on_request: bool,
 }
 
 /// Output of a document.
@@ -156,23 +156,25 @@ pub(crate) struct OutputFields {
     /// Condition under which it exists.
     #[serde(default, rename = "if")]
     condition: Option<Expr>,
+    /// True if only a host that names it gets it, and all others pay nothing for it: a diagnostic.
+    #[serde(default)]
+    on_request: bool,
 }
 
 impl<'de> Deserialize<'de> for Output {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let named = |name: Located<Name>, material: Option<Reference>, condition| Self {
-            material: material.unwrap_or_else(|| Reference::new(name.clone())),
-            name,
-            condition,
+        let long = |long: OutputFields| Self {
+            material: (long.material).unwrap_or_else(|| Reference::new(long.name.clone())),
+            name: long.name,
+            condition: long.condition,
+            on_request: long.on_request,
         };
-        short_or_long(
-            deserializer,
-            |long: OutputFields| named(long.name, long.material, long.condition),
-            |short: Reference| {
-                let name = short.segments[0].name.clone();
-                named(name, Some(short), None)
-            },
-        )
+        short_or_long(deserializer, long, |short: Reference| Self {
+            name: short.segments[0].name.clone(),
+            material: short,
+            condition: None,
+            on_request: false,
+        })
     }
 }
 
@@ -227,11 +229,7 @@ pub(crate) struct Include {
     pub open: Option<Located<Name>>,
     /// True if it has a name of its own, which stands before the names that it gives.
     pub is_named: bool,
-    /// Params of the included document that are params here, too; those of `All` are written out
-    /// once that document is read.
-    pub expose: Vec<Located<String>>,
-    /// Every param that is not set is exposed.
-    pub exposes_all: bool,
+    pub expose: Expose,
     /// Put here once it is read.
     pub document: Option<Result<Arc<Document>, ErrorGuaranteed>>,
 }
@@ -240,6 +238,29 @@ impl Include {
     /// The included document, if it could be read.
     pub fn document(&self) -> Option<&Arc<Document>> {
         self.document.as_ref()?.as_ref().ok()
+    }
+}
+
+/// Params of an included document that are params of this one.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Expose {
+    /// Those that neither the include nor a group around it sets: `names`, once the document is
+    /// read.
+    pub all: bool,
+    pub names: Vec<Located<String>>,
+}
+
+impl<'de> Deserialize<'de> for Expose {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let (text, span) = raw(deserializer)?;
+        match text.chars().next() {
+            Some('[') => read(text).map(|names| Self { all: false, names }),
+            _ if text == "All" => Ok(Self {
+                all: true,
+                ..Self::default()
+            }),
+            _ => Err(refuse(DocumentError::Expose(span))),
+        }
     }
 }
 
@@ -282,86 +303,116 @@ impl Document {
         self.outputs.iter().filter(move |output| !is_value(output))
     }
 
+    /// Every entry, those in groups, too.
+    pub fn all_entries(&self) -> impl Iterator<Item = &Entry> {
+        let mut open = vec![self.entries.iter().flatten()];
+        std::iter::from_fn(move || {
+            let entry = loop {
+                match open.last_mut()?.next() {
+                    Some(entry) => break entry,
+                    None => open.pop(),
+                };
+            };
+            if let What::Group(inner) = &entry.what {
+                open.push(inner.iter().flatten());
+            }
+            Some(entry)
+        })
+    }
+
+    /// Every pass, those in groups, too.
+    pub fn passes(&self) -> impl Iterator<Item = &Pass> {
+        self.all_entries().filter_map(|entry| match &entry.what {
+            What::Pass(pass) => Some(pass),
+            _ => None,
+        })
+    }
+
+    /// Every include whose document could be read, those in groups, too, with that document.
+    pub fn includes(&self) -> impl Iterator<Item = (&Entry, &Include, &Arc<Document>)> {
+        self.all_entries().filter_map(|entry| match &entry.what {
+            What::Include(include) => Some((entry, include, include.document()?)),
+            _ => None,
+        })
+    }
+
     /// The open includes, those in groups, too, by the name under which another document can be
     /// asked for.
-    pub fn openings(&self) -> Vec<(&Located<Name>, &Include)> {
-        let mut found = Vec::new();
-        each_entry(&self.entries, &mut |entry| {
-            if let What::Include(include) = &entry.what {
-                found.extend(include.open.as_ref().map(|name| (name, include)));
-            }
-        });
-        found
+    pub fn openings(&self) -> impl Iterator<Item = (&Located<Name>, &Include)> {
+        self.all_entries().filter_map(|entry| match &entry.what {
+            What::Include(include) => Some((include.open.as_ref()?, include)),
+            _ => None,
+        })
     }
 
     /// Calls `each` with everything that expressions and references of the document are made of.
     pub fn visit<'a>(&'a self, each: &mut dyn FnMut(Leaf<'a>)) {
-        for param in &self.params[..self.declared] {
-            param.default.iter().for_each(|default| default.visit(each));
-        }
-        let claims = self
-            .claims
-            .iter()
-            .filter_map(|(_, claim)| claim.condition.as_ref());
-        let values = self.values.iter().map(|(_, value)| value);
-        let imports = self
-            .imports
-            .iter()
-            .filter_map(|entry| entry.condition.as_ref());
-        let defaults = self.defaults.iter().map(|(_, value)| value);
-        for value in claims.chain(defaults).chain(values).chain(imports) {
-            value.visit(each);
-        }
+        let params = self.params[..self.declared].iter();
+        let exprs = params
+            .filter_map(|param| param.default.as_ref())
+            .chain(
+                self.claims
+                    .iter()
+                    .filter_map(|(_, of)| of.condition.as_ref()),
+            )
+            .chain(self.defaults.iter().map(|(_, value)| value))
+            .chain(self.values.iter().map(|(_, value)| value))
+            .chain(self.imports.iter().filter_map(|of| of.condition.as_ref()))
+            .chain(self.outputs.iter().filter_map(|of| of.condition.as_ref()));
+        exprs.for_each(|expr| expr.visit(each));
         for material in &self.materials {
             material.visit(each);
         }
         for output in &self.outputs {
-            each(Leaf::Material(&output.material));
             output.material.visit(each);
-            output
-                .condition
-                .iter()
-                .for_each(|condition| condition.visit(each));
         }
-        visit_entries(&self.entries, each);
+        for entry in self.all_entries() {
+            entry.visit(each);
+        }
     }
 }
 
-fn visit_entries<'a>(entries: &'a [Result<Entry, Invalid>], each: &mut dyn FnMut(Leaf<'a>)) {
-    for entry in entries.iter().flatten() {
-        let exprs = [&entry.condition, &entry.repeat].into_iter().flatten();
-        let exprs = exprs.chain(entry.set.iter().map(|(_, value)| value));
-        let run = entry.run.iter().filter_map(|run| match run {
+impl Entry {
+    /// The name here of what an include gives, or of a param that it exposes.
+    pub fn outer_name(&self, include: &Include, name: &str) -> String {
+        if include.is_named {
+            format!("{}.{name}", *self.name)
+        } else {
+            name.to_owned()
+        }
+    }
+
+    fn visit<'a>(&'a self, each: &mut dyn FnMut(Leaf<'a>)) {
+        let run = self.run.iter().filter_map(|run| match run {
             Run::When(condition) => Some(condition),
             _ => None,
         });
-        exprs.chain(run).for_each(|expr| expr.visit(each));
-        let (exprs, references) = match &entry.what {
-            What::Pass(pass) => (&pass.mentions.exprs[..], &pass.mentions.references[..]),
-            What::Group(inner) => {
-                visit_entries(inner, each);
-                (&[][..], &[][..])
-            }
-            What::Include(_) => (&[][..], &[][..]),
+        let mentions = match &self.what {
+            What::Pass(pass) => Some(&pass.mentions),
+            _ => None,
         };
-        exprs.iter().for_each(|expr| expr.visit(each));
-        let bound = entry.bind.iter().map(|(_, reference)| reference);
-        for reference in bound.chain(references) {
-            each(Leaf::Material(reference));
-            reference.visit(each);
-        }
+        let exprs = [&self.condition, &self.repeat].into_iter().flatten();
+        let exprs = exprs.chain(self.set.iter().map(|(_, value)| value));
+        let exprs = exprs
+            .chain(run)
+            .chain(mentions.iter().flat_map(|of| &of.exprs));
+        exprs.for_each(|expr| expr.visit(each));
+        let references = self.bind.iter().map(|(_, reference)| reference);
+        let references = references.chain(mentions.iter().flat_map(|of| &of.references));
+        references.for_each(|reference| reference.visit(each));
     }
 }
 
-/// Calls `each` with every entry, those in groups, too.
-pub(crate) fn each_entry<'e>(
-    entries: &'e [Result<Entry, Invalid>],
-    each: &mut dyn FnMut(&'e Entry),
+/// Calls `each` with every include, those in groups, too.
+pub(crate) fn each_include(
+    entries: &mut [Result<Entry, Invalid>],
+    each: &mut dyn FnMut(&mut Include),
 ) {
-    for entry in entries.iter().flatten() {
-        each(entry);
-        if let What::Group(inner) = &entry.what {
-            each_entry(inner, each);
+    for entry in entries.iter_mut().flatten() {
+        match &mut entry.what {
+            What::Include(include) => each(include),
+            What::Group(inner) => each_include(inner, each),
+            What::Pass(_) => {}
         }
     }
 }

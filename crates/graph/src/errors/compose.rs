@@ -1,6 +1,9 @@
 //! Documents that cannot be found, or do not go together.
 
-use crate::source::span::{Located, Span};
+use crate::{
+    language::name::Name,
+    source::span::{Located, Span},
+};
 
 mistakes! {
     /// A document that cannot be found, or does not go together with another.
@@ -28,7 +31,7 @@ mistakes! {
     UnreadableInclude(path: Located<String>, why: String) =>
         MissingFile("the document `{path}` cannot be read").at(path, "asked for here").help(why);
 
-    Cycle { graph: Located<String>, open: Vec<(String, Option<Span>)> } =>
+    Cycle(graph: Located<String>, open: Vec<(String, Option<Span>)>) =>
         IncludeCycle(
             "the document `{}` includes itself", open.first().map_or("", |(path, _)| path)
         )
@@ -42,36 +45,36 @@ mistakes! {
         Size("documents include or extend each other more than {most} deep")
         .at(graph, "").help("use fewer levels");
 
-    SameName { what: &'static str, name: String, span: Span, first: Span } =>
+    SameName(what: &'static str, name: Located<String>, first: Span) =>
         DuplicateName("two of the name `{name}`: every {what} needs its own")
-        .at(span, "the second one").at(first, "the first one")
+        .at(name, "the second one").at(first, "the first one")
         .help_any((what == "material").then_some(
             "an include can be given a name: `name: \"left\"` makes `left.x` of its output `x`",
         ));
 
     /// Two names that are one in a shader.
-    Clash { name: String, known: String, span: Span, first: Span } =>
+    Clash(name: Located<String>, known: Located<String>) =>
         Name("`{name}` and `{known}` are one name in a shader")
-        .at(span, format!("gives `{name}`")).at(first, "declared here").help("rename one of them");
+        .at(&name, format!("gives `{name}`")).at(known, "declared here").help("rename one of them");
 
-    NoParam { name: Located<String>, document: String, known: Vec<String> } =>
+    NoParam(name: Located<String>, document: String, known: Vec<String>) =>
         UnknownParam("`{document}` has no param `{name}`").at(&name, "").suggest(&name, known);
 
-    NoOpening { name: String, document: String, known: Vec<String> } =>
+    NoOpening(name: String, document: String, known: Vec<String>) =>
         UnknownParam("`{document}` has no open include `{name}`")
         .help_any(known.is_empty().then_some(
             "an include is left open by `open: \"…\"`; it has none",
         ))
         .suggest(&name, known);
 
-    NoCommonLight { graph: Located<String>, takes: Vec<String> } =>
+    NoCommonLight(graph: Located<String>, takes: Vec<String>) =>
         Light("no light is taken both here and by `{graph}`")
         .at(graph, "included here")
         .help(format!(
             "it takes {}: take one of these in `lights`, or another document", takes.join(", ")
         ));
 
-    ExposedTwice { name: Located<String>, first: Span } =>
+    ExposedTwice(name: Located<String>, first: Span) =>
         ParamValue("`{name}` is a param here already")
         .at(&name, "exposed here").at(first, "and declared here")
         .help(format!(
@@ -84,13 +87,13 @@ mistakes! {
         .at(name, "").at(declared, "declared here")
         .help("give a number another `min` or `max` where it is declared");
 
-    NarrowWord { word: Located<String>, declared: Span, known: Vec<String> } =>
+    NarrowWord(word: Located<Name>, declared: Span, known: Vec<String>) =>
         ParamValue("`{word}` is not a word that is left to narrow")
         .at(&word, "").at(declared, "declared here").suggest(&word, known);
 
-    ValueIsWord { name: Located<String>, param: String, declared: Span } =>
+    ValueIsWord(name: Located<Name>, param: Located<String>) =>
         Name("the value `{name}` has the name of a word of the param `{param}`")
-        .at(name, "").at(declared, "its words are declared here")
+        .at(name, "").at(param, "its words are declared here")
         .help("rename the value: beside the param its name would be the word");
 
     ExposedDefault(name: Located<String>) =>

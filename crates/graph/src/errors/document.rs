@@ -40,11 +40,11 @@ mistakes! {
     KeyTwice(key: Located<String>) =>
         DuplicateName("`{key}` is given twice").at(key, "the second one");
 
-    Twice { what: &'static str, name: String, span: Span, first: Span } =>
+    Twice(what: &'static str, name: Located<String>, first: Span) =>
         DuplicateName("two of the name `{name}`: every {what} needs its own")
-        .at(span, "the second one").at(first, "the first one");
+        .at(name, "the second one").at(first, "the first one");
 
-    Untagged { span: Span, section: &'static str } =>
+    Untagged(span: Span, section: &'static str) =>
         Syntax("an entry begins with its kind")
         .at(span, match section {
             "params" => "for example `U32(name: \"…\", default: 1)`",
@@ -119,7 +119,7 @@ mistakes! {
         Syntax("an input's format is written out")
         .at(place, "").help("leave `format` out where any will do");
 
-    Param { name: Located<Name>, why: String } =>
+    Param(name: Located<Name>, why: String) =>
         ParamValue("the param `{name}` cannot be: {why}").at(name, "");
 }
 

@@ -12,7 +12,7 @@ mistakes! {
     /// An edit that cannot be made.
     EditError:
 
-    NoSuchEntry { path: Located<String>, name: String, known: Vec<String> } =>
+    NoSuchEntry(path: Located<String>, name: String, known: Vec<String>) =>
         Edit("the extended document has no entry `{path}`").at(path, "").suggest(&name, known);
 
     RemovesItem(place: Span) =>
@@ -21,12 +21,12 @@ mistakes! {
             "leave it out: what the extended document declares goes by itself once nothing uses it"
         );
 
-    Widens { name: Located<String>, word: Located<Name>, first: Span } =>
+    Widens(name: Located<String>, word: Located<Name>, first: Span) =>
         Edit("`narrow` brings back the word `{word}` of `{name}`")
         .at(word, "widened here").at(first, "narrowed by the extended document")
         .help("`narrow` only takes words away: leave it out");
 
-    Behind { path: Located<String>, entry: String } =>
+    Behind(path: Located<String>, entry: String) =>
         Edit("`{path}` stands behind the interface of `{entry}`")
         .at(path, "")
         .help(format!(

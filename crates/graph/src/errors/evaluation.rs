@@ -13,7 +13,7 @@ mistakes! {
     /// An expression without a value, or with one of the wrong type.
     EvaluationError:
 
-    Type { span: Span, expected: &'static str, found: Value } =>
+    Type(span: Span, expected: &'static str, found: Value) =>
         Expression("{expected} is needed here, not {}", found.describe())
         .at(span, format!("this is {found}"))
         .help_any(match found {
@@ -25,7 +25,7 @@ mistakes! {
             _ => None,
         });
 
-    Lengths { span: Span, lengths: [usize; 2] } =>
+    Lengths(span: Span, lengths: [usize; 2]) =>
         Expression("{} numbers do not go with {}", lengths[0], lengths[1])
         .at(span, "here").help("name parts of the longer one, as `x.width` and `x.height`");
 
@@ -41,8 +41,9 @@ mistakes! {
     Overflow(place: Span) =>
         Expression("the result is larger than a number can be").at(place, "here");
 
-    NoSuchWord { span: Span, word: String, words: Vec<Name> } =>
-        Expression("`{word}` is not one of the words").at(span, "").suggest(&word, words);
+    NoSuchWord(span: Span, word: String, words: Vec<Name>) =>
+        Expression("`{word}` is not one of the words")
+        .at(span, "").suggest(&word, words.iter().map(Name::as_str));
 
     Words { span: Span, expected: Vec<String>, found: Value } =>
         Expression("{}", match &found {
@@ -55,7 +56,7 @@ mistakes! {
             expected.join(", ")
         ));
 
-    NoAttribute { span: Span, of: String } =>
+    NoAttribute(span: Span, of: String) =>
         Expression("{of} has no such attribute")
         .at(span, "").help(format!("attributes are {}", attributes()));
 

@@ -16,17 +16,17 @@ mistakes! {
         Expression("`{sign}` has no meaning here").at(place, "here");
 
     Number(place: Span) =>
-        Expression("`{}` is not a number", text(&place)).at(place, "here");
+        Expression("`{}` is not a number", place.text()).at(place, "here");
 
     TooLong(place: Span, most: usize) =>
         Expression("the expression is too long")
         .at(place, "").help(format!("an expression has at most {most} words and signs"));
 
-    Unexpected { span: Span, found: String, expected: String } =>
+    Unexpected(span: Span, found: String, expected: String) =>
         Expression("{expected} is expected, not {found}").at(span, "here");
 
     Name(place: Span, fault: NameFault) =>
-        Name("`{}` is not a name", text(&place)).at(place, fault.to_string());
+        Name("`{}` is not a name", place.text()).at(place, fault.to_string());
 
     Function(name: Located<String>) =>
         Expression("unknown function `{name}`")
@@ -43,7 +43,7 @@ mistakes! {
 
     /// End of a reference that stands elsewhere, or in an expression.
     Part(place: Span, part: &'static str) =>
-        Expression("`{}` does not stand here", text(&place))
+        Expression("`{}` does not stand here", place.text())
         .at(place, match part {
             "number" => "a part of a material is not a number",
             "attribute" => "an attribute, where a material is named",
@@ -59,16 +59,12 @@ mistakes! {
         .at(place, "`\\` here").help("write the signs themselves");
 }
 
-fn text(span: &Span) -> &str {
-    span.file.text.get(span.range.clone()).unwrap_or("")
-}
-
 /// The attributes in a sentence.
 pub(crate) fn attributes() -> String {
-    let names: Vec<String> = Attribute::ALL
-        .iter()
-        .filter(|(_, attribute)| *attribute != Attribute::Index)
-        .map(|(name, _)| format!("`.{name}`"))
+    let all = Attribute::ALL.iter().map(|(_, of)| *of);
+    let of_materials = all.filter(|of| *of != Attribute::Index);
+    let names: Vec<String> = of_materials
+        .map(|of| format!("`.{}`", of.as_str()))
         .collect();
     names.join(", ")
 }

@@ -57,11 +57,11 @@ mistakes! {
     /// A shader that is not valid, or not what a pass needs.
     ShaderError:
 
-    TooLong { file: String, most: usize, at: Span } =>
+    TooLong(file: String, most: usize, at: Span) =>
         Shader("`{file}` is longer than {most} KiB")
         .at(at, "").help("split it into several shaders; large tables belong into buffers");
 
-    TooDeep { file: String, most: usize, at: Span } =>
+    TooDeep(file: String, most: usize, at: Span) =>
         Shader("`{file}` holds an expression or a chain of `else if` that is nested too deep")
         .at(at, format!("more than {most} operators up to here"))
         .help(
@@ -69,13 +69,13 @@ mistakes! {
              loop",
         );
 
-    TooManyDeclarations { file: String, most: usize, at: Span } =>
+    TooManyDeclarations(file: String, most: usize, at: Span) =>
         Shader("`{file}` has more than {most} declarations, those of its imports included")
         .at(at, "counted up to here").help("split it into several shaders, or import less");
 
     /// Message of naga, with its places. The file stands in backquotes, with the shader that
     /// imports it if it is not that itself.
-    Naga { file: String, what: String, places: Vec<(Span, String)>, notes: Vec<String> } =>
+    Naga(file: String, what: String, places: Vec<(Span, String)>, notes: Vec<String>) =>
         Shader("{file} {what}")
         .at_all(places).help_any((!notes.is_empty()).then(|| notes.join("\n")));
 
@@ -84,14 +84,14 @@ mistakes! {
         LibraryPanic("naga panics while `{file}` {while_it}: {}", panicked.message)
         .at(at, "this brings it about").help(panicked.way_out());
 
-    Immediate { file: String, global: String, at: Span } =>
+    Immediate(file: String, global: String, at: Span) =>
         Binding("`{global}` of `{file}` is an immediate, which a graph does not set")
         .at(at, "")
         .help(
             "make it a member of the uniform `params`, which passes set by `set` and by params",
         );
 
-    NoLayout { what: String, at: Span } =>
+    NoLayout(what: String, at: Span) =>
         Shader("a type has no layout: {what}").at(at, "");
 
     Collision {
@@ -103,16 +103,16 @@ mistakes! {
         .help("leave the numbers out: the graph gives them");
 
     Choice {
-        constant: String, found: String, word: String, param: String, number: u32, at: Span,
-        declared: Span,
+        constant: String, found: String, word: String, param: Located<String>, number: u32,
+        at: Span,
     } =>
         ChoiceConstant(
             "`{constant}` is {found} in the shader, and {word} of `{param}` is {number}"
         )
-        .at(at, "declared here").at(declared, "the words in their order")
+        .at(at, "declared here").at(param, "the words in their order")
         .help("leave the constant out: the words of a Choice bring it");
 
-    TwoWords { constant: String, first: Span, second: Span } =>
+    TwoWords(constant: String, first: Span, second: Span) =>
         ChoiceConstant("two words give the constant `{constant}`")
         .at(second, "a word of this").at(first, "and one of this")
         .help("rename one of the words or params: NAME_WORD is the constant of a word");
@@ -121,7 +121,7 @@ mistakes! {
         EntryPoint("`{file}` has no {stage} entry point `{name}`")
         .at(&name, "").suggest(&name, known);
 
-    NoEntry { file: String, stage: String, at: Span } =>
+    NoEntry(file: String, stage: String, at: Span) =>
         EntryPoint("`{file}` has no {stage} entry point")
         .at(at, "this pass needs one")
         .help(format!("write a function with the attribute @{stage}"));
@@ -131,7 +131,7 @@ mistakes! {
         .at(at, "it is not clear which one this pass runs")
         .help(format!("name one of `{}`", known.join("`, `")));
 
-    Unused { what: &'static str, name: Located<String>, shader: String } =>
+    Unused(what: &'static str, name: Located<String>, shader: String) =>
         Unused("nothing in `{shader}` uses the {what} `{name}`")
         .at(name, "").help("remove it, or check the names that should be it");
 }

@@ -11,6 +11,7 @@ use crate::{
     provided_kind::ProvidedKind,
     source::span::Span,
 };
+use std::{cmp::Ordering, mem::discriminant};
 
 /// Values of names in an expression at its place.
 pub(crate) trait Environment {
@@ -100,17 +101,18 @@ pub(crate) fn value(expr: &Expr, env: &mut dyn Environment) -> Evaluated<Value> 
 fn of_viewport(expr: &Expr, attribute: Attribute, env: &mut dyn Environment) -> Evaluated<Value> {
     let [width, height] = env.viewport();
     Ok(match attribute {
-        Attribute::Size => Value::List([width, height].map(whole).to_vec()),
+        Attribute::Size => Value::List(
+            [width, height]
+                .map(|edge| Scalar::Whole(edge.into()))
+                .to_vec(),
+        ),
         Attribute::Width => Value::whole(width),
         Attribute::Height => Value::whole(height),
         Attribute::Count => Value::count(u64::from(width) * u64::from(height)),
         Attribute::Layers | Attribute::Mips | Attribute::Samples => Value::whole(1),
         Attribute::Format | Attribute::Kind | Attribute::Index => {
-            let error = EvaluationError::NoAttribute {
-                span: expr.span.clone(),
-                of: "the viewport".to_owned(),
-            };
-            return Err(env.report(error));
+            let of = "the viewport".to_owned();
+            return Err(env.report(EvaluationError::NoAttribute(expr.span.clone(), of)));
         }
     })
 }
@@ -121,11 +123,11 @@ fn wrong(
     found: &Value,
     env: &mut dyn Environment,
 ) -> ErrorGuaranteed {
-    env.report(EvaluationError::Type {
-        span: expr.span.clone(),
+    env.report(EvaluationError::Type(
+        expr.span.clone(),
         expected,
-        found: found.clone(),
-    })
+        found.clone(),
+    ))
 }
 
 pub(crate) fn boolean(expr: &Expr, env: &mut dyn Environment) -> Evaluated<bool> {
@@ -193,31 +195,32 @@ fn binary(
     [left, right]: &[Expr; 2],
     env: &mut dyn Environment,
 ) -> Evaluated<Value> {
-    match operator {
+    let holds: fn(Ordering) -> bool = match operator {
         Binary::Or => return Ok(Value::Bool(boolean(left, env)? || boolean(right, env)?)),
         Binary::And => return Ok(Value::Bool(boolean(left, env)? && boolean(right, env)?)),
         Binary::Equal => return equal([left, right], env).map(Value::Bool),
-        Binary::NotEqual => {
-            return equal([left, right], env).map(|equal| Value::Bool(!equal));
+        Binary::NotEqual => return equal([left, right], env).map(|it| Value::Bool(!it)),
+        Binary::Less => Ordering::is_lt,
+        Binary::LessEqual => Ordering::is_le,
+        Binary::Greater => Ordering::is_gt,
+        Binary::GreaterEqual => Ordering::is_ge,
+        _ => {
+            let values = [value(left, env)?, value(right, env)?];
+            let is_zero = |scalar: &Scalar| scalar.number() == 0.0;
+            let by_zero = matches!(operator, Binary::Divide | Binary::Remainder);
+            if by_zero && values[1].scalars().iter().any(is_zero) {
+                return Err(env.report(EvaluationError::DivisionByZero(expr.span.clone())));
+            }
+            return each(expr, values, env, |a, b| arithmetic(operator, a, b));
         }
-        _ => {}
-    }
-    if let Some(holds) = comparison(operator) {
-        let (a, b) = (scalar(left, env)?, scalar(right, env)?);
-        // Whole numbers beyond 2^53 would be equal as floats.
-        let order = match (a, b) {
-            (Scalar::Whole(a), Scalar::Whole(b)) => Some(a.cmp(&b)),
-            _ => a.number().partial_cmp(&b.number()),
-        };
-        return Ok(Value::Bool(order.is_some_and(holds)));
-    }
-    let values = [value(left, env)?, value(right, env)?];
-    let is_zero = |scalar: &Scalar| scalar.number() == 0.0;
-    let by_zero = matches!(operator, Binary::Divide | Binary::Remainder);
-    if by_zero && values[1].scalars().iter().any(is_zero) {
-        return Err(env.report(EvaluationError::DivisionByZero(expr.span.clone())));
-    }
-    each(expr, values, env, |a, b| arithmetic(operator, a, b))
+    };
+    let (a, b) = (scalar(left, env)?, scalar(right, env)?);
+    // Whole numbers beyond 2^53 would be equal as floats.
+    let order = match (a, b) {
+        (Scalar::Whole(a), Scalar::Whole(b)) => Some(a.cmp(&b)),
+        _ => a.number().partial_cmp(&b.number()),
+    };
+    Ok(Value::Bool(order.is_some_and(holds)))
 }
 
 fn equal([left, right]: [&Expr; 2], env: &mut dyn Environment) -> Evaluated<bool> {
@@ -235,28 +238,23 @@ fn equal([left, right]: [&Expr; 2], env: &mut dyn Environment) -> Evaluated<bool
                 let known = Name::new(name)
                     .ok()
                     .and_then(|name| env.word_or_param(&name));
-                let unknown = || EvaluationError::NoSuchWord {
-                    span: right.span.clone(),
-                    word: name.to_owned(),
-                    words: words.to_vec(),
-                };
+                let (span, word) = (right.span.clone(), name.to_owned());
+                let unknown = || EvaluationError::NoSuchWord(span, word, words.to_vec());
                 known.ok_or_else(|| env.report(unknown()))?
             }
         },
         _ => value(right, env)?,
     };
+    let numbers = |value: &Value| -> Vec<f64> {
+        let scalars = value.scalars().iter();
+        scalars.map(|scalar| scalar.number()).collect()
+    };
     match (&a, &b) {
         (Value::Scalar(Scalar::Whole(a)), Value::Scalar(Scalar::Whole(b))) => Ok(a == b),
-        (Value::Scalar(a), Value::Scalar(b)) => Ok(a.number() == b.number()),
-        (Value::List(list), Value::List(other)) => {
-            let numbers = |list: &[Scalar]| -> Vec<f64> {
-                list.iter().map(|scalar| scalar.number()).collect()
-            };
-            Ok(numbers(list) == numbers(other))
+        (Value::Scalar(_), Value::Scalar(_)) | (Value::List(_), Value::List(_)) => {
+            Ok(numbers(&a) == numbers(&b))
         }
-        (Value::Bool(a), Value::Bool(b)) => Ok(a == b),
-        (Value::Word(a), Value::Word(b)) => Ok(a == b),
-        (Value::Format(a), Value::Format(b)) => Ok(a == b),
+        _ if discriminant(&a) == discriminant(&b) => Ok(a == b),
         _ => Err(wrong(right, a.describe(), &b, env)),
     }
 }
@@ -296,10 +294,8 @@ fn each(
     let result = match &values {
         [Value::Scalar(a), Value::Scalar(b)] => apply(*a, *b).map(Value::Scalar),
         [Value::List(a), Value::List(b)] if a.len() != b.len() => {
-            return Err(env.report(EvaluationError::Lengths {
-                span: expr.span.clone(),
-                lengths: [a.len(), b.len()],
-            }));
+            let lengths = [a.len(), b.len()];
+            return Err(env.report(EvaluationError::Lengths(expr.span.clone(), lengths)));
         }
         [
             a @ (Value::Scalar(_) | Value::List(_)),
@@ -317,24 +313,10 @@ fn each(
     result.ok_or_else(|| env.report(EvaluationError::Overflow(expr.span.clone())))
 }
 
-fn whole(number: u32) -> Scalar {
-    Scalar::Whole(number.into())
-}
-
 fn word_alone(word: &Name) -> Value {
     Value::Word(Word {
         word: word.clone(),
         of: None,
-    })
-}
-
-fn comparison(operator: Binary) -> Option<fn(std::cmp::Ordering) -> bool> {
-    Some(match operator {
-        Binary::Less => std::cmp::Ordering::is_lt,
-        Binary::LessEqual => std::cmp::Ordering::is_le,
-        Binary::Greater => std::cmp::Ordering::is_gt,
-        Binary::GreaterEqual => std::cmp::Ordering::is_ge,
-        _ => return None,
     })
 }
 

@@ -87,15 +87,10 @@ fn number(text: &str) -> Option<(Token<'static>, usize)> {
         return None;
     }
     let plain = text[..end].replace('_', "");
-    let token = if whole {
-        Token::Whole(plain.parse().ok()?)
-    } else {
-        Token::Number(
-            plain
-                .parse()
-                .ok()
-                .filter(|number: &f64| number.is_finite())?,
-        )
-    };
-    Some((token, end))
+    if whole {
+        return Some((Token::Whole(plain.parse().ok()?), end));
+    }
+    let number: f64 = plain.parse().ok()?;
+    let token = Token::Number(number);
+    number.is_finite().then_some((token, end))
 }

@@ -97,11 +97,7 @@ impl<'a> Parser<'a> {
             Token::Number(number) => format!("`{number}`"),
             Token::End => "the end".to_owned(),
         };
-        SyntaxFault::Unexpected {
-            span: self.file.span(self.range()),
-            found,
-            expected: expected.to_owned(),
-        }
+        SyntaxFault::Unexpected(self.file.span(self.range()), found, expected.to_owned())
     }
 
     fn span(&self, from: usize) -> Span {
@@ -156,26 +152,25 @@ impl<'a> Parser<'a> {
         let start = self.range().start;
         let mut left = self.unary()?;
         loop {
-            let operator = match self.peek() {
-                Token::Sign(sign) => Binary::ALL.iter().find(|(known, ..)| *known == sign),
-                _ => None,
-            };
-            let Some((_, operator, strength)) = operator.filter(|(.., own)| *own >= least) else {
+            let operator = self.operator().filter(|(.., own)| *own >= least);
+            let Some((_, operator, strength)) = operator else {
                 return Ok(left);
             };
             self.next();
             let right = self.binary(strength + 1)?;
             // A comparison of a comparison is a mistake in every language that allows it.
-            if *strength == 2
-                && let Token::Sign(sign) = self.peek()
-                && Binary::ALL
-                    .iter()
-                    .any(|(known, _, own)| *known == sign && *own == 2)
-            {
+            if *strength == 2 && self.operator().is_some_and(|(.., own)| *own == 2) {
                 return Err(self.unexpected("`&&`, or brackets around one comparison"));
             }
             let kind = ExprKind::Binary(*operator, Box::new([left, right]));
             left = Expr::new(kind, self.span(start));
+        }
+    }
+
+    fn operator(&self) -> Option<&'static (&'static str, Binary, u8)> {
+        match self.peek() {
+            Token::Sign(sign) => Binary::named(sign),
+            _ => None,
         }
     }
 
@@ -194,17 +189,10 @@ impl<'a> Parser<'a> {
 
     fn primary(&mut self) -> Parsed<Expr> {
         let start = self.range().start;
-        let literal = match self.peek() {
-            Token::Whole(number) => Some(Value::Scalar(Scalar::Whole(number))),
-            Token::Number(number) => Some(Value::Scalar(Scalar::Number(number))),
-            Token::Word(word @ ("true" | "false")) => Some(Value::Bool(word == "true")),
-            _ => None,
-        };
-        if let Some(value) = literal {
-            self.next();
-            return Ok(Expr::new(ExprKind::Literal(value), self.span(start)));
-        }
         let kind = match self.peek() {
+            Token::Whole(number) => self.literal(Value::Scalar(Scalar::Whole(number))),
+            Token::Number(number) => self.literal(Value::Scalar(Scalar::Number(number))),
+            Token::Word(word @ ("true" | "false")) => self.literal(Value::Bool(word == "true")),
             Token::Sign("(") => {
                 self.next();
                 let inner = self.expr()?;
@@ -214,9 +202,10 @@ impl<'a> Parser<'a> {
             Token::Word(word) if self.tokens[self.at + 1].0 == Token::Sign("(") => self.call(word),
             Token::Word(word) if word.starts_with(|c: char| c.is_ascii_uppercase()) => {
                 self.next();
-                let format =
-                    format_named(word).map(|format| ExprKind::Literal(Value::Format(format)));
-                Ok(format.unwrap_or_else(|| ExprKind::Constant(word.to_owned())))
+                Ok(match format_named(word) {
+                    Some(format) => ExprKind::Literal(Value::Format(format)),
+                    None => ExprKind::Constant(word.to_owned()),
+                })
             }
             Token::Word(_) => {
                 let path = self.path()?;
@@ -225,6 +214,11 @@ impl<'a> Parser<'a> {
             _ => return Err(self.unexpected("a number, a name or a bracket")),
         }?;
         Ok(Expr::new(kind, self.span(start)))
+    }
+
+    fn literal(&mut self, value: Value) -> Parsed<ExprKind> {
+        self.next();
+        Ok(ExprKind::Literal(value))
     }
 
     fn call(&mut self, name: &str) -> Parsed<ExprKind> {
@@ -240,8 +234,7 @@ impl<'a> Parser<'a> {
             let unknown = || SyntaxFault::Feature(Located::new(feature.to_owned(), span));
             return flag.map(ExprKind::Has).ok_or_else(unknown);
         }
-        let known = Function::ALL.iter().find(|(known, ..)| *known == name);
-        let Some((_, function, count)) = known else {
+        let Some((_, function, count)) = Function::named(name) else {
             let name = Located::new(name.to_owned(), self.file.span(place));
             return Err(SyntaxFault::Function(name));
         };
@@ -329,7 +322,7 @@ impl<'a> Parser<'a> {
             return Err(SyntaxFault::Part(reference.span, "mip"));
         }
         for (index, part) in path.into_iter().enumerate() {
-            let is_attribute = Attribute::ALL.iter().any(|(name, _)| *name == part.word);
+            let is_attribute = Attribute::named(part.word).is_some();
             if index > 0 && (is_attribute || matches!(part.word, "previous" | "mip")) {
                 let word = if is_attribute { "attribute" } else { "order" };
                 return Err(SyntaxFault::Part(self.file.span(part.range), word));
@@ -343,17 +336,12 @@ impl<'a> Parser<'a> {
 
     /// A path that has a value: a param, or an attribute of something.
     fn value_of(&self, mut path: Vec<Part<'_>>) -> Parsed<ExprKind> {
-        let attribute = path.last().and_then(|last| {
-            let mut known = Attribute::ALL.iter();
-            let known = known.find(|(name, _)| *name == last.word)?;
-            last.selection.is_none().then_some(known.1)
-        });
+        let last = path.last().filter(|last| last.selection.is_none());
+        let attribute = last.and_then(|last| Some(Attribute::named(last.word)?.1));
         let alone = path.len() == 1;
         if alone && attribute == Some(Attribute::Index) {
-            return Ok(ExprKind::Attribute(
-                Subject::Repetition(None),
-                Attribute::Index,
-            ));
+            let innermost = Subject::Repetition(None);
+            return Ok(ExprKind::Attribute(innermost, Attribute::Index));
         }
         if let Some(attribute) = attribute.filter(|_| !alone) {
             path.pop();
@@ -367,16 +355,11 @@ impl<'a> Parser<'a> {
             return Ok(ExprKind::Attribute(subject, attribute));
         }
         if let Some(part) = path.iter().find(|part| part.selection.is_some()) {
-            return Err(SyntaxFault::Part(
-                self.file.span(part.range.clone()),
-                "number",
-            ));
+            let place = self.file.span(part.range.clone());
+            return Err(SyntaxFault::Part(place, "number"));
         }
-        let names = path
-            .iter()
-            .map(|part| self.name(part).map(|name| name.value.to_string()));
-        Ok(ExprKind::Param(
-            names.collect::<Parsed<Vec<_>>>()?.join("."),
-        ))
+        let names = path.iter().map(|part| Ok(self.name(part)?.to_string()));
+        let names = names.collect::<Parsed<Vec<_>>>()?;
+        Ok(ExprKind::Param(names.join(".")))
     }
 }

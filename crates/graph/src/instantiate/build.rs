@@ -2,7 +2,7 @@
 
 use super::{
     flat::{EntryContext, Flat, FlatPass, Inherited, Interface, Merge, PlanInputs, Run},
-    include::{self, Overrides},
+    include::{self, Call},
     merge::{Content, Site},
     params::Params,
     scopes::{Instance, InstanceId, Names, Position, ScopeId, Symbol},
@@ -10,7 +10,8 @@ use super::{
     symbols::SymbolTable,
 };
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, Reports},
+    compose::loaded::Loaded,
+    diagnostics::reports::{ErrorGuaranteed, Reported, Reports},
     document::{
         materials::{Input, InputKind},
         raw::Invalid,
@@ -18,14 +19,13 @@ use crate::{
     },
     errors::instantiate::InterfaceError,
     expressions::eval,
-    graph::Graph,
-    language::{name::Name, syntax::Leaf},
+    language::name::Name,
     param::ParamType,
     provider::Import,
     request::PlanRequest,
     resource::{Buffer, Origin, Resource, ResourceId, ResourceKind, Sampler, Texture},
     shader::expand::Replaced,
-    source::span::Located,
+    source::span::{Located, Span},
 };
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -36,7 +36,7 @@ use std::{
 /// documents that double with each include: more would take absurd time and memory.
 const MOST: usize = 16_384;
 
-pub(super) struct Builder<'a, 'r> {
+pub(super) struct Builder<'a> {
     pub symbols: SymbolTable<'a>,
     pub(super) passes: Vec<FlatPass<'a>>,
     first_invalid: Option<usize>,
@@ -50,19 +50,18 @@ pub(super) struct Builder<'a, 'r> {
     said: Vec<(&'a Located<Name>, &'a Located<String>, bool)>,
     spent: usize,
     full: Option<ErrorGuaranteed>,
-    pub reports: &'r mut Reports,
 }
 
 /// Flattens a document with all that it includes; `merges`: those of one content are one.
 pub(crate) fn flatten<'a>(
-    graph: &'a Graph,
+    graph: &'a Loaded,
     request: &'a PlanRequest<'a>,
     params: Params,
     merges: bool,
-    reports: &mut Reports,
+    reports: Reports,
 ) -> Flat<'a> {
     let mut builder = Builder {
-        symbols: SymbolTable::new(graph, request),
+        symbols: SymbolTable::new(graph, request, reports),
         passes: Vec::new(),
         first_invalid: None,
         interfaces: Vec::new(),
@@ -73,7 +72,6 @@ pub(crate) fn flatten<'a>(
         said: Vec::new(),
         spent: 0,
         full: None,
-        reports,
     };
     let document = &graph.document;
     let instance = builder.symbols.scopes.add_instance(Instance {
@@ -96,7 +94,7 @@ pub(crate) fn flatten<'a>(
     builder.finish()
 }
 
-impl<'a> Builder<'a, '_> {
+impl<'a> Builder<'a> {
     /// The features that a document cannot do without.
     pub fn require(&mut self, document: &Document) {
         for (feature, flag) in &document.requires {
@@ -106,7 +104,7 @@ impl<'a> Builder<'a, '_> {
                     feature: feature.clone(),
                 };
                 // The report suffices: nothing here depends on the result.
-                let _ = self.reports.unsupported(error);
+                let _ = self.symbols.reports.unsupported(error);
             }
         }
     }
@@ -123,67 +121,33 @@ impl<'a> Builder<'a, '_> {
                     });
                     Symbol::Target(self.symbols.whole(id))
                 }
-                Err(error) => Symbol::Invalid(self.reports.report(error)),
+                Err(error) => Symbol::Invalid(self.symbols.reports.report(error)),
             };
             self.symbols.scopes.declare(scope, &name.value, symbol);
         }
     }
 
     fn import(&self, input: &Input) -> Result<ResourceKind, InterfaceError> {
-        let name = Located::new(input.name.value.to_string(), input.name.span.clone());
+        let name = input.name.text();
         let Some(import) = self.symbols.request.imports.get(&name.value) else {
             return Err(InterfaceError::NoImport(name));
         };
-        let wrong = |expected: &str, found: String| InterfaceError::WrongImport {
-            name: name.clone(),
-            expected: expected.to_owned(),
-            found,
-        };
-        match (&input.kind, *import) {
-            (InputKind::Texture(asked), Import::Texture { format, .. })
-                if asked.is_some_and(|asked| asked != format) =>
-            {
-                let asked = asked.map_or(String::new(), |asked| format!("a texture {asked:?}"));
-                Err(wrong(&asked, format!("a texture {format:?}")))
-            }
-            (
-                InputKind::Texture(_),
-                Import::Texture {
-                    format,
-                    size,
-                    mips,
-                    layers,
-                    is_3d,
-                    samples,
-                    ..
-                },
-            ) => Ok(ResourceKind::Texture(Texture {
-                format,
-                size,
-                layers,
-                is_3d,
-                mips,
-                samples,
-                picture: None,
-            })),
-            (InputKind::Buffer, Import::Buffer { bytes, items, .. }) => {
-                Ok(ResourceKind::Buffer(Buffer {
-                    count: items,
-                    bytes,
-                    ..Buffer::default()
-                }))
-            }
-            (InputKind::Sampler { compare: asked }, Import::Sampler { filter, compare })
-                if *asked == compare =>
-            {
-                Ok(ResourceKind::Sampler(Sampler {
-                    filter,
-                    address: Default::default(),
-                    compare: compare.then_some(wgt::CompareFunction::LessEqual),
-                }))
-            }
-            (kind, import) => Err(wrong(kind.describe(), import.describe().to_owned())),
+        let kind = imported(*import);
+        if include::takes(&input.kind, &kind) {
+            return Ok(kind);
         }
+        let (expected, found) = match (&input.kind, &kind) {
+            (InputKind::Texture(Some(asked)), ResourceKind::Texture(found)) => (
+                format!("a texture {asked:?}"),
+                format!("a texture {:?}", found.format),
+            ),
+            (asked, found) => (asked.describe().to_owned(), found.describe().to_owned()),
+        };
+        Err(InterfaceError::WrongImport {
+            name,
+            expected,
+            found,
+        })
     }
 
     /// The materials and entries of a document.
@@ -214,14 +178,12 @@ impl<'a> Builder<'a, '_> {
         }
         for (number, material) in document.materials.iter().enumerate() {
             if self.symbols.resources.len() >= MOST {
-                let name = material.name();
-                let at = Located::new(name.value.to_string(), name.span.clone());
-                return self.is_full(&at, "materials");
+                return self.is_full(&material.name().span, "materials");
             }
             let name = material.name();
             let instance = self.symbols.scopes.instance_of(scope);
-            let symbol = match include::overridden(instance, material, &self.symbols, self.reports)
-            {
+            let mut at = self.symbols.at(scope.begin(), None);
+            let symbol = match include::overridden(material, &mut at) {
                 Some(Ok(target)) => Symbol::Target(target),
                 Some(Err(reported)) => Symbol::Invalid(reported),
                 None => {
@@ -230,7 +192,6 @@ impl<'a> Builder<'a, '_> {
                         scope,
                         document: Arc::clone(document),
                         number,
-                        span: name.span.clone(),
                     };
                     let id = self.symbols.declare(full, declared);
                     Symbol::Target(self.symbols.whole(id))
@@ -248,7 +209,7 @@ impl<'a> Builder<'a, '_> {
         let mut replaced = self.symbols.scopes.instance(instance).replaced.clone();
         for entry in &document.imports {
             // A condition without a value was reported.
-            let mut at = self.symbols.at(scope.begin(), None, self.reports);
+            let mut at = self.symbols.at(scope.begin(), None);
             if self.plan_inputs.is_there(entry.condition.as_ref(), &mut at) == Ok(true) {
                 let shaders = &self.symbols.graph.shaders;
                 shaders.replace(&mut replaced, &entry.of, &entry.is);
@@ -289,16 +250,12 @@ impl<'a> Builder<'a, '_> {
         self.first_invalid.get_or_insert(above);
     }
 
-    fn entry(
-        &mut self,
-        entry: &'a Entry,
-        context: &EntryContext<'a>,
-    ) -> Result<(), ErrorGuaranteed> {
+    fn entry(&mut self, entry: &'a Entry, context: &EntryContext<'a>) -> Reported<()> {
         if let Some(reported) = self.full {
             return Err(reported);
         }
         let scope = context.scope;
-        let mut at = self.symbols.at(scope.begin(), None, self.reports);
+        let mut at = self.symbols.at(scope.begin(), None);
         if !self
             .plan_inputs
             .is_there(entry.condition.as_ref(), &mut at)?
@@ -311,8 +268,7 @@ impl<'a> Builder<'a, '_> {
         };
         self.spent = self.spent.saturating_add(count as usize);
         if self.spent > MOST {
-            let at = Located::new(entry.name.value.to_string(), entry.name.span.clone());
-            self.is_full(&at, "passes");
+            self.is_full(&entry.name.span, "passes");
         }
         if let Some(reported) = self.full {
             return Err(reported);
@@ -320,20 +276,12 @@ impl<'a> Builder<'a, '_> {
         let Some(_) = entry.repeat else {
             return self.instance(entry, None, context).map(drop);
         };
-        let mut given = Vec::new();
-        let mut wrong = None;
-        for index in 0..count {
-            match self.instance(entry, Some(index), context) {
-                Ok(names) => given.push(names),
-                // The others would be wrong in the same way.
-                Err(reported) => {
-                    wrong = Some(reported);
-                    break;
-                }
-            }
-        }
+        // Behind a mistake the others would be wrong in the same way.
+        let given = (0..count).map(|index| self.instance(entry, Some(index), context));
+        let given: Reported<Vec<Names>> = given.collect();
+        let wrong = given.as_ref().err().copied();
         if !matches!(entry.what, What::Pass(_)) {
-            let symbol = wrong.map_or(Symbol::Repeated(given), Symbol::Invalid);
+            let symbol = given.map_or_else(Symbol::Invalid, Symbol::Repeated);
             self.symbols
                 .scopes
                 .declare(scope, &entry.name.value, symbol);
@@ -361,7 +309,7 @@ impl<'a> Builder<'a, '_> {
         entry: &'a Entry,
         index: Option<u32>,
         context: &EntryContext<'a>,
-    ) -> Result<Names, ErrorGuaranteed> {
+    ) -> Reported<Names> {
         let suffix = index.map_or(String::new(), |index| format!("[{index}]"));
         let name = format!("{}{}{suffix}", context.prefix, entry.name.value);
         let position = Position {
@@ -439,7 +387,7 @@ impl<'a> Builder<'a, '_> {
         include: &'a Include,
         position: Position,
         context: &EntryContext<'a>,
-    ) -> Result<Names, ErrorGuaranteed> {
+    ) -> Reported<Names> {
         let document = match &include.document {
             Some(Ok(document)) => document,
             Some(Err(reported)) => {
@@ -449,14 +397,12 @@ impl<'a> Builder<'a, '_> {
             None => return Ok(Names::new()),
         };
         self.require(document);
-        let has_namespace = include.is_named || position.index.is_some();
-        let place = (position, has_namespace);
-        let mut at = self.symbols.at(position, None, self.reports);
+        let mut at = self.symbols.at(position, None);
         let of_groups = include::said(entry, document, context, &mut at);
-        let said = Overrides::new(entry, &of_groups, position);
-        let params = include::params(entry, include, document, &said, &mut at);
-        let (scene, overrides) = include::outside(entry, document, &said, place, &mut at);
-        let given = |input| include::input(input, document, include, &said, &mut at);
+        let call = Call::new(entry, include, document, &of_groups, position);
+        let params = call.params(&mut at);
+        let (scene, overrides) = call.outside(&mut at);
+        let given = |input| call.input(input, &mut at);
         let inputs: Vec<_> = document.inputs.iter().map(given).collect();
         self.mark(&of_groups.0, &of_groups.1);
         let around = self.symbols.scopes.instance_of(position.scope);
@@ -464,7 +410,7 @@ impl<'a> Builder<'a, '_> {
         // With a name, or in a repetition, an include is one of its own; so is one that writes into
         // what it is given.
         let may_merge = self.merges
-            && !has_namespace
+            && !call.has_namespace
             && overrides.is_empty()
             && self.symbols.scopes.index(position, None).is_none()
             && !document
@@ -483,11 +429,11 @@ impl<'a> Builder<'a, '_> {
         let scopes = &mut self.symbols.scopes;
         if let Some(site) = site {
             self.merged.push(site.merge(self.passes.len(), include));
-            include::give(entry, document, &site.names, place, scopes)?;
+            call.give(&site.names, scopes)?;
             return Ok(site.names.clone());
         }
         let first_resource = self.symbols.resources.len();
-        let outer = include::outer(entry, position, has_namespace, context);
+        let outer = call.outer(context);
         let instance = scopes.add_instance(Instance {
             document: Arc::clone(document),
             params: Arc::new(params),
@@ -498,12 +444,12 @@ impl<'a> Builder<'a, '_> {
             incomplete: None,
         });
         let scope = scopes.add_scope(instance, None, String::new(), None);
-        let read_only = include::declare_inputs(scope, document, inputs, scopes);
+        let read_only = call.declare_inputs(scope, inputs, scopes);
         let inner = context.inside(scope);
         self.document(document, &inner);
-        let mut at = self.symbols.at(scope.begin(), None, self.reports);
+        let mut at = self.symbols.at(scope.begin(), None);
         let plan_inputs = &mut self.plan_inputs;
-        let (names, outputs) = include::outputs(document, &said, plan_inputs, &mut at);
+        let (names, outputs) = call.outputs(plan_inputs, &mut at);
         self.interfaces.push(Interface {
             instance,
             outputs,
@@ -517,7 +463,7 @@ impl<'a> Builder<'a, '_> {
                 owned: first_resource..self.symbols.resources.len(),
             });
         }
-        include::give(entry, document, &names, place, &mut self.symbols.scopes)?;
+        call.give(&names, &mut self.symbols.scopes)?;
         Ok(names)
     }
 
@@ -527,7 +473,7 @@ impl<'a> Builder<'a, '_> {
         entry: &Entry,
         position: Position,
         context: &EntryContext<'a>,
-    ) -> Result<Option<(Run, bool)>, ErrorGuaranteed> {
+    ) -> Reported<Option<(Run, bool)>> {
         let condition = match &entry.run {
             None => return Ok(context.run.clone()),
             Some(RunEntry::Always) => return Ok(Some((Run::Always, true))),
@@ -535,42 +481,27 @@ impl<'a> Builder<'a, '_> {
             Some(RunEntry::OnChange) => return Ok(Some((Run::OnChange, true))),
             Some(RunEntry::When(condition)) => condition,
         };
-        let enabled = eval::boolean(
-            condition,
-            &mut self.symbols.at(position, None, self.reports),
-        )?;
+        let enabled = eval::boolean(condition, &mut self.symbols.at(position, None))?;
         let instance = self.symbols.scopes.document(position.scope);
         let params = Arc::clone(&instance.params);
         let outer = instance.outer.as_ref();
         let private = outer.map_or(String::new(), |outer| outer.private.clone());
         // Conditions of two documents are one if they are made of the same params of the root;
         // attributes (`index` is one) are what they are here.
-        let scopes = &self.symbols.scopes;
-        let is_value = |name: &str| scopes.find_value(position.scope, name).is_some();
-        let own: BTreeSet<String> = {
-            let mut own = BTreeSet::new();
-            condition.visit(&mut |leaf| {
-                if let Leaf::Param(name) = leaf
-                    && params.bound(name).is_none()
-                    && is_value(name)
-                {
-                    own.insert(name.to_owned());
+        let text = condition.canonical(&mut |leaf| {
+            if let Some(name) = leaf.as_param() {
+                match params.bound(name).map(|bound| &bound.root) {
+                    Some(Some(root)) => return root.clone(),
+                    Some(None) => return format!("{private}{name}"),
+                    None => {}
                 }
-            });
-            own
-        };
-        let text = condition.canonical(&mut |leaf| match leaf.as_param() {
-            Some(name) if !own.contains(name) => match params.bound(name) {
-                Some(bound) => match &bound.root {
-                    Some(root) => root.clone(),
-                    None => format!("{private}{name}"),
-                },
-                None => name.to_owned(),
-            },
-            _ => {
-                let value = eval::value(leaf, &mut self.symbols.at(position, None, self.reports));
-                value.map_or_else(|_| leaf.text().to_owned(), |value| value.to_string())
+                let scopes = &self.symbols.scopes;
+                if scopes.find_value(position.scope, name).is_none() {
+                    return name.to_owned();
+                }
             }
+            let value = eval::value(leaf, &mut self.symbols.at(position, None));
+            value.map_or_else(|_| leaf.text().to_owned(), |value| value.to_string())
         });
         Ok(Some((Run::When(text), enabled)))
     }
@@ -659,13 +590,13 @@ impl<'a> Builder<'a, '_> {
     }
 
     /// Says once that there is no room for more.
-    fn is_full(&mut self, name: &Located<String>, what: &'static str) {
+    fn is_full(&mut self, at: &Span, what: &'static str) {
         self.broken();
         if self.full.is_none() {
-            self.full = Some(self.reports.report(InterfaceError::TooMany {
+            self.full = Some(self.symbols.reports.report(InterfaceError::TooMany {
                 most: MOST,
                 what,
-                at: name.span.clone(),
+                at: at.clone(),
             }));
         }
     }
@@ -677,12 +608,12 @@ impl<'a> Builder<'a, '_> {
         while number < self.symbols.resources.len() {
             let id = ResourceId(number);
             // A broken one is stored as such, and its users find that.
-            let _ = self.symbols.resolve_size(id, self.reports);
+            let _ = self.symbols.resolve_size(id);
             number += 1;
         }
         for (group, name, is_asked) in std::mem::take(&mut self.said) {
             if !is_asked && self.first_invalid.is_none() {
-                self.reports.report(InterfaceError::UnusedInGroup {
+                self.symbols.reports.report(InterfaceError::UnusedInGroup {
                     group: group.value.to_string(),
                     name: name.clone(),
                 });
@@ -702,14 +633,10 @@ impl<'a> Builder<'a, '_> {
     fn root_interface(&mut self, document: &Document, instance: InstanceId, scope: ScopeId) {
         let mut read_only = Vec::new();
         for input in &document.inputs {
-            let is_output = document
-                .outputs
-                .iter()
-                .any(|output| output.material.path() == *input.name.as_str());
-            if let (false, Some(Symbol::Target(target))) = (
-                is_output,
-                self.symbols.scopes.find(scope, &input.name.value),
-            ) {
+            let symbol = self.symbols.scopes.find(scope, &input.name.value);
+            if let Some(Symbol::Target(target)) = symbol
+                && !include::is_output(document, input)
+            {
                 read_only.push((input.name.clone(), target.clone()));
             }
         }
@@ -718,5 +645,38 @@ impl<'a> Builder<'a, '_> {
             outputs: Vec::new(),
             read_only,
         });
+    }
+}
+
+/// The resource that an import is.
+fn imported(import: Import) -> ResourceKind {
+    match import {
+        Import::Texture {
+            format,
+            size,
+            mips,
+            layers,
+            is_3d,
+            samples,
+            ..
+        } => ResourceKind::Texture(Texture {
+            format,
+            size,
+            layers,
+            is_3d,
+            mips,
+            samples,
+            picture: None,
+        }),
+        Import::Buffer { bytes, items, .. } => ResourceKind::Buffer(Buffer {
+            count: items,
+            bytes,
+            ..Buffer::default()
+        }),
+        Import::Sampler { filter, compare } => ResourceKind::Sampler(Sampler {
+            filter,
+            address: Default::default(),
+            compare: compare.then_some(wgt::CompareFunction::LessEqual),
+        }),
     }
 }

@@ -5,7 +5,7 @@ use super::{
     symbols::{At, SymbolTable},
 };
 use crate::{
-    diagnostics::reports::ErrorGuaranteed,
+    diagnostics::reports::Reported,
     document::typed::{Entry, Pass},
     expressions::eval,
     language::{
@@ -149,12 +149,12 @@ impl PlanInputs {
     pub(super) fn is_there(
         &mut self,
         condition: Option<&Expr>,
-        at: &mut At<'_, '_, '_>,
-    ) -> Result<bool, ErrorGuaranteed> {
+        at: &mut At<'_, '_>,
+    ) -> Reported<bool> {
         let Some(condition) = condition else {
             return Ok(true);
         };
-        let (symbols, scope) = (at.symbols(), at.scope());
+        let (symbols, scope) = (at.symbols(), at.position.scope);
         self.params.extend(symbols.roots(scope, condition));
         symbols.visit(scope, condition, &mut |_, leaf| {
             if let Leaf::Has(feature) = leaf {

@@ -1,7 +1,7 @@
 //! Materials that grow between frames: from which size, by which counter, how far.
 
 use crate::{
-    diagnostics::reports::ErrorGuaranteed,
+    diagnostics::reports::Reported,
     document::materials::{BufferEntry, GrowEntry, TextureEntry},
     errors::resource::SizeError,
     expressions::eval::{self, Environment},
@@ -13,7 +13,7 @@ use crate::{
 /// Surroundings in which a material's size is found.
 pub(super) trait Sizing: Environment {
     /// Another material that it asks for.
-    fn resource(&mut self, of: &Reference) -> Result<(Target, &Resource), ErrorGuaranteed>;
+    fn resource(&mut self, of: &Reference) -> Reported<(Target, &Resource)>;
 }
 
 /// Gives a buffer the items that frames before have asked for.
@@ -22,11 +22,11 @@ pub(super) fn grow_buffer(
     buffer: &mut Buffer,
     grown: u64,
     at: &mut impl Sizing,
-) -> Result<Option<Growth>, ErrorGuaranteed> {
+) -> Reported<Option<Growth>> {
     let Some(grow) = &entry.grow else {
         return Ok(None);
     };
-    let name = Located::new(entry.name.value.to_string(), entry.name.span.clone());
+    let name = entry.name.text();
     let Some(count) = buffer.count.filter(|_| entry.count.is_some()) else {
         return Err(at.reports().report(SizeError::GrowWithoutCount(name)));
     };
@@ -41,11 +41,11 @@ pub(super) fn grow_texture(
     texture: &mut Texture,
     (grown, most): (u64, u32),
     at: &mut impl Sizing,
-) -> Result<Option<Growth>, ErrorGuaranteed> {
+) -> Reported<Option<Growth>> {
     let Some(grow) = &entry.grow else {
         return Ok(None);
     };
-    let name = Located::new(entry.name.value.to_string(), entry.name.span.clone());
+    let name = entry.name.text();
     if entry.layers.is_none() || texture.is_3d {
         return Err(at.reports().report(SizeError::GrowWithoutLayers(name)));
     }
@@ -61,7 +61,7 @@ pub(super) fn grow_texture(
     Ok(Some(growth))
 }
 
-fn growth(name: &str, grow: &GrowEntry, at: &mut impl Sizing) -> Result<Growth, ErrorGuaranteed> {
+fn growth(name: &str, grow: &GrowEntry, at: &mut impl Sizing) -> Reported<Growth> {
     let (counter, resource) = at.resource(&grow.counter)?;
     let is_own = resource.origin == Origin::Own;
     if !(is_own && matches!(resource.kind, ResourceKind::Buffer(_))) {

@@ -6,7 +6,6 @@ use super::{
     symbols::SymbolTable,
 };
 use crate::{
-    diagnostics::reports::Reports,
     kinds::{
         kind::Lowering,
         step::{Names, Operand, ShaderUse, Step},
@@ -39,11 +38,11 @@ pub(crate) struct Lowered<'a> {
 }
 
 /// Lowers every pass.
-pub(crate) fn lower<'a>(flat: Flat<'a>, reports: &mut Reports) -> Lowered<'a> {
+pub(crate) fn lower(flat: Flat<'_>) -> Lowered<'_> {
     let mut symbols = flat.symbols;
     let passes = flat.passes.into_iter().map(|flat| {
         let (entry, pass) = (flat.entry, flat.pass);
-        let before = reports.errors();
+        let before = symbols.reports.errors();
         let instance = symbols.scopes.document(flat.position.scope);
         // Constants are those of the pass's own shader, or of the first that its kind brings.
         let is_own = |shader: &&ShaderUse| pass.shader.as_ref() == Some(&shader.name);
@@ -53,7 +52,7 @@ pub(crate) fn lower<'a>(flat: Flat<'a>, reports: &mut Reports) -> Lowered<'a> {
             shaders.get(&instance.document, shader, &instance.replaced)
         });
         let shader = shader.cloned();
-        let mut environment = symbols.at(flat.position, shader, reports);
+        let mut environment = symbols.at(flat.position, shader);
         let mut lowering = Lowering::new(
             &entry.name,
             pass.shader.as_ref(),
@@ -70,9 +69,8 @@ pub(crate) fn lower<'a>(flat: Flat<'a>, reports: &mut Reports) -> Lowered<'a> {
         let (steps, scratch, diagnostics) =
             (lowering.steps, lowering.scratch, lowering.diagnostics);
         for diagnostic in diagnostics {
-            reports.report(diagnostic);
+            symbols.reports.report(diagnostic);
         }
-        let own = Located::new(entry.name.value.to_string(), entry.name.span.clone());
         // A slash stands in no name: nothing in a document can mean this buffer.
         let scratch = scratch.into_iter().map(|(name, bytes)| {
             let name = format!("{}/{name}", flat.name.value);
@@ -86,8 +84,8 @@ pub(crate) fn lower<'a>(flat: Flat<'a>, reports: &mut Reports) -> Lowered<'a> {
             scratch: scratch.collect(),
             instance: symbols.scopes.instance_of(flat.position.scope),
             steps,
-            shader: pass.shader.clone().unwrap_or(own),
-            is_broken: reports.errors() > before,
+            shader: pass.shader.clone().unwrap_or_else(|| entry.name.text()),
+            is_broken: symbols.reports.errors() > before,
             flat,
         }
     });

@@ -5,13 +5,12 @@ use super::{
     state::Declared,
 };
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, Reports},
+    compose::loaded::Loaded,
+    diagnostics::reports::{Reported, Reports},
     document::materials::{BufferEntry, FormatEntry, Material, Mips, SamplerEntry, TextureEntry},
     errors::{evaluation::EvaluationError, resource::SizeError},
     expressions::eval,
-    graph::Graph,
     language::{syntax::Expr, value::Value},
-    picture::Picture,
     request::PlanRequest,
     resource::{Buffer, Growth, ResourceKind, Sampler, Texture},
     source::span::{Located, Span},
@@ -23,17 +22,16 @@ use std::sync::Arc;
 pub(super) fn kind(
     declared: &Declared,
     full_name: &str,
-    (graph, request): (&Graph, &PlanRequest<'_>),
+    (graph, request): (&Loaded, &PlanRequest<'_>),
     at: &mut impl Sizing,
-) -> Result<(ResourceKind, Option<Growth>), ErrorGuaranteed> {
+) -> Reported<(ResourceKind, Option<Growth>)> {
     let (material, is_constant) = match declared.material() {
         material @ Material::Texture(entry) => (material, entry.file.is_some()),
         material @ Material::Buffer(entry) => (material, entry.data.is_some()),
         material @ Material::Sampler(_) => (material, false),
     };
     if material.keeps() && is_constant {
-        let name = material.name();
-        let name = Located::new(name.value.to_string(), name.span.clone());
+        let name = material.name().text();
         return Err(at.reports().report(SizeError::KeepsConstant(name)));
     }
     // The items or layers that a frame before has asked for; 0 if none has.
@@ -58,23 +56,20 @@ pub(super) fn kind(
 fn texture(
     entry: &TextureEntry,
     declared: &Declared,
-    graph: &Graph,
+    graph: &Loaded,
     at: &mut impl Sizing,
-) -> Result<Texture, ErrorGuaranteed> {
+) -> Reported<Texture> {
     let format = match &entry.format {
         FormatEntry::Named(format) => *format,
         FormatEntry::Expr(expr) => named_format(expr, at)?,
     };
     let picture = match &entry.file {
         None => None,
-        Some(file) => Some(self::picture(
-            entry,
-            file,
-            declared,
-            format,
-            graph,
-            at.reports(),
-        )?),
+        Some(file) => {
+            let picture = graph.pictures.get(&declared.document, file)?;
+            at.reports().check(check_picture(entry, file, format))?;
+            Some(picture)
+        }
     };
     let edges = match (&entry.size, &picture) {
         (_, Some(picture)) => picture.size.map(u64::from).to_vec(),
@@ -120,26 +115,22 @@ fn texture(
     })
 }
 
-fn named_format(expr: &Expr, at: &mut impl Sizing) -> Result<wgt::TextureFormat, ErrorGuaranteed> {
+fn named_format(expr: &Expr, at: &mut impl Sizing) -> Reported<wgt::TextureFormat> {
     match eval::value(expr, at)? {
         Value::Format(format) => Ok(format),
-        found => Err(at.reports().report(EvaluationError::Type {
-            span: expr.span.clone(),
-            expected: "a format",
-            found,
-        })),
+        found => {
+            let error = EvaluationError::Type(expr.span.clone(), "a format", found);
+            Err(at.reports().report(error))
+        }
     }
 }
 
-fn picture(
+/// A picture has a size of its own, and a format must be able to hold it.
+fn check_picture(
     entry: &TextureEntry,
     file: &Located<String>,
-    declared: &Declared,
     format: wgt::TextureFormat,
-    graph: &Graph,
-    reports: &mut Reports,
-) -> Result<Picture, ErrorGuaranteed> {
-    let picture = graph.pictures.get(&declared.document, file)?;
+) -> Result<(), SizeError> {
     let takes = [
         (entry.size.is_some(), "size"),
         (!matches!(entry.mips, Mips::One), "mips"),
@@ -147,16 +138,16 @@ fn picture(
         (entry.samples.is_some(), "samples"),
     ];
     if let Some((_, field)) = takes.into_iter().find(|(given, _)| *given) {
-        return Err(reports.report(SizeError::FileHas(file.clone(), field)));
+        return Err(SizeError::FileHas(file.clone(), field));
     }
     if !crate::picture::can_hold(format) {
         let position = Located::new(format!("{format:?}"), file.span.clone());
-        return Err(reports.report(SizeError::PictureFormat(position)));
+        return Err(SizeError::PictureFormat(position));
     }
-    Ok(picture)
+    Ok(())
 }
 
-fn buffer(entry: &BufferEntry, at: &mut impl Sizing) -> Result<Buffer, ErrorGuaranteed> {
+fn buffer(entry: &BufferEntry, at: &mut impl Sizing) -> Reported<Buffer> {
     let name = |span: &Span| Located::new(entry.name.value.to_string(), span.clone());
     let count = match (&entry.count, &entry.data) {
         (Some(count), Some(_)) => {
@@ -185,13 +176,13 @@ fn buffer(entry: &BufferEntry, at: &mut impl Sizing) -> Result<Buffer, ErrorGuar
 fn check_texture(
     entry: &TextureEntry,
     texture: &Texture,
-    (graph, request): (&Graph, &PlanRequest<'_>),
+    (graph, request): (&Loaded, &PlanRequest<'_>),
     reports: &mut Reports,
-) -> Result<(), ErrorGuaranteed> {
+) -> Reported<()> {
     let format = texture.format;
     let feature = format.required_features() - graph.features();
     if !feature.is_empty() {
-        let name = Located::new(entry.name.value.to_string(), entry.name.span.clone());
+        let name = entry.name.text();
         return Err(reports.report(SizeError::FormatFeature {
             name,
             format,
@@ -217,16 +208,13 @@ fn check_texture(
             samples,
         }));
     }
-    let (most, third) = if texture.is_3d {
-        (
-            limits.max_texture_dimension_3d,
-            limits.max_texture_dimension_3d,
-        )
+    let [most, third] = if texture.is_3d {
+        [limits.max_texture_dimension_3d; 2]
     } else {
-        (
+        [
             limits.max_texture_dimension_2d,
             limits.max_texture_array_layers,
-        )
+        ]
     };
     if width > most || height > most {
         let size = [width, height];
@@ -262,7 +250,7 @@ fn check_samples(
     texture: &Texture,
     features: wgt::Features,
     reports: &mut Reports,
-) -> Result<(), ErrorGuaranteed> {
+) -> Reported<()> {
     if texture.is_3d || texture.layers > 1 || texture.mips > 1 {
         return Err(reports.report(SizeError::SamplesOfMany(name)));
     }

@@ -6,7 +6,7 @@ use super::{
     scopes::Names,
 };
 use crate::{
-    diagnostics::reports::ErrorGuaranteed,
+    diagnostics::reports::Reported,
     document::typed::{Document, Include},
     param::ParamValue,
     resource::Target,
@@ -62,8 +62,8 @@ impl Content {
     pub fn new(
         document: &Arc<Document>,
         params: &super::params::Params,
-        inputs: &[Result<Target, ErrorGuaranteed>],
-        scene: BTreeMap<String, Result<Target, ErrorGuaranteed>>,
+        inputs: &[Reported<Target>],
+        scene: BTreeMap<String, Reported<Target>>,
         replaced: &Replaced,
         run: Option<(Run, bool)>,
     ) -> Option<Self> {

@@ -1,13 +1,13 @@
 //! Values of params: the root's from the request, an included document's from the including one.
 
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, Reports},
+    diagnostics::reports::{Reported, Reports},
     document::typed::Document,
     errors::{evaluation::EvaluationError, instantiate::ParamError},
     expressions::eval::{self, Environment},
     language::{
         name::{Name, wgsl_identifier},
-        syntax::{Attribute, Expr, Leaf, Reference},
+        syntax::{Attribute, Expr, Reference},
         value::Value,
     },
     param::{Param, ParamValue, find},
@@ -38,7 +38,7 @@ pub(crate) struct Params {
 #[derive(Clone, Debug)]
 pub(crate) struct BoundParam {
     pub param: Param,
-    pub value: Result<ParamValue, ErrorGuaranteed>,
+    pub value: Reported<ParamValue>,
     /// The param of the root document whose value this is, unchanged.
     pub root: Option<String>,
     /// The params of the root document that it depends on.
@@ -46,7 +46,7 @@ pub(crate) struct BoundParam {
 }
 
 impl BoundParam {
-    fn in_expression(&self) -> Result<Value, ErrorGuaranteed> {
+    fn in_expression(&self) -> Reported<Value> {
         let value = self.value.as_ref();
         value
             .map(|value| self.param.value(value))
@@ -68,23 +68,28 @@ impl Params {
             .or_else(|| self.list.iter().find(wgsl_name))
     }
 
+    /// The values that are right, by name.
+    pub fn values(&self) -> BTreeMap<String, ParamValue> {
+        let values = self.list.iter().filter_map(|bound| {
+            let value = bound.value.clone().ok()?;
+            Some((bound.param.name.value.clone(), value))
+        });
+        values.collect()
+    }
+
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.list.iter().map(|bound| bound.param.name.as_str())
     }
 
     /// The value of a param in an expression, on which whatever is asked for then depends.
-    pub fn value(
-        &self,
-        name: &str,
-        reports: &mut Reports,
-    ) -> Option<Result<Value, ErrorGuaranteed>> {
+    pub fn value(&self, name: &str, reports: &mut Reports) -> Option<Reported<Value>> {
         let bound = self.bound(name)?;
         reports.depend_on(bound.roots.iter());
         Some(bound.in_expression())
     }
 
     /// The value of a param that is handed on as it is: nothing depends on it yet.
-    pub fn forwarded(&self, expr: &Expr) -> Option<Result<Value, ErrorGuaranteed>> {
+    pub fn forwarded(&self, expr: &Expr) -> Option<Reported<Value>> {
         Some(self.bound(expr.as_param()?)?.in_expression())
     }
 
@@ -92,16 +97,8 @@ impl Params {
     pub fn roots(&self, expr: &Expr) -> BTreeSet<String> {
         let mut roots = BTreeSet::new();
         expr.visit(&mut |leaf| {
-            let name = match leaf {
-                Leaf::Param(name) => name,
-                Leaf::Word(name) => name.as_str(),
-                _ => return,
-            };
-            roots.extend(
-                self.bound(name)
-                    .iter()
-                    .flat_map(|bound| bound.roots.clone()),
-            );
+            let bound = leaf.named().and_then(|name| self.bound(name));
+            roots.extend(bound.iter().flat_map(|bound| bound.roots.clone()));
         });
         roots
     }
@@ -130,7 +127,7 @@ impl Environment for ParamsAlone<'_> {
         self.context.features.contains(feature)
     }
 
-    fn param(&mut self, name: &str, span: &Span) -> Result<Value, ErrorGuaranteed> {
+    fn param(&mut self, name: &str, span: &Span) -> Reported<Value> {
         match self.params.value(name, self.reports) {
             Some(value) => value,
             None => {
@@ -144,21 +141,16 @@ impl Environment for ParamsAlone<'_> {
         self.params.value(name, self.reports)?.ok()
     }
 
-    fn index(&mut self, of: Option<&Name>, span: &Span) -> Result<u32, ErrorGuaranteed> {
+    fn index(&mut self, of: Option<&Name>, span: &Span) -> Reported<u32> {
         Err(self.report(EvaluationError::NoIndex(span.clone(), of.cloned())))
     }
 
-    fn attribute(
-        &mut self,
-        of: &Reference,
-        _: Attribute,
-        span: &Span,
-    ) -> Result<Value, ErrorGuaranteed> {
+    fn attribute(&mut self, of: &Reference, _: Attribute, span: &Span) -> Reported<Value> {
         let name = of.text().to_owned();
         Err(self.report(EvaluationError::NoSizes(span.clone(), name)))
     }
 
-    fn constant(&mut self, _: &str, span: &Span) -> Result<Value, ErrorGuaranteed> {
+    fn constant(&mut self, _: &str, span: &Span) -> Reported<Value> {
         Err(self.report(EvaluationError::NoShader(span.clone())))
     }
 
@@ -173,7 +165,7 @@ fn default(
     param: &Param,
     context: Surroundings,
     reports: &mut Reports,
-) -> Result<ParamValue, ErrorGuaranteed> {
+) -> Reported<ParamValue> {
     let Some(default) = &param.default else {
         return Ok(param.stand_in());
     };
@@ -204,34 +196,10 @@ fn in_order(document: &Document) -> impl Iterator<Item = &Param> {
     exposed.iter().chain(declared)
 }
 
-/// The params of the root document.
-pub(crate) fn root(
-    document: &Document,
-    asked: &BTreeMap<String, ParamValue>,
-    context: Surroundings,
-    reports: &mut Reports,
-) -> Params {
-    let mut params = Params::default();
-    for param in in_order(document) {
-        let name = &param.name.value;
-        let value = match asked.get(name) {
-            Some(value) => Ok(value.clone()),
-            None => default(&params, param, context, reports),
-        };
-        params.list.push(BoundParam {
-            param: param.clone(),
-            value,
-            root: Some(name.clone()),
-            roots: BTreeSet::from([name.clone()]),
-        });
-    }
-    params
-}
-
 /// Value that an include sets a param to.
 pub(crate) struct SetParam {
     pub expr: Located<Expr>,
-    pub value: Result<Value, ErrorGuaranteed>,
+    pub value: Reported<Value>,
     /// The params of the root document that it depends on.
     pub roots: BTreeSet<String>,
 }
@@ -361,7 +329,7 @@ pub(crate) fn checked(
     asked: &BTreeMap<String, ParamValue>,
     context: Surroundings,
     reports: &mut Reports,
-) -> Result<Params, ErrorGuaranteed> {
+) -> Reported<Params> {
     let mut wrong = None;
     for (name, value) in asked {
         let mistake = match find(&document.params, name, &document.file.name) {
@@ -374,12 +342,22 @@ pub(crate) fn checked(
         };
         wrong = mistake.map(|mistake| reports.report(mistake)).or(wrong);
     }
-    let params = root(document, asked, context, reports);
-    let bad = params
-        .list
-        .iter()
-        .find_map(|bound| bound.value.as_ref().err());
-    wrong.or(bad.copied()).map_or(Ok(params), Err)
+    let mut params = Params::default();
+    for param in in_order(document) {
+        let name = &param.name.value;
+        let value = match asked.get(name) {
+            Some(value) => Ok(value.clone()),
+            None => default(&params, param, context, reports),
+        };
+        wrong = wrong.or(value.as_ref().err().copied());
+        params.list.push(BoundParam {
+            param: param.clone(),
+            value,
+            root: Some(name.clone()),
+            roots: BTreeSet::from([name.clone()]),
+        });
+    }
+    wrong.map_or(Ok(params), Err)
 }
 
 /// Returns the promises of a document about itself for these values of params.

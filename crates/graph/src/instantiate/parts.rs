@@ -1,7 +1,7 @@
 //! Parts of resources: what is selected of one, and its attributes.
 
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, Reports},
+    diagnostics::diagnostic::Diagnostic,
     errors::{evaluation::EvaluationError, instantiate::InterfaceError},
     language::{
         syntax::{Attribute, Reference},
@@ -17,8 +17,7 @@ pub(super) fn layers(
     target: &Target,
     resource: &Resource,
     reference: &Reference,
-    reports: &mut Reports,
-) -> Result<(&'static str, u64), ErrorGuaranteed> {
+) -> Result<(&'static str, u64), Diagnostic> {
     let what = match &resource.kind {
         ResourceKind::Texture(texture) => {
             let what = if texture.is_3d { "slices" } else { "layers" };
@@ -26,16 +25,16 @@ pub(super) fn layers(
         }
         ResourceKind::Buffer(_) | ResourceKind::Provided(_) => "items",
         ResourceKind::Sampler(_) | ResourceKind::AccelerationStructure | ResourceKind::Frame => {
-            return Err(reports.report(InterfaceError::NoPart {
+            let error = InterfaceError::NoPart {
                 text: reference.text().to_owned(),
                 span: reference.span.clone(),
                 what: "only textures and buffers have parts",
-            }));
+            };
+            return Err(error.into());
         }
     };
-    let uncounted = || uncounted(resource, reference);
-    let count = items(resource, target).ok_or_else(|| reports.report(uncounted()));
-    Ok((what, count?))
+    let count = items(resource, target);
+    Ok((what, count.ok_or_else(|| uncounted(resource, reference))?))
 }
 
 /// The items of a buffer are asked for, and not known.

@@ -3,7 +3,7 @@
 
 use super::params::Params;
 use crate::{
-    diagnostics::reports::ErrorGuaranteed,
+    diagnostics::reports::{ErrorGuaranteed, Reported},
     document::typed::{Document, Output},
     language::name::{Name, wgsl_identifier},
     resource::Target,
@@ -43,11 +43,11 @@ pub(crate) struct Instance {
     pub document: Arc<Document>,
     pub params: Arc<Params>,
     /// Targets of names of the scene in here, besides those from the scene itself.
-    pub scene: BTreeMap<String, Result<Target, ErrorGuaranteed>>,
+    pub scene: BTreeMap<String, Reported<Target>>,
     /// Where it is included; `None` for the root.
     pub outer: Option<Outer>,
     /// The materials outside that are written instead of its own ones, with the place that says so.
-    pub overrides: BTreeMap<String, (Located<String>, Result<Target, ErrorGuaranteed>)>,
+    pub overrides: BTreeMap<String, (Located<String>, Reported<Target>)>,
     /// Modules that stand in for others in its shaders.
     pub replaced: Replaced,
     /// Something in it could not be read, so that unknown names are no mistakes.
@@ -74,7 +74,7 @@ struct Scope {
     path: String,
     names: Names,
     /// Their spellings in shaders, those of parts of namespaces included.
-    wgsl_name: HashMap<String, Result<Target, ErrorGuaranteed>>,
+    wgsl_name: HashMap<String, Reported<Target>>,
     /// The same of values.
     wgsl_values: HashMap<String, ValueId>,
     /// The repeated entry, and which repetition this is.
@@ -223,11 +223,7 @@ impl Scopes {
     }
 
     /// Finds the target of a shader's global by its spelling.
-    pub fn find_wgsl_name(
-        &self,
-        scope: ScopeId,
-        identifier: &str,
-    ) -> Option<Result<Target, ErrorGuaranteed>> {
+    pub fn find_wgsl_name(&self, scope: ScopeId, identifier: &str) -> Option<Reported<Target>> {
         self.outwards(scope)
             .find_map(|scope| scope.wgsl_name.get(identifier).cloned())
     }
@@ -280,13 +276,13 @@ impl Scopes {
     }
 
     /// The resource that a name of the scene stands for in an instance, where an include says so.
-    pub fn scene(&self, id: InstanceId, name: &str) -> Option<Result<Target, ErrorGuaranteed>> {
+    pub fn scene(&self, id: InstanceId, name: &str) -> Option<Reported<Target>> {
         self.outer_instances(id)
             .find_map(|id| self.instance(id).scene.get(name).cloned())
     }
 
     /// Returns the targets of names of the scene in an instance.
-    pub fn bound_scene(&self, id: InstanceId) -> BTreeMap<String, Result<Target, ErrorGuaranteed>> {
+    pub fn bound_scene(&self, id: InstanceId) -> BTreeMap<String, Reported<Target>> {
         let mut bound = BTreeMap::new();
         for instance in self.outer_instances(id) {
             for (name, target) in &self.instance(instance).scene {

@@ -2,10 +2,10 @@
 
 use super::scopes::ScopeId;
 use crate::{
-    diagnostics::reports::ErrorGuaranteed,
+    diagnostics::reports::{ErrorGuaranteed, Reported},
     document::{materials::Material, typed::Document},
     language::{name::Name, syntax::Expr, value::Value},
-    source::span::{Located, Span},
+    source::span::Located,
 };
 use std::sync::Arc;
 
@@ -27,7 +27,6 @@ pub(super) struct Declared {
     pub document: Arc<Document>,
     /// Its number among the document's materials.
     pub number: usize,
-    pub span: Span,
 }
 
 impl Declared {
@@ -52,7 +51,7 @@ pub(super) enum ValueState {
     Declared,
     /// It is being found: if it is asked for now, it is made of itself.
     Resolving,
-    Known(Result<Value, ErrorGuaranteed>),
+    Known(Reported<Value>),
 }
 
 impl DeclaredValue {

@@ -7,13 +7,16 @@ use super::{
     state::{Declared, DeclaredValue, State, ValueState},
 };
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, Reports},
+    compose::loaded::Loaded,
+    diagnostics::{
+        diagnostic::Diagnostic,
+        reports::{ErrorGuaranteed, Reported, Reports},
+    },
     errors::{evaluation::EvaluationError, instantiate::InterfaceError},
     expressions::{
         eval::{self, Environment},
         parser,
     },
-    graph::Graph,
     language::{
         name::{Name, wgsl_identifier},
         syntax::{Attribute, Expr, Leaf, Reference, Segment, Selection},
@@ -41,8 +44,10 @@ const NESTED: usize = 8;
 
 /// Everything that names of a graph can mean in one plan.
 pub(crate) struct SymbolTable<'a> {
-    pub graph: &'a Graph,
+    pub graph: &'a Loaded,
     pub request: &'a PlanRequest<'a>,
+    /// The mistakes so far: names and sizes may be asked for anywhere.
+    pub reports: Reports,
     pub scopes: Scopes,
     pub resources: Vec<Resource>,
     /// State of each resource's size.
@@ -61,7 +66,7 @@ pub(crate) struct SymbolTable<'a> {
 }
 
 impl<'a> SymbolTable<'a> {
-    pub fn new(graph: &'a Graph, request: &'a PlanRequest<'a>) -> Self {
+    pub fn new(graph: &'a Loaded, request: &'a PlanRequest<'a>, reports: Reports) -> Self {
         let names = request
             .provider
             .names()
@@ -70,6 +75,7 @@ impl<'a> SymbolTable<'a> {
         Self {
             graph,
             request,
+            reports,
             scopes: Scopes::default(),
             resources: Vec::new(),
             states: Vec::new(),
@@ -84,17 +90,15 @@ impl<'a> SymbolTable<'a> {
 
     /// Meaning of the names of an expression at a place; `shader`: that of the pass, where it is
     /// one's expression.
-    pub fn at<'w, 'r>(
+    pub fn at<'w>(
         &'w mut self,
         position: Position,
-        shader: Option<Result<Arc<Shader>, ErrorGuaranteed>>,
-        reports: &'r mut Reports,
-    ) -> At<'w, 'a, 'r> {
+        shader: Option<Reported<Arc<Shader>>>,
+    ) -> At<'w, 'a> {
         At {
             symbols: self,
             position,
             shader,
-            reports,
         }
     }
 
@@ -113,7 +117,7 @@ impl<'a> SymbolTable<'a> {
     pub(super) fn declare(&mut self, name: String, declared: Declared) -> ResourceId {
         let kind = ResourceKind::Buffer(crate::resource::Buffer::default());
         self.resources.push(Resource {
-            declared: Some(declared.span.clone()),
+            declared: Some(declared.material().name().span.clone()),
             keep: declared.material().keeps(),
             ..Resource::new(name, kind, Origin::Own)
         });
@@ -128,17 +132,16 @@ impl<'a> SymbolTable<'a> {
     }
 
     /// The value of a named expression.
-    pub fn value(&mut self, id: ValueId, reports: &mut Reports) -> Result<Value, ErrorGuaranteed> {
+    pub fn value(&mut self, id: ValueId) -> Reported<Value> {
         let declared = &mut self.values[id.0];
         match &declared.state {
             ValueState::Known(value) => return value.clone(),
-            ValueState::Resolving => return Err(self.circular_value(id, reports)),
+            ValueState::Resolving => return Err(self.circular_value(id)),
             ValueState::Declared => {}
         }
         if self.resolving.len() == DEEPEST_VALUE {
-            let name = declared.name();
-            let name = Located::new(name.value.to_string(), name.span.clone());
-            return Err(reports.report(EvaluationError::DeepValue {
+            let name = declared.name().text();
+            return Err(self.reports.report(EvaluationError::DeepValue {
                 name,
                 most: DEEPEST_VALUE,
             }));
@@ -147,7 +150,7 @@ impl<'a> SymbolTable<'a> {
         let position = declared.scope.begin();
         let expr = declared.expr().clone();
         self.resolving.push(id);
-        let value = eval::value(&expr, &mut self.at(position, None, reports));
+        let value = eval::value(&expr, &mut self.at(position, None));
         self.resolving.pop();
         self.values[id.0].state = ValueState::Known(value.clone());
         value
@@ -166,13 +169,12 @@ impl<'a> SymbolTable<'a> {
         found.collect()
     }
 
-    fn circular_value(&self, id: ValueId, reports: &mut Reports) -> ErrorGuaranteed {
+    fn circular_value(&mut self, id: ValueId) -> ErrorGuaranteed {
         let ring = self.resolving.iter().skip_while(|other| **other != id);
-        let ring = ring.chain([&id]).map(|id| {
-            let name = self.values[id.0].name();
-            Located::new(name.value.to_string(), name.span.clone())
-        });
-        reports.report(EvaluationError::CircularValue(ring.collect()))
+        let ring = ring.chain([&id]);
+        let ring = ring.map(|id| self.values[id.0].name().text());
+        self.reports
+            .report(EvaluationError::CircularValue(ring.collect()))
     }
 
     /// Where a value is written, for messages about it.
@@ -192,13 +194,8 @@ impl<'a> SymbolTable<'a> {
         let mut open = vec![(scope, expr)];
         while let Some((scope, expr)) = open.pop() {
             expr.visit(&mut |leaf| {
-                let name = match leaf {
-                    Leaf::Param(name) => Some(name),
-                    Leaf::Word(name) => Some(name.as_str()),
-                    _ => None,
-                };
                 let params = &self.scopes.document(scope).params;
-                let name = name.filter(|name| params.bound(name).is_none());
+                let name = leaf.named().filter(|name| params.bound(name).is_none());
                 match name.and_then(|name| self.scopes.find_value(scope, name)) {
                     Some(id) if seen.insert(id) => {
                         let value = &self.values[id.0];
@@ -215,14 +212,9 @@ impl<'a> SymbolTable<'a> {
     pub fn roots(&self, scope: ScopeId, expr: &Expr) -> BTreeSet<String> {
         let mut roots = BTreeSet::new();
         self.visit(scope, expr, &mut |scope, leaf| {
-            let name = match leaf {
-                Leaf::Param(name) => name,
-                Leaf::Word(name) => name.as_str(),
-                _ => return,
-            };
-            if let Some(bound) = self.scopes.document(scope).params.bound(name) {
-                roots.extend(bound.roots.iter().cloned());
-            }
+            let params = &self.scopes.document(scope).params;
+            let bound = leaf.named().and_then(|name| params.bound(name));
+            roots.extend(bound.iter().flat_map(|bound| bound.roots.clone()));
         });
         roots
     }
@@ -244,21 +236,12 @@ impl<'a> SymbolTable<'a> {
     }
 
     /// Resolves a reference of a document.
-    pub fn resolve(
-        &mut self,
-        reference: &Reference,
-        position: Position,
-        reports: &mut Reports,
-    ) -> Result<Target, ErrorGuaranteed> {
-        self.at(position, None, reports).resolve(reference)
+    pub fn resolve(&mut self, reference: &Reference, position: Position) -> Reported<Target> {
+        self.at(position, None).resolve(reference)
     }
 
     /// Finds the target of a name of the scene in a frame.
-    pub fn find_scene(
-        &mut self,
-        name: &str,
-        scope: ScopeId,
-    ) -> Option<Result<Target, ErrorGuaranteed>> {
+    pub fn find_scene(&mut self, name: &str, scope: ScopeId) -> Option<Reported<Target>> {
         let instance = self.scopes.instance_of(scope);
         if let Some(bound) = self.scopes.scene(instance, name) {
             return Some(bound);
@@ -301,19 +284,14 @@ impl<'a> SymbolTable<'a> {
     }
 
     /// Finds the target of a shader's global of that name in a frame.
-    pub fn find_global(
-        &mut self,
-        global: &str,
-        scope: ScopeId,
-        reports: &mut Reports,
-    ) -> Option<Result<Target, ErrorGuaranteed>> {
+    pub fn find_global(&mut self, global: &str, scope: ScopeId) -> Option<Reported<Target>> {
         let found = self.scopes.find_wgsl_name(scope, global).or_else(|| {
             let name = self.wgsl_name.get(global).cloned()?;
             self.find_scene(&name, scope)
         });
         if let Some(found) = found {
             return Some(found.and_then(|target| {
-                self.resolve_size(target.id, reports)?;
+                self.resolve_size(target.id)?;
                 Ok(if target.part == SubresourceRange::WHOLE {
                     self.whole(target.id)
                 } else {
@@ -321,7 +299,7 @@ impl<'a> SymbolTable<'a> {
                 })
             }));
         }
-        let base = self.find_global(global.strip_suffix("_previous")?, scope, reports)?;
+        let base = self.find_global(global.strip_suffix("_previous")?, scope)?;
         let previous = base.map(|base| {
             let id = self.previous(base.id).ok()?;
             Some(Target { id, ..base })
@@ -334,28 +312,24 @@ impl<'a> SymbolTable<'a> {
         self.scopes.root().begin()
     }
 
-    /// Finds the target of a name in a command: a resource by its full name, or a part of one that
-    /// the root document knows. `None` if the name is unknown.
-    pub fn find_full(
-        &mut self,
-        name: &str,
-        reports: &mut Reports,
-    ) -> Option<Result<Target, ErrorGuaranteed>> {
+    /// Finds the output or capture that a request names: a resource by its full name, or a part of
+    /// one that the root document knows. `None` if the name is unknown.
+    pub fn find_full(&mut self, name: &str) -> Option<Reported<Target>> {
         let known = self
             .resources
             .iter()
             .position(|resource| resource.name == name);
         if let Some(number) = known {
             let id = ResourceId(number);
-            return Some(self.resolve_size(id, reports).map(|()| self.whole(id)));
+            return Some(self.resolve_size(id).map(|()| self.whole(id)));
         }
         // A file of its own, so that mistakes in it are told as those of a command.
         let file = SourceFile::new("command line", name);
         let reference = parser::reference(&file, 0..name.len()).ok()?;
-        let mut unheard = Reports::default();
-        self.resolve(&reference, self.root(), &mut unheard)
-            .ok()
-            .map(Ok)
+        let heard = std::mem::take(&mut self.reports);
+        let found = self.resolve(&reference, self.root());
+        self.reports = heard;
+        found.ok().map(Ok)
     }
 
     /// Full names of all resources, and of what the scene has besides.
@@ -432,39 +406,35 @@ impl<'a> SymbolTable<'a> {
     /// Finds the size of a resource if it is not known yet. Materials that it is made of come
     /// first, so that no chain of sizes is as deep as the stack. The exception is a material in an
     /// expression that is itself made of the expression's material: it is found on the way.
-    pub fn resolve_size(
-        &mut self,
-        id: ResourceId,
-        reports: &mut Reports,
-    ) -> Result<(), ErrorGuaranteed> {
+    pub fn resolve_size(&mut self, id: ResourceId) -> Reported<()> {
         if matches!(self.states[id.0], State::Declared(_)) {
             match self.evaluating.len() {
-                0 => self.resolve_sizes_of_parts(id, reports),
-                1..NESTED => self.evaluate(id, reports),
-                _ => return Err(self.circular(id, reports)),
+                0 => self.resolve_sizes_of_parts(id),
+                1..NESTED => self.evaluate(id),
+                _ => return Err(self.circular(id)),
             }
         }
         match &self.states[id.0] {
             State::Known => Ok(()),
             State::Invalid(reported) => Err(*reported),
-            State::Declared(_) | State::Resolving => Err(self.circular(id, reports)),
+            State::Declared(_) | State::Resolving => Err(self.circular(id)),
         }
     }
 
-    fn circular(&self, id: ResourceId, reports: &mut Reports) -> ErrorGuaranteed {
+    fn circular(&mut self, id: ResourceId) -> ErrorGuaranteed {
         // The walk began with the one that is evaluated last, which is the one that the first asks
         // for.
         let mut found = self.evaluating.iter().skip_while(|found| **found != id);
         let resource = self.get(found.nth(1).copied().unwrap_or(id));
         let span = resource.declared.clone();
         let span = span.unwrap_or_else(|| self.graph.place());
-        reports.report(EvaluationError::Circular(Located::new(
+        self.reports.report(EvaluationError::Circular(Located::new(
             resource.name.clone(),
             span,
         )))
     }
 
-    fn resolve_sizes_of_parts(&mut self, id: ResourceId, reports: &mut Reports) {
+    fn resolve_sizes_of_parts(&mut self, id: ResourceId) {
         let mut seen = BTreeSet::from([id]);
         let mut open = vec![(id, self.parts(id))];
         while let Some((last, parts)) = open.last_mut() {
@@ -474,7 +444,7 @@ impl<'a> SymbolTable<'a> {
                 None => {
                     let last = *last;
                     open.pop();
-                    self.evaluate(last, reports);
+                    self.evaluate(last);
                 }
             }
         }
@@ -508,7 +478,7 @@ impl<'a> SymbolTable<'a> {
         parts
     }
 
-    fn evaluate(&mut self, id: ResourceId, reports: &mut Reports) {
+    fn evaluate(&mut self, id: ResourceId) {
         let state = &mut self.states[id.0];
         let State::Declared(declared) = std::mem::replace(state, State::Resolving) else {
             return;
@@ -517,7 +487,7 @@ impl<'a> SymbolTable<'a> {
         let full_name = self.resources[id.0].name.clone();
         let (graph, request) = (self.graph, self.request);
         let position = declared.scope.begin();
-        let mut at = self.at(position, None, reports);
+        let mut at = self.at(position, None);
         let kind = materials::kind(&declared, &full_name, (graph, request), &mut at);
         self.evaluating.pop();
         self.states[id.0] = match kind {
@@ -540,21 +510,20 @@ impl<'a> SymbolTable<'a> {
 }
 
 /// Meaning of the names of an expression at a place of a document.
-pub(crate) struct At<'w, 'a, 'r> {
+pub(crate) struct At<'w, 'a> {
     symbols: &'w mut SymbolTable<'a>,
-    position: Position,
+    pub position: Position,
     /// The shader of the pass, where it is one's expression.
-    shader: Option<Result<Arc<Shader>, ErrorGuaranteed>>,
-    reports: &'r mut Reports,
+    shader: Option<Reported<Arc<Shader>>>,
 }
 
-impl<'a> At<'_, 'a, '_> {
-    pub fn symbols(&self) -> &SymbolTable<'a> {
-        self.symbols
+impl<'a> At<'_, 'a> {
+    pub fn report(&mut self, mistake: impl Into<Diagnostic>) -> ErrorGuaranteed {
+        self.symbols.reports.report(mistake)
     }
 
-    pub fn scope(&self) -> ScopeId {
-        self.position.scope
+    pub fn symbols(&self) -> &SymbolTable<'a> {
+        self.symbols
     }
 
     /// The instance of a document that the place stands in.
@@ -563,26 +532,26 @@ impl<'a> At<'_, 'a, '_> {
     }
 
     /// Another place, without a shader.
-    pub fn elsewhere(&mut self, position: Position) -> At<'_, 'a, '_> {
-        self.symbols.at(position, None, self.reports)
+    pub fn elsewhere(&mut self, position: Position) -> At<'_, 'a> {
+        self.symbols.at(position, None)
     }
 
-    pub fn value(&mut self, id: ValueId) -> Result<Value, ErrorGuaranteed> {
-        self.symbols.value(id, self.reports)
+    pub fn value(&mut self, id: ValueId) -> Reported<Value> {
+        self.symbols.value(id)
+    }
+
+    /// Finds the output or capture that a request names.
+    pub fn find_full(&mut self, name: &str) -> Option<Reported<Target>> {
+        self.symbols.find_full(name)
     }
 
     /// Finds the target of a name of the scene.
-    pub fn find_scene(&mut self, name: &str) -> Option<Result<Target, ErrorGuaranteed>> {
+    pub fn find_scene(&mut self, name: &str) -> Option<Reported<Target>> {
         self.symbols.find_scene(name, self.position.scope)
     }
 
-    /// Finds the target of a name in a command.
-    pub fn find_full(&mut self, name: &str) -> Option<Result<Target, ErrorGuaranteed>> {
-        self.symbols.find_full(name, self.reports)
-    }
-
     /// Resolves a reference.
-    pub fn resolve(&mut self, reference: &Reference) -> Result<Target, ErrorGuaranteed> {
+    pub fn resolve(&mut self, reference: &Reference) -> Reported<Target> {
         let mut reference = reference;
         while let Some(otherwise) = &reference.otherwise {
             let (condition, other) = &**otherwise;
@@ -592,7 +561,7 @@ impl<'a> At<'_, 'a, '_> {
             reference = other;
         }
         let (mut target, selection) = self.named(reference)?;
-        self.symbols.resolve_size(target.id, self.reports)?;
+        self.symbols.resolve_size(target.id)?;
         // A part of an input is a part of what is bound to it; a whole one is known only now.
         if target.part == SubresourceRange::WHOLE {
             target = self.symbols.whole(target.id);
@@ -600,30 +569,25 @@ impl<'a> At<'_, 'a, '_> {
         // Mips first: of a 3D texture they have fewer slices.
         if let Some(mips) = &reference.mips {
             let have = parts::mips(&target, self.symbols.get(target.id), reference);
-            let have = self.reports.check(have)?;
+            let have = self.symbols.reports.check(have)?;
             let range = self.range(mips, have, reference, &target)?;
             let resource = self.symbols.get(target.id);
             let selected = parts::select_mips(&mut target, range, resource, reference);
-            self.reports.check(selected)?;
+            self.symbols.reports.check(selected)?;
         }
         if let Some(selection) = selection {
             let resource = self.symbols.get(target.id);
-            let have = parts::layers(&target, resource, reference, self.reports)?;
+            let have = parts::layers(&target, resource, reference);
+            let have = self.symbols.reports.check(have)?;
             let range = self.range(selection, have, reference, &target)?;
-            // Items of a buffer without parts so far count from 0.
-            let is_whole = target.part == SubresourceRange::WHOLE;
-            let start = if is_whole {
-                0
-            } else {
-                target.part.layers.start
-            };
+            let start = target.part.layers.start;
             target.part.layers = start + range.start..start + range.end;
         }
         if reference.previous {
             let kept = self.symbols.kept(target.id);
             let id = self.symbols.previous(target.id);
             target.id = id.map_err(|what| {
-                self.reports.report(InterfaceError::NoPrevious {
+                self.report(InterfaceError::NoPrevious {
                     name: reference.text().to_owned(),
                     span: reference.span.clone(),
                     what,
@@ -636,10 +600,7 @@ impl<'a> At<'_, 'a, '_> {
 
     /// Resolves the names of a reference. Returns their meanings, and the selection behind the last
     /// name.
-    fn named<'r>(
-        &mut self,
-        reference: &'r Reference,
-    ) -> Result<(Target, Option<&'r Selection>), ErrorGuaranteed> {
+    fn named<'r>(&mut self, reference: &'r Reference) -> Reported<(Target, Option<&'r Selection>)> {
         let first = &reference.segments[0];
         let scope = self.position.scope;
         let symbol = self.symbols.scopes.find(scope, &first.name.value);
@@ -653,14 +614,14 @@ impl<'a> At<'_, 'a, '_> {
                 Symbol::Invalid(reported) => return Err(reported),
                 Symbol::Value(_) => {
                     let name = Located::new(walked, segment.name.span.clone());
-                    return Err(self.reports.report(InterfaceError::IsValue(name)));
+                    return Err(self.report(InterfaceError::IsValue(name)));
                 }
                 Symbol::Target(target) => {
                     return match segments.peek() {
                         None => Ok((target, segment.selection.as_ref())),
-                        Some(next) => Err(self.reports.report(InterfaceError::NotOfMaterial {
+                        Some(next) => Err(self.report(InterfaceError::NotOfMaterial {
                             of: walked,
-                            name: Located::new(next.name.value.to_string(), next.name.span.clone()),
+                            name: next.name.text(),
                         })),
                     };
                 }
@@ -672,14 +633,14 @@ impl<'a> At<'_, 'a, '_> {
             };
             let Some(next) = segments.peek() else {
                 let name = Located::new(walked, segment.name.span.clone());
-                return Err(self.reports.report(InterfaceError::Namespace(name)));
+                return Err(self.report(InterfaceError::Namespace(name)));
             };
             let Some(found) = names.get(&next.name.value) else {
                 let known = names.keys().map(|name| name.to_string());
-                let known = self.reports.known(known);
-                return Err(self.reports.report(InterfaceError::Private {
+                let known = self.symbols.reports.known(known);
+                return Err(self.report(InterfaceError::Private {
                     entry: walked,
-                    name: Located::new(next.name.value.to_string(), next.name.span.clone()),
+                    name: next.name.text(),
                     known,
                 }));
             };
@@ -690,16 +651,15 @@ impl<'a> At<'_, 'a, '_> {
     }
 
     /// Which repetition a segment selects.
-    fn repetition(&mut self, segment: &Segment, count: usize) -> Result<usize, ErrorGuaranteed> {
+    fn repetition(&mut self, segment: &Segment, count: usize) -> Reported<usize> {
         let name = &segment.name;
         let Some(Selection::One(expr)) = &segment.selection else {
-            let name = Located::new(name.value.to_string(), name.span.clone());
-            return Err(self.reports.report(InterfaceError::Namespace(name)));
+            return Err(self.report(InterfaceError::Namespace(name.text())));
         };
         let index = eval::count(expr, self)?;
         let index = usize::try_from(index).ok().filter(|index| *index < count);
         index.ok_or_else(|| {
-            self.reports.report(InterfaceError::Range {
+            self.report(InterfaceError::Range {
                 text: format!("{}[{}]", name.value, expr.text()),
                 span: expr.span.clone(),
                 what: format!("it is repeated {count} times, counted from 0"),
@@ -712,7 +672,7 @@ impl<'a> At<'_, 'a, '_> {
     fn of_scene<'r>(
         &mut self,
         reference: &'r Reference,
-    ) -> Result<(Target, Option<&'r Selection>), ErrorGuaranteed> {
+    ) -> Reported<(Target, Option<&'r Selection>)> {
         let path = reference.path();
         let (last, others) = match reference.segments.split_last() {
             Some((last, others)) => (last.selection.as_ref(), others),
@@ -738,7 +698,7 @@ impl<'a> At<'_, 'a, '_> {
         list: &str,
         number: &Expr,
         reference: &Reference,
-    ) -> Option<Result<Target, ErrorGuaranteed>> {
+    ) -> Option<Reported<Target>> {
         let instance = self.symbols.scopes.instance_of(self.position.scope);
         if self.symbols.scopes.scene(instance, list).is_some() {
             return None;
@@ -754,7 +714,7 @@ impl<'a> At<'_, 'a, '_> {
             .symbols
             .find_scene(&format!("{list}.{number}"), self.position.scope);
         Some(found.unwrap_or_else(|| {
-            Err(self.reports.report(InterfaceError::Range {
+            Err(self.report(InterfaceError::Range {
                 text: reference.text().to_owned(),
                 span: reference.span.clone(),
                 what: format!("there are {count} of them, counted from 0; this is [{number}]"),
@@ -769,8 +729,11 @@ impl<'a> At<'_, 'a, '_> {
         if let Some(reported) = instance.incomplete {
             return reported;
         }
-        let known = self.reports.known(self.symbols.known(self.position.scope));
-        self.reports.report(InterfaceError::Unknown {
+        let known = self
+            .symbols
+            .reports
+            .known(self.symbols.known(self.position.scope));
+        self.report(InterfaceError::Unknown {
             name: Located::new(reference.path(), reference.span.clone()),
             document: instance.document.file.name.to_string(),
             known,
@@ -784,7 +747,7 @@ impl<'a> At<'_, 'a, '_> {
         have: (&str, u64),
         reference: &Reference,
         target: &Target,
-    ) -> Result<Range<u32>, ErrorGuaranteed> {
+    ) -> Reported<Range<u32>> {
         let selected = match selection {
             Selection::One(one) => {
                 let first = eval::count(one, self)?;
@@ -799,20 +762,21 @@ impl<'a> At<'_, 'a, '_> {
             }
         };
         let resource = self.symbols.get(target.id);
-        self.reports
+        self.symbols
+            .reports
             .check(parts::narrow(selected, have, reference, resource))
     }
 }
 
-impl Sizing for At<'_, '_, '_> {
-    fn resource(&mut self, of: &Reference) -> Result<(Target, &Resource), ErrorGuaranteed> {
+impl Sizing for At<'_, '_> {
+    fn resource(&mut self, of: &Reference) -> Reported<(Target, &Resource)> {
         let target = self.resolve(of)?;
         let resource = self.symbols.get(target.id);
         Ok((target, resource))
     }
 }
 
-impl Environment for At<'_, '_, '_> {
+impl Environment for At<'_, '_> {
     fn viewport(&self) -> [u32; 2] {
         self.symbols.request.viewport
     }
@@ -825,13 +789,13 @@ impl Environment for At<'_, '_, '_> {
         self.symbols.request.provider.describe(name)?.items
     }
 
-    fn param(&mut self, name: &str, span: &Span) -> Result<Value, ErrorGuaranteed> {
+    fn param(&mut self, name: &str, span: &Span) -> Reported<Value> {
         let instance = self.symbols.scopes.document(self.position.scope);
-        if let Some(value) = instance.params.value(name, self.reports) {
+        if let Some(value) = instance.params.value(name, &mut self.symbols.reports) {
             return value;
         }
         if let Some(id) = self.symbols.scopes.find_value(self.position.scope, name) {
-            return self.symbols.value(id, self.reports);
+            return self.symbols.value(id);
         }
         if let Some(reported) = instance.document.invalid_params {
             return Err(reported);
@@ -846,32 +810,30 @@ impl Environment for At<'_, '_, '_> {
             .values
             .iter()
             .map(|(name, _)| name.as_str());
-        let known = self.reports.known(instance.params.names().chain(values));
+        let known = self
+            .symbols
+            .reports
+            .known(instance.params.names().chain(values));
         Err(self.report(EvaluationError::param(name, span, is_material, known)))
     }
 
     fn word_or_param(&mut self, name: &Name) -> Option<Value> {
         let instance = self.symbols.scopes.document(self.position.scope);
-        if let Some(value) = instance.params.value(name, self.reports) {
+        if let Some(value) = instance.params.value(name, &mut self.symbols.reports) {
             return value.ok();
         }
         let id = self.symbols.scopes.find_value(self.position.scope, name)?;
-        self.symbols.value(id, self.reports).ok()
+        self.symbols.value(id).ok()
     }
 
-    fn index(&mut self, of: Option<&Name>, span: &Span) -> Result<u32, ErrorGuaranteed> {
+    fn index(&mut self, of: Option<&Name>, span: &Span) -> Reported<u32> {
         let index = self.symbols.scopes.index(self.position, of);
         let missing = || EvaluationError::NoIndex(span.clone(), of.cloned());
-        index.ok_or_else(|| self.reports.report(missing()))
+        index.ok_or_else(|| self.report(missing()))
     }
 
-    fn attribute(
-        &mut self,
-        of: &Reference,
-        attribute: Attribute,
-        span: &Span,
-    ) -> Result<Value, ErrorGuaranteed> {
-        let target = self.symbols.resolve(of, self.position, self.reports)?;
+    fn attribute(&mut self, of: &Reference, attribute: Attribute, span: &Span) -> Reported<Value> {
+        let target = self.symbols.resolve(of, self.position)?;
         if let Some(value) = parts::attribute(self.symbols.get(target.id), &target, attribute) {
             return Ok(value);
         }
@@ -885,10 +847,10 @@ impl Environment for At<'_, '_, '_> {
             (Attribute::Count, ResourceKind::Buffer(_) | ResourceKind::Provided(_)) => {
                 parts::uncounted(resource, of)
             }
-            _ => EvaluationError::NoAttribute {
-                span: span.clone(),
-                of: format!("`{}`, {},", resource.name, resource.kind.describe()),
-            },
+            _ => {
+                let of = format!("`{}`, {},", resource.name, resource.kind.describe());
+                EvaluationError::NoAttribute(span.clone(), of)
+            }
         };
         let counts = matches!(error, EvaluationError::NoCount(_));
         let reported = self.report(error);
@@ -899,16 +861,16 @@ impl Environment for At<'_, '_, '_> {
         Err(reported)
     }
 
-    fn constant(&mut self, name: &str, span: &Span) -> Result<Value, ErrorGuaranteed> {
+    fn constant(&mut self, name: &str, span: &Span) -> Reported<Value> {
         let shader = match &self.shader {
             Some(shader) => shader.as_ref().map_err(|reported| *reported)?,
-            None => return Err(self.reports.report(EvaluationError::NoShader(span.clone()))),
+            None => return Err(self.report(EvaluationError::NoShader(span.clone()))),
         };
         if let Some(value) = shader.constant(name) {
             return Ok(Value::Scalar(value));
         }
-        let known = self.reports.known(shader.constants());
-        Err(self.reports.report(EvaluationError::NoConstant {
+        let known = self.symbols.reports.known(shader.constants());
+        Err(self.report(EvaluationError::NoConstant {
             span: span.clone(),
             file: shader.source.file.name.to_string(),
             name: name.to_owned(),
@@ -921,6 +883,6 @@ impl Environment for At<'_, '_, '_> {
     }
 
     fn reports(&mut self) -> &mut Reports {
-        self.reports
+        &mut self.symbols.reports
     }
 }

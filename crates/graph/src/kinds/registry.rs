@@ -38,19 +38,14 @@ impl Registry {
     /// `Raster`, `Fullscreen`, `Compute`, `Copy` and `Clear`.
     pub fn standard() -> Self {
         let mut registry = Self::default();
-        registry.register::<Raster>("Raster");
-        registry.register::<Fullscreen>("Fullscreen");
-        registry.register::<Compute>("Compute");
-        registry.register::<Copy>("Copy");
-        registry.register::<Clear>("Clear");
-        #[cfg(feature = "schema")]
-        {
-            registry.describe::<Raster>("Raster");
-            registry.describe::<Fullscreen>("Fullscreen");
-            registry.describe::<Compute>("Compute");
-            registry.describe::<Copy>("Copy");
-            registry.describe::<Clear>("Clear");
+        macro_rules! register {
+            ($($kind:ident)*) => {$(
+                registry.register::<$kind>(stringify!($kind));
+                #[cfg(feature = "schema")]
+                registry.describe::<$kind>(stringify!($kind));
+            )*};
         }
+        register!(Raster Fullscreen Compute Copy Clear);
         registry
     }
 

@@ -221,6 +221,28 @@ pub enum DrawCall<S: Stage> {
     Indirect(S::Arguments),
 }
 
+impl<S: Stage> DrawCall<S> {
+    /// The same call in another stage; `arguments` finds those of an indirect one there.
+    ///
+    /// # Errors
+    /// That of `arguments`.
+    pub fn in_stage<T: Stage, E>(
+        &self,
+        arguments: impl FnOnce(&S::Arguments) -> Result<T::Arguments, E>,
+    ) -> Result<DrawCall<T>, E> {
+        Ok(match self {
+            Self::Direct {
+                vertices,
+                instances,
+            } => DrawCall::Direct {
+                vertices: *vertices,
+                instances: *instances,
+            },
+            Self::Indirect(from) => DrawCall::Indirect(arguments(from)?),
+        })
+    }
+}
+
 /// A colour attachment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColorTarget<S: Stage> {

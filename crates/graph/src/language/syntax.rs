@@ -2,7 +2,6 @@
 
 use super::{name::Name, value::Value};
 use crate::source::span::{Located, Span};
-use std::fmt::Write as _;
 
 /// A number, size, bool or word of a document: written out, or made of params and attributes, as in
 /// `"ceil_div(viewport.size, 2)"`. docs/authoring.md has the grammar.
@@ -40,33 +39,42 @@ pub(crate) enum Subject {
     Material(Box<Reference>),
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Attribute {
-    Size,
-    Width,
-    Height,
-    Layers,
-    Mips,
-    Samples,
-    Count,
-    Format,
-    Kind,
-    Index,
+/// Declares words or signs, each with its spelling and with a number that goes with it.
+macro_rules! spelt {
+    ($(#[$doc:meta])+ $enum:ident $($number:ty)?:
+        $($name:ident = $text:literal $($of:literal)?,)+) => {
+        $(#[$doc])+
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub(crate) enum $enum { $($name),+ }
+
+        impl $enum {
+            /// Every one with its spelling and its number.
+            pub const ALL: &[(&str, Self $(, $number)?)] = &[$(($text, Self::$name $(, $of)?)),+];
+
+            pub fn named(text: &str) -> Option<&'static (&'static str, Self $(, $number)?)> {
+                Self::ALL.iter().find(|(known, ..)| *known == text)
+            }
+
+            pub fn as_str(self) -> &'static str {
+                match self { $(Self::$name => $text),+ }
+            }
+        }
+    };
 }
 
-impl Attribute {
-    pub const ALL: [(&str, Self); 10] = [
-        ("size", Self::Size),
-        ("width", Self::Width),
-        ("height", Self::Height),
-        ("layers", Self::Layers),
-        ("mips", Self::Mips),
-        ("samples", Self::Samples),
-        ("count", Self::Count),
-        ("format", Self::Format),
-        ("kind", Self::Kind),
-        ("index", Self::Index),
-    ];
+spelt! {
+    /// Something that a subject can be asked for, with its word.
+    Attribute:
+    Size = "size",
+    Width = "width",
+    Height = "height",
+    Layers = "layers",
+    Mips = "mips",
+    Samples = "samples",
+    Count = "count",
+    Format = "format",
+    Kind = "kind",
+    Index = "index",
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,82 +83,36 @@ pub(crate) enum Unary {
     Not,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Binary {
-    Or,
-    And,
-    Equal,
-    NotEqual,
-    Less,
-    LessEqual,
-    Greater,
-    GreaterEqual,
-    Add,
-    Subtract,
-    Multiply,
-    Divide,
-    Remainder,
+spelt! {
+    /// An operator between two values, with its sign and how strongly it binds.
+    Binary u8:
+    Or = "||" 0,
+    And = "&&" 1,
+    Equal = "==" 2,
+    NotEqual = "!=" 2,
+    Less = "<" 2,
+    LessEqual = "<=" 2,
+    Greater = ">" 2,
+    GreaterEqual = ">=" 2,
+    Add = "+" 3,
+    Subtract = "-" 3,
+    Multiply = "*" 4,
+    Divide = "/" 4,
+    Remainder = "%" 4,
 }
 
-impl Binary {
-    /// Every operator with its sign and how strongly it binds.
-    pub const ALL: [(&str, Self, u8); 13] = [
-        ("||", Self::Or, 0),
-        ("&&", Self::And, 1),
-        ("==", Self::Equal, 2),
-        ("!=", Self::NotEqual, 2),
-        ("<", Self::Less, 2),
-        ("<=", Self::LessEqual, 2),
-        (">", Self::Greater, 2),
-        (">=", Self::GreaterEqual, 2),
-        ("+", Self::Add, 3),
-        ("-", Self::Subtract, 3),
-        ("*", Self::Multiply, 4),
-        ("/", Self::Divide, 4),
-        ("%", Self::Remainder, 4),
-    ];
-
-    pub fn as_str(self) -> &'static str {
-        let mut known = Self::ALL.iter();
-        known
-            .find(|(_, other, _)| *other == self)
-            .map_or("", |(sign, ..)| *sign)
-    }
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Function {
-    Min,
-    Max,
-    CeilDiv,
-    Floor,
-    Ceil,
-    Exp,
-    Log2,
-    Pow,
-    Sqrt,
-}
-
-impl Function {
-    /// Every function with its name and number of arguments.
-    pub const ALL: [(&str, Self, usize); 9] = [
-        ("min", Self::Min, 2),
-        ("max", Self::Max, 2),
-        ("ceil_div", Self::CeilDiv, 2),
-        ("floor", Self::Floor, 1),
-        ("ceil", Self::Ceil, 1),
-        ("exp", Self::Exp, 1),
-        ("log2", Self::Log2, 1),
-        ("pow", Self::Pow, 2),
-        ("sqrt", Self::Sqrt, 1),
-    ];
-
-    pub fn as_str(self) -> &'static str {
-        let mut known = Self::ALL.iter();
-        known
-            .find(|(_, other, _)| *other == self)
-            .map_or("", |(name, ..)| *name)
-    }
+spelt! {
+    /// A function, with its name and number of arguments.
+    Function usize:
+    Min = "min" 2,
+    Max = "max" 2,
+    CeilDiv = "ceil_div" 2,
+    Floor = "floor" 1,
+    Ceil = "ceil" 1,
+    Exp = "exp" 1,
+    Log2 = "log2" 1,
+    Pow = "pow" 2,
+    Sqrt = "sqrt" 1,
 }
 
 /// A material or a part of one: `maps[index].mip[0]`, `left.position`, `history.previous`; or one
@@ -212,7 +174,7 @@ impl Reference {
 
     /// The reference as it is written.
     pub fn text(&self) -> &str {
-        text(&self.span)
+        self.span.text()
     }
 
     /// The reference as it is written, with its place.
@@ -230,7 +192,9 @@ impl Reference {
         names.join(".")
     }
 
+    /// Calls `each` with it, and with everything that its selections and conditions are made of.
     pub(crate) fn visit<'a>(&'a self, each: &mut dyn FnMut(Leaf<'a>)) {
+        each(Leaf::Material(self));
         let segments = self
             .segments
             .iter()
@@ -241,7 +205,6 @@ impl Reference {
         if let Some(otherwise) = &self.otherwise {
             let (condition, other) = &**otherwise;
             condition.visit(each);
-            each(Leaf::Material(other));
             other.visit(each);
         }
     }
@@ -257,8 +220,15 @@ pub(crate) enum Leaf<'a> {
     Has(wgt::Features),
 }
 
-fn text(span: &Span) -> &str {
-    span.file.text.get(span.range.clone()).unwrap_or("")
+impl<'a> Leaf<'a> {
+    /// The name of what may be a param or a value.
+    pub fn named(&self) -> Option<&'a str> {
+        match self {
+            Self::Param(name) => Some(name),
+            Self::Word(name) => Some(name.as_str()),
+            _ => None,
+        }
+    }
 }
 
 impl Expr {
@@ -273,7 +243,7 @@ impl Expr {
 
     /// The expression as it is written.
     pub fn text(&self) -> &str {
-        text(&self.span)
+        self.span.text()
     }
 
     /// The param that the expression is, with nothing done to it.
@@ -298,10 +268,7 @@ impl Expr {
             ExprKind::Word(word) => each(Leaf::Word(word)),
             ExprKind::Constant(name) => each(Leaf::Constant(name)),
             ExprKind::Has(feature) => each(Leaf::Has(*feature)),
-            ExprKind::Attribute(Subject::Material(of), _) => {
-                each(Leaf::Material(of));
-                of.visit(each);
-            }
+            ExprKind::Attribute(Subject::Material(of), _) => of.visit(each),
             ExprKind::Literal(_) | ExprKind::Attribute(..) => {}
             ExprKind::Tuple(list) | ExprKind::Call(_, list) => {
                 list.iter().for_each(|expr| expr.visit(each));
@@ -326,17 +293,12 @@ impl Expr {
             ExprKind::Unary(Unary::Minus, of) => format!("-{}", of.canonical(leaf)),
             ExprKind::Unary(Unary::Not, of) => format!("!{}", of.canonical(leaf)),
             ExprKind::Binary(operator, of) => {
-                let [a, b] = &**of;
-                let (a, b) = (a.canonical(leaf), b.canonical(leaf));
+                let [a, b] = of.each_ref().map(|expr| expr.canonical(leaf));
                 format!("({a} {} {b})", operator.as_str())
             }
             ExprKind::Ternary(of) => {
-                let mut text = String::new();
-                for (expr, sign) in of.iter().zip(["?", ":", ""]) {
-                    // Writing to a String cannot fail.
-                    let _ = write!(text, "({}){sign}", expr.canonical(leaf));
-                }
-                text
+                let [condition, yes, no] = of.each_ref().map(|expr| expr.canonical(leaf));
+                format!("({condition})?({yes}):({no})")
             }
             _ => self.text().to_owned(),
         }

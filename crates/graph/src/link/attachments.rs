@@ -2,21 +2,20 @@
 //! shader.
 
 use super::{
-    canvas, dispatch,
-    layouts::Layouts,
-    limits,
-    pass::{Attachment, Ids, LinkedPass, LinkedProgram, Usage},
+    canvas, dispatch, limits,
+    pass::{Attachment, Ids, LinkedProgram, Usage},
     programs,
     scope::PassScope,
     textures::scalar_of,
 };
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, Reports},
+    diagnostics::reports::Reported,
     errors::link::LinkError,
-    kinds::step::{ColorTarget, DepthTarget, Draw, DrawCall, Names, StencilTarget},
+    kinds::step::{ColorTarget, DepthTarget, Draw, Names, StencilTarget},
     language::syntax::Reference,
     resource::{ResourceKind, Target, Texture},
     scalar_class::ScalarClass,
+    shader::varyings::{Varying, Varyings},
     source::span::{Located, Span},
 };
 use wgt::{
@@ -25,62 +24,38 @@ use wgt::{
 
 const ATTACHMENT: Usage = Usage::Texture(TextureUsages::RENDER_ATTACHMENT);
 
-pub(super) fn link(
-    draw: &Draw<Names>,
-    pass: &mut LinkedPass,
-    scope: &mut PassScope<'_>,
-    layouts: &mut Layouts,
-    reports: &mut Reports,
-) -> Result<Draw<Ids>, ErrorGuaranteed> {
-    let limits = &scope.request().limits;
-    let (stages, depth_only) = canvas::stages_of(draw, || scope.shader(&draw.program, reports));
-    let mut program = programs::link(
-        &draw.program,
-        stages,
-        depth_only,
-        pass,
-        scope,
-        layouts,
-        reports,
-    );
+pub(super) fn link(draw: &Draw<Names>, scope: &mut PassScope<'_>) -> Reported<Draw<Ids>> {
+    let (stages, depth_only) = canvas::stages_of(draw, || scope.shader(&draw.program));
+    let mut program = programs::link(&draw.program, stages, depth_only, scope);
     if let Ok(linked) = &program
-        && let Err(reported) = limits::stages(linked, draw, limits, reports)
+        && let Err(reported) = limits::stages(linked, draw, scope)
     {
         program = Err(reported);
     }
-    let colors = colors(draw, program.as_ref().ok(), pass, scope, reports);
+    let colors = colors(draw, program.as_ref().ok(), scope);
     let depth = draw.depth.as_ref();
-    let depth = depth.map(|depth| link_depth(depth, pass, scope, reports));
+    let depth = depth.map(|depth| link_depth(depth, scope));
     let stencil = draw.stencil.as_ref();
-    let stencil = stencil.map(|stencil| link_stencil(stencil, pass, scope, reports));
-    let canvas = canvas::texture(draw, program.as_ref().ok(), pass, limits, reports);
+    let stencil = stencil.map(|stencil| link_stencil(stencil, scope));
+    let canvas = canvas::texture(draw, program.as_ref().ok(), scope);
     let canvas = canvas.map(|texture| {
         let (texture, span) = (texture?, &draw.canvas.as_ref()?.span);
         let (format, samples) = (texture.format, texture.samples);
         // A slash stands in no name: nothing in a document can mean this texture.
-        let name = format!("{}/canvas", pass.name.value);
+        let name = format!("{}/canvas", scope.pass.value);
         let target = scope.add(name, ResourceKind::Texture(texture));
         // It is no content: nothing is written, and nothing of before is needed.
-        pass.access(&target, (false, false, true), ATTACHMENT, span);
+        scope.access(&target, (false, false, true), ATTACHMENT, span);
         Some(Attachment {
             target,
             format,
             samples,
         })
     });
-    let call = match &draw.call {
-        DrawCall::Direct {
-            vertices,
-            instances,
-        } => Ok(DrawCall::Direct {
-            vertices: *vertices,
-            instances: *instances,
-        }),
-        DrawCall::Indirect(name) => {
-            dispatch::indirect(name, 16, pass, scope, layouts, reports).map(DrawCall::Indirect)
-        }
-    };
-    features(draw, pass, scope.request().features, reports)?;
+    let call = draw
+        .call
+        .in_stage(|name| dispatch::indirect(name, 16, scope));
+    features(draw, scope)?;
     let linked = Draw {
         program: program?,
         fullscreen: draw.fullscreen,
@@ -92,17 +67,13 @@ pub(super) fn link(
         call: call?,
         primitive: draw.primitive,
     };
-    reports.check(alike(&linked, pass, scope))?;
+    scope.check(alike(&linked, scope))?;
     Ok(linked)
 }
 
 /// Checks features of the rasteriser that not every device has.
-fn features(
-    draw: &Draw<Names>,
-    pass: &LinkedPass,
-    features: Features,
-    reports: &mut Reports,
-) -> Result<(), ErrorGuaranteed> {
+fn features(draw: &Draw<Names>, scope: &mut PassScope<'_>) -> Reported<()> {
+    let features = scope.request().features;
     let primitive = &draw.primitive;
     let asked = [
         (
@@ -118,8 +89,8 @@ fn features(
     ];
     for (is_asked, field, feature) in asked {
         if is_asked && !features.contains(feature) {
-            reports.unsupported(LinkError::DrawFeature {
-                pass: pass.name.clone(),
+            scope.unsupported(LinkError::DrawFeature {
+                pass: scope.pass.clone(),
                 field,
                 feature: feature.iter_names().next().map_or("", |(name, _)| name),
             })?;
@@ -131,20 +102,18 @@ fn features(
 fn colors(
     draw: &Draw<Names>,
     program: Option<&LinkedProgram>,
-    pass: &mut LinkedPass,
     scope: &mut PassScope<'_>,
-    reports: &mut Reports,
-) -> Result<Vec<ColorTarget<Ids>>, ErrorGuaranteed> {
+) -> Reported<Vec<ColorTarget<Ids>>> {
     let outputs = program.and_then(|program| {
         let entry = *program.entries.last()?;
-        let outputs = program.shader.fragment_outputs(entry);
+        let outputs = Varyings::outputs(program.shader.module(), entry).locations;
         Some((outputs, program.shader.entry_span(entry)))
     });
     let limits = scope.request().limits.clone();
     let most = limits.max_color_attachments;
     if draw.colors.len() > most as usize {
-        reports.unsupported(LinkError::TooManyTargets {
-            pass: pass.name.clone(),
+        scope.unsupported(LinkError::TooManyTargets {
+            pass: scope.pass.clone(),
             count: draw.colors.len(),
             most,
         })?;
@@ -153,7 +122,7 @@ fn colors(
     let mut bytes_per_sample = 0u32;
     let mut wrong = None;
     for (location, color) in (0u32..).zip(&draw.colors) {
-        let linked = match link_color(color, pass, scope, reports) {
+        let linked = match link_color(color, scope) {
             Ok(linked) => linked,
             Err(reported) => {
                 wrong = Some(reported);
@@ -169,14 +138,14 @@ fn colors(
         }
         if let Some((outputs, span)) = &outputs {
             let checked = check_output(location, &color.target, format, outputs, span);
-            wrong = reports.check(checked).err().or(wrong);
+            wrong = scope.check(checked).err().or(wrong);
         }
         colors.push(linked);
     }
     let most = limits.max_color_attachment_bytes_per_sample;
     if bytes_per_sample > most {
-        reports.unsupported(LinkError::BytesPerPixel {
-            pass: pass.name.clone(),
+        scope.unsupported(LinkError::BytesPerPixel {
+            pass: scope.pass.clone(),
             bytes: bytes_per_sample,
             most,
         })?;
@@ -184,31 +153,26 @@ fn colors(
     wrong.map_or(Ok(colors), Err)
 }
 
-fn link_color(
-    color: &ColorTarget<Names>,
-    pass: &mut LinkedPass,
-    scope: &mut PassScope<'_>,
-    reports: &mut Reports,
-) -> Result<ColorTarget<Ids>, ErrorGuaranteed> {
+fn link_color(color: &ColorTarget<Names>, scope: &mut PassScope<'_>) -> Reported<ColorTarget<Ids>> {
     let name = color.target.located();
-    let target = attachment(&color.target, pass, scope, reports)?;
+    let target = attachment(&color.target, scope)?;
     let format = target.format;
     let features = format.guaranteed_format_features(scope.request().features);
     let usages = features.allowed_usages;
     if format.is_depth_stencil_format() || !usages.contains(TextureUsages::RENDER_ATTACHMENT) {
-        return Err(reports.report(LinkError::NotDrawable { name, format }));
+        return Err(scope.report(LinkError::NotDrawable { name, format }));
     }
     if color.blend.is_some() && !features.flags.contains(Flags::BLENDABLE) {
-        return Err(reports.report(LinkError::NotBlendable { name, format }));
+        return Err(scope.report(LinkError::NotBlendable { name, format }));
     }
     if let Some(value) = color.clear {
-        reports.check(clear_value(&name, format, value))?;
+        scope.check(clear_value(&name, format, value))?;
     }
     let clears = color.clear.is_some();
     let used = (!clears, true, clears);
-    pass.access(&target.target, used, ATTACHMENT, &name.span);
+    scope.access(&target.target, used, ATTACHMENT, &name.span);
     let resolve = match &color.resolve {
-        Some(resolve) => Some(resolved(&target, resolve, pass, scope, reports)?),
+        Some(resolve) => Some(resolved(&target, resolve, scope)?),
         None => None,
     };
     Ok(ColorTarget {
@@ -224,12 +188,10 @@ fn link_color(
 fn resolved(
     target: &Attachment,
     resolve: &Reference,
-    pass: &mut LinkedPass,
     scope: &mut PassScope<'_>,
-    reports: &mut Reports,
-) -> Result<Attachment, ErrorGuaranteed> {
+) -> Reported<Attachment> {
     let name = resolve.located();
-    let resolved = attachment(resolve, pass, scope, reports)?;
+    let resolved = attachment(resolve, scope)?;
     let format = target.format;
     let features = format.guaranteed_format_features(scope.request().features);
     let why = if target.samples == 1 {
@@ -244,10 +206,10 @@ fn resolved(
         None
     };
     if let Some(why) = why {
-        return Err(reports.report(LinkError::Resolve { name, why }));
+        return Err(scope.report(LinkError::Resolve { name, why }));
     }
     let used = (false, true, true);
-    pass.access(&resolved.target, used, ATTACHMENT, &name.span);
+    scope.access(&resolved.target, used, ATTACHMENT, &name.span);
     Ok(resolved)
 }
 
@@ -255,11 +217,11 @@ fn check_output(
     location: u32,
     target: &Reference,
     format: TextureFormat,
-    outputs: &[(u32, ScalarClass, u32)],
+    outputs: &[Varying],
     entry: &Span,
 ) -> Result<(), LinkError> {
     let name = target.located();
-    let Some((_, scalar, width)) = outputs.iter().find(|(at, ..)| *at == location) else {
+    let Some(output) = outputs.iter().find(|output| output.location == location) else {
         return Err(LinkError::NoFragmentOutput {
             name,
             location,
@@ -268,6 +230,7 @@ fn check_output(
     };
     let needed = u32::from(format.components());
     let expected = scalar_of(format, TextureAspect::All);
+    let Varying { scalar, width, .. } = output;
     if expected == Some(*scalar) && *width >= needed {
         return Ok(());
     }
@@ -282,25 +245,20 @@ fn check_output(
     })
 }
 
-fn link_depth(
-    depth: &DepthTarget<Names>,
-    pass: &mut LinkedPass,
-    scope: &mut PassScope<'_>,
-    reports: &mut Reports,
-) -> Result<DepthTarget<Ids>, ErrorGuaranteed> {
+fn link_depth(depth: &DepthTarget<Names>, scope: &mut PassScope<'_>) -> Reported<DepthTarget<Ids>> {
     let name = depth.target.located();
-    let target = attachment(&depth.target, pass, scope, reports)?;
+    let target = attachment(&depth.target, scope)?;
     let format = target.format;
     if !format.has_depth_aspect() {
-        return Err(reports.report(LinkError::NoDepth { name, format }));
+        return Err(scope.report(LinkError::NoDepth { name, format }));
     }
     if let Some(value) = depth.clear {
-        reports.check(clear_value(&name, format, [value.into(), 0.0, 0.0, 0.0]))?;
+        scope.check(clear_value(&name, format, [value.into(), 0.0, 0.0, 0.0]))?;
     }
     let clears = depth.clear.is_some();
     let used = (!clears, depth.write || clears, clears);
     let depth_of = aspect_of(&target.target, format, TextureAspect::DepthOnly);
-    pass.access(&depth_of, used, ATTACHMENT, &name.span);
+    scope.access(&depth_of, used, ATTACHMENT, &name.span);
     Ok(DepthTarget {
         target,
         clear: depth.clear,
@@ -312,18 +270,16 @@ fn link_depth(
 
 fn link_stencil(
     stencil: &StencilTarget<Names>,
-    pass: &mut LinkedPass,
     scope: &mut PassScope<'_>,
-    reports: &mut Reports,
-) -> Result<StencilTarget<Ids>, ErrorGuaranteed> {
+) -> Reported<StencilTarget<Ids>> {
     let name = stencil.target.located();
-    let target = attachment(&stencil.target, pass, scope, reports)?;
+    let target = attachment(&stencil.target, scope)?;
     let format = target.format;
     if !format.has_stencil_aspect() {
-        return Err(reports.report(LinkError::NoStencil { name, format }));
+        return Err(scope.report(LinkError::NoStencil { name, format }));
     }
     if let Some(wrong) = stencil.clear.filter(|value| *value > u32::from(u8::MAX)) {
-        return Err(reports.report(LinkError::ClearValue {
+        return Err(scope.report(LinkError::ClearValue {
             name,
             wrong: wrong.into(),
             format,
@@ -334,7 +290,7 @@ fn link_stencil(
     let writes = !stencil.state.is_read_only(None);
     let used = (!clears, writes || clears, clears);
     let stencil_of = aspect_of(&target.target, format, TextureAspect::StencilOnly);
-    pass.access(&stencil_of, used, ATTACHMENT, &name.span);
+    scope.access(&stencil_of, used, ATTACHMENT, &name.span);
     Ok(StencilTarget {
         target,
         clear: stencil.clear,
@@ -385,19 +341,14 @@ pub(super) fn clear_value(
     }
 }
 
-fn attachment(
-    reference: &Reference,
-    pass: &LinkedPass,
-    scope: &mut PassScope<'_>,
-    reports: &mut Reports,
-) -> Result<Attachment, ErrorGuaranteed> {
-    let target = scope.resolve(reference, reports)?;
+fn attachment(reference: &Reference, scope: &mut PassScope<'_>) -> Reported<Attachment> {
+    let target = scope.resolve(reference)?;
     let name = reference.located();
     let resource = scope.get(target.id);
     let ResourceKind::Texture(texture) = &resource.kind else {
         let found = resource.kind.describe();
-        return Err(reports.report(LinkError::NoTexture {
-            pass: pass.name.value.clone(),
+        return Err(scope.report(LinkError::NoTexture {
+            pass: scope.pass.value.clone(),
             name,
             found,
         }));
@@ -406,9 +357,9 @@ fn attachment(
         format, samples, ..
     } = *texture;
     if !target.part.is_single() {
-        return Err(reports.report(LinkError::SeveralLayers(name)));
+        return Err(scope.report(LinkError::SeveralLayers(name)));
     }
-    scope.writable(target.id, &name.span, reports)?;
+    scope.writable(target.id, &name.span)?;
     Ok(Attachment {
         target,
         format,
@@ -418,7 +369,7 @@ fn attachment(
 
 /// All attachments of a draw have one size and number of samples; the area lies in them; depth
 /// and stencil are one texture.
-fn alike(draw: &Draw<Ids>, pass: &LinkedPass, scope: &PassScope<'_>) -> Result<(), LinkError> {
+fn alike(draw: &Draw<Ids>, scope: &PassScope<'_>) -> Result<(), LinkError> {
     let colors = draw.colors.iter().map(|color| &color.target);
     let resolved = draw
         .colors
@@ -430,14 +381,14 @@ fn alike(draw: &Draw<Ids>, pass: &LinkedPass, scope: &PassScope<'_>) -> Result<(
     let drawn: Vec<&Attachment> = drawn.collect();
     let Some(first) = drawn.first() else {
         return Err(LinkError::NoTargets {
-            pass: pass.name.clone(),
+            pass: scope.pass.clone(),
             fullscreen: draw.fullscreen,
         });
     };
     if let (Some(depth), Some(stencil)) = (depth, stencil)
         && depth.target != stencil.target
     {
-        return Err(LinkError::TwoDepthStencils(pass.name.clone()));
+        return Err(LinkError::TwoDepthStencils(scope.pass.clone()));
     }
     let size = |attachment: &Attachment| match &scope.get(attachment.target.id).kind {
         ResourceKind::Texture(texture) => texture.mip_size(attachment.target.part.mips.start),
@@ -448,7 +399,7 @@ fn alike(draw: &Draw<Ids>, pass: &LinkedPass, scope: &PassScope<'_>) -> Result<(
     let differs = |other: &&Attachment| size(other) != whole;
     if let Some(other) = drawn.iter().copied().chain(resolved).find(differs) {
         let error = LinkError::TargetSizes {
-            pass: pass.name.clone(),
+            pass: scope.pass.clone(),
             names: [name(first), name(other)],
             sizes: [whole, size(other)],
         };
@@ -456,7 +407,7 @@ fn alike(draw: &Draw<Ids>, pass: &LinkedPass, scope: &PassScope<'_>) -> Result<(
     }
     if let Some(other) = drawn.iter().find(|other| other.samples != first.samples) {
         let error = LinkError::TargetSamples {
-            pass: pass.name.clone(),
+            pass: scope.pass.clone(),
             names: [name(first), name(other)],
             samples: [first.samples, other.samples],
         };
@@ -472,7 +423,7 @@ fn alike(draw: &Draw<Ids>, pass: &LinkedPass, scope: &PassScope<'_>) -> Result<(
         Ok(())
     } else {
         Err(LinkError::AreaOutside {
-            pass: pass.name.clone(),
+            pass: scope.pass.clone(),
             area: [x, y, width, height],
             whole,
         })

@@ -1,14 +1,13 @@
 //! Which resource a shader's global is, and whether it can be.
 
 use super::{
-    layouts::Layouts,
     params,
-    pass::{BindTarget, LinkedBinding, LinkedPass, LinkedProgram, Usage},
+    pass::{BindTarget, LinkedBinding, LinkedProgram, Usage},
     scope::PassScope,
     textures,
 };
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, Reports},
+    diagnostics::reports::Reported,
     document::materials::Filter,
     errors::link::LinkError,
     kinds::step::Program,
@@ -25,11 +24,8 @@ pub(super) fn bind(
     global: &Global,
     program: &Program,
     linked: &LinkedProgram,
-    pass: &mut LinkedPass,
     scope: &mut PassScope<'_>,
-    layouts: &mut Layouts,
-    reports: &mut Reports,
-) -> Result<LinkedBinding, ErrorGuaranteed> {
+) -> Reported<LinkedBinding> {
     let features = scope.request().features;
     let bound = program
         .bind
@@ -37,37 +33,29 @@ pub(super) fn bind(
         .find(|(name, _)| name.value == global.name);
     let (target, ty) = match (&global.class, bound) {
         (Class::Unsupported(what), _) => {
-            return Err(reports.report(LinkError::Unsupported {
+            return Err(scope.report(LinkError::Unsupported {
                 global: global.name.clone(),
                 what,
                 span: global.span.clone(),
             }));
         }
         (Class::Uniform { size, members, .. }, None) if global.name == "params" => {
-            let block = params::block(global, *size, members, scope, reports)?;
+            let block = params::block(global, *size, members, scope)?;
             (BindTarget::Params(block), uniform(*size))
         }
         (_, bound) => {
             let mut target = match bound {
-                Some((_, operand)) => scope.operand(operand, &pass.name, reports)?.0,
-                None => scope.target(global, &pass.name, reports)?,
+                Some((_, operand)) => scope.operand(operand)?.0,
+                None => scope.target(global)?,
             };
-            let (bound, ty, usage) = binding(
-                global,
-                &mut target,
-                (linked, program),
-                pass,
-                scope,
-                layouts,
-                reports,
-            )?;
+            let (bound, ty, usage) = binding(global, &mut target, (linked, program), scope)?;
             if global.writes {
-                scope.writable(target.id, &global.span, reports)?;
+                scope.writable(target.id, &global.span)?;
                 // Vertex shaders write nothing on most devices.
                 if global.stages.contains(wgt::ShaderStages::VERTEX)
                     && !features.contains(wgt::Features::VERTEX_WRITABLE_STORAGE)
                 {
-                    reports.unsupported(LinkError::VertexWrites {
+                    scope.unsupported(LinkError::VertexWrites {
                         global: global.name.clone(),
                         span: global.span.clone(),
                     })?;
@@ -75,8 +63,8 @@ pub(super) fn bind(
             }
             let used = (global.reads, global.writes, false);
             let is_frame = scope.get(target.id).kind == ResourceKind::Frame;
-            pass.access(&target, used, usage, &global.span);
-            if let Some(access) = pass.accesses.last_mut() {
+            scope.access(&target, used, usage, &global.span);
+            if let Some(access) = scope.accesses.last_mut() {
                 access.triggers = !is_frame || reads_clock(linked, global);
             }
             (bound, ty)
@@ -95,26 +83,23 @@ fn binding(
     global: &Global,
     target: &mut Target,
     (linked, program): (&LinkedProgram, &Program),
-    pass: &LinkedPass,
     scope: &mut PassScope<'_>,
-    layouts: &mut Layouts,
-    reports: &mut Reports,
-) -> Result<Binding, ErrorGuaranteed> {
+) -> Reported<Binding> {
     let features = scope.request().features;
     let resource = scope.get(target.id).clone();
     let needed = match (&global.class, &resource.kind) {
         (Class::Uniform { size, .. }, ResourceKind::Frame) => {
-            return uniform_buffer(global, target, *size, FRAME_BYTES, scope, reports);
+            return uniform_buffer(global, target, *size, FRAME_BYTES, scope);
         }
         (Class::Uniform { size, .. }, ResourceKind::Provided(provided))
             if provided.binding != ProvidedBinding::Storage =>
         {
-            return uniform_buffer(global, target, *size, provided.stride, scope, reports);
+            return uniform_buffer(global, target, *size, provided.stride, scope);
         }
         (Class::Uniform { size, .. }, ResourceKind::Buffer(_)) => {
             let id = scope.symbols().base(target.id);
-            layouts.see(id, &target.part, global);
-            return uniform_buffer(global, target, *size, u64::MAX, scope, reports);
+            scope.layouts.see(id, &target.part, global);
+            return uniform_buffer(global, target, *size, u64::MAX, scope);
         }
         (
             Class::Storage {
@@ -124,19 +109,15 @@ fn binding(
                 ..
             },
             ResourceKind::Buffer(_) | ResourceKind::Provided(_),
-        ) if may_be_storage(&resource.kind) => {
+        ) if !matches!(&resource.kind,
+            ResourceKind::Provided(it) if it.binding == ProvidedBinding::Uniform) =>
+        {
             let least = fixed + stride.unwrap_or(0);
-            return storage_buffer(global, target, least, *read_only, scope, layouts, reports);
+            return storage_buffer(global, target, least, *read_only, scope);
         }
         (Class::Texture(class), ResourceKind::Texture(texture)) => {
-            let (ty, usage, aspect) = textures::texture(
-                global,
-                class,
-                (texture, target),
-                (linked, program),
-                scope,
-                reports,
-            )?;
+            let (ty, usage, aspect) =
+                textures::texture(global, class, (texture, target), (linked, program), scope)?;
             target.part.aspect = aspect;
             let (target, dimension) = (target.clone(), class.dimension());
             let bound = BindTarget::Texture { target, dimension };
@@ -154,8 +135,8 @@ fn binding(
         (Class::AccelerationStructure, ResourceKind::AccelerationStructure) => {
             // Not every device queries rays.
             if !features.contains(wgt::Features::EXPERIMENTAL_RAY_QUERY) {
-                reports.unsupported(LinkError::RayQuery {
-                    pass: pass.name.clone(),
+                scope.unsupported(LinkError::RayQuery {
+                    pass: scope.pass.clone(),
                     span: global.span.clone(),
                 })?;
             }
@@ -171,7 +152,7 @@ fn binding(
         (Class::Texture(_), _) => "a texture",
         _ => "a sampler",
     };
-    Err(reports.report(LinkError::WrongKind {
+    Err(scope.report(LinkError::WrongKind {
         global: global.name.clone(),
         span: global.span.clone(),
         needed,
@@ -187,12 +168,11 @@ fn uniform_buffer(
     target: &Target,
     size: u64,
     have: u64,
-    scope: &PassScope<'_>,
-    reports: &mut Reports,
-) -> Result<Binding, ErrorGuaranteed> {
+    scope: &mut PassScope<'_>,
+) -> Reported<Binding> {
     let most = scope.request().limits.max_uniform_buffer_binding_size;
     if size > have {
-        return Err(reports.report(LinkError::UniformSize {
+        return Err(scope.report(LinkError::UniformSize {
             name: scope.get(target.id).name.clone(),
             have,
             size,
@@ -200,14 +180,14 @@ fn uniform_buffer(
         }));
     }
     if size > most {
-        reports.unsupported(LinkError::UniformLimit {
+        scope.unsupported(LinkError::UniformLimit {
             global: global.name.clone(),
             size,
             most,
             span: global.span.clone(),
         })?;
     }
-    aligned(global, target, scope, reports)?;
+    aligned(global, target, scope)?;
     Ok((
         BindTarget::Buffer(target.clone()),
         uniform(size),
@@ -217,12 +197,7 @@ fn uniform_buffer(
 
 /// Items of a provided buffer begin where the device can bind; those of the document's own are
 /// looked at when their layout is known.
-fn aligned(
-    global: &Global,
-    target: &Target,
-    scope: &PassScope<'_>,
-    reports: &mut Reports,
-) -> Result<(), ErrorGuaranteed> {
+fn aligned(global: &Global, target: &Target, scope: &mut PassScope<'_>) -> Reported<()> {
     let ResourceKind::Provided(provided) = &scope.get(target.id).kind else {
         return Ok(());
     };
@@ -231,7 +206,7 @@ fn aligned(
         return Ok(());
     }
     let (name, stride) = (scope.get(target.id).name.clone(), provided.stride);
-    reports.unsupported(LinkError::Alignment {
+    scope.unsupported(LinkError::Alignment {
         name,
         stride,
         alignment,
@@ -245,21 +220,19 @@ fn storage_buffer(
     target: &Target,
     least: u64,
     read_only: bool,
-    scope: &PassScope<'_>,
-    layouts: &mut Layouts,
-    reports: &mut Reports,
-) -> Result<Binding, ErrorGuaranteed> {
+    scope: &mut PassScope<'_>,
+) -> Reported<Binding> {
     let resource = scope.get(target.id);
     if matches!(resource.kind, ResourceKind::Provided(_)) && !read_only {
         let name = resource.name.clone();
-        return Err(reports.report(LinkError::WritesProvided {
+        return Err(scope.report(LinkError::WritesProvided {
             name,
             span: global.span.clone(),
         }));
     }
-    aligned(global, target, scope, reports)?;
+    aligned(global, target, scope)?;
     let id = scope.symbols().base(target.id);
-    layouts.see(id, &target.part, global);
+    scope.layouts.see(id, &target.part, global);
     Ok((
         BindTarget::Buffer(target.clone()),
         wgt::BindingType::Buffer {
@@ -296,12 +269,5 @@ fn uniform(size: u64) -> wgt::BindingType {
         ty: wgt::BufferBindingType::Uniform,
         has_dynamic_offset: false,
         min_binding_size: NonZeroU64::new(size),
-    }
-}
-
-fn may_be_storage(kind: &ResourceKind) -> bool {
-    match kind {
-        ResourceKind::Provided(provided) => provided.binding != ProvidedBinding::Uniform,
-        _ => true,
     }
 }

@@ -1,8 +1,8 @@
 //! Draws without attachments. wgpu has none: a texture that is never read stands in their place.
 
-use super::pass::{LinkedPass, LinkedProgram};
+use super::{pass::LinkedProgram, scope::PassScope};
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, Reports},
+    diagnostics::reports::Reported,
     errors::{link::LinkError, resource::SizeError},
     kinds::step::{Draw, Names},
     resource::Texture,
@@ -19,7 +19,7 @@ const FORMAT: TextureFormat = TextureFormat::R8Unorm;
 /// The stages of a draw, and whether its fragment shader is to be one without colour outputs.
 pub(super) fn stages_of(
     draw: &Draw<Names>,
-    shader: impl FnOnce() -> Result<Arc<Shader>, ErrorGuaranteed>,
+    shader: impl FnOnce() -> Reported<Arc<Shader>>,
 ) -> (&'static [ShaderStage], bool) {
     let program = &draw.program;
     // Without colours, a fragment shader that yields none may still discard and set depths.
@@ -42,10 +42,8 @@ pub(super) fn stages_of(
 pub(super) fn texture(
     draw: &Draw<Names>,
     program: Option<&LinkedProgram>,
-    pass: &LinkedPass,
-    limits: &wgt::Limits,
-    reports: &mut Reports,
-) -> Result<Option<Texture>, ErrorGuaranteed> {
+    scope: &mut PassScope<'_>,
+) -> Reported<Option<Texture>> {
     let Some(canvas) = &draw.canvas else {
         return Ok(None);
     };
@@ -53,16 +51,16 @@ pub(super) fn texture(
     let depth = draw.depth.as_ref().map(|depth| &depth.target);
     let stencil = draw.stencil.as_ref().map(|stencil| &stencil.target);
     if let Some(target) = colors.chain(depth).chain(stencil).next() {
-        return Err(reports.report(LinkError::CanvasBeside {
-            pass: pass.name.value.clone(),
+        return Err(scope.report(LinkError::CanvasBeside {
+            pass: scope.pass.value.clone(),
             size: canvas.span.clone(),
             target: target.located(),
         }));
     }
     if let Some(program) = program {
-        returns_nothing(program, canvas, pass, reports)?;
+        returns_nothing(program, canvas, scope)?;
     }
-    let size = canvas_size(canvas, pass, limits, reports)?;
+    let size = canvas_size(canvas, scope)?;
     Ok(Some(Texture {
         format: FORMAT,
         size,
@@ -78,17 +76,11 @@ pub(super) fn texture(
 fn returns_nothing(
     program: &LinkedProgram,
     canvas: &Located<[u64; 2]>,
-    pass: &LinkedPass,
-    reports: &mut Reports,
-) -> Result<(), ErrorGuaranteed> {
-    let stages = program.stages.iter().zip(&program.entries);
-    let fragment = stages
-        .filter(|(stage, _)| **stage == ShaderStage::Fragment)
-        .map(|(_, entry)| *entry)
-        .next();
-    let Some(entry) = fragment else {
-        return Err(reports.report(LinkError::CanvasWithoutFragment {
-            pass: pass.name.clone(),
+    scope: &mut PassScope<'_>,
+) -> Reported<()> {
+    let Some(entry) = program.entry(ShaderStage::Fragment) else {
+        return Err(scope.report(LinkError::CanvasWithoutFragment {
+            pass: scope.pass.clone(),
             size: canvas.span.clone(),
         }));
     };
@@ -96,27 +88,22 @@ fn returns_nothing(
     let result = &shader.module().entry_points[entry].function.result;
     match result {
         None => Ok(()),
-        Some(_) => Err(reports.report(LinkError::CanvasOutput {
-            pass: pass.name.value.clone(),
+        Some(_) => Err(scope.report(LinkError::CanvasOutput {
+            pass: scope.pass.value.clone(),
             size: canvas.span.clone(),
             entry: shader.entry_span(entry),
         })),
     }
 }
 
-fn canvas_size(
-    canvas: &Located<[u64; 2]>,
-    pass: &LinkedPass,
-    limits: &wgt::Limits,
-    reports: &mut Reports,
-) -> Result<[u32; 2], ErrorGuaranteed> {
-    let name = Located::new(pass.name.value.clone(), canvas.span.clone());
+fn canvas_size(canvas: &Located<[u64; 2]>, scope: &mut PassScope<'_>) -> Reported<[u32; 2]> {
+    let name = Located::new(scope.pass.value.clone(), canvas.span.clone());
     let [Ok(width), Ok(height)] = canvas.value.map(u32::try_from) else {
-        return Err(reports.report(SizeError::Absurd { name }));
+        return Err(scope.report(SizeError::Absurd { name }));
     };
     let size = [width, height];
     if size.contains(&0) {
-        return Err(reports.report(SizeError::NoTexels {
+        return Err(scope.report(SizeError::NoTexels {
             name,
             size,
             layers: 1,
@@ -124,9 +111,9 @@ fn canvas_size(
             samples: 1,
         }));
     }
-    let most = limits.max_texture_dimension_2d;
+    let most = scope.request().limits.max_texture_dimension_2d;
     if width > most || height > most {
-        reports.unsupported(SizeError::Texels { name, size, most })?;
+        scope.unsupported(SizeError::Texels { name, size, most })?;
     }
     Ok(size)
 }

@@ -2,13 +2,12 @@
 
 use super::{
     covered::{fully_overwrites, within},
-    layouts::Layouts,
     pass::{CAPTURE, LinkedPass},
     scope::PassScope,
     steps,
 };
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, Reports},
+    diagnostics::reports::Reported,
     errors::plan::OutputError,
     instantiate::flat::Run,
     kinds::step::{Operand, Scratch, Step},
@@ -24,13 +23,12 @@ pub(super) fn link(
     capture: &Capture,
     passes: &[LinkedPass],
     scope: &mut PassScope<'_>,
-    layouts: &mut Layouts,
-    reports: &mut Reports,
-) -> Result<LinkedPass, ErrorGuaranteed> {
-    let Some(target) = scope.resolve_full(&capture.material, reports) else {
-        let known = reports.known(scope.symbols().full_names());
-        return Err(reports.report(OutputError::NoMaterial {
-            graph: scope.symbols().graph.path().to_owned(),
+) -> Reported<LinkedPass> {
+    let Some(target) = scope.resolve_full(&capture.material) else {
+        let symbols = scope.symbols();
+        let known = symbols.reports.known(symbols.full_names());
+        return Err(scope.report(OutputError::NoMaterial {
+            graph: symbols.graph.path().to_owned(),
             name: capture.material.clone(),
             known,
         }));
@@ -39,7 +37,7 @@ pub(super) fn link(
     if let Some(part) = written_part(scope.get(target.id), &target, passes) {
         target.part = part;
     }
-    let kind = copy_of(capture, &target, scope, reports)?;
+    let kind = scope.check(copy_of(capture, &target, scope))?;
     let name = Located::new(capture.name(), scope.symbols().graph.place());
     let copy = scope.add(name.value.clone(), kind);
     scope.enter_capture(target, copy);
@@ -47,7 +45,7 @@ pub(super) fn link(
         from: Operand::Scratch(Scratch(0)),
         to: Operand::Scratch(Scratch(1)),
     }];
-    let mut pass = steps::link(name, CAPTURE, &steps, scope, layouts, reports)?;
+    let mut pass = steps::link(name, CAPTURE, &steps, scope)?;
     // A capture runs even if the pass that it comes after does not: the change may have been
     // written above that one.
     pass.run = Run::OnChange;
@@ -59,8 +57,7 @@ fn copy_of(
     capture: &Capture,
     target: &Target,
     scope: &PassScope<'_>,
-    reports: &mut Reports,
-) -> Result<ResourceKind, ErrorGuaranteed> {
+) -> Result<ResourceKind, OutputError> {
     let name = capture.material.clone();
     Ok(match &scope.get(target.id).kind {
         ResourceKind::Texture(texture) => {
@@ -72,18 +69,18 @@ fn copy_of(
             ResourceKind::Texture(copy)
         }
         ResourceKind::Provided(Provided { items: None, .. }) => {
-            return Err(reports.report(OutputError::Unsized(name)));
+            return Err(OutputError::Unsized(name));
         }
         // It becomes as large as what is copied into it.
         ResourceKind::Buffer(_) | ResourceKind::Provided(_) | ResourceKind::Frame => {
             ResourceKind::Buffer(Buffer::default())
         }
         ResourceKind::Sampler(_) => {
-            return Err(reports.report(OutputError::Sampler(name)));
+            return Err(OutputError::Sampler(name));
         }
         ResourceKind::AccelerationStructure => {
             let what = "an acceleration structure".to_owned();
-            return Err(reports.report(OutputError::Unreadable { name, what }));
+            return Err(OutputError::Unreadable { name, what });
         }
     })
 }

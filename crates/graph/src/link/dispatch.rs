@@ -1,17 +1,15 @@
 //! Sizes of dispatches, and arguments that stand in buffers.
 
 use super::{
-    layouts::Layouts,
-    pass::{Ids, LinkedPass, LinkedProgram, Usage},
+    pass::{Ids, LinkedProgram, Usage},
     programs,
     scope::PassScope,
 };
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, Reports},
+    diagnostics::reports::Reported,
     errors::link::LinkError,
     kinds::step::{Dispatch, Groups, Names, Operand, Threads},
     resource::{ResourceKind, Target},
-    source::span::Located,
 };
 use naga::ShaderStage;
 
@@ -24,30 +22,14 @@ fn fold(groups: u64, most: u32) -> [u64; 3] {
 
 pub(super) fn link(
     dispatch: &Dispatch<Names>,
-    pass: &mut LinkedPass,
     scope: &mut PassScope<'_>,
-    layouts: &mut Layouts,
-    reports: &mut Reports,
-) -> Result<Dispatch<Ids>, ErrorGuaranteed> {
+) -> Reported<Dispatch<Ids>> {
     let stages = [ShaderStage::Compute];
-    let program = programs::link(
-        &dispatch.program,
-        &stages,
-        false,
-        pass,
-        scope,
-        layouts,
-        reports,
-    )?;
-    let limits = &scope.request().limits;
-    let size = workgroup_size(&program, &pass.name, limits, reports)?;
+    let program = programs::link(&dispatch.program, &stages, false, scope)?;
+    let size = workgroup_size(&program, scope)?;
     let groups = match &dispatch.groups {
-        Groups::Direct(threads) => {
-            Groups::Direct(workgroups(threads, size, &pass.name, limits, reports)?)
-        }
-        Groups::Indirect(buffer) => {
-            Groups::Indirect(indirect(buffer, 12, pass, scope, layouts, reports)?)
-        }
+        Groups::Direct(threads) => Groups::Direct(workgroups(threads, size, scope)?),
+        Groups::Indirect(buffer) => Groups::Indirect(indirect(buffer, 12, scope)?),
     };
     Ok(Dispatch { program, groups })
 }
@@ -56,38 +38,31 @@ pub(super) fn link(
 pub(super) fn indirect(
     operand: &Operand,
     bytes: u64,
-    pass: &mut LinkedPass,
     scope: &mut PassScope<'_>,
-    layouts: &mut Layouts,
-    reports: &mut Reports,
-) -> Result<Target, ErrorGuaranteed> {
-    let (target, name) = scope.operand(operand, &pass.name, reports)?;
+) -> Reported<Target> {
+    let (target, name) = scope.operand(operand)?;
     let resource = scope.get(target.id);
     if !matches!(resource.kind, ResourceKind::Buffer(_)) {
         let found = resource.kind.describe();
-        return Err(reports.report(LinkError::NoArguments { name, found }));
+        return Err(scope.report(LinkError::NoArguments { name, found }));
     }
     let id = scope.symbols().base(target.id);
-    layouts.at_least(id, &target.part, bytes, &name.span);
+    scope.layouts.at_least(id, &target.part, bytes, &name.span);
     let usage = Usage::Buffer(wgt::BufferUsages::INDIRECT);
-    pass.access(&target, (true, false, false), usage, &name.span);
+    scope.access(&target, (true, false, false), usage, &name.span);
     Ok(target)
 }
 
-fn workgroup_size(
-    program: &LinkedProgram,
-    pass: &Located<String>,
-    limits: &wgt::Limits,
-    reports: &mut Reports,
-) -> Result<[u32; 3], ErrorGuaranteed> {
+fn workgroup_size(program: &LinkedProgram, scope: &mut PassScope<'_>) -> Reported<[u32; 3]> {
     let entry = program.entries[0];
     let at = program.shader.entry_span(entry);
     let Some(size) = program.shader.workgroup_size(entry) else {
-        return Err(reports.report(LinkError::WorkgroupOverride {
+        return Err(scope.report(LinkError::WorkgroupOverride {
             at,
-            pass: pass.clone(),
+            pass: scope.pass.clone(),
         }));
     };
+    let limits = &scope.request().limits;
     let most = [
         limits.max_compute_workgroup_size_x,
         limits.max_compute_workgroup_size_y,
@@ -96,26 +71,20 @@ fn workgroup_size(
     let threads = limits.max_compute_invocations_per_workgroup;
     let total: u64 = size.iter().map(|&edge| u64::from(edge)).product();
     if total > u64::from(threads) || size.iter().zip(most).any(|(edge, most)| *edge > most) {
-        reports.unsupported(LinkError::WorkgroupSize {
+        scope.unsupported(LinkError::WorkgroupSize {
             size,
             most,
             threads,
             at,
-            pass: pass.clone(),
+            pass: scope.pass.clone(),
         })?;
     }
     Ok(size)
 }
 
 /// How many workgroups of a size are dispatched.
-fn workgroups(
-    threads: &Threads,
-    size: [u32; 3],
-    pass: &Located<String>,
-    limits: &wgt::Limits,
-    reports: &mut Reports,
-) -> Result<[u32; 3], ErrorGuaranteed> {
-    let most = limits.max_compute_workgroups_per_dimension;
+fn workgroups(threads: &Threads, size: [u32; 3], scope: &mut PassScope<'_>) -> Reported<[u32; 3]> {
+    let most = scope.request().limits.max_compute_workgroups_per_dimension;
     let per_group: u64 = size.iter().map(|&edge| u64::from(edge)).product();
     let groups: [u64; 3] = match threads {
         Threads::Groups(groups) => groups.map(u64::from),
@@ -126,10 +95,10 @@ fn workgroups(
     };
     let narrow = groups.map(|edge| u32::try_from(edge).unwrap_or(u32::MAX));
     if narrow.iter().any(|&edge| edge > most) {
-        reports.unsupported(LinkError::Workgroups {
+        scope.unsupported(LinkError::Workgroups {
             groups,
             most,
-            pass: pass.clone(),
+            pass: scope.pass.clone(),
         })?;
     }
     Ok(narrow)

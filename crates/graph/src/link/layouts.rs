@@ -1,7 +1,6 @@
 //! Sizes of buffers: item layouts come from the shaders that see them, counts from the document.
 
 use crate::{
-    diagnostics::reports::Reports,
     errors::layout::LayoutError,
     instantiate::symbols::SymbolTable,
     resource::{Buffer, FRAME_BYTES, Origin, ResourceId, ResourceKind, SubresourceRange},
@@ -82,12 +81,11 @@ impl Layouts {
         }));
     }
 
-    /// Every buffer with its size; reports those that can have none.
+    /// Every buffer with its size, and the mistakes of those that can have none.
     pub fn sized(
         self,
         symbols: &SymbolTable<'_>,
-        reports: &mut Reports,
-    ) -> BTreeMap<ResourceId, Buffer> {
+    ) -> (BTreeMap<ResourceId, Buffer>, Vec<LayoutError>) {
         let (mut buffers, mut errors) = (BTreeMap::new(), Vec::new());
         for (index, resource) in symbols.resources.iter().enumerate() {
             let id = ResourceId(index);
@@ -124,16 +122,7 @@ impl Layouts {
             }
         }
         errors.extend(self.equal_sizes(symbols, &mut buffers));
-        for error in errors {
-            match error {
-                LayoutError::TooLarge { .. } | LayoutError::Alignment { .. } => {
-                    // The report suffices: nothing here depends on the result.
-                    let _ = reports.unsupported(error);
-                }
-                error => drop(reports.report(error)),
-            }
-        }
-        buffers
+        (buffers, errors)
     }
 
     /// Checks that an import is large enough.

@@ -1,9 +1,9 @@
 //! Limits of a device that shaders meet beside their bindings: memory of workgroups and threads,
 //! values between stages, numbers of locations and bindings.
 
-use super::pass::LinkedProgram;
+use super::{pass::LinkedProgram, scope::PassScope};
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, Reports},
+    diagnostics::reports::Reported,
     errors::{
         limits::{Entry, Excess, LimitError},
         link::LinkError,
@@ -30,41 +30,32 @@ const MOST_OF_ALL: u64 = 65_536;
 const MOST_OF_A_VALUE: u64 = 2048 * 16;
 
 /// Checks the memory that each entry point of a program takes.
-pub(super) fn footprints(
-    program: &LinkedProgram,
-    limits: &wgt::Limits,
-    reports: &mut Reports,
-) -> Result<(), ErrorGuaranteed> {
+pub(super) fn footprints(program: &LinkedProgram, scope: &mut PassScope<'_>) -> Reported<()> {
     let mut wrong = None;
     for &index in &program.entries {
         let shader = &program.shader;
         let checked = match shader.footprint(index, &program.constants) {
-            Ok(footprint) => check_footprint(&entry(shader, index), &footprint, limits, reports),
-            Err(error) => Err(reports.report(error)),
+            Ok(footprint) => check_footprint(&entry(shader, index), &footprint, scope),
+            Err(error) => Err(scope.report(error)),
         };
         wrong = checked.err().or(wrong);
     }
     wrong.map_or(Ok(()), Err)
 }
 
-fn check_footprint(
-    entry: &Entry,
-    of: &Footprint,
-    limits: &wgt::Limits,
-    reports: &mut Reports,
-) -> Result<(), ErrorGuaranteed> {
-    let most = limits.max_compute_workgroup_storage_size;
+fn check_footprint(entry: &Entry, of: &Footprint, scope: &mut PassScope<'_>) -> Reported<()> {
+    let most = scope.request().limits.max_compute_workgroup_storage_size;
     if let Some(excess) = beyond(&of.workgroup, u64::from(most), entry) {
         let entry = entry.clone();
-        reports.unsupported(LimitError::Workgroup { entry, excess })?;
+        scope.unsupported(LimitError::Workgroup { entry, excess })?;
     }
     if let Some(excess) = beyond(&of.private, MOST_OF_ONE, entry) {
         let entry = entry.clone();
-        return Err(reports.report(LimitError::Private { entry, excess }));
+        return Err(scope.report(LimitError::Private { entry, excess }));
     }
     for (function, memory) in &of.functions {
         if let Some(excess) = beyond(memory, MOST_OF_ONE, entry) {
-            return Err(reports.report(LimitError::Function {
+            return Err(scope.report(LimitError::Function {
                 file: entry.file.clone(),
                 function: function.clone(),
                 excess,
@@ -85,10 +76,10 @@ fn check_footprint(
             largest,
         };
         let entry = entry.clone();
-        return Err(reports.report(LimitError::Functions { entry, excess }));
+        return Err(scope.report(LimitError::Functions { entry, excess }));
     }
     if let Some(Excess { bytes, largest, .. }) = beyond(&of.value, MOST_OF_A_VALUE, entry) {
-        return Err(reports.report(LimitError::Value {
+        return Err(scope.report(LimitError::Value {
             file: entry.file.clone(),
             function: largest,
             bytes,
@@ -102,14 +93,14 @@ fn check_footprint(
 pub(super) fn binding_numbers(
     shader: &Shader,
     globals: &[Global],
-    limits: &wgt::Limits,
-    reports: &mut Reports,
-) -> Result<(), ErrorGuaranteed> {
+    scope: &mut PassScope<'_>,
+) -> Reported<()> {
+    let limits = &scope.request().limits;
     // Those of globals that nothing uses count, too: a device refuses the whole module. (One number
     // for two globals is found when the shader is validated.)
     let groups = shader.groups();
     for (global, group, span) in groups.filter(|(_, group, _)| *group >= limits.max_bind_groups) {
-        reports.unsupported(LinkError::BindGroup {
+        scope.unsupported(LinkError::BindGroup {
             global: global.to_owned(),
             group,
             most: limits.max_bind_groups,
@@ -118,7 +109,7 @@ pub(super) fn binding_numbers(
     }
     let most = limits.max_bindings_per_bind_group;
     for global in globals.iter().filter(|global| global.binding >= most) {
-        reports.unsupported(LimitError::BindingNumber {
+        scope.unsupported(LimitError::BindingNumber {
             file: shader.file().to_owned(),
             global: global.name.clone(),
             binding: global.binding,
@@ -133,54 +124,47 @@ pub(super) fn binding_numbers(
 pub(super) fn stages(
     program: &LinkedProgram,
     draw: &Draw<Names>,
-    limits: &wgt::Limits,
-    reports: &mut Reports,
-) -> Result<(), ErrorGuaranteed> {
+    scope: &mut PassScope<'_>,
+) -> Reported<()> {
     let shader = &program.shader;
-    let of = |stage: ShaderStage| {
-        let at = program.stages.iter().position(|known| *known == stage)?;
-        program.entries.get(at).copied()
-    };
+    let limits = &scope.request().limits;
     let most = limits.max_inter_stage_shader_variables;
-    let vertex = of(ShaderStage::Vertex);
+    let vertex = program.entry(ShaderStage::Vertex);
     if let Some(index) = vertex {
         let is_points = draw.primitive.topology == wgt::PrimitiveTopology::PointList;
         let at = entry(shader, index);
-        if let Some(attribute) = Varyings::inputs(shader, index).locations.first() {
-            return Err(reports.report(LimitError::Attribute {
+        if let Some(attribute) = Varyings::inputs(shader.module(), index).locations.first() {
+            return Err(scope.report(LimitError::Attribute {
                 entry: at,
                 location: attribute.location,
             }));
         }
-        let outputs = Varyings::outputs(shader, index);
+        let outputs = Varyings::outputs(shader.module(), index);
         let locations = most.saturating_sub(outputs.builtins);
-        check_locations(&at, "writes", &outputs, locations, reports)?;
+        check_locations(&at, "writes", &outputs, locations, scope)?;
         let builtins = outputs.builtins + u32::from(is_points);
-        check_varyings(&at, "writes", &outputs, builtins, most, reports)?;
+        check_varyings(&at, "writes", &outputs, builtins, most, scope)?;
     }
-    let Some(fragment) = of(ShaderStage::Fragment) else {
+    let Some(fragment) = program.entry(ShaderStage::Fragment) else {
         return Ok(());
     };
     let at = entry(shader, fragment);
-    let inputs = Varyings::inputs(shader, fragment);
-    check_locations(&at, "reads", &inputs, most, reports)?;
-    check_varyings(&at, "reads", &inputs, inputs.builtins, most, reports)?;
+    let inputs = Varyings::inputs(shader.module(), fragment);
+    check_locations(&at, "reads", &inputs, most, scope)?;
+    check_varyings(&at, "reads", &inputs, inputs.builtins, most, scope)?;
     let most = limits.max_color_attachments;
     // Too many targets were reported already.
     if draw.colors.len() <= most as usize {
-        check_locations(
-            &at,
-            "writes",
-            &Varyings::outputs(shader, fragment),
-            most,
-            reports,
-        )?;
+        let outputs = Varyings::outputs(shader.module(), fragment);
+        check_locations(&at, "writes", &outputs, most, scope)?;
     }
-    let given = vertex.map_or_else(Varyings::default, |index| Varyings::outputs(shader, index));
+    let given = vertex.map_or_else(Varyings::default, |index| {
+        Varyings::outputs(shader.module(), index)
+    });
     let mut wrong = None;
     for taken in &inputs.locations {
         if let Some(why) = misfit(taken, &given.locations) {
-            wrong = Some(reports.report(LimitError::NoVarying {
+            wrong = Some(scope.report(LimitError::NoVarying {
                 entry: at.clone(),
                 location: taken.location,
                 why,
@@ -196,11 +180,11 @@ fn check_locations(
     verb: &'static str,
     of: &Varyings,
     most: u32,
-    reports: &mut Reports,
-) -> Result<(), ErrorGuaranteed> {
+    scope: &mut PassScope<'_>,
+) -> Reported<()> {
     let locations = of.locations.iter().map(|varying| varying.location);
     match locations.max() {
-        Some(location) if location >= most => reports.unsupported(LimitError::Location {
+        Some(location) if location >= most => scope.unsupported(LimitError::Location {
             entry: at.clone(),
             verb,
             location,
@@ -216,13 +200,13 @@ fn check_varyings(
     of: &Varyings,
     builtins: u32,
     most: u32,
-    reports: &mut Reports,
-) -> Result<(), ErrorGuaranteed> {
+    scope: &mut PassScope<'_>,
+) -> Reported<()> {
     let number = of.locations.len() as u64 + u64::from(builtins);
     if number <= u64::from(most) {
         return Ok(());
     }
-    reports.unsupported(LimitError::TooManyVaryings {
+    scope.unsupported(LimitError::TooManyVaryings {
         entry: at.clone(),
         verb,
         number,
@@ -254,24 +238,12 @@ fn misfit(taken: &Varying, given: &[Varying]) -> Option<String> {
     let Some(given) = given.iter().find(|given| given.location == taken.location) else {
         return Some("no vertex shader writes".to_owned());
     };
-    if given.kind != taken.kind || given.width < taken.width {
+    if given.scalar != taken.scalar || given.width < taken.width {
         return Some(format!(
             "holds {} × {}, not {} × {}",
-            given.width,
-            word(given.kind),
-            taken.width,
-            word(taken.kind)
+            given.width, given.scalar, taken.width, taken.scalar
         ));
     }
     let same = given.interpolation == taken.interpolation && given.sampling == taken.sampling;
     (!same).then(|| "is interpolated differently in the vertex shader".to_owned())
-}
-
-fn word(kind: naga::ScalarKind) -> &'static str {
-    match kind {
-        naga::ScalarKind::Float => "f32",
-        naga::ScalarKind::Sint => "i32",
-        naga::ScalarKind::Uint => "u32",
-        _ => "bool",
-    }
 }

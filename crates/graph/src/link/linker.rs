@@ -2,14 +2,13 @@
 
 use super::{
     capture,
-    layouts::Layouts,
     pass::{Access, LinkedPass},
     scope::PassScope,
     steps,
 };
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, Reports},
-    errors::{instantiate::InterfaceError, link::LinkError},
+    diagnostics::reports::Reported,
+    errors::{instantiate::InterfaceError, layout::LayoutError, link::LinkError},
     instantiate::{
         flat::{Interface, Merge, PlanInputs},
         lower::{Lowered, LoweredPass},
@@ -40,10 +39,9 @@ pub(crate) struct Linked<'a> {
 }
 
 /// Links all passes with their captures.
-pub(crate) fn link<'a>(lowered: Lowered<'a>, reports: &mut Reports) -> Linked<'a> {
+pub(crate) fn link(lowered: Lowered<'_>) -> Linked<'_> {
     let request = lowered.symbols.request;
     let mut scope = PassScope::new(lowered.symbols);
-    let mut layouts = Layouts::default();
     let (mut passes, mut instances) = (Vec::new(), Vec::new());
     // The writes of a pass with a mistake are not known.
     let mut first_invalid: Option<usize> = None;
@@ -51,7 +49,7 @@ pub(crate) fn link<'a>(lowered: Lowered<'a>, reports: &mut Reports) -> Linked<'a
     for (index, pass) in lowered.passes.into_iter().enumerate() {
         numbers.push(passes.len());
         // For each mistake all names are searched for what was meant.
-        if reports.has_enough() {
+        if scope.reports().has_enough() {
             first_invalid.get_or_insert(passes.len());
             break;
         }
@@ -59,7 +57,7 @@ pub(crate) fn link<'a>(lowered: Lowered<'a>, reports: &mut Reports) -> Linked<'a
             first_invalid.get_or_insert(passes.len());
         }
         let (name, instance, is_broken) = (pass.flat.name.clone(), pass.instance, pass.is_broken);
-        match link_pass(pass, &mut scope, &mut layouts, reports) {
+        match link_pass(pass, &mut scope) {
             Ok(linked) if !is_broken => {
                 passes.push(linked);
                 instances.push(Some(instance));
@@ -70,8 +68,7 @@ pub(crate) fn link<'a>(lowered: Lowered<'a>, reports: &mut Reports) -> Linked<'a
         let captures: BTreeSet<&Capture> = request.captures.iter().filter(after).collect();
         for capture in captures {
             // A capture that cannot be was reported, and nothing needs it.
-            let captured = capture::link(capture, &passes, &mut scope, &mut layouts, reports);
-            if let Ok(captured) = captured {
+            if let Ok(captured) = capture::link(capture, &passes, &mut scope) {
                 passes.push(captured);
                 instances.push(None);
             }
@@ -80,8 +77,19 @@ pub(crate) fn link<'a>(lowered: Lowered<'a>, reports: &mut Reports) -> Linked<'a
     if lowered.first_invalid.is_some() {
         first_invalid.get_or_insert(passes.len());
     }
+    let layouts = std::mem::take(&mut scope.layouts);
     let mut symbols = scope.into_symbols();
-    for (id, buffer) in layouts.sized(&symbols, reports) {
+    let (buffers, errors) = layouts.sized(&symbols);
+    for error in errors {
+        match error {
+            LayoutError::TooLarge { .. } | LayoutError::Alignment { .. } => {
+                // The report suffices: nothing here depends on the result.
+                let _ = symbols.reports.unsupported(error);
+            }
+            error => drop(symbols.reports.report(error)),
+        }
+    }
+    for (id, buffer) in buffers {
         symbols.resources[id.index()].kind = ResourceKind::Buffer(buffer);
     }
     symbols.size_previous();
@@ -97,46 +105,29 @@ pub(crate) fn link<'a>(lowered: Lowered<'a>, reports: &mut Reports) -> Linked<'a
     }
 }
 
-fn link_pass<'a>(
-    mut pass: LoweredPass<'a>,
-    scope: &mut PassScope<'a>,
-    layouts: &mut Layouts,
-    reports: &mut Reports,
-) -> Result<LinkedPass, ErrorGuaranteed> {
+fn link_pass<'a>(mut pass: LoweredPass<'a>, scope: &mut PassScope<'a>) -> Reported<LinkedPass> {
     scope.enter(&mut pass);
     let flat = pass.flat;
-    let mut linked = steps::link(
-        flat.name,
-        flat.pass.kind,
-        &pass.steps,
-        scope,
-        layouts,
-        reports,
-    )?;
+    let mut linked = steps::link(flat.name, flat.pass.kind, &pass.steps, scope)?;
     linked.run = flat.run;
     linked.enabled = flat.enabled;
-    scope.unasked(reports)?;
-    overwrites(&mut linked, &flat.pass.overwrites, scope, reports)?;
+    scope.unasked()?;
+    overwrites(&mut linked, &flat.pass.overwrites, scope)?;
     if let Some(reads) = &flat.pass.reads {
-        self::reads(&linked, reads, scope, reports)?;
+        self::reads(&linked, reads, scope)?;
     }
     Ok(linked)
 }
 
 /// Holds what the author says that a pass reads against what it reads.
-fn reads(
-    pass: &LinkedPass,
-    references: &[Reference],
-    scope: &mut PassScope<'_>,
-    reports: &mut Reports,
-) -> Result<(), ErrorGuaranteed> {
+fn reads(pass: &LinkedPass, references: &[Reference], scope: &mut PassScope<'_>) -> Reported<()> {
     let mut stated = BTreeSet::new();
     for reference in references {
-        let id = scope.resolve(reference, reports)?.id;
+        let id = scope.resolve(reference)?.id;
         stated.insert(id);
         let mut read = pass.accesses.iter().filter(|access| access.reads);
         if !read.any(|access| access.resource == id) {
-            return Err(reports.report(LinkError::ReadsNot {
+            return Err(scope.report(LinkError::ReadsNot {
                 pass: pass.name.value.clone(),
                 name: reference.located(),
             }));
@@ -152,7 +143,7 @@ fn reads(
         None => Ok(()),
         Some(access) => {
             let name = scope.get(access.resource).name.clone();
-            Err(reports.report(LinkError::ReadsMore {
+            Err(scope.report(LinkError::ReadsMore {
                 pass: pass.name.clone(),
                 name,
                 read: access.span.clone(),
@@ -166,10 +157,9 @@ fn overwrites(
     pass: &mut LinkedPass,
     references: &[Reference],
     scope: &mut PassScope<'_>,
-    reports: &mut Reports,
-) -> Result<(), ErrorGuaranteed> {
+) -> Reported<()> {
     for reference in references {
-        let target = scope.resolve(reference, reports)?;
+        let target = scope.resolve(reference)?;
         let mut is_written = false;
         for access in &mut pass.accesses {
             if access.writes && access.resource == target.id && access.part == target.part {
@@ -180,7 +170,7 @@ fn overwrites(
             }
         }
         if !is_written {
-            return Err(reports.report(LinkError::Overwrites {
+            return Err(scope.report(LinkError::Overwrites {
                 pass: pass.name.value.clone(),
                 name: reference.located(),
             }));

@@ -5,7 +5,7 @@ use super::{
     scope::{Asked, PassScope},
 };
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, Reports},
+    diagnostics::reports::Reported,
     errors::link::LinkError,
     kinds::step::Program,
     language::value::{Scalar, Value},
@@ -62,8 +62,7 @@ pub(super) fn constants(
     program: &Program,
     shader: &Shader,
     scope: &mut PassScope<'_>,
-    reports: &mut Reports,
-) -> Result<Vec<(String, f64)>, ErrorGuaranteed> {
+) -> Reported<Vec<(String, f64)>> {
     let mut constants = Vec::new();
     for (name, key, has_default, span) in shader.overrides() {
         let given = program
@@ -74,13 +73,14 @@ pub(super) fn constants(
             constants.push((key, *value));
             continue;
         }
-        let value = match scope.asked(name, reports).transpose()? {
+        let value = match scope.asked(name).transpose()? {
             Some(asked) => {
                 // The plan depends on a param that a constant asks for.
                 if let Some(bound) = scope.param(name) {
-                    reports.depend_on(bound.roots.iter());
+                    let roots = bound.roots.clone();
+                    scope.reports().depend_on(roots.iter());
                 }
-                reports.check(number(name, &asked, shader, &span, scope))?
+                scope.check(number(name, &asked, shader, &span, scope))?
             }
             None => scope.kind(name),
         };
@@ -89,7 +89,7 @@ pub(super) fn constants(
             None if has_default => {}
             None => {
                 let name = Located::new(name.to_owned(), span);
-                return Err(reports.report(LinkError::OverrideWithout(name)));
+                return Err(scope.report(LinkError::OverrideWithout(name)));
             }
         }
     }
@@ -181,11 +181,10 @@ pub(super) fn block(
     size: u64,
     members: &[Member],
     scope: &mut PassScope<'_>,
-    reports: &mut Reports,
-) -> Result<Block, ErrorGuaranteed> {
+) -> Reported<Block> {
     let most = scope.request().limits.max_uniform_buffer_binding_size;
     if members.is_empty() || size > most {
-        return Err(reports.report(LinkError::ParamsUniform {
+        return Err(scope.report(LinkError::ParamsUniform {
             what: match members {
                 [] => "is not a struct",
                 _ => "is too large for the adapter",
@@ -202,7 +201,7 @@ pub(super) fn block(
     let mut wrong = None;
     for member in members {
         let offset = usize::try_from(member.offset).unwrap_or(0);
-        match member_words(global, member, scope, reports) {
+        match member_words(global, member, scope) {
             Ok((words, root)) => {
                 block.write(offset, &words);
                 block.params.extend(root.map(|root| (root, offset)));
@@ -218,11 +217,10 @@ fn member_words(
     global: &Global,
     member: &Member,
     scope: &mut PassScope<'_>,
-    reports: &mut Reports,
-) -> Result<(Vec<u32>, Option<String>), ErrorGuaranteed> {
-    let Some(asked) = scope.asked(&member.name, reports).transpose()? else {
-        let known = reports.known(scope.params());
-        return Err(reports.report(LinkError::UnknownMember {
+) -> Reported<(Vec<u32>, Option<String>)> {
+    let Some(asked) = scope.asked(&member.name).transpose()? else {
+        let known = scope.symbols().reports.known(scope.params());
+        return Err(scope.report(LinkError::UnknownMember {
             member: member.name.clone(),
             span: global.span.clone(),
             known,
@@ -231,13 +229,13 @@ fn member_words(
     };
     let (param, value, root) = match asked {
         Asked::Value(value, span) => {
-            let words = set_member(global, member, &value, &span, scope, reports)?;
+            let words = set_member(global, member, &value, &span, scope)?;
             return Ok((words, None));
         }
         Asked::Index(index) => {
             return match member.vector {
                 Some((ScalarClass::Uint, 1)) => Ok((vec![index], None)),
-                _ => Err(reports.report(LinkError::IndexMember(global.span.clone()))),
+                _ => Err(scope.report(LinkError::IndexMember(global.span.clone()))),
             };
         }
         Asked::Param(param, value, root) => (param, value, root),
@@ -247,7 +245,7 @@ fn member_words(
     if member.vector == Some(expected) {
         return Ok((words, root));
     }
-    Err(reports.report(LinkError::MemberType {
+    Err(scope.report(LinkError::MemberType {
         param,
         member: member.name.clone(),
         scalar: expected.0,
@@ -262,11 +260,10 @@ fn set_member(
     member: &Member,
     value: &Value,
     span: &Span,
-    scope: &PassScope<'_>,
-    reports: &mut Reports,
-) -> Result<Vec<u32>, ErrorGuaranteed> {
+    scope: &mut PassScope<'_>,
+) -> Reported<Vec<u32>> {
     let Some((class, width)) = member.vector else {
-        return Err(reports.report(LinkError::MemberIsNoVector {
+        return Err(scope.report(LinkError::MemberIsNoVector {
             member: member.name.clone(),
             span: global.span.clone(),
         }));
@@ -280,8 +277,8 @@ fn set_member(
                 shader: scope.own_shader.clone(),
                 ..Program::default()
             };
-            let shader = scope.shader(&program, reports)?;
-            let number = reports.check(word(&member.name, value, span, &shader, scope))?;
+            let shader = scope.shader(&program)?;
+            let number = scope.check(word(&member.name, value, span, &shader, scope))?;
             vec![Scalar::Whole(number.into())]
         }
         Value::Format(_) => Vec::new(),
@@ -291,7 +288,7 @@ fn set_member(
         Some(words) => Ok(words),
         None => {
             let expected = format!("{width} × {class}");
-            Err(reports.report(wrong_value(&member.name, &expected, value, span)))
+            Err(scope.report(wrong_value(&member.name, &expected, value, span)))
         }
     }
 }

@@ -51,27 +51,6 @@ impl LinkedPass {
     pub fn params(&self) -> impl Iterator<Item = Option<&[u8]>> {
         self.steps.iter().map(|step| step.program()?.params())
     }
-
-    /// Notes that a step reads or writes a whole part.
-    pub(crate) fn access(
-        &mut self,
-        target: &Target,
-        (reads, writes, fully_overwrites): (bool, bool, bool),
-        usage: Usage,
-        span: &Span,
-    ) {
-        self.accesses.push(Access {
-            resource: target.id,
-            part: target.part.clone(),
-            reads,
-            writes,
-            fully_overwrites,
-            triggers: true,
-            usage,
-            span: span.clone(),
-            step: 0,
-        });
-    }
 }
 
 /// One use of a part of a resource by a step.
@@ -140,8 +119,6 @@ pub struct LinkedProgram {
     pub shader: Arc<Shader>,
     /// Numbers of the entry points in stage order (vertex, fragment; or compute).
     pub entries: Vec<usize>,
-    /// Their stages.
-    pub stages: Vec<ShaderStage>,
     /// Values of pipeline-overridable constants by the key that wgpu knows them by.
     pub constants: Vec<(String, f64)>,
     /// Bindings of the program.
@@ -149,6 +126,13 @@ pub struct LinkedProgram {
 }
 
 impl LinkedProgram {
+    /// The number of the entry point of a stage.
+    pub fn entry(&self, stage: ShaderStage) -> Option<usize> {
+        let points = &self.shader.module().entry_points;
+        let mut entries = self.entries.iter().copied();
+        entries.find(|entry| points[*entry].stage == stage)
+    }
+
     /// The bytes of the `params` uniform.
     pub fn params(&self) -> Option<&[u8]> {
         self.bindings.iter().find_map(|it| match &it.target {

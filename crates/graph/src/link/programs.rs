@@ -1,14 +1,12 @@
 //! Programs: their entry points, and the bindings that they need.
 
 use super::{
-    bindings,
-    layouts::Layouts,
-    limits as device, params,
-    pass::{LinkedBinding, LinkedPass, LinkedProgram},
+    bindings, limits as device, params,
+    pass::{LinkedBinding, LinkedProgram},
     scope::PassScope,
 };
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, Reports},
+    diagnostics::reports::Reported,
     errors::link::LinkError,
     kinds::step::Program,
     shader::reflect::{Global, Shader},
@@ -19,17 +17,11 @@ pub(super) fn link(
     program: &Program,
     stages: &[ShaderStage],
     depth_only: bool,
-    pass: &mut LinkedPass,
     scope: &mut PassScope<'_>,
-    layouts: &mut Layouts,
-    reports: &mut Reports,
-) -> Result<LinkedProgram, ErrorGuaranteed> {
-    let limits = &scope.request().limits;
-    let shader = scope.shader(program, reports)?;
-    let wanted = program
-        .shader
-        .as_ref()
-        .map_or(&pass.name.span, |name| &name.span);
+) -> Reported<LinkedProgram> {
+    let shader = scope.shader(program)?;
+    let named = program.shader.as_ref().unwrap_or(&scope.pass);
+    let wanted = named.span.clone();
     let mut entries = Vec::new();
     let mut wrong = None;
     for stage in stages {
@@ -38,33 +30,32 @@ pub(super) fn link(
             ShaderStage::Fragment => &program.fragment,
             _ => &program.compute,
         };
-        match shader.entry(*stage, depth_only, name.as_ref(), wanted) {
+        match shader.entry(*stage, depth_only, name.as_ref(), &wanted) {
             Ok(entry) => entries.push(entry),
-            Err(error) => wrong = Some(reports.report(error)),
+            Err(error) => wrong = Some(scope.report(error)),
         }
     }
     if let Some(reported) = wrong {
         return Err(reported);
     }
     let globals = shader.globals(&entries);
-    bound_globals(program, &shader, &globals, scope, reports)?;
-    device::binding_numbers(&shader, &globals, limits, reports)?;
+    bound_globals(program, &shader, &globals, scope)?;
+    device::binding_numbers(&shader, &globals, scope)?;
     let mut linked = LinkedProgram {
-        constants: params::constants(program, &shader, scope, reports)?,
+        constants: params::constants(program, &shader, scope)?,
         bindings: Vec::with_capacity(globals.len()),
         shader,
         entries,
-        stages: stages.to_vec(),
     };
     let mut wrong = None;
     for global in &globals {
-        match bindings::bind(global, program, &linked, pass, scope, layouts, reports) {
+        match bindings::bind(global, program, &linked, scope) {
             Ok(binding) => linked.bindings.push(binding),
             Err(reported) => wrong = Some(reported),
         }
     }
-    counts(&linked.bindings, pass, limits, reports)?;
-    let checked = device::footprints(&linked, limits, reports);
+    counts(&linked.bindings, scope)?;
+    let checked = device::footprints(&linked, scope);
     wrong.or(checked.err()).map_or(Ok(linked), Err)
 }
 
@@ -74,9 +65,8 @@ fn bound_globals(
     program: &Program,
     shader: &Shader,
     globals: &[Global],
-    scope: &PassScope<'_>,
-    reports: &mut Reports,
-) -> Result<(), ErrorGuaranteed> {
+    scope: &mut PassScope<'_>,
+) -> Reported<()> {
     let mut wrong = None;
     let own = scope.own_shader.as_ref();
     let is_own = program.shader.as_ref().map(|s| &s.value) == own.map(|s| &s.value);
@@ -84,10 +74,10 @@ fn bound_globals(
         let exists = shader.global_names().any(|global| global == bound.as_str());
         if !exists && is_own {
             let known = globals.iter().map(|global| global.name.clone());
-            wrong = Some(reports.report(LinkError::UnusedBind {
+            wrong = Some(scope.report(LinkError::UnusedBind {
                 shader: shader.source.file.name.to_string(),
                 name: bound.clone(),
-                known: reports.known(known),
+                known: scope.symbols().reports.known(known),
             }));
         }
     }
@@ -95,54 +85,52 @@ fn bound_globals(
 }
 
 /// The numbers of bindings that wgpu limits per stage.
-fn counts(
-    bindings: &[LinkedBinding],
-    pass: &LinkedPass,
-    limits: &wgt::Limits,
-    reports: &mut Reports,
-) -> Result<(), ErrorGuaranteed> {
-    type IsOf = fn(&wgt::BindingType) -> bool;
+fn counts(bindings: &[LinkedBinding], scope: &mut PassScope<'_>) -> Reported<()> {
+    let limits = &scope.request().limits;
+    use wgt::{BindingType as Type, BufferBindingType::Storage, BufferBindingType::Uniform};
+    type IsOf = fn(&Type) -> bool;
     let kinds: [(&str, IsOf, u32); 7] = [
         (
             "storage buffers",
             |ty| {
-                is_buffer(ty, |ty| {
-                    matches!(ty, wgt::BufferBindingType::Storage { .. })
-                })
+                matches!(
+                    ty,
+                    Type::Buffer {
+                        ty: Storage { .. },
+                        ..
+                    }
+                )
             },
             limits.max_storage_buffers_per_shader_stage,
         ),
         (
             "uniform buffers",
-            |ty| is_buffer(ty, |ty| *ty == wgt::BufferBindingType::Uniform),
+            |ty| matches!(ty, Type::Buffer { ty: Uniform, .. }),
             limits.max_uniform_buffers_per_shader_stage,
         ),
         (
             "textures",
-            |ty| matches!(ty, wgt::BindingType::Texture { .. }),
+            |ty| matches!(ty, Type::Texture { .. }),
             limits.max_sampled_textures_per_shader_stage,
         ),
         (
             "storage textures",
-            |ty| matches!(ty, wgt::BindingType::StorageTexture { .. }),
+            |ty| matches!(ty, Type::StorageTexture { .. }),
             limits.max_storage_textures_per_shader_stage,
         ),
         (
             "samplers",
-            |ty| matches!(ty, wgt::BindingType::Sampler(_)),
+            |ty| matches!(ty, Type::Sampler(_)),
             limits.max_samplers_per_shader_stage,
         ),
         (
             "acceleration structures",
-            |ty| matches!(ty, wgt::BindingType::AccelerationStructure { .. }),
+            |ty| matches!(ty, Type::AccelerationStructure { .. }),
             limits.max_acceleration_structures_per_shader_stage,
         ),
         (
             "buffers and acceleration structures",
-            |ty| {
-                is_buffer(ty, |_| true)
-                    || matches!(ty, wgt::BindingType::AccelerationStructure { .. })
-            },
+            |ty| matches!(ty, Type::Buffer { .. } | Type::AccelerationStructure { .. }),
             limits.max_buffers_and_acceleration_structures_per_shader_stage,
         ),
     ];
@@ -160,8 +148,8 @@ fn counts(
         ];
         let number = stages.map(of_stage).into_iter().max().unwrap_or(0);
         if number > most as usize {
-            reports.unsupported(LinkError::TooManyBindings {
-                pass: pass.name.clone(),
+            scope.unsupported(LinkError::TooManyBindings {
+                pass: scope.pass.clone(),
                 what,
                 number,
                 most,
@@ -169,8 +157,4 @@ fn counts(
         }
     }
     Ok(())
-}
-
-fn is_buffer(ty: &wgt::BindingType, is: fn(&wgt::BufferBindingType) -> bool) -> bool {
-    matches!(ty, wgt::BindingType::Buffer { ty, .. } if is(ty))
 }

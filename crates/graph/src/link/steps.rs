@@ -2,13 +2,12 @@
 
 use super::{
     attachments, dispatch,
-    layouts::Layouts,
-    pass::{Access, Ids, LinkedPass},
+    pass::{Ids, LinkedPass},
     scope::PassScope,
     transfers,
 };
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, Reports},
+    diagnostics::reports::Reported,
     errors::link::LinkError,
     instantiate::flat::Run,
     kinds::step::{Names, Step},
@@ -21,60 +20,47 @@ pub(super) fn link(
     kind: &'static str,
     steps: &[Step<Names>],
     scope: &mut PassScope<'_>,
-    layouts: &mut Layouts,
-    reports: &mut Reports,
-) -> Result<LinkedPass, ErrorGuaranteed> {
-    let mut pass = LinkedPass {
+) -> Reported<LinkedPass> {
+    scope.pass = name.clone();
+    scope.accesses = Vec::new();
+    let mut linked = Vec::with_capacity(steps.len());
+    let mut wrong = None;
+    for (index, step) in steps.iter().enumerate() {
+        let first = scope.accesses.len();
+        match self::step(step, scope) {
+            Ok(step) => linked.push(step),
+            Err(reported) => wrong = Some(reported),
+        }
+        let own = &mut scope.accesses[first..];
+        own.iter_mut().for_each(|access| access.step = index);
+        wrong = feedback(first, scope).err().or(wrong);
+    }
+    let pass = LinkedPass {
         name,
         kind,
-        steps: Vec::with_capacity(steps.len()),
-        accesses: Vec::new(),
+        steps: linked,
+        accesses: std::mem::take(&mut scope.accesses),
         run: Run::Always,
         enabled: true,
     };
-    let mut wrong = None;
-    for (index, step) in steps.iter().enumerate() {
-        let first = pass.accesses.len();
-        let linked = self::step(step, &mut pass, scope, layouts, reports);
-        let own = &mut pass.accesses[first..];
-        own.iter_mut().for_each(|access| access.step = index);
-        let looped = feedback(&pass.name, &pass.accesses[first..], scope, reports);
-        match linked {
-            Ok(step) => pass.steps.push(step),
-            Err(reported) => wrong = Some(reported),
-        }
-        wrong = looped.err().or(wrong);
-    }
     wrong.map_or(Ok(pass), Err)
 }
 
-fn step(
-    step: &Step<Names>,
-    pass: &mut LinkedPass,
-    scope: &mut PassScope<'_>,
-    layouts: &mut Layouts,
-    reports: &mut Reports,
-) -> Result<Step<Ids>, ErrorGuaranteed> {
+fn step(step: &Step<Names>, scope: &mut PassScope<'_>) -> Reported<Step<Ids>> {
     match step {
-        Step::Draw(draw) => attachments::link(draw, pass, scope, layouts, reports).map(Step::Draw),
-        Step::Dispatch(step) => {
-            dispatch::link(step, pass, scope, layouts, reports).map(Step::Dispatch)
-        }
-        Step::Copy { from, to } => transfers::copy(from, to, pass, scope, layouts, reports),
-        Step::Clear { target, value } => transfers::clear(target, *value, pass, scope, reports),
+        Step::Draw(draw) => attachments::link(draw, scope).map(Step::Draw),
+        Step::Dispatch(step) => dispatch::link(step, scope).map(Step::Dispatch),
+        Step::Copy { from, to } => transfers::copy(from, to, scope),
+        Step::Clear { target, value } => transfers::clear(target, *value, scope),
     }
 }
 
 /// A step that uses one part of a resource in two ways of which one writes: wgpu forbids it.
-fn feedback(
-    pass: &Located<String>,
-    accesses: &[Access],
-    scope: &PassScope<'_>,
-    reports: &mut Reports,
-) -> Result<(), ErrorGuaranteed> {
-    let mut wrong = None;
-    for (index, a) in accesses.iter().enumerate() {
-        for b in &accesses[..index] {
+/// `first` is the number of its first access.
+fn feedback(first: usize, scope: &mut PassScope<'_>) -> Reported<()> {
+    let mut wrong = Vec::new();
+    for (index, a) in scope.accesses[first..].iter().enumerate() {
+        for b in &scope.accesses[first..][..index] {
             let conflict =
                 a.resource == b.resource && a.part.overlaps(&b.part) && (a.writes || b.writes);
             // A depth attachment that is tested and written counts once; so does one global
@@ -85,15 +71,16 @@ fn feedback(
                 } else {
                     (a, b)
                 };
-                wrong = Some(reports.report(LinkError::Feedback {
-                    pass: pass.value.clone(),
+                wrong.push(LinkError::Feedback {
+                    pass: scope.pass.value.clone(),
                     name: scope.get(a.resource).name.clone(),
                     reader: reader.span.clone(),
                     reads: !reader.writes,
                     writer: writer.span.clone(),
-                }));
+                });
             }
         }
     }
-    wrong.map_or(Ok(()), Err)
+    let reported = wrong.into_iter().map(|error| scope.report(error));
+    reported.last().map_or(Ok(()), Err)
 }

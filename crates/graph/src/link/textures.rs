@@ -2,7 +2,7 @@
 
 use super::{pass::LinkedProgram, scope::PassScope};
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, Reports},
+    diagnostics::reports::Reported,
     document::materials::Filter,
     errors::link::{LinkError, TextureMisfit},
     kinds::step::Program,
@@ -10,7 +10,7 @@ use crate::{
     scalar_class::ScalarClass,
     shader::{class::TextureClass, reflect::Global},
 };
-use wgt::{TextureAspect, TextureFormat, TextureFormatFeatureFlags, TextureUsages};
+use wgt::{TextureAspect, TextureFormat, TextureFormatFeatureFlags as Flags, TextureUsages};
 
 /// Returns the scalars that a shader sees in a format; of one aspect, if the format has two.
 pub(super) fn scalar_of(format: TextureFormat, aspect: TextureAspect) -> Option<ScalarClass> {
@@ -30,14 +30,13 @@ pub(super) fn texture(
     (texture, target): (&Texture, &Target),
     (linked, program): (&LinkedProgram, &Program),
     scope: &mut PassScope<'_>,
-    reports: &mut Reports,
-) -> Result<Bound, ErrorGuaranteed> {
+) -> Reported<Bound> {
     let grows = scope.get(target.id).growth.is_some();
     let misfit = wrong_shape(class.dimension(), texture, target, grows);
     let bound = match (misfit, class) {
         (Some(misfit), _) => Err(misfit),
         (None, TextureClass::Sampled { .. }) => {
-            sampled(global, class, texture, (linked, program), scope, reports)
+            sampled(global, class, texture, (linked, program), scope)
         }
         (
             None,
@@ -46,13 +45,7 @@ pub(super) fn texture(
                 access,
                 dimension,
             },
-        ) => storage(
-            (format, *access, *dimension),
-            texture,
-            target,
-            scope,
-            reports,
-        ),
+        ) => storage((format, *access, *dimension), texture, target, scope),
     };
     bound.map_err(|misfit| {
         let resource = scope.get(target.id);
@@ -64,7 +57,7 @@ pub(super) fn texture(
             declared: resource.declared.clone(),
             misfit: Box::new(misfit),
         };
-        reports.report(error)
+        scope.report(error)
     })
 }
 
@@ -74,7 +67,6 @@ fn sampled(
     texture: &Texture,
     (linked, program): (&LinkedProgram, &Program),
     scope: &mut PassScope<'_>,
-    reports: &mut Reports,
 ) -> Result<Bound, TextureMisfit> {
     let TextureClass::Sampled {
         scalar,
@@ -105,17 +97,14 @@ fn sampled(
         return Err(TextureMisfit::Samples(texture.samples));
     }
     let is_depth = format.is_depth_stencil_format();
-    let filterable = features
-        .flags
-        .contains(TextureFormatFeatureFlags::FILTERABLE)
-        && !is_depth;
+    let filterable = features.flags.contains(Flags::FILTERABLE) && !is_depth;
     let able = wgt::Features::FLOAT32_FILTERABLE;
     let with_feature = format.guaranteed_format_features(able).flags;
-    let by_feature = with_feature.contains(TextureFormatFeatureFlags::FILTERABLE);
+    let by_feature = with_feature.contains(Flags::FILTERABLE);
     let asks = by_feature && scope.symbols().graph.features().contains(able);
-    let suits = filterable || asks && reports.any_adapter;
+    let suits = filterable || asks && scope.symbols().reports.any_adapter;
     let is_linear = |name: &String| {
-        let sampler = scope.sampler(program, name, reports);
+        let sampler = scope.sampler(program, name);
         sampler.is_some_and(|it| it.filter == Filter::Linear && it.compare.is_none())
     };
     let samplers = linked.shader.samplers_of(&linked.entries, global.handle);
@@ -146,7 +135,6 @@ fn storage(
     texture: &Texture,
     target: &Target,
     scope: &PassScope<'_>,
-    reports: &mut Reports,
 ) -> Result<Bound, TextureMisfit> {
     let format = texture.format;
     let features = format.guaranteed_format_features(scope.request().features);
@@ -161,11 +149,8 @@ fn storage(
     let allowed = features
         .allowed_usages
         .contains(TextureUsages::STORAGE_BINDING)
-        && (!both
-            || features
-                .flags
-                .contains(TextureFormatFeatureFlags::STORAGE_READ_WRITE));
-    if !allowed && !reports.any_adapter {
+        && (!both || features.flags.contains(Flags::STORAGE_READ_WRITE));
+    if !allowed && !scope.symbols().reports.any_adapter {
         return Err(TextureMisfit::NoStorage);
     }
     if target.part.mips.len() > 1 {

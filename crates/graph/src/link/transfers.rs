@@ -2,12 +2,11 @@
 
 use super::{
     attachments::clear_value,
-    layouts::Layouts,
-    pass::{Ids, LinkedPass, Usage},
+    pass::{Ids, Usage},
     scope::PassScope,
 };
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, Reports},
+    diagnostics::reports::Reported,
     errors::link::LinkError,
     kinds::step::{Operand, Step},
     resource::{ResourceKind, Target, Texture},
@@ -20,22 +19,15 @@ fn extent(texture: &Texture, target: &Target) -> [usize; 4] {
     [width as usize, height as usize, layers, mips]
 }
 
-pub(super) fn copy(
-    from: &Operand,
-    to: &Operand,
-    pass: &mut LinkedPass,
-    scope: &mut PassScope<'_>,
-    layouts: &mut Layouts,
-    reports: &mut Reports,
-) -> Result<Step<Ids>, ErrorGuaranteed> {
-    let (source, from) = scope.operand(from, &pass.name, reports)?;
-    let (target, to) = scope.operand(to, &pass.name, reports)?;
-    scope.writable(target.id, &to.span, reports)?;
+pub(super) fn copy(from: &Operand, to: &Operand, scope: &mut PassScope<'_>) -> Reported<Step<Ids>> {
+    let (source, from) = scope.operand(from)?;
+    let (target, to) = scope.operand(to)?;
+    scope.writable(target.id, &to.span)?;
     let kinds = [source.id, target.id].map(|id| scope.get(id).kind.clone());
     let usages = match &kinds {
         [ResourceKind::Texture(a), ResourceKind::Texture(b)] => {
             if a.format != b.format || a.samples != b.samples || a.is_3d != b.is_3d {
-                return Err(reports.report(LinkError::CopyFormat {
+                return Err(scope.report(LinkError::CopyFormat {
                     from,
                     to,
                     formats: [a.format, b.format],
@@ -43,7 +35,7 @@ pub(super) fn copy(
             }
             let extents = [extent(a, &source), extent(b, &target)];
             if extents[0] != extents[1] {
-                return Err(reports.report(LinkError::CopySize { from, to, extents }));
+                return Err(scope.report(LinkError::CopySize { from, to, extents }));
             }
             [wgt::TextureUsages::COPY_SRC, wgt::TextureUsages::COPY_DST].map(Usage::Texture)
         }
@@ -53,19 +45,19 @@ pub(super) fn copy(
         ] => {
             let sized = scope.symbols().base(source.id);
             let source = (sized, &source.part, &from);
-            layouts.same(source, (target.id, &target.part, &to));
+            scope.layouts.same(source, (target.id, &target.part, &to));
             [wgt::BufferUsages::COPY_SRC, wgt::BufferUsages::COPY_DST].map(Usage::Buffer)
         }
         [a, b] => {
-            return Err(reports.report(LinkError::CopyKinds {
+            return Err(scope.report(LinkError::CopyKinds {
                 from,
                 to,
                 kinds: [a.describe(), b.describe()],
             }));
         }
     };
-    pass.access(&source, (true, false, false), usages[0], &from.span);
-    pass.access(&target, (false, true, true), usages[1], &to.span);
+    scope.access(&source, (true, false, false), usages[0], &from.span);
+    scope.access(&target, (false, true, true), usages[1], &to.span);
     Ok(Step::Copy {
         from: source,
         to: target,
@@ -75,32 +67,30 @@ pub(super) fn copy(
 pub(super) fn clear(
     operand: &Operand,
     value: [f64; 4],
-    pass: &mut LinkedPass,
     scope: &mut PassScope<'_>,
-    reports: &mut Reports,
-) -> Result<Step<Ids>, ErrorGuaranteed> {
-    let (target, name) = scope.operand(operand, &pass.name, reports)?;
-    scope.writable(target.id, &name.span, reports)?;
+) -> Reported<Step<Ids>> {
+    let (target, name) = scope.operand(operand)?;
+    scope.writable(target.id, &name.span)?;
     let usage = match &scope.get(target.id).kind {
         ResourceKind::Texture(texture) => {
             let format = texture.format;
             let needed = wgt::TextureUsages::RENDER_ATTACHMENT;
             let features = format.guaranteed_format_features(scope.request().features);
             if !features.allowed_usages.contains(needed) {
-                return Err(reports.report(LinkError::ClearFormat { name, format }));
+                return Err(scope.report(LinkError::ClearFormat { name, format }));
             }
-            reports.check(clear_value(&name, format, value))?;
+            scope.check(clear_value(&name, format, value))?;
             Usage::Texture(needed)
         }
         ResourceKind::Buffer(_) if value != [0.0; 4] => {
-            return Err(reports.report(LinkError::ClearBufferValue(name)));
+            return Err(scope.report(LinkError::ClearBufferValue(name)));
         }
         ResourceKind::Buffer(_) => Usage::Buffer(wgt::BufferUsages::COPY_DST),
         other => {
             let found = other.describe();
-            return Err(reports.report(LinkError::ClearKind { name, found }));
+            return Err(scope.report(LinkError::ClearKind { name, found }));
         }
     };
-    pass.access(&target, (false, true, true), usage, &name.span);
+    scope.access(&target, (false, true, true), usage, &name.span);
     Ok(Step::Clear { target, value })
 }

@@ -1,26 +1,24 @@
-//! From a graph to a plan: once, or with everything that is wrong for all values that decide which
-//! entries are there.
+//! Everything that is wrong with a graph, for all values that decide which entries are there.
 
 use super::{
     make::{Outcome, plan_all},
     plan::Plan,
 };
 use crate::{
+    compose::loaded::Loaded,
     diagnostics::{
         code::Code,
         diagnostic::{Diagnostic, Severity},
         list::Diagnostics,
+        reports::Reports,
     },
     document::{materials::InputKind, typed::Document},
-    graph::Graph,
-    instantiate::flat::PlanInputs,
-    kinds::registry::Registry,
+    instantiate::{flat::PlanInputs, params::claims},
     param::{Param, ParamType, ParamValue},
     provider::Import,
     request::PlanRequest,
-    source::sources::Sources,
 };
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, sync::Arc};
 
 /// Formats that are tried where an input takes any: the shader's declaration decides which fits.
 const TRIED: [wgt::TextureFormat; 5] = [
@@ -31,61 +29,44 @@ const TRIED: [wgt::TextureFormat; 5] = [
     wgt::TextureFormat::R32Float,
 ];
 
-impl Graph {
-    /// Plans the graph: resolves names and sizes, links shaders, orders and culls passes. Touches
-    /// no GPU.
-    ///
-    /// # Errors
-    /// Everything that is wrong, with its place.
-    pub fn plan(&self, request: &PlanRequest<'_>) -> Result<Plan, Diagnostics> {
-        let outcome = plan_all(self, request);
-        outcome.plan.ok_or_else(|| self.diagnostics(outcome.found))
+/// The plan of a document that was read with these errors, or these and all others: for each param
+/// and feature in an `if` changed alone, too.
+pub(crate) fn check(
+    graph: &Arc<Loaded>,
+    mut errors: Vec<Diagnostic>,
+    request: &PlanRequest<'_>,
+) -> Result<Plan, Diagnostics> {
+    let mut request = request.clone();
+    if request.any_adapter {
+        // It says itself that not every adapter will do.
+        request.features |= graph.required;
     }
-
-    /// [`Graph::load`] and [`Graph::plan`] in one, for all mistakes at once. The readable part of a
-    /// document is planned even if another part is wrong, and for each param and feature in an `if`
-    /// changed alone. Inputs that the request does not import are taken for what the document asks
-    /// for.
-    ///
-    /// # Errors
-    /// Everything that is wrong. Reads before writes and cycles are looked for above the first pass
-    /// that has a mistake.
-    pub fn check(
-        path: &str,
-        registry: &Registry,
-        sources: &dyn Sources,
-        request: &PlanRequest<'_>,
-    ) -> Result<(Self, Plan), Diagnostics> {
-        let (graph, mut errors) = Self::read(path, registry, sources, &BTreeMap::new())?;
-        let mut request = request.clone();
-        if request.any_adapter {
-            // It says itself that not every adapter will do.
-            request.features |= graph.required;
+    let request = &request;
+    // Without its params nothing of the document has a size.
+    let outcome = match graph.document.invalid_params {
+        None => plan_for_any(graph, request),
+        Some(_) => Outcome::default(),
+    };
+    if outcome.plan.is_some() && errors.is_empty() {
+        errors.extend(sweep(graph, request, &outcome.plan_inputs));
+        let mut reports = Reports::default();
+        let context = request.surroundings();
+        claims(&graph.document, &request.params, context, &mut reports);
+        if reports.errors() > 0 {
+            errors.extend(reports.into_list());
         }
-        let request = &request;
-        // Without its params nothing of the document has a size.
-        let outcome = match graph.document.invalid_params {
-            None => plan_for_any(&graph, request),
-            Some(_) => Outcome::default(),
-        };
-        if outcome.plan.is_some() && errors.is_empty() {
-            errors.extend(sweep(&graph, request, &outcome.plan_inputs));
-            if let Err(wrong) = graph.claims(&request.params, request.viewport, request.features) {
-                errors.extend(wrong.iter().cloned());
-            }
-        }
-        errors.extend(outcome.found);
-        match outcome.plan {
-            Some(plan) if errors.is_empty() => Ok((graph, plan)),
-            // A misspelt name leaves the item that it meant unused: warnings wait until the errors
-            // are gone.
-            _ => Err(graph.diagnostics(errors)),
-        }
+    }
+    errors.extend(outcome.found);
+    match outcome.plan {
+        Some(plan) if errors.is_empty() => Ok(Plan(plan)),
+        // A misspelt name leaves the item that it meant unused: warnings wait until the errors are
+        // gone.
+        _ => Err(graph.diagnostics(errors)),
     }
 }
 
 /// Plans with what the document asks for in place of imports that the request has not.
-fn plan_for_any(graph: &Graph, request: &PlanRequest<'_>) -> Outcome {
+fn plan_for_any(graph: &Arc<Loaded>, request: &PlanRequest<'_>) -> Outcome {
     let takes_any = graph.document.inputs.iter().any(|input| {
         matches!(input.kind, InputKind::Texture(None))
             && !request.imports.contains_key(input.name.as_str())
@@ -143,7 +124,11 @@ fn stand_ins(
 
 /// Returns the mistakes for other values of the things that decide which entries exist, each
 /// changed alone.
-fn sweep(graph: &Graph, request: &PlanRequest<'_>, plan_inputs: &PlanInputs) -> Vec<Diagnostic> {
+fn sweep(
+    graph: &Arc<Loaded>,
+    request: &PlanRequest<'_>,
+    plan_inputs: &PlanInputs,
+) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for name in &plan_inputs.params {
         let Ok(param) = graph.param(name) else {
@@ -175,7 +160,7 @@ fn sweep(graph: &Graph, request: &PlanRequest<'_>, plan_inputs: &PlanInputs) -> 
 }
 
 /// Returns the mistakes of one condition; the rest was looked at before.
-fn wrong_with(graph: &Graph, request: &PlanRequest<'_>, condition: &str) -> Vec<Diagnostic> {
+fn wrong_with(graph: &Arc<Loaded>, request: &PlanRequest<'_>, condition: &str) -> Vec<Diagnostic> {
     let outcome = plan_for_any(graph, request);
     let errors = outcome
         .found

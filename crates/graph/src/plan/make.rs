@@ -2,12 +2,13 @@
 
 use super::{
     backend::not_proven,
-    memory::growing,
-    plan::{CulledPass, Plan},
+    memory::{Memory, growing},
     readable::{check_captures, readable},
+    summary::refused_light,
     usages,
 };
 use crate::{
+    compose::loaded::Loaded,
     diagnostics::{diagnostic::Diagnostic, reports::Reports},
     errors::{
         flow::OrderError, instantiate::InterfaceError, plan::OutputError, resource::SizeError,
@@ -21,7 +22,6 @@ use crate::{
         schedule::{Schedule, sequence},
         view::GraphView,
     },
-    graph::Graph,
     instantiate::{
         build::flatten,
         flat::{Merge, PlanInputs},
@@ -30,26 +30,57 @@ use crate::{
     },
     link::{
         linker::{Linked, link},
-        pass::{Access, PassId},
+        pass::{Access, LinkedPass, PassId},
     },
     param::ParamValue,
+    provider::Described,
     request::{PlanRequest, Request},
     resource::{Buffer, Growth, Origin, Resource, ResourceId, ResourceKind, Target},
     source::span::Located,
 };
-use std::collections::{BTreeMap, BTreeSet};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::Arc,
+};
+
+/// A plan, which [`Plan`](super::plan::Plan) shows to the host.
+#[derive(Debug)]
+pub(super) struct Planned {
+    pub graph: Arc<Loaded>,
+    pub request: Request<Described>,
+    pub values: BTreeMap<String, ParamValue>,
+    pub named_values: Vec<(String, String)>,
+    pub resources: Vec<Resource>,
+    pub passes: Vec<LinkedPass>,
+    pub schedule: Schedule,
+    pub readable: Vec<(String, Target)>,
+    pub culled: Vec<CulledPass>,
+    pub warnings: Vec<Diagnostic>,
+    /// The params of the root document that it depends on; of others, passes' uniforms alone hold
+    /// the values.
+    pub depends_on: BTreeSet<String>,
+}
+
+/// A pass that does not run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CulledPass {
+    /// Name.
+    pub name: String,
+    /// Why.
+    pub reason: String,
+}
 
 /// Result of planning: the plan, if nothing is wrong; the mistakes; the values that decide which
 /// entries exist.
 #[derive(Default)]
 pub(super) struct Outcome {
-    pub plan: Option<Plan>,
+    pub plan: Option<Planned>,
     pub found: Vec<Diagnostic>,
     pub plan_inputs: PlanInputs,
 }
 
 /// The plan, or everything that is wrong, even if some of the document could not be read.
-pub(super) fn plan_all(graph: &Graph, request: &PlanRequest<'_>) -> Outcome {
+pub(super) fn plan_all(graph: &Arc<Loaded>, request: &PlanRequest<'_>) -> Outcome {
     let mut reports = Reports::default();
     reports.any_adapter = request.any_adapter;
     let params = checked(
@@ -69,21 +100,18 @@ pub(super) fn plan_all(graph: &Graph, request: &PlanRequest<'_>) -> Outcome {
     let (Ok(params), 0) = (params, reports.errors()) else {
         return Outcome::failed(reports, PlanInputs::default());
     };
-    let values = params.list.iter().filter_map(|bound| {
-        let value = bound.value.clone().ok()?;
-        Some((bound.param.name.value.clone(), value))
-    });
-    let values = values.collect();
+    let values = params.values();
     let before = reports.clone();
     let mut merges = true;
     let mut linked = loop {
-        let flat = flatten(graph, request, params.clone(), merges, &mut reports);
-        if lacks_features(&reports) {
-            return Outcome::lacking(reports, flat.plan_inputs);
+        let flat = flatten(graph, request, params.clone(), merges, reports);
+        if flat.symbols.reports.iter().any(is_lacking) {
+            return Outcome::lacking(flat.symbols.reports, flat.plan_inputs);
         }
-        let lowered = lower(flat, &mut reports);
-        check_captures(request, &lowered.passes, &mut reports);
-        let linked = link(lowered, &mut reports);
+        let mut lowered = lower(flat);
+        let found = &mut lowered.symbols.reports;
+        check_captures(request, &lowered.passes, found);
+        let linked = link(lowered);
         let Some(copies) = linked.two_copies() else {
             break linked;
         };
@@ -93,6 +121,7 @@ pub(super) fn plan_all(graph: &Graph, request: &PlanRequest<'_>) -> Outcome {
         merges = false;
     };
     let plan_inputs = std::mem::take(&mut linked.plan_inputs);
+    let mut reports = std::mem::take(&mut linked.symbols.reports);
     match schedule(graph, linked, request, values, &mut reports) {
         Some(plan) => finish(plan, request, reports, plan_inputs),
         None => Outcome::failed(reports, plan_inputs),
@@ -102,12 +131,12 @@ pub(super) fn plan_all(graph: &Graph, request: &PlanRequest<'_>) -> Outcome {
 /// Orders and culls what was linked, unless something is wrong with it. The plan knows neither the
 /// warnings nor the params that it depends on yet.
 fn schedule(
-    graph: &Graph,
+    graph: &Arc<Loaded>,
     mut linked: Linked<'_>,
     request: &PlanRequest<'_>,
     values: BTreeMap<String, ParamValue>,
     reports: &mut Reports,
-) -> Option<Plan> {
+) -> Option<Planned> {
     let is_complete = linked.first_invalid.is_none();
     let first_invalid = linked.first_invalid.unwrap_or(linked.passes.len());
     let order = order(view(&linked), first_invalid, reports);
@@ -117,11 +146,11 @@ fn schedule(
         interfaces(&linked, reports);
     }
     let written = |target: &Target| !is_complete || !order.final_writers(target).is_empty();
+    // Outputs are found as names in documents are, and so are their mistakes.
+    std::mem::swap(&mut linked.symbols.reports, reports);
     let root = linked.symbols.root();
-    let readable = {
-        let mut at = linked.symbols.at(root, None, reports);
-        readable(graph, request, &mut at, written)
-    };
+    let readable = readable(graph, request, &mut linked.symbols.at(root, None), written);
+    std::mem::swap(&mut linked.symbols.reports, reports);
     if !is_complete || reports.errors() > 0 {
         return None;
     }
@@ -174,9 +203,9 @@ fn schedule(
         conditions,
         aliases,
     };
-    Some(Plan {
-        graph: graph.clone(),
-        request: Request::new(request),
+    Some(Planned {
+        graph: Arc::clone(graph),
+        request: request.to(Described::by(request.provider)),
         values,
         named_values,
         resources,
@@ -190,14 +219,17 @@ fn schedule(
 }
 
 fn finish(
-    mut plan: Plan,
+    mut plan: Planned,
     request: &PlanRequest<'_>,
     mut reports: Reports,
     plan_inputs: PlanInputs,
 ) -> Outcome {
     plan.depends_on = std::mem::take(&mut reports.depends_on);
-    let too_much = plan.check_memory(request.memory_limit);
-    if let Some(error) = too_much.or_else(|| plan.refused_light()) {
+    let memory = plan.memory();
+    let too_much = memory.check(request.memory_limit, plan.graph.place());
+    let bound = plan.schedule.lifetimes.keys();
+    let bound = bound.map(|id| &plan.resources[id.0]);
+    if let Some(error) = too_much.or_else(|| refused_light(&plan.graph.document, bound)) {
         reports.report(error);
         return Outcome::failed(reports, plan_inputs);
     }
@@ -206,6 +238,15 @@ fn finish(
         plan: Some(plan),
         found: Vec::new(),
         plan_inputs,
+    }
+}
+
+impl Planned {
+    pub fn memory(&self) -> Memory<'_> {
+        Memory {
+            resources: &self.resources,
+            schedule: &self.schedule,
+        }
     }
 }
 
@@ -229,10 +270,6 @@ impl Outcome {
 fn is_lacking(found: &Diagnostic) -> bool {
     use crate::diagnostics::{code::Code, diagnostic::Severity};
     found.code == Code::Feature && found.severity == Severity::Error
-}
-
-fn lacks_features(reports: &Reports) -> bool {
-    reports.iter().any(is_lacking)
 }
 
 fn view<'l>(linked: &'l Linked<'_>) -> GraphView<'l> {
@@ -450,17 +487,15 @@ fn interfaces(linked: &Linked<'_>, reports: &mut Reports) {
                 || linked.merged.iter().any(is_merged);
             let mut passes = passes.iter();
             if !has_content && !passes.any(|pass| linked.writes(*pass, target.id, &target.part)) {
-                let name = Located::new(name.value.to_string(), name.span.clone());
-                reports.report(InterfaceError::UnwrittenOutput(name));
+                reports.report(InterfaceError::UnwrittenOutput(name.text()));
             }
         }
         for (name, target) in &border.read_only {
             let mut passes = passes.iter();
             let writer = passes.find(|pass| linked.writes(**pass, target.id, &target.part));
             if let Some(writer) = writer {
-                let name = Located::new(name.value.to_string(), name.span.clone());
                 let by = linked.passes[*writer].name.span.clone();
-                reports.report(InterfaceError::WrittenInput(name, by));
+                reports.report(InterfaceError::WrittenInput(name.text(), by));
             }
         }
     }

@@ -17,6 +17,7 @@ mod uniforms;
 mod usages;
 
 pub use items::PartSummary;
+pub use make::CulledPass;
 pub use memory::MemoryEntry;
-pub use plan::{CulledPass, Plan};
+pub use plan::Plan;
 pub use summary::{OutputSummary, PassSummary};

@@ -4,101 +4,94 @@
 use super::{
     backend::not_proven,
     items::{self, PartSummary},
+    make::{CulledPass, Planned, plan_all},
     memory::{Memory, MemoryEntry},
-    summary::{OutputSummary, PassSummary, refused_light},
+    summary::{OutputSummary, PassSummary},
     uniforms,
 };
 use crate::{
+    compose::loaded::Loaded,
     diagnostics::{diagnostic::Diagnostic, list::Diagnostics, reports::Reports},
-    errors::plan::OutputError,
     flow::{
         order::{Dependences, dependences},
         schedule::Schedule,
         view::GraphView,
     },
-    graph::Graph,
     link::{
         params::words,
         pass::{LinkedPass, PassId},
     },
     param::{ParamType, ParamValue},
     provider::Import,
-    request::{PartialBackend, PlanRequest, Request},
+    request::{PartialBackend, PlanRequest},
     resource::{Growth, Origin, Resource, ResourceId, ResourceKind, Target},
     shader::items::Item,
 };
-use std::collections::{BTreeMap, BTreeSet};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::Arc,
+};
 
 /// A graph that is ready to be allocated: live passes in order, every resource with its size and
 /// uses.
 #[derive(Debug)]
-pub struct Plan {
-    pub(super) graph: Graph,
-    pub(super) request: Request,
-    pub(super) values: BTreeMap<String, ParamValue>,
-    pub(super) named_values: Vec<(String, String)>,
-    pub(super) resources: Vec<Resource>,
-    pub(super) passes: Vec<LinkedPass>,
-    pub(super) schedule: Schedule,
-    pub(super) readable: Vec<(String, Target)>,
-    pub(super) culled: Vec<CulledPass>,
-    pub(super) warnings: Vec<Diagnostic>,
-    /// The params of the root document that it depends on; of others, passes' uniforms alone hold
-    /// the values.
-    pub(super) depends_on: BTreeSet<String>,
-}
-
-/// A pass that does not run.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct CulledPass {
-    /// Name.
-    pub name: String,
-    /// Why.
-    pub reason: String,
-}
+pub struct Plan(pub(super) Planned);
 
 impl Plan {
+    /// The plan, or everything that is wrong.
+    pub(crate) fn new(graph: &Arc<Loaded>, request: &PlanRequest<'_>) -> Result<Self, Diagnostics> {
+        let outcome = plan_all(graph, request);
+        let plan = outcome.plan.map(Self);
+        plan.ok_or_else(|| graph.diagnostics(outcome.found))
+    }
+
     /// Every resource that a pass may name, by number. Only those with a lifetime are made.
     pub fn resources(&self) -> &[Resource] {
-        &self.resources
+        &self.0.resources
     }
 
     /// The resource of a number.
     pub fn resource(&self, id: ResourceId) -> &Resource {
-        &self.resources[id.0]
+        &self.0.resources[id.0]
+    }
+
+    /// The resources that live passes use; only these are made.
+    pub fn used(&self) -> impl Iterator<Item = &Resource> {
+        let used = self.0.schedule.lifetimes.keys();
+        used.map(|id| self.resource(*id))
     }
 
     /// Every pass in the order of the file, those that do not run included.
     pub fn all_passes(&self) -> &[LinkedPass] {
-        &self.passes
+        &self.0.passes
     }
 
     /// The pass of a number.
     pub fn pass(&self, id: PassId) -> &LinkedPass {
-        &self.passes[id.0]
+        &self.0.passes[id.0]
     }
 
     /// The live passes in the order in which they run.
     pub fn live(&self) -> impl Iterator<Item = &LinkedPass> + Clone {
-        self.schedule.passes.iter().map(|id| self.pass(*id))
+        self.0.schedule.passes.iter().map(|id| self.pass(*id))
     }
 
     /// Which passes run, in which order, and what follows from that.
     pub fn schedule(&self) -> &Schedule {
-        &self.schedule
+        &self.0.schedule
     }
 
     /// Outputs and captures that can be read back, with what they are.
     pub fn readable(&self) -> &[(String, Target)] {
-        &self.readable
+        &self.0.readable
     }
 
     /// Finds the passes that passes depend on, and the resources that cause it, as if only those
     /// ran of which `runs` is true.
     pub fn dependences(&self, runs: impl Fn(PassId) -> bool) -> Dependences {
         let view = GraphView {
-            passes: &self.passes,
-            resources: &self.resources,
+            passes: &self.0.passes,
+            resources: &self.0.resources,
         };
         dependences(view, runs)
     }
@@ -106,28 +99,29 @@ impl Plan {
     /// The `values` of the documents that something asked for, by full name, and what each came to,
     /// as a document would write it.
     pub fn named_values(&self) -> &[(String, String)] {
-        &self.named_values
+        &self.0.named_values
     }
 
     /// Returns the imports that the host announced, by name.
     pub fn imports(&self) -> &BTreeMap<String, Import> {
-        &self.request.imports
+        &self.0.request.imports
     }
 
     /// Items of growing buffers, and layers of growing textures, that were known to be needed when
     /// the plan was made, by full name.
     pub fn grown(&self) -> &BTreeMap<String, u64> {
-        &self.request.grown
+        &self.0.request.grown
     }
 
     /// The byte that memory is filled with between uses, if it is.
     pub fn poison(&self) -> Option<u8> {
-        self.request.poison
+        self.0.request.poison
     }
 
     /// True if the host imports or provides something under this name.
     pub fn offers(&self, name: &str) -> bool {
-        self.request.offers(name)
+        let request = &self.0.request;
+        request.imports.contains_key(name) || request.provider.0.contains_key(name)
     }
 
     /// The graph's own textures and buffers with what they take, in the order of the document.
@@ -139,7 +133,7 @@ impl Plan {
     /// layers that it would have needed, and the most that it may have: by the document, and by the
     /// device's limits.
     pub fn growing(&self) -> Vec<(ResourceId, Growth)> {
-        self.own_memory().growing(&self.request.limits)
+        self.own_memory().growing(&self.0.request.limits)
     }
 
     /// Bytes of the graph's own textures and buffers. One that is also read as it was in the frame
@@ -172,12 +166,12 @@ impl Plan {
     /// # Errors
     /// If the graph's document does not list the backend in `proven_on`.
     pub fn check_backend(&self, backend: &PartialBackend) -> Result<(), Diagnostics> {
-        let Some(error) = not_proven(&self.graph, backend) else {
+        let Some(error) = not_proven(&self.0.graph, backend) else {
             return Ok(());
         };
         let mut reports = Reports::default();
         reports.report(error);
-        Err(self.graph.diagnostics(reports.into_list()))
+        Err(self.0.graph.diagnostics(reports.into_list()))
     }
 
     /// The params that were asked for and change nothing here: with their defaults a frame would do
@@ -189,10 +183,11 @@ impl Plan {
                 request.params.remove(*name);
             });
             others.is_ok_and(|others| {
-                self.values.get(*name) != others.values.get(*name) && self.does_the_same_as(&others)
+                self.0.values.get(*name) != others.0.values.get(*name)
+                    && self.does_the_same_as(&others)
             })
         };
-        let asked = self.request.params.keys();
+        let asked = self.0.request.params.keys();
         asked.filter(by_default).map(String::as_str).collect()
     }
 
@@ -204,27 +199,25 @@ impl Plan {
     }
 
     fn does_the_same_as(&self, other: &Self) -> bool {
-        let resources = |plan: &Self| {
-            let live = plan.schedule.lifetimes.keys();
-            live.map(|id| plan.resource(*id).kind.clone())
-                .collect::<Vec<_>>()
-        };
-        self.readable == other.readable
+        self.0.readable == other.0.readable
             && self.live().count() == other.live().count()
             && self.live().zip(other.live()).all(is_same_pass)
-            && resources(self) == resources(other)
+            && self
+                .used()
+                .map(|it| &it.kind)
+                .eq(other.used().map(|it| &it.kind))
     }
 
     /// The provided resources that are bound by the passes that write an output or capture: depths
     /// that are written with a `camera` bound are that camera's.
     pub fn provided_behind(&self, output: &str) -> BTreeSet<&str> {
         let target = self.readable_target(output);
-        let behind = |target| items::provided_behind(self.live(), target, &self.resources);
+        let behind = |target| items::provided_behind(self.live(), target, &self.0.resources);
         target.map_or_else(BTreeSet::new, behind)
     }
 
-    /// The items of an output or capture that is a buffer; `None` if it is none, or no live pass
-    /// binds it as an array of plain items or as a single one.
+    /// The layout of an item of an output or capture that is a buffer; `None` of a texture, or if
+    /// no live pass binds it as an array of plain items or as a single one.
     pub fn item(&self, output: &str) -> Option<Item> {
         items::item_of(self.live(), self.readable_target(output)?)
     }
@@ -233,21 +226,22 @@ impl Plan {
     /// capture after a pass holds what has been written by then, which may be less than was named.
     pub fn part(&self, output: &str) -> Option<PartSummary> {
         let target = self.readable_target(output)?;
-        Some(items::part(self.live(), target, &self.resources))
+        Some(items::part(self.live(), target, &self.0.resources))
     }
 
-    fn readable_target(&self, output: &str) -> Option<&Target> {
-        let (_, target) = self.readable.iter().find(|(name, _)| name == output)?;
+    /// The resource or part that an output or capture is.
+    pub fn readable_target(&self, output: &str) -> Option<&Target> {
+        let (_, target) = self.0.readable.iter().find(|(name, _)| name == output)?;
         Some(target)
     }
 
     /// True if a param may have this value without planning anew: it has the type and lies in the
     /// range, and nothing but members of `var<uniform> params` follows from it.
     pub fn is_in_uniforms(&self, name: &str, value: &ParamValue) -> bool {
-        self.graph.param(name).is_ok_and(|param| {
+        self.0.graph.param(name).is_ok_and(|param| {
             // A document that is included may count its words in another order.
             let is_counted = matches!(param.ty, ParamType::Choice(_));
-            !is_counted && !self.depends_on.contains(name) && param.check(value).is_ok()
+            !is_counted && !self.0.depends_on.contains(name) && param.check(value).is_ok()
         })
     }
 
@@ -255,17 +249,17 @@ impl Plan {
     /// positions in the schedule of the passes that read other bytes now. Other params are left as
     /// they are.
     pub fn set_in_uniforms(&mut self, name: &str, value: ParamValue) -> Vec<usize> {
-        let Ok(param) = self.graph.param(name) else {
+        let Ok(param) = self.0.graph.param(name) else {
             return Vec::new();
         };
         if !self.is_in_uniforms(name, &value) {
             return Vec::new();
         }
         let (_, words) = words(param, &value);
-        let changed = uniforms::write(&mut self.passes, name, &words);
-        self.values.insert(name.to_owned(), value.clone());
-        self.request.params.insert(name.to_owned(), value);
-        let live = self.schedule.passes.iter().enumerate();
+        let changed = uniforms::write(&mut self.0.passes, name, &words);
+        self.0.values.insert(name.to_owned(), value.clone());
+        self.0.request.params.insert(name.to_owned(), value);
+        let live = self.0.schedule.passes.iter().enumerate();
         live.filter(|(_, id)| changed[id.0])
             .map(|(position, _)| position)
             .collect()
@@ -282,36 +276,30 @@ impl Plan {
 
     /// The passes that do not run.
     pub fn culled(&self) -> &[CulledPass] {
-        &self.culled
+        &self.0.culled
     }
 
     /// The provided resources that live passes bind; only these are built.
     pub fn provided(&self) -> Vec<&str> {
-        self.schedule
-            .lifetimes
-            .keys()
-            .map(|id| self.resource(*id))
-            .filter(|resource| {
-                matches!(
-                    resource.kind,
-                    ResourceKind::Provided(_) | ResourceKind::AccelerationStructure
-                )
-            })
-            .map(|resource| resource.name.as_str())
-            .collect()
+        let is_provided = |resource: &&Resource| {
+            matches!(
+                resource.kind,
+                ResourceKind::Provided(_) | ResourceKind::AccelerationStructure
+            )
+        };
+        let provided = self.used().filter(is_provided);
+        provided.map(|resource| resource.name.as_str()).collect()
     }
 
     /// True if a frame may depend on those before it though the host changes nothing: live passes
     /// read what the graph left in the frame before, or the frame's number.
     pub fn remembers(&self) -> bool {
-        let used = self.schedule.lifetimes.keys();
-        used.map(|id| self.resource(*id))
-            .any(|resource| match (&resource.kind, resource.origin) {
-                _ if resource.keep => true,
-                (ResourceKind::Frame, _) => true,
-                (ResourceKind::Provided(_), _) => false,
-                (_, origin) => matches!(origin, Origin::Previous(_)),
-            })
+        self.used().any(|resource| match resource.kind {
+            _ if resource.keep => true,
+            ResourceKind::Frame => true,
+            ResourceKind::Provided(_) => false,
+            _ => matches!(resource.origin, Origin::Previous(_)),
+        })
     }
 
     /// Returns the outputs that can be read back after a frame.
@@ -319,22 +307,17 @@ impl Plan {
         let summary = |(name, target): &(String, Target)| {
             OutputSummary::new(name, target, &self.resource(target.id).kind)
         };
-        self.readable.iter().map(summary).collect()
-    }
-
-    /// The graph that was planned.
-    pub fn graph(&self) -> &Graph {
-        &self.graph
+        self.0.readable.iter().map(summary).collect()
     }
 
     /// Width and height of the viewport in pixels.
     pub fn viewport(&self) -> [u32; 2] {
-        self.request.viewport
+        self.0.request.viewport
     }
 
     /// The value of a param in this plan.
     pub fn param(&self, name: &str) -> Option<&ParamValue> {
-        self.values.get(name)
+        self.0.values.get(name)
     }
 
     /// This plan for another viewport.
@@ -364,32 +347,18 @@ impl Plan {
         &'a self,
         change: impl FnOnce(&mut PlanRequest<'a>),
     ) -> Result<Self, Diagnostics> {
-        let mut request = self.request.again();
+        let mut request: PlanRequest<'a> = self.0.request.to(&self.0.request.provider);
         change(&mut request);
-        self.graph.plan(&request)
+        Self::new(&self.0.graph, &request)
     }
 
     /// Returns the warnings.
     pub fn warnings(&self) -> &[Diagnostic] {
-        &self.warnings
-    }
-
-    /// The light that live passes bind, if it is of a kind that the document does not take.
-    pub(super) fn refused_light(&self) -> Option<OutputError> {
-        let bound = self.schedule.lifetimes.keys().map(|id| self.resource(*id));
-        refused_light(&self.graph.document, bound)
-    }
-
-    /// Reports a plan that takes more memory than there is.
-    pub(super) fn check_memory(&self, limit: Option<u64>) -> Option<OutputError> {
-        self.own_memory().check(limit, self.graph.place())
+        &self.0.warnings
     }
 
     fn own_memory(&self) -> Memory<'_> {
-        Memory {
-            resources: &self.resources,
-            schedule: &self.schedule,
-        }
+        self.0.memory()
     }
 }
 

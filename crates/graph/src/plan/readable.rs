@@ -1,62 +1,64 @@
 //! Outputs and captures that can be read back, and why some cannot.
 
 use crate::{
+    compose::loaded::Loaded,
     diagnostics::reports::Reports,
     errors::plan::OutputError,
     expressions::eval::{self, Environment},
-    graph::Graph,
     instantiate::{
         lower::LoweredPass,
         symbols::{At, SymbolTable},
     },
     request::PlanRequest,
     resource::{ResourceKind, Target},
-    source::span::Located,
 };
 
 /// The targets of all outputs and captures that are wanted.
 pub(super) fn readable(
-    graph: &Graph,
+    graph: &Loaded,
     request: &PlanRequest<'_>,
-    at: &mut At<'_, '_, '_>,
+    at: &mut At<'_, '_>,
     written: impl Fn(&Target) -> bool,
 ) -> Vec<(String, Target)> {
     let mut readable = Vec::new();
-    let declared = graph.outputs();
+    let outputs = graph.document.material_outputs();
+    let declared: Vec<&str> = outputs.map(|output| output.name.as_str()).collect();
     for wanted in request.outputs.iter().flatten() {
         if !declared.contains(&wanted.as_str()) {
-            at.reports().report(OutputError::NoOutput {
+            at.report(OutputError::NoOutput {
                 graph: graph.path().to_owned(),
                 name: wanted.clone(),
                 known: declared.iter().map(|&name| name.to_owned()).collect(),
             });
         }
     }
-    let is_wanted = |name: &String| {
-        let wanted = request.outputs.as_ref();
-        wanted.is_none_or(|wanted| wanted.contains(name))
+    let is_wanted = |name: &String, on_request: bool| {
+        let is_captured = || request.captures.iter().any(|it| it.name() == *name);
+        match &request.outputs {
+            Some(wanted) => wanted.contains(name),
+            None => !on_request || is_captured(),
+        }
     };
     for output in graph.document.material_outputs() {
         let condition = output.condition.as_ref();
         if condition.is_some_and(|condition| !eval::boolean(condition, at).unwrap_or(false)) {
             continue;
         }
-        let name = Located::new(output.name.value.to_string(), output.name.span.clone());
+        let name = output.name.text();
         let material = &output.material;
         let Ok(target) = at.resolve(material) else {
             continue;
         };
         if !written(&target) {
             let material = material.located();
-            at.reports()
-                .report(OutputError::UnwrittenOutput { name, material });
+            at.report(OutputError::UnwrittenOutput { name, material });
         } else if let Some(what) = unreadable(at.symbols(), &target) {
-            at.reports().report(OutputError::UnreadableOutput {
+            at.report(OutputError::UnreadableOutput {
                 name,
                 material: material.span.clone(),
                 what,
             });
-        } else if is_wanted(&name.value) {
+        } else if is_wanted(&name.value, output.on_request) {
             readable.push((name.value, target));
         }
     }
@@ -74,7 +76,7 @@ pub(super) fn readable(
                     let outputs = declared.iter().map(|&name| name.to_owned());
                     let known = at.symbols().full_names().into_iter().chain(outputs);
                     let known = at.reports().known(known);
-                    at.reports().report(OutputError::NoMaterial {
+                    at.report(OutputError::NoMaterial {
                         graph: graph.path().to_owned(),
                         name,
                         known,
@@ -87,11 +89,11 @@ pub(super) fn readable(
             at.symbols().get(target.id).kind,
             ResourceKind::Provided(_) | ResourceKind::AccelerationStructure | ResourceKind::Frame
         ) {
-            at.reports().report(OutputError::Provided(name));
+            at.report(OutputError::Provided(name));
         } else if !written(&target) {
-            at.reports().report(OutputError::Unwritten(name));
+            at.report(OutputError::Unwritten(name));
         } else if let Some(what) = unreadable(at.symbols(), &target) {
-            at.reports().report(OutputError::Unreadable { name, what });
+            at.report(OutputError::Unreadable { name, what });
         } else {
             readable.push((name, target));
         }

@@ -80,27 +80,24 @@ pub(super) fn class_of(
 ) -> Class {
     let inner = &module.types[variable.ty].inner;
     let size = u64::from(layouter[variable.ty].size);
-    match (variable.space, inner) {
-        (AddressSpace::Uniform, _) => {
+    match variable.space {
+        AddressSpace::Uniform => {
             let members = match inner {
-                TypeInner::Struct { members, .. } => members
-                    .iter()
-                    .map(|member| Member {
-                        name: member.name.clone().unwrap_or_default(),
-                        offset: u64::from(member.offset),
-                        vector: vector(module, member.ty),
-                    })
-                    .collect(),
-                _ => Vec::new(),
+                TypeInner::Struct { members, .. } => &members[..],
+                _ => &[],
             };
-            let layout = layout(module, variable.ty);
+            let members = members.iter().map(|member| Member {
+                name: member.name.clone().unwrap_or_default(),
+                offset: u64::from(member.offset),
+                vector: vector(module, member.ty),
+            });
             Class::Uniform {
                 size,
-                members,
-                layout,
+                members: members.collect(),
+                layout: layout(module, variable.ty),
             }
         }
-        (AddressSpace::Storage { access }, _) => {
+        AddressSpace::Storage { access } => {
             let (fixed, stride) = storage_size(module, variable.ty, size);
             Class::Storage {
                 fixed,
@@ -109,34 +106,25 @@ pub(super) fn class_of(
                 layout: layout(module, variable.ty),
             }
         }
-        (
-            AddressSpace::Handle,
+        AddressSpace::Handle => match *inner {
             TypeInner::Image {
                 dim,
                 arrayed,
                 class,
-            },
-        ) => image(*dim, *arrayed, class),
-        (AddressSpace::Handle, TypeInner::Sampler { comparison }) => Class::Sampler {
-            comparison: *comparison,
+            } => image(dim, arrayed, class),
+            TypeInner::Sampler { comparison } => Class::Sampler { comparison },
+            TypeInner::AccelerationStructure { vertex_return } if vertex_return => {
+                Class::Unsupported("an acceleration structure that returns vertices")
+            }
+            TypeInner::AccelerationStructure { .. } => Class::AccelerationStructure,
+            TypeInner::BindingArray { .. } => Class::Unsupported("a binding array"),
+            _ => Class::Unsupported("a global of this address space"),
         },
-        (
-            AddressSpace::Handle,
-            TypeInner::AccelerationStructure {
-                vertex_return: false,
-            },
-        ) => Class::AccelerationStructure,
-        (AddressSpace::Handle, TypeInner::AccelerationStructure { .. }) => {
-            Class::Unsupported("an acceleration structure that returns vertices")
-        }
-        (AddressSpace::Handle, TypeInner::BindingArray { .. }) => {
-            Class::Unsupported("a binding array")
-        }
         _ => Class::Unsupported("a global of this address space"),
     }
 }
 
-fn image(dim: naga::ImageDimension, arrayed: bool, class: &ImageClass) -> Class {
+fn image(dim: naga::ImageDimension, arrayed: bool, class: ImageClass) -> Class {
     let dimension = match (dim, arrayed) {
         (naga::ImageDimension::D2, false) => wgt::TextureViewDimension::D2,
         (naga::ImageDimension::D2, true) => wgt::TextureViewDimension::D2Array,
@@ -154,11 +142,11 @@ fn image(dim: naga::ImageDimension, arrayed: bool, class: &ImageClass) -> Class 
         })
     };
     match class {
-        ImageClass::Sampled { kind, multi } => match ScalarClass::from_kind(*kind) {
-            Some(scalar) => sampled(scalar, false, *multi),
+        ImageClass::Sampled { kind, multi } => match ScalarClass::from_kind(kind) {
+            Some(scalar) => sampled(scalar, false, multi),
             None => Class::Unsupported("a texture of this scalar type"),
         },
-        ImageClass::Depth { multi } => sampled(ScalarClass::Float, true, *multi),
+        ImageClass::Depth { multi } => sampled(ScalarClass::Float, true, multi),
         ImageClass::Storage { format, access } => {
             let load = access.contains(naga::StorageAccess::LOAD);
             let store = access.contains(naga::StorageAccess::STORE);

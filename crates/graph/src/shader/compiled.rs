@@ -48,10 +48,7 @@ fn parsed_and_valid(source: &Expanded) -> Result<Valid, ShaderError> {
             overrides: &module.overrides,
             global_expressions: &module.global_expressions,
         })
-        .map_err(|error| ShaderError::NoLayout {
-            what: error.to_string(),
-            at: source.file.span(0..0),
-        })?;
+        .map_err(|error| ShaderError::NoLayout(error.to_string(), source.file.span(0..0)))?;
     Ok((module, info, layouter))
 }
 
@@ -61,11 +58,13 @@ fn immediate(module: &Module, source: &Expanded) -> Option<ShaderError> {
     let mut globals = module.global_variables.iter();
     let (handle, global) =
         globals.find(|(_, global)| global.space == naga::AddressSpace::Immediate)?;
-    Some(ShaderError::Immediate {
-        file: source.file.name.to_string(),
-        global: global.name.clone().unwrap_or_default(),
-        at: source.place(module.global_variables.get_span(handle)),
-    })
+    let name = global.name.clone().unwrap_or_default();
+    let at = source.place(module.global_variables.get_span(handle));
+    Some(ShaderError::Immediate(
+        source.file.name.to_string(),
+        name,
+        at,
+    ))
 }
 
 /// A document is checked against the language. Features that a device lacks are reported when a

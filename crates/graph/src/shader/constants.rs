@@ -5,7 +5,7 @@ use super::{expand::Expanded, reflect::Shader, text::identifiers};
 use crate::{
     errors::shader::ShaderError,
     param::{Param, ParamType},
-    source::span::Span,
+    source::span::Located,
 };
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -16,9 +16,8 @@ pub(crate) struct ChoiceConstants(BTreeMap<String, ChoiceConstant>);
 #[derive(Debug)]
 struct ChoiceConstant {
     number: u32,
-    param: String,
+    param: Located<String>,
     word: String,
-    declared: Span,
 }
 
 impl ChoiceConstants {
@@ -33,16 +32,12 @@ impl ChoiceConstants {
                 let name = constant_name(&param.name, word);
                 let constant = ChoiceConstant {
                     number,
-                    param: param.name.value.clone(),
+                    param: param.name.clone(),
                     word: word.to_string(),
-                    declared: param.name.span.clone(),
                 };
                 if let Some(first) = constants.get(&name) {
-                    clashes.push(ShaderError::TwoWords {
-                        constant: name,
-                        first: first.declared.clone(),
-                        second: constant.declared,
-                    });
+                    let (first, second) = (first.param.span.clone(), constant.param.span);
+                    clashes.push(ShaderError::TwoWords(name, first, second));
                     continue;
                 }
                 constants.insert(name, constant);
@@ -54,9 +49,9 @@ impl ChoiceConstants {
     /// Appends those that the text uses and does not declare; returns those that it declares.
     pub fn append(&self, source: &mut Expanded) -> Vec<&str> {
         let mut used: HashMap<&str, bool> = HashMap::new();
-        for (word, is_declared) in identifiers(&source.text) {
+        for (word, before, is_outside) in identifiers(&source.text) {
             if let Some((name, _)) = self.0.get_key_value(word) {
-                *used.entry(name).or_default() |= is_declared;
+                *used.entry(name).or_default() |= is_outside && before == "const";
             }
         }
         let (declared, missing): (BTreeSet<_>, BTreeSet<_>) =
@@ -64,7 +59,7 @@ impl ChoiceConstants {
         for (name, _) in missing {
             let constant = &self.0[name];
             let text = format!("\nconst {name}: u32 = {}u;\n", constant.number);
-            source.push(&text, &constant.declared);
+            source.push(&text, &constant.param.span);
         }
         declared.into_iter().map(|(name, _)| name).collect()
     }
@@ -82,7 +77,6 @@ impl ChoiceConstants {
                 param: constant.param.clone(),
                 number: constant.number,
                 at: shader.constant_span(name),
-                declared: constant.declared.clone(),
             })
         })
     }

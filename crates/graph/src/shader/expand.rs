@@ -40,9 +40,8 @@ pub(crate) struct Expanded {
 /// An `#import` of a shader or of a module of it.
 #[derive(Clone, Debug)]
 pub(crate) struct ImportLine {
-    pub place: Span,
-    /// The path as it is written.
-    pub asked: String,
+    /// The path as it is written, at the place of the import.
+    pub asked: Located<String>,
     /// The path of the file that was asked for.
     pub path: Arc<str>,
     /// The file that stands there.
@@ -140,12 +139,20 @@ impl<'a> ShaderFiles<'a> {
 
     /// The module that a document names, as an `#import` would.
     pub fn module(&mut self, name: &Located<String>) -> Result<SourceFile, ImportError> {
-        if escapes(name) {
-            return Err(ImportError::Leaves(name.clone()));
-        }
         let candidates = module_candidates(folder_of(&name.span.file.name), name);
+        self.imported(name, candidates)
+    }
+
+    fn imported(
+        &mut self,
+        path: &Located<String>,
+        candidates: Vec<String>,
+    ) -> Result<SourceFile, ImportError> {
+        if escapes(path) {
+            return Err(ImportError::Leaves(path.clone()));
+        }
         let (missing, unreadable) = (ImportError::NoFile, ImportError::UnreadableFile);
-        self.found(name, candidates, missing, unreadable)
+        self.found(path, candidates, missing, unreadable)
     }
 
     /// The first of the candidates that is there, or one of two errors: none is, or one cannot be
@@ -208,7 +215,8 @@ impl<'a> ShaderFiles<'a> {
             let place = file.span(start..start + line.trim_end().len());
             let unquoted = || ImportError::Unquoted(place.clone());
             let (path, replaced) = paths(rest).ok_or_else(unquoted)?;
-            let mut imported = self.import(file, path, &place)?;
+            let asked = Located::new(path.to_owned(), place.clone());
+            let mut imported = self.import(file, &asked)?;
             let path_asked = Arc::clone(&imported.name);
             // A module that stands in for another may import it: then the import means the module
             // itself.
@@ -221,11 +229,11 @@ impl<'a> ShaderFiles<'a> {
                 imported = file;
             }
             if let Some(replaced) = replaced {
-                seen.push(self.import(file, replaced, &place)?.name.to_string());
+                let replaced = Located::new(replaced.to_owned(), place.clone());
+                seen.push(self.import(file, &replaced)?.name.to_string());
             }
             into.imports.push(ImportLine {
-                place: place.clone(),
-                asked: path.to_owned(),
+                asked,
                 path: path_asked,
                 file: imported.clone(),
                 replaces: replaced.is_some(),
@@ -249,16 +257,9 @@ impl<'a> ShaderFiles<'a> {
     fn import(
         &mut self,
         file: &SourceFile,
-        path: &str,
-        place: &Span,
+        path: &Located<String>,
     ) -> Result<SourceFile, ImportError> {
-        let path = Located::new(path.to_owned(), place.clone());
-        if escapes(&path) {
-            return Err(ImportError::Leaves(path));
-        }
-        let candidates = import_candidates(&file.name, &path);
-        let (missing, unreadable) = (ImportError::NoFile, ImportError::UnreadableFile);
-        self.found(&path, candidates, missing, unreadable)
+        self.imported(path, import_candidates(&file.name, path))
     }
 }
 

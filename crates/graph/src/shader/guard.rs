@@ -48,11 +48,8 @@ pub(super) fn check(source: &Expanded) -> Result<(), ShaderError> {
     let file = source.file.name.to_string();
     let text = source.text.as_str();
     if text.len() > LONGEST {
-        return Err(ShaderError::TooLong {
-            file,
-            most: LONGEST >> 10,
-            at: source.locate(0..0),
-        });
+        let at = source.locate(0..0);
+        return Err(ShaderError::TooLong(file, LONGEST >> 10, at));
     }
     let mut levels = vec![Level::default()];
     let mut declarations = 0;
@@ -95,18 +92,11 @@ pub(super) fn check(source: &Expanded) -> Result<(), ShaderError> {
             .last()
             .map_or(0, |level| level.current.max(level.longest));
         if deepest > DEEPEST {
-            return Err(ShaderError::TooDeep {
-                file,
-                most: DEEPEST,
-                at: source.locate(here),
-            });
+            return Err(ShaderError::TooDeep(file, DEEPEST, source.locate(here)));
         }
         if declarations > MOST_DECLARATIONS {
-            return Err(ShaderError::TooManyDeclarations {
-                file,
-                most: MOST_DECLARATIONS,
-                at: source.locate(here),
-            });
+            let (most, at) = (MOST_DECLARATIONS, source.locate(here));
+            return Err(ShaderError::TooManyDeclarations(file, most, at));
         }
     }
     Ok(())

@@ -2,13 +2,14 @@
 //! per entry point.
 
 use super::{
-    class::{Class, TextureClass, class_of, vector},
+    class::{Class, TextureClass, class_of},
     compiled::{compiled, specialised},
     expand::Expanded,
     footprint::Footprint,
     guard,
     items::{Item, item},
     text::words,
+    varyings::Varyings,
     wgsl_errors::function_span,
 };
 use crate::{
@@ -123,9 +124,13 @@ impl Shader {
         let entries = self.module.entry_points.iter().enumerate();
         entries
             .filter(|(index, entry)| {
-                entry.stage == ShaderStage::Fragment && self.fragment_outputs(*index).is_empty()
+                entry.stage == ShaderStage::Fragment && self.is_colourless(*index)
             })
             .map(|(index, _)| index)
+    }
+
+    fn is_colourless(&self, entry: usize) -> bool {
+        Varyings::outputs(&self.module, entry).locations.is_empty()
     }
 
     /// The entry point of `stage`: the one called `name`, or the only one of the stage, of those
@@ -143,7 +148,7 @@ impl Shader {
                 && (stage != ShaderStage::Fragment
                     || !depth_only
                     || name.is_some()
-                    || self.fragment_outputs(index).is_empty())
+                    || self.is_colourless(index))
         };
         let entries = self.module.entry_points.iter().enumerate();
         let of_stage: Vec<(usize, &str)> = entries
@@ -152,12 +157,7 @@ impl Shader {
             .collect();
         let stage = format!("{stage:?}").to_lowercase();
         let file = self.source.file.name.to_string();
-        let known = || {
-            of_stage
-                .iter()
-                .map(|(_, known)| (*known).to_owned())
-                .collect()
-        };
+        let known = of_stage.iter().map(|(_, known)| (*known).to_owned());
         match (name, of_stage.as_slice()) {
             (Some(name), _) => {
                 let mut named = of_stage.iter().filter(|(_, known)| *known == name.as_str());
@@ -165,21 +165,17 @@ impl Shader {
                     file,
                     stage,
                     name: name.clone(),
-                    known: known(),
+                    known: known.collect(),
                 };
                 named.next().map(|(index, _)| *index).ok_or_else(error)
             }
             (None, [(index, _)]) => Ok(*index),
-            (None, []) => Err(ShaderError::NoEntry {
-                file,
-                stage,
-                at: wanted.clone(),
-            }),
+            (None, []) => Err(ShaderError::NoEntry(file, stage, wanted.clone())),
             (None, _) => Err(ShaderError::SeveralEntries {
                 file,
                 stage,
                 at: wanted.clone(),
-                known: known(),
+                known: known.collect(),
             }),
         }
     }
@@ -398,30 +394,6 @@ impl Shader {
     pub(crate) fn global_names(&self) -> impl Iterator<Item = &str> {
         let globals = self.module.global_variables.iter();
         globals.filter_map(|(_, global)| global.name.as_deref())
-    }
-
-    /// Scalar class and component count of each colour output of a fragment entry point, by
-    /// location.
-    pub(crate) fn fragment_outputs(&self, entry: usize) -> Vec<(u32, ScalarClass, u32)> {
-        let Some(result) = &self.module.entry_points[entry].function.result else {
-            return Vec::new();
-        };
-        let mut outputs = Vec::new();
-        let mut add = |binding: &Option<naga::Binding>, ty: Handle<naga::Type>| {
-            if let (Some(naga::Binding::Location { location, .. }), Some((scalar, width))) =
-                (binding, vector(&self.module, ty))
-            {
-                outputs.push((*location, scalar, width));
-            }
-        };
-        match &self.module.types[result.ty].inner {
-            TypeInner::Struct { members, .. } => members
-                .iter()
-                .for_each(|member| add(&member.binding, member.ty)),
-            _ => add(&result.binding, result.ty),
-        }
-        outputs.sort_by_key(|(location, ..)| *location);
-        outputs
     }
 }
 

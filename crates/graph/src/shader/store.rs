@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     diagnostics::reports::{ErrorGuaranteed, Reports},
-    document::typed::{Document, What, each_entry},
+    document::typed::Document,
     errors::shader::ImportError,
     kinds::step::ShaderUse,
     source::{
@@ -191,21 +191,13 @@ impl Loader<'_> {
             let replaced: Replaced = in_effect
                 .map(|rule| (rule.of.clone(), rule.is.clone()))
                 .collect();
-            each_entry(&document.entries, &mut |entry| {
-                if let What::Pass(pass) = &entry.what {
-                    for shader in &pass.shaders {
-                        self.shader(document, shader, &constants, &replaced);
-                    }
-                }
-            });
-        }
-        each_entry(&document.entries, &mut |entry| {
-            if let What::Include(include) = &entry.what
-                && let Some(inner) = include.document()
-            {
-                self.document(inner, &rules);
+            for shader in document.passes().flat_map(|pass| &pass.shaders) {
+                self.shader(document, shader, &constants, &replaced);
             }
-        });
+        }
+        for (_, _, inner) in document.includes() {
+            self.document(inner, &rules);
+        }
     }
 
     fn shader(
@@ -226,10 +218,9 @@ impl Loader<'_> {
         if known.is_some_and(|known| known.iter().any(|(of, _)| *of == replaced)) {
             return;
         }
-        let read = match self.files.expand(&shader.name, &replaced) {
-            Err(error) => Err(self.reports.report(error)),
-            Ok(source) => self.parse(source, constants),
-        };
+        let source = self.files.expand(&shader.name, &replaced);
+        let source = self.reports.check(source);
+        let read = source.and_then(|source| self.parse(source, constants));
         let variants = self.shaders.shaders.entry(key).or_default();
         variants.push((replaced, read));
     }
@@ -242,10 +233,8 @@ impl Loader<'_> {
         let declared = constants.append(&mut source);
         let text = format!("{}\n{}", source.file.name, source.text);
         let reports = &mut *self.reports;
-        let shader = self.parsed.entry(text).or_insert_with(|| {
-            let shader = Shader::new(source).map(Arc::new);
-            shader.map_err(|error| reports.report(error))
-        });
+        let read = || reports.check(Shader::new(source).map(Arc::new));
+        let shader = self.parsed.entry(text).or_insert_with(read);
         let shader = shader.clone()?;
         match constants.disagreement(&shader, &declared) {
             Some(clash) => Err(self.reports.report(clash)),
@@ -258,18 +247,11 @@ impl Loader<'_> {
         if let Some(path) = self.shaders.module(name) {
             return Some(path.clone());
         }
-        match self.files.module(name) {
-            Ok(file) => {
-                let path = file.name.to_string();
-                let key = Shaders::module_key(name);
-                self.shaders.modules.insert(key, path.clone());
-                Some(path)
-            }
-            Err(error) => {
-                self.reports.report(error);
-                None
-            }
-        }
+        let file = self.reports.check(self.files.module(name)).ok()?;
+        let path = file.name.to_string();
+        let key = Shaders::module_key(name);
+        self.shaders.modules.insert(key, path.clone());
+        Some(path)
     }
 
     /// Functions that both modules have must be called alike.

@@ -130,17 +130,25 @@ pub(super) fn words<'a>(text: &'a str, word: &'a str) -> impl Iterator<Item = us
         })
 }
 
-/// The words of a text outside comments, and which of them are declared as module-scope constants.
-pub(super) fn identifiers(text: &str) -> impl Iterator<Item = (&str, bool)> {
-    let (mut depth, mut after_const) = (0usize, false);
+/// The words of a text outside comments, each with the token before it, `var` behind its `<…>`, and
+/// whether it stands at module scope, outside of brackets.
+pub(super) fn identifiers(text: &str) -> impl Iterator<Item = (&str, &str, bool)> {
+    let (mut depth, mut before) = (0usize, "");
+    // Inside `<…>` behind `var`.
+    let mut is_template = false;
     tokens(text).filter_map(move |(_, token)| {
         match token {
-            "{" => depth += 1,
-            "}" => depth = depth.saturating_sub(1),
+            "{" | "(" => depth += 1,
+            "}" | ")" => depth = depth.saturating_sub(1),
+            "<" if before == "var" => is_template = true,
+            ">" if is_template => {
+                (is_template, before) = (false, "var");
+                return None;
+            }
             _ => {}
         }
-        let is_declared = std::mem::replace(&mut after_const, depth == 0 && token == "const");
+        let before = std::mem::replace(&mut before, token);
         let is_word = token.starts_with(|c: char| c.is_alphabetic() || c == '_');
-        is_word.then_some((token, is_declared))
+        is_word.then_some((token, before, depth == 0 && !is_template))
     })
 }

@@ -3,7 +3,7 @@
 use super::{
     expand::{Expanded, ImportLine},
     reflect::Shader,
-    text::tokens,
+    text::identifiers,
     wgsl_errors::functions,
 };
 use crate::source::span::{Located, SourceFile};
@@ -29,31 +29,15 @@ struct Words<'t> {
 impl<'t> Words<'t> {
     fn new(text: &'t str) -> Self {
         let mut words = Self::default();
-        let (mut depth, mut before) = (0usize, "");
-        // Inside `<…>` behind `var`.
-        let mut is_template = false;
-        for (_, token) in tokens(text) {
-            match token {
-                "{" | "(" => depth += 1,
-                "}" | ")" => depth = depth.saturating_sub(1),
-                "<" if before == "var" => is_template = true,
-                ">" if is_template => {
-                    is_template = false;
-                    before = "var";
-                    continue;
-                }
-                "compute" | "vertex" | "fragment" if before == "@" => words.has_entry_point = true,
-                word if word.starts_with(|c: char| c.is_alphabetic() || c == '_') => {
-                    let declares = ["fn", "const", "override", "struct", "alias", "var"];
-                    if depth == 0 && !is_template && declares.contains(&before) {
-                        words.declared.insert(word);
-                    } else {
-                        words.mentioned.insert(word);
-                    }
-                }
-                _ => {}
+        for (word, before, is_outside) in identifiers(text) {
+            let declares = ["fn", "const", "override", "struct", "alias", "var"];
+            if before == "@" && matches!(word, "compute" | "vertex" | "fragment") {
+                words.has_entry_point = true;
+            } else if is_outside && declares.contains(&before) {
+                words.declared.insert(word);
+            } else {
+                words.mentioned.insert(word);
             }
-            before = token;
         }
         words
     }
@@ -89,7 +73,7 @@ impl<'s> UnusedFinder<'s> {
         let words = &self.words;
         let is_used = |line: &ImportLine| {
             let imported = reached(source, &line.file.name);
-            let from = &*line.place.file.name;
+            let from = &*line.asked.span.file.name;
             let mut own = imported.iter().filter_map(|file| words.get(file));
             if line.replaces || own.clone().any(|own| own.has_entry_point) {
                 return true;
@@ -112,7 +96,7 @@ impl<'s> UnusedFinder<'s> {
         unused
             .map(|line| Unused {
                 what: "import",
-                name: Located::new(line.asked.clone(), line.place.clone()),
+                name: line.asked.clone(),
             })
             .collect()
     }
@@ -189,7 +173,7 @@ fn reached<'s>(source: &'s Expanded, file: &'s str) -> BTreeSet<&'s str> {
             let lines = source
                 .imports
                 .iter()
-                .filter(|line| *line.place.file.name == *file);
+                .filter(|line| *line.asked.span.file.name == *file);
             open.extend(lines.map(|line| &*line.file.name));
         }
     }

@@ -1,14 +1,15 @@
 //! Values that pass from one stage to the next: locations, with their types and how they are
 //! interpolated, and what of the limit built-in values take.
 
-use super::reflect::Shader;
-use naga::{Binding, BuiltIn, Handle, ScalarKind, Type, TypeInner};
+use super::class::vector;
+use crate::scalar_class::ScalarClass;
+use naga::{Binding, BuiltIn, Handle, Module, Type, TypeInner};
 
 /// A value at a location.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Varying {
     pub location: u32,
-    pub kind: ScalarKind,
+    pub scalar: ScalarClass,
     pub width: u32,
     pub interpolation: Option<naga::Interpolation>,
     pub sampling: Option<naga::Sampling>,
@@ -24,28 +25,28 @@ pub(crate) struct Varyings {
 
 impl Varyings {
     /// The arguments of an entry point.
-    pub fn inputs(shader: &Shader, entry: usize) -> Self {
+    pub fn inputs(module: &Module, entry: usize) -> Self {
         let mut inputs = Self::default();
-        for argument in &shader.module.entry_points[entry].function.arguments {
-            inputs.add(shader, argument.binding.as_ref(), argument.ty);
+        for argument in &module.entry_points[entry].function.arguments {
+            inputs.add(module, argument.binding.as_ref(), argument.ty);
         }
         inputs
     }
 
     /// The result of an entry point.
-    pub fn outputs(shader: &Shader, entry: usize) -> Self {
+    pub fn outputs(module: &Module, entry: usize) -> Self {
         let mut outputs = Self::default();
-        if let Some(result) = &shader.module.entry_points[entry].function.result {
-            outputs.add(shader, result.binding.as_ref(), result.ty);
+        if let Some(result) = &module.entry_points[entry].function.result {
+            outputs.add(module, result.binding.as_ref(), result.ty);
         }
         outputs
     }
 
-    fn add(&mut self, shader: &Shader, binding: Option<&Binding>, ty: Handle<Type>) {
-        match (binding, &shader.module.types[ty].inner) {
+    fn add(&mut self, module: &Module, binding: Option<&Binding>, ty: Handle<Type>) {
+        match (binding, &module.types[ty].inner) {
             (None, TypeInner::Struct { members, .. }) => {
                 for member in members {
-                    self.add(shader, member.binding.as_ref(), member.ty);
+                    self.add(module, member.binding.as_ref(), member.ty);
                 }
             }
             (
@@ -55,20 +56,16 @@ impl Varyings {
                     sampling,
                     ..
                 }),
-                inner,
+                _,
             ) => {
-                let (width, scalar) = match *inner {
-                    TypeInner::Scalar(scalar) => (1, scalar),
-                    TypeInner::Vector { size, scalar } => (size as u32, scalar),
-                    _ => return,
-                };
-                self.locations.push(Varying {
+                let vector = vector(module, ty);
+                self.locations.extend(vector.map(|(scalar, width)| Varying {
                     location,
-                    kind: scalar.kind,
+                    scalar,
                     width,
                     interpolation,
                     sampling,
-                });
+                }));
             }
             (Some(Binding::BuiltIn(builtin)), inner) => {
                 self.builtins += variables(*builtin, inner);
@@ -80,26 +77,23 @@ impl Varyings {
 
 /// How many variables between stages a built-in value counts for.
 fn variables(builtin: BuiltIn, ty: &TypeInner) -> u32 {
-    match (builtin, ty) {
-        (
-            BuiltIn::ClipDistances,
+    match builtin {
+        BuiltIn::ClipDistances => match ty {
             TypeInner::Array {
                 size: naga::ArraySize::Constant(count),
                 ..
-            },
-        ) => count.get().div_ceil(4),
-        (
-            BuiltIn::FrontFacing
-            | BuiltIn::SampleIndex
-            | BuiltIn::SampleMask
-            | BuiltIn::PrimitiveIndex
-            | BuiltIn::SubgroupInvocationId
-            | BuiltIn::SubgroupSize
-            | BuiltIn::ViewIndex
-            | BuiltIn::PointCoord,
-            _,
-        ) => 1,
-        (BuiltIn::Barycentric { .. }, _) => 3,
+            } => count.get().div_ceil(4),
+            _ => 0,
+        },
+        BuiltIn::FrontFacing
+        | BuiltIn::SampleIndex
+        | BuiltIn::SampleMask
+        | BuiltIn::PrimitiveIndex
+        | BuiltIn::SubgroupInvocationId
+        | BuiltIn::SubgroupSize
+        | BuiltIn::ViewIndex
+        | BuiltIn::PointCoord => 1,
+        BuiltIn::Barycentric { .. } => 3,
         _ => 0,
     }
 }

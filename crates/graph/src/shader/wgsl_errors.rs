@@ -74,16 +74,10 @@ pub(super) fn parse_error(error: &naga::front::wgsl::ParseError, source: &Expand
         // naga gives no place where a type is too large.
         places.push((source.file.span(0..0), String::new()));
     }
-    ShaderError::Naga {
-        file: blamed(&places, source),
-        what: format!("does not compile: {}", error.message()),
-        places,
-        notes: error
-            .notes()
-            .map(str::to_owned)
-            .chain(meant(error.message(), &source.text))
-            .collect(),
-    }
+    let notes = error.notes().map(str::to_owned);
+    let notes = notes.chain(meant(error.message(), &source.text)).collect();
+    let what = format!("does not compile: {}", error.message());
+    ShaderError::Naga(blamed(&places, source), what, places, notes)
 }
 
 /// Suggests a field or name in place of an unknown one.
@@ -256,12 +250,8 @@ pub(super) fn validation_error(
         };
         places.push((place, String::new()));
     }
-    ShaderError::Naga {
-        file: blamed(&places, source),
-        what: format!("is not valid: {said}"),
-        places,
-        notes: Vec::new(),
-    }
+    let what = format!("is not valid: {said}");
+    ShaderError::Naga(blamed(&places, source), what, places, Vec::new())
 }
 
 /// An entry point that is not valid with the values of its overrides.
@@ -272,10 +262,8 @@ pub(super) fn specialisation_error(
 ) -> ShaderError {
     // Its numbers are those of a module that is gone.
     let said = in_full(error, &naga::Module::default());
-    ShaderError::Naga {
-        file: format!("`{}`", source.file.name),
-        what: format!("is not valid with the values of its overrides: {said}"),
-        places: vec![(function_span(source, entry), String::new())],
-        notes: Vec::new(),
-    }
+    let what = format!("is not valid with the values of its overrides: {said}");
+    let places = vec![(function_span(source, entry), String::new())];
+    let file = format!("`{}`", source.file.name);
+    ShaderError::Naga(file, what, places, Vec::new())
 }

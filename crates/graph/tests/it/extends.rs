@@ -67,6 +67,15 @@ fn a_claim_is_never_inherited() {
     assert_eq!(claims(&extending(own)), ["it is another"]);
 }
 
+/// A diagnostic tells of the method as written, too.
+#[test]
+fn an_output_on_request_is_never_inherited() {
+    let asked = r#"outputs: [(name: "first", material: "first", on_request: true), "second"]"#;
+    let base = |own: &str| extending(own).edited("base.ron", r#"outputs: ["second"]"#, asked);
+    assert_eq!(right(load(&base(""))).outputs(), ["second"]);
+    assert_eq!(right(load(&base(asked))).outputs(), ["first", "second"]);
+}
+
 #[test]
 fn sections_replace_or_add() {
     let files = extending(

@@ -146,6 +146,38 @@ fn outputs_by_choice() {
 }
 
 /// ```text
+/// fill_a ─▶ a ─▶ [a]      fill_b ─▶ b ─▶ [second, on request]
+/// ```
+/// A diagnostic runs for those alone that name it, as an output or as a capture.
+#[test]
+fn an_output_on_request_costs_only_those_that_name_it() {
+    let outputs = r#""a", (name: "second", material: "b", on_request: true)"#;
+    let sections = format!(
+        "materials: [{}, {}], passes: [{}, {}], outputs: [{outputs}]",
+        texture("a"),
+        texture("b"),
+        fill("fill_a", "a"),
+        fill("fill_b", "b")
+    );
+    let graph = right(load(&Files::new(SHADERS).document("graph.ron", &sections)));
+    assert_eq!(graph.outputs(), ["a", "second"]);
+    assert_eq!(graph.default_outputs(), ["a"]);
+    let mut request = PlanRequest::new([8, 4], &Triangle);
+    assert_eq!(names(&right(graph.plan(&request))), ["fill_a"]);
+    request.captures = vec![Capture {
+        material: "second".into(),
+        after: None,
+    }];
+    let captured = right(graph.plan(&request));
+    assert_eq!(names(&captured), ["fill_a", "fill_b"]);
+    assert_eq!(captured.outputs().len(), 2);
+    request.captures.clear();
+    request.outputs = Some(vec!["second".to_owned()]);
+    let named = right(graph.plan(&request));
+    assert_eq!(names(&named), ["fill_b"]);
+}
+
+/// ```text
 /// fill ─▶ image ─▶ keep ─▶ kept      fill2 ─▶ image ─▶ [image]
 ///         └─ image@fill
 /// ```

@@ -69,10 +69,7 @@ impl Diagnostic {
     /// Adds a place that may not be known.
     #[must_use]
     pub fn at_any(self, place: Option<impl Into<Span>>, text: impl Into<String>) -> Self {
-        match place {
-            Some(place) => self.at(place, text),
-            None => self,
-        }
+        self.at_all(place.map(|place| (place, text)))
     }
 
     /// Adds several places.
@@ -88,15 +85,10 @@ impl Diagnostic {
     /// Adds the reason, which is a mistake of its own: its kind is this one's.
     #[must_use]
     pub fn because(self, place: impl Into<Span>, reason: impl Into<Self>) -> Self {
-        let Self {
-            code,
-            message,
-            help,
-            ..
-        } = reason.into();
+        let reason = reason.into();
         Self {
-            code,
-            ..self.at(place, message).help_any(help)
+            code: reason.code,
+            ..self.at(place, reason.message).help_any(reason.help)
         }
     }
 
@@ -114,10 +106,7 @@ impl Diagnostic {
     /// Says what to do in some cases.
     #[must_use]
     pub fn help_any(self, text: Option<impl Into<String>>) -> Self {
-        match text {
-            Some(text) => self.help(text),
-            None => self,
-        }
+        text.into_iter().fold(self, Self::help)
     }
 
     /// Adds "did you mean …" if one of `known` is close to `word`, else a list of what there is.

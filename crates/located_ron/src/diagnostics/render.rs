@@ -56,23 +56,14 @@ struct Report<'a> {
 
 impl<'a> Report<'a> {
     fn new(diagnostic: &'a Diagnostic) -> Self {
-        let first = diagnostic
-            .labels
-            .first()
-            .map(|label| label.span.file.clone());
-        let mut report = Self::from_file(diagnostic, diagnostic.message.clone(), first.as_ref());
-        let mut files: Vec<_> = diagnostic
-            .labels
-            .iter()
-            .map(|label| label.span.file.clone())
-            .collect();
-        files.sort_by(|a, b| a.name.cmp(&b.name));
-        files.dedup();
-        for file in files
-            .into_iter()
-            .filter(|file| Some(file) != first.as_ref())
-        {
-            let note = Self::from_file(diagnostic, format!("and in {}", file.name), Some(&file));
+        let mut files = diagnostic.labels.iter().map(|label| &label.span.file);
+        let first = files.next();
+        let mut report = Self::from_file(diagnostic, diagnostic.message.clone(), first);
+        let mut others: Vec<_> = files.filter(|file| Some(*file) != first).collect();
+        others.sort_by(|a, b| a.name.cmp(&b.name));
+        others.dedup();
+        for file in others {
+            let note = Self::from_file(diagnostic, format!("and in {}", file.name), Some(file));
             report.related.push(Self {
                 is_note: true,
                 ..note

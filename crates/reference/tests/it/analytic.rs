@@ -2,7 +2,7 @@
 
 use crate::common::scenes::{add, add_rectangle, counts, floor, from_above, light, render};
 use skiagraph_reference::{Class, Error, Oracle, OracleMode, PixelCounts, Progress};
-use skiagraph_scene::{Bvh, Mesh};
+use skiagraph_scene::Mesh;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 const MODES: [OracleMode; 2] = [OracleMode::Exact, OracleMode::Offset(1e-3)];
@@ -252,10 +252,6 @@ fn wrong_input_is_an_error() {
     assert!(matches!(
         shade(light(0.0, 0.0, 0.0), &[0; 8], OracleMode::Exact),
         Some(Error::Light(_))
-    ));
-    assert!(matches!(
-        Oracle::with_bvh(&mesh, &Bvh::default()).err(),
-        Some(Error::Hierarchy(_))
     ));
     for text in [
         "",

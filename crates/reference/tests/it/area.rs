@@ -4,7 +4,7 @@ use crate::common;
 use crate::common::scenes::{add_rectangle, floor, from_above};
 use glam::DVec3;
 use skiagraph_reference::{
-    AreaVisibility, Class, GroundTruthPixels, Oracle, OracleMode, Progress, shade_area,
+    AreaVisibility, Class, GroundTruthPixels, Oracle, OracleMode, Progress, ground_truth,
 };
 use skiagraph_scene::{DirectionalLight, Mesh};
 
@@ -24,7 +24,7 @@ fn area(
     let oracle = Oracle::new(mesh);
     let primitives = oracle.primary(&camera, Progress::default()).unwrap();
     let progress = Progress::default();
-    let answer = shade_area(
+    let answer = ground_truth(
         &oracle,
         &camera,
         light,
@@ -32,7 +32,8 @@ fn area(
         (mode, samples),
         progress,
     );
-    answer.unwrap()
+    let answer = answer.unwrap();
+    (answer.pixels, answer.area.unwrap())
 }
 
 /// A half plane over the floor, at height 1, whose edge runs along z at x = 0.
@@ -104,11 +105,11 @@ fn more_samples_converge_and_the_same_ones_repeat() {
 }
 
 #[test]
-fn a_light_without_width_is_the_hard_one() {
+fn a_light_of_hardly_any_width_is_the_hard_one() {
     let mut mesh = half_plane();
     add_rectangle(&mut mesh, [-2.0, -1.0], 0.5, [-1.03, 1.03]);
     let direction = DVec3::new(0.31, -1.0, 0.23);
-    let (soft, area) = area(&mesh, (direction, 0.0), 4, OracleMode::Exact);
+    let (soft, area) = area(&mesh, (direction, 1e-7), 4, OracleMode::Exact);
     let light = DirectionalLight::new(direction);
     let hard = common::scenes::render(&mesh, &from_above(4.0, [80, 80]), light, OracleMode::Exact);
     assert_eq!(soft.classes, hard.classes);
@@ -151,7 +152,7 @@ fn a_receiver_within_the_lights_ball_asks_the_hierarchy() {
     let primitives = oracle.primary(&camera, Progress::default()).unwrap();
     let how = (OracleMode::Exact, 64);
     let light = skiagraph_scene::LightKind::Point(bulb);
-    let answer = shade_area(
+    let answer = ground_truth(
         &oracle,
         &camera,
         light,
@@ -159,7 +160,8 @@ fn a_receiver_within_the_lights_ball_asks_the_hierarchy() {
         how,
         Progress::default(),
     );
-    let (truth, area) = answer.unwrap();
+    let answer = answer.unwrap();
+    let (truth, area) = (answer.pixels, answer.area.unwrap());
     // From (-0.7, 0) the disk across (0.7, 2) is hidden from a fifth of its radius on.
     let near = 20 * 40 + 16;
     assert_eq!(truth.classes[near], Class::Lit);

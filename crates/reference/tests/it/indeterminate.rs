@@ -172,7 +172,7 @@ proptest! {
         let camera = view.camera([40, 30]);
         let light = light(direction.0, direction.1, direction.2);
         let bvh = Bvh::build(&mesh);
-        let oracle = Oracle::with_bvh(&mesh, &bvh).expect("built over it");
+        let oracle = Oracle::new(&mesh);
         let primitives = oracle
             .primary(&camera, Progress::default())
             .expect("nobody interrupts");

@@ -82,7 +82,7 @@ fn shade(
 /// pixels only, and these are few.
 fn f32_errs_in_few_indeterminate_pixels_only(scene: &Scene, mode: OracleMode) {
     let bvh = Bvh::build(&scene.mesh);
-    let oracle = Oracle::with_bvh(&scene.mesh, &bvh).expect("built over it");
+    let oracle = Oracle::new(&scene.mesh);
     for view in &scene.views {
         let camera = view.camera([480, 360]);
         let primitives = oracle

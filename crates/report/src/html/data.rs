@@ -42,6 +42,7 @@ struct Table<'a> {
     viewport: [u32; 2],
     /// Source and viewport in words.
     of: &'a str,
+    views: BTreeSet<&'a str>,
     sentences: Vec<String>,
     conditions: Vec<String>,
     notes: Vec<String>,
@@ -97,6 +98,7 @@ fn table<'a>(of: &'a Shown) -> Table<'a> {
         source: of.source,
         viewport: of.summary.viewport,
         of: &of.title,
+        views: of.summary.views(),
         sentences: of.summary.verdict().sentences,
         conditions: of.summary.conditions(),
         notes: of.summary.notes(),

@@ -68,6 +68,7 @@ fn page_within(sources: &[Source], reports: &[Report], limit: usize) -> Page {
         .replace("<!--FRONTS-->", &charts::fronts(&tables))
         .replace("<!--LEGEND-->", &charts::legends(&tables))
         .replace("<!--TABLES-->", &rows::tables(&tables))
+        .replace("<!--LIGHTS-->", &rows::lights(sources))
         .replace("<!--STEPS-->", &steps::bars(&tables))
         .replace("<!--GROWTHS-->", &charts::growths(&tables))
         .replace("<!--PATHS-->", &charts::paths(&tables))
@@ -132,14 +133,17 @@ mod tests {
         let images = results.runs[0].measured.as_ref().unwrap().images.as_ref();
         let images = images.unwrap();
         let names = [&images.shaded, &images.visibility, &images.error];
-        let names = names.into_iter().chain(&images.uncertain);
+        let names = names
+            .into_iter()
+            .chain(&images.uncertain)
+            .chain(&images.texels);
         for name in names {
             std::fs::write(folder.path().join(name), [7; 3_000]).unwrap();
         }
         let sources = source(folder.path(), results);
         let whole = page(&sources, &[]);
         assert!(whole.left_out.is_empty(), "{:?}", whole.left_out);
-        // The four take 16,000 letters.
+        // The five take 20,000 letters.
         let thin = page_within(&sources, &[], whole.html.len() - 5_000);
         assert!(thin.html.len() <= whole.html.len() - 5_000);
         let [line] = &thin.left_out[..] else {
@@ -149,7 +153,7 @@ mod tests {
         let data = data_of(&thin.html);
         let set = &data["pictures"]["sets"][0];
         assert!(set["error"].is_u64() && set["shaded"].is_u64(), "{set}");
-        assert!(set["uncertain"].is_null() && set["visibility"].is_null());
+        assert!(set["uncertain"].is_null() && set["texels"].is_null());
         assert_eq!(data["left_out"][0], line.as_str());
     }
 

@@ -39,18 +39,41 @@ const meanings = {
   ],
   uncertain: [[[160, 32, 240], 'uncertain: left to rays', true], [[96, 112, 128], 'background']],
   shaded: [[[96, 112, 128], 'background']],
+  texels: [
+    [[128, 0, 38], '1/64 texel per pixel or less'], [[227, 26, 28], '1/16'], [[253, 141, 60], '1/4'],
+    [[255, 237, 160], '1'], [[127, 205, 187], '4'], [[29, 145, 192], '16'], [[8, 29, 88], '64 or more'],
+    [[64, 64, 64], 'outside the map'], [[116, 116, 116], 'facing away'], [[232, 236, 240], 'background'],
+  ],
 };
-const kinds = { shaded: 'shaded', visibility: 'visibility', error: 'wrong pixels', uncertain: 'uncertain pixels' };
-const meaningOf = (kind, isGraded) => meanings[kind === 'error' && isGraded ? 'difference' : kind];
+const kinds = {
+  shaded: 'shaded', visibility: 'visibility', error: 'wrong pixels', uncertain: 'uncertain pixels',
+  texels: 'map texels per pixel', perspective: 'texels by distance', projection: 'texels by angles',
+};
+const isOfTexels = (kind) => ['texels', 'perspective', 'projection'].includes(kind);
+const meaningOf = (kind, isGraded) => meanings[
+  isOfTexels(kind) ? 'texels' : kind === 'error' && isGraded ? 'difference' : kind];
 
 /** A share of light from its sRGB grey (IEC 61966-2-1). */
 const linear = (grey) => (grey <= 0.04045 ? grey / 12.92 : ((grey + 0.055) / 1.055) ** 2.4);
+
+/** The texels per pixel of a colour: of the nearest one between the seven stops, each four times the last. */
+function texelsOf(rgb) {
+  const stops = meanings.texels.slice(0, 7).map(([stop]) => stop);
+  let [best, texels] = [Infinity, 1];
+  for (let step = 0; step <= 120; step += 1) {
+    const stop = Math.min(Math.floor(step / 20), 5), part = step / 20 - stop;
+    const off = rgb.reduce((sum, value, at) => sum + (value - stops[stop][at] * (1 - part) - stops[stop + 1][at] * part) ** 2, 0);
+    if (off < best) [best, texels] = [off, 4 ** (step / 20 - 3)];
+  }
+  return texels;
+}
 
 /** What a pixel says, in words. */
 function reading(kind, isGraded, [red, green, blue]) {
   const known = meaningOf(kind, isGraded).find(([rgb]) => rgb[0] === red && rgb[1] === green && rgb[2] === blue);
   if (known) return known[1];
   if (kind === 'visibility' && red === green && green === blue) return `${(100 * linear(red / 255)).toFixed(0)} % lit`;
+  if (isOfTexels(kind)) return `about ${texelsOf([red, green, blue]).toPrecision(2)}`;
   if (kind === 'error' && !isGraded) return 'right';
   if (kind === 'error') {
     return blue > red + 8 ? 'too light' : red > blue + 8 ? 'too dark' : 'right';

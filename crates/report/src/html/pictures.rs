@@ -1,6 +1,7 @@
 //! The pictures of a page, the most telling first, as far as there is room.
 
 use crate::html::sources::Source;
+use crate::notes::map_figures;
 use base64::{Engine, engine::general_purpose::STANDARD};
 use itertools::Itertools;
 use serde::Serialize;
@@ -37,6 +38,11 @@ pub struct Set {
     visibility: Option<usize>,
     error: Option<usize>,
     uncertain: Option<usize>,
+    texels: Option<usize>,
+    perspective: Option<usize>,
+    projection: Option<usize>,
+    /// Figures of its map's texels, in words.
+    figures: Option<String>,
     /// True if its answer is a share of light.
     graded: bool,
 }
@@ -50,7 +56,7 @@ pub struct Graph {
 }
 
 /// Kinds of pictures, the most telling first.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Kind {
     Reference,
     Error,
@@ -58,16 +64,10 @@ enum Kind {
     Graph,
     Visibility,
     Uncertain,
+    Texels,
+    Perspective,
+    Projection,
 }
-
-const ORDER: [Kind; 6] = [
-    Kind::Reference,
-    Kind::Error,
-    Kind::Shaded,
-    Kind::Graph,
-    Kind::Visibility,
-    Kind::Uncertain,
-];
 
 impl Kind {
     fn word(self) -> &'static str {
@@ -78,6 +78,9 @@ impl Kind {
             Self::Graph => "graph",
             Self::Visibility => "visibility",
             Self::Uncertain => "uncertain",
+            Self::Texels => "texels",
+            Self::Perspective => "perspective",
+            Self::Projection => "projection",
         }
     }
 }
@@ -98,28 +101,27 @@ impl Pictures {
     pub fn embed(sources: &[Source], room: usize) -> Self {
         let mut pictures = Self::default();
         let mut room = room;
-        let candidates: Vec<EmbedCandidate> = candidates(sources);
+        let mut candidates = candidates(sources);
+        candidates.sort_by_key(|candidate| candidate.kind);
         let mut left_out: BTreeMap<&str, usize> = BTreeMap::new();
-        for kind in ORDER {
-            for file in candidates.iter().filter(|candidate| candidate.kind == kind) {
-                let source = &sources[file.source];
-                let path = source.folder_of(file.run).join(&file.name);
-                let Ok(length) = fs::metadata(&path).map(|found| found.len() as usize) else {
-                    continue;
-                };
-                // Its letters, and what names it.
-                let cost = length.div_ceil(3) * 4 + 400;
-                if cost > room {
-                    *left_out.entry(kind.word()).or_default() += 1;
-                    continue;
-                }
-                let Ok(bytes) = fs::read(&path) else {
-                    continue;
-                };
-                room -= cost;
-                pictures.files.push(STANDARD.encode(bytes));
-                pictures.place(source, file);
+        for file in &candidates {
+            let source = &sources[file.source];
+            let path = source.folder_of(file.run).join(&file.name);
+            let Ok(length) = fs::metadata(&path).map(|found| found.len() as usize) else {
+                continue;
+            };
+            // Its letters, and what names it.
+            let cost = length.div_ceil(3) * 4 + 400;
+            if cost > room {
+                *left_out.entry(file.kind.word()).or_default() += 1;
+                continue;
             }
+            let Ok(bytes) = fs::read(&path) else {
+                continue;
+            };
+            room -= cost;
+            pictures.files.push(STANDARD.encode(bytes));
+            pictures.place(source, file);
         }
         if !left_out.is_empty() {
             let all: usize = left_out.values().sum();
@@ -168,6 +170,12 @@ impl Pictures {
             Kind::Error => &mut set.error,
             Kind::Shaded => &mut set.shaded,
             Kind::Uncertain => &mut set.uncertain,
+            Kind::Texels => {
+                set.figures = map_figures(run);
+                &mut set.texels
+            }
+            Kind::Perspective => &mut set.perspective,
+            Kind::Projection => &mut set.projection,
             _ => &mut set.visibility,
         };
         *place = Some(file);
@@ -202,7 +210,13 @@ fn candidates(sources: &[Source]) -> Vec<EmbedCandidate> {
 }
 
 fn names(run: &Run, images: &Images) -> Vec<(Kind, String)> {
-    let uncertain = images.uncertain.iter();
+    let optional = [
+        (Kind::Uncertain, &images.uncertain),
+        (Kind::Texels, &images.texels),
+        (Kind::Perspective, &images.perspective),
+        (Kind::Projection, &images.projection),
+    ];
+    let optional = optional.into_iter();
     [
         (Kind::Reference, images.reference.clone()),
         (Kind::Error, images.error.clone()),
@@ -211,6 +225,6 @@ fn names(run: &Run, images: &Images) -> Vec<(Kind, String)> {
         (Kind::Visibility, images.visibility.clone()),
     ]
     .into_iter()
-    .chain(uncertain.map(|name| (Kind::Uncertain, name.clone())))
+    .chain(optional.filter_map(|(kind, name)| Some((kind, name.clone()?))))
     .collect()
 }

@@ -77,4 +77,5 @@ if (data.tables.length > 0) {
   for (const id of ['front', 'table', 'pictures', 'passes', 'paths', 'growth', 'graph']) byId(`${id}-section`).hidden = true;
 }
 hide(byId('stress-section'), all('#stress table').length === 0);
+hide(byId('lights-section'), all('#lights table').length === 0);
 drawConditions();

@@ -1,11 +1,13 @@
 //! All rows: the tables of the terminal, joined.
 
 use crate::html::shown::{Shown, part};
+use crate::html::sources::Source;
 use crate::summary::Row;
-use crate::summary_table::{NOT_THERE, WRONG};
+use crate::summary_table::{NOT_THERE, WRONG, by_light};
 use crate::table::html;
 use skiagraph_chart::xml;
 use skiagraph_compare::records::table::Table;
+use skiagraph_compare::wording::size;
 
 /// A table of all rows.
 pub fn tables(tables: &[Shown]) -> String {
@@ -42,12 +44,32 @@ pub fn tables(tables: &[Shown]) -> String {
     part("rows", &all, None, &table)
 }
 
+/// Each method under each light, of the sources and viewports with several lights.
+pub fn lights(sources: &[Source]) -> String {
+    let of_source = |source: &Source| {
+        let tables = by_light(&source.results).into_iter();
+        let scene = &source.results.scene.name;
+        let table = |(viewport, table): ([u32; 2], Table)| {
+            let head = format!("{scene}, {}", size(viewport));
+            let none = |_, _| String::new();
+            format!(
+                "<h3>{}</h3>{}",
+                xml(&head),
+                html(&table, |_| String::new(), none)
+            )
+        };
+        tables.map(table).collect::<String>()
+    };
+    sources.iter().map(of_source).collect()
+}
+
 /// Attributes of each row.
 fn attributes(index: usize, table: &Shown) -> Vec<String> {
     let best = table.summary.verdict().fastest_exact;
     let of_row = |(place, row): (usize, &Row)| {
         let class = match row.views() > 0 && row.is_exact() {
             _ if best == Some(place) => "exact best",
+            _ if table.summary.is_old(row) => "old",
             true => "exact",
             false => "",
         };

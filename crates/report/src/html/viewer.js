@@ -15,7 +15,7 @@ const setOf = (pane) => setsHere().find((set) => nameOf(set) === pane.label);
 /** Chooses what there is: views, methods and kinds of the table's source and viewport. */
 function settleViewer() {
   const here = data.pictures.sets.filter((set) => set.source === table().source
-    && size(set.viewport) === size(table().viewport));
+    && size(set.viewport) === size(table().viewport) && table().views.includes(set.view));
   viewer.views = [...new Set(here.map((set) => set.view))];
   viewer.place = Math.min(viewer.place, Math.max(viewer.views.length - 1, 0));
   const sets = setsHere(), names = sets.map(nameOf);
@@ -84,6 +84,8 @@ function drawViewer() {
   viewer.stages = stages.map((panes) => stage(panes));
   byId('viewer').replaceChildren(
     el('div', { class: `stages ${viewer.mode}` }, ...viewer.stages.map((one) => one.box)),
+    ...viewer.panes.filter((pane) => isOfTexels(pane.kind) && setOf(pane)?.figures)
+      .map((pane) => el('div', { class: 'quiet figures' }, `${pane.label}, ${setOf(pane).figures}`)),
     el('div', { id: 'values', class: 'quiet' }, 'Wheel or buttons zoom, dragging moves; point at a pixel for the values of every picture there.'),
   );
   load();

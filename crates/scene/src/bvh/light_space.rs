@@ -3,11 +3,7 @@
 //! watertight triangle test (Woop, Benthin and Wald 2013): axes permuted so that the direction's
 //! longest component is the last, then sheared so that the direction is the z axis.
 
-use super::{
-    build::{measurable, ploc},
-    node::BvhNode,
-    tree::{Bvh, MAX_DEPTH},
-};
+use super::{node::BvhNode, tree::Bvh};
 use crate::mesh::Mesh;
 use glam::{DVec2, DVec3, Vec3};
 use obvhs::triangle::Triangle;
@@ -22,7 +18,7 @@ const DEPTH: f64 = 0.01;
 /// One node, 32 bytes, laid out as the trace shader reads it. All is relative to
 /// [`LightSpace::centre`], rounded outwards.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct LightSpaceNode {
     /// Low corner of what the node covers, seen along the rays.
     pub low: [f32; 2],
@@ -94,24 +90,14 @@ impl LightSpace {
         let steepness = d.length() / d.abs().max_element();
         let corner = |index: u32| {
             let (seen, up) = self.place(mesh.positions[index as usize]);
-            seen.extend(DEPTH * steepness * up.z).as_vec3()
+            seen.extend(DEPTH * steepness * up.z).as_vec3().into()
         };
-        let triangle = |corners: &[u32; 3]| corners.map(corner);
-        let triangles: Vec<[Vec3; 3]> = mesh.triangles.iter().map(triangle).collect();
-        let corners = triangles.as_flattened().iter();
-        let bounds = corners.fold(None, |bounds, &p| {
-            let (low, high) = bounds.unwrap_or((p, p));
-            Some((low.min(p), high.max(p)))
-        });
-        let triangle = |corners: &[Vec3; 3]| {
-            let [v0, v1, v2] = corners.map(Into::into);
+        let triangle = |corners: &[u32; 3]| {
+            let [v0, v1, v2] = corners.map(corner);
             Triangle { v0, v1, v2 }
         };
-        let triangles: Vec<Triangle> = triangles.iter().map(triangle).collect();
-        let bvh = measurable(bounds)
-            .then(|| Bvh::from_obvhs(ploc(&triangles)))
-            .filter(|bvh| bvh.depth <= MAX_DEPTH);
-        bvh.unwrap_or_else(|| Bvh::build(mesh))
+        let triangles: Vec<Triangle> = mesh.triangles.iter().map(triangle).collect();
+        Bvh::by_ploc(&triangles).unwrap_or_else(|| Bvh::build(mesh))
     }
 
     /// The nodes of a hierarchy of the mesh in this space; `None` as of [`build`](Self::build).

@@ -3,6 +3,7 @@
 //! geometrically (PLOC chains them) or span the range of f32.
 
 use super::node::{BvhNode, MAX_LEAF};
+use crate::mesh::bounds;
 use glam::{DVec3, Vec3};
 use obvhs::triangle::Triangle;
 
@@ -14,21 +15,11 @@ pub(super) fn build(triangles: &[Triangle]) -> (Vec<BvhNode>, Vec<u32>) {
     };
     let centre = |id: u32| corners(id).map(Vec3::as_dvec3).iter().sum::<DVec3>();
     let mut primitives: Vec<u32> = (0..triangles.len() as u32).collect();
-    let mut nodes = vec![BvhNode {
-        min: [0.0; 3],
-        first: 0,
-        max: [0.0; 3],
-        count: 0,
-    }];
+    let mut nodes = vec![BvhNode::default()];
     let mut open = vec![(0, 0..primitives.len())];
     while let Some((slot, range)) = open.pop() {
         let ids = &mut primitives[range.clone()];
-        let (min, max) = ids
-            .iter()
-            .flat_map(|&id| corners(id))
-            .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(min, max), p| {
-                (min.min(p), max.max(p))
-            });
+        let (min, max) = bounds(ids.iter().flat_map(|&id| corners(id))).unwrap_or_default();
         let mut node = BvhNode {
             min: min.into(),
             first: range.start as u32,

@@ -5,7 +5,7 @@ pub(super) const MAX_LEAF: u32 = 8;
 
 /// One node, 32 bytes, laid out as the trace shader reads it.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct BvhNode {
     /// Low corner of the node's box.
     pub min: [f32; 3],

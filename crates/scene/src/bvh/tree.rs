@@ -5,9 +5,9 @@ use super::{
     median,
     node::BvhNode,
 };
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, bounds};
 use glam::Vec3;
-use obvhs::{bvh2::Bvh2, triangle::Triangle};
+use obvhs::triangle::Triangle;
 
 /// No tree is deeper, whatever the mesh: a traversal's stack of this many entries never overflows.
 /// Real scenes stay below 45 (Sponza: 38).
@@ -52,28 +52,24 @@ impl Bvh {
         if triangles.is_empty() {
             return Self::default();
         }
-        let ploc = measurable(mesh.bounds()).then(|| Self::from_obvhs(ploc(&triangles)));
-        match ploc {
-            Some(bvh) if bvh.depth <= MAX_DEPTH => bvh,
-            _ => {
-                let (nodes, primitives) = median::build(&triangles);
-                Self::new(nodes, primitives)
-            }
-        }
+        Self::by_ploc(&triangles).unwrap_or_else(|| {
+            let (nodes, primitives) = median::build(&triangles);
+            Self::new(nodes, primitives)
+        })
     }
 
-    pub(super) fn from_obvhs(tree: Bvh2) -> Self {
-        let nodes: Vec<BvhNode> = tree
-            .nodes
-            .iter()
-            .map(|node| BvhNode {
-                min: node.aabb.min.into(),
-                first: node.first_index,
-                max: node.aabb.max.into(),
-                count: node.prim_count,
-            })
-            .collect();
-        Self::new(nodes, tree.primitive_indices)
+    /// Builds it by PLOC; `None` where that has nothing to compare, or chains its triangles.
+    pub(super) fn by_ploc(triangles: &[Triangle]) -> Option<Self> {
+        let corners = triangles.iter().flat_map(|of| [of.v0, of.v1, of.v2]);
+        let tree = measurable(bounds(corners.map(Vec3::from))).then(|| ploc(triangles))?;
+        let nodes = tree.nodes.iter().map(|node| BvhNode {
+            min: node.aabb.min.into(),
+            first: node.first_index,
+            max: node.aabb.max.into(),
+            count: node.prim_count,
+        });
+        let bvh = Self::new(nodes.collect(), tree.primitive_indices);
+        (bvh.depth <= MAX_DEPTH).then_some(bvh)
     }
 
     /// The same boxes, as many of them as `most` allows (1 at least): each subtree of so few
@@ -168,11 +164,8 @@ impl Bvh {
             } else {
                 let primitives = self.primitives[first..first + count].iter();
                 let corners = primitives.flat_map(|&id| mesh.triangles[id as usize]);
-                corners
-                    .map(|corner| mesh.positions[corner as usize])
-                    .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(min, max), p| {
-                        (min.min(p), max.max(p))
-                    })
+                let places = corners.map(|corner| mesh.positions[corner as usize]);
+                bounds(places).unwrap_or_default()
             };
             let node = &mut self.nodes[index as usize];
             (node.min, node.max) = (min.into(), max.into());
@@ -239,7 +232,7 @@ mod tests {
                 v2: Vec3::new(0.0, size, size).into(),
             })
             .collect();
-        assert!(Bvh::from_obvhs(ploc(&triangles)).depth > MAX_DEPTH);
+        assert!(Bvh::by_ploc(&triangles).is_none());
         let (nodes, primitives) = median::build(&triangles);
         assert!(Bvh::new(nodes, primitives).depth < 8);
     }

@@ -4,11 +4,8 @@
 //!
 //! Every part is open: nothing in it is a solid.
 
-use super::numbers::Random;
-use crate::{
-    mesh::{Group, Mesh},
-    weld::Welder,
-};
+use super::{numbers::Random, solid::Builder};
+use crate::{mesh::Mesh, weld::Welder};
 use glam::DVec3;
 use std::ops::Range;
 
@@ -28,26 +25,21 @@ const SHAFT: f64 = 1.5;
 /// Sheets that share the corners that they have in common.
 #[derive(Default)]
 struct Sheets {
-    mesh: Mesh,
+    builder: Builder,
     positions: Welder,
-    normals: Welder,
 }
 
 impl Sheets {
-    fn group(&mut self, name: String, draw: impl FnOnce(&mut Self)) {
-        let start = self.mesh.triangles.len() as u32;
-        draw(self);
-        let triangles = start..self.mesh.triangles.len() as u32;
-        self.mesh.groups.push(Group { name, triangles });
-    }
-
     /// A rectangle from a corner, counter-clockwise from `u` to `v`.
     fn rectangle(&mut self, corner: DVec3, u: DVec3, v: DVec3) {
-        let normal = self.normals.index(u.cross(v).normalize().as_vec3());
+        let normal = u.cross(v).normalize().as_vec3();
+        let normal = self.builder.normals.index(normal);
         let corners = [corner, corner + u, corner + u + v, corner + v];
         let [a, b, c, d] = corners.map(|corner| self.positions.index(corner.as_vec3()));
-        self.mesh.triangles.extend([[a, b, c], [a, c, d]]);
-        self.mesh.normal_indices.extend([[normal; 3]; 2]);
+        let mesh = &mut self.builder.mesh;
+        mesh.triangles.extend([[a, b, c], [a, c, d]]);
+        mesh.normal_indices.extend([[normal; 3]; 2]);
+        self.builder.end_group();
     }
 
     /// A wall from a corner on the floor, with its doorway.
@@ -75,23 +67,20 @@ pub(super) fn build() -> Mesh {
                 + DVec3::Y * (f64::from(storey) * HEIGHT)
         };
         let rooms = || (0..ROOMS).flat_map(|x| (0..ROOMS).map(move |z| corner(x, z)));
-        sheets.group(format!("floor_{storey}"), |sheets| {
-            for corner in rooms() {
-                // The ground is whole.
-                let has_shaft = random.range(0.0, 1.0) < 0.33 && storey > 0;
-                let shaft = if has_shaft { SHAFT } else { 0.0 };
-                let [x, z] = [DVec3::X * (ROOM - shaft), DVec3::Z * ROOM];
-                sheets.rectangle(corner + DVec3::X * shaft, z, x);
-            }
-        });
-        sheets.group(format!("walls_{storey}"), |sheets| {
-            for corner in rooms() {
-                sheets.wall(corner, DVec3::X);
-                sheets.wall(corner, DVec3::Z);
-            }
-        });
+        sheets.builder.group(&format!("floor_{storey}"));
+        for corner in rooms() {
+            // The ground is whole.
+            let has_shaft = random.range(0.0, 1.0) < 0.33 && storey > 0;
+            let shaft = if has_shaft { SHAFT } else { 0.0 };
+            let [x, z] = [DVec3::X * (ROOM - shaft), DVec3::Z * ROOM];
+            sheets.rectangle(corner + DVec3::X * shaft, z, x);
+        }
+        sheets.builder.group(&format!("walls_{storey}"));
+        for corner in rooms() {
+            sheets.wall(corner, DVec3::X);
+            sheets.wall(corner, DVec3::Z);
+        }
     }
-    sheets.mesh.positions = sheets.positions.values;
-    sheets.mesh.normals = sheets.normals.values;
-    sheets.mesh
+    sheets.builder.mesh.positions = sheets.positions.values;
+    sheets.builder.finish()
 }

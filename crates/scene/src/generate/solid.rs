@@ -260,6 +260,11 @@ impl Builder {
                 .push(corners.map(|corner| base + corner));
             self.mesh.normal_indices.push(normals);
         }
+        self.end_group();
+    }
+
+    /// Ends the group behind the last triangle.
+    pub fn end_group(&mut self) {
         if let Some(group) = self.mesh.groups.last_mut() {
             group.triangles.end = self.mesh.triangles.len() as u32;
         }

@@ -58,8 +58,6 @@ impl Stamp {
             .extend(triangles.map(|corners| corners.map(|corner| base + corner)));
         mesh.normal_indices
             .extend(&self.normal_indices[quarters % 4]);
-        if let Some(group) = mesh.groups.last_mut() {
-            group.triangles.end = mesh.triangles.len() as u32;
-        }
+        builder.end_group();
     }
 }

@@ -22,13 +22,8 @@ pub(super) struct Beside {
     pub remarks: BTreeSet<String>,
 }
 
-/// Accessors of the transforms of instances.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Instances {
-    pub translation: Option<usize>,
-    pub rotation: Option<usize>,
-    pub scale: Option<usize>,
-}
+/// Accessors of the translations, rotations and scales of instances.
+pub(super) type Instances = [Option<usize>; 3];
 
 pub(super) type Fields = Map<String, Value>;
 

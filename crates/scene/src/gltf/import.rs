@@ -17,7 +17,6 @@ use super::{
 use crate::{
     builder::{Corner, MeshBuilder},
     error::{FaceRef, SceneError, plural},
-    material::Material,
     material_use::MaterialUse,
     mesh::Mesh,
     obj::read::check_read,
@@ -80,7 +79,7 @@ pub fn parse_gltf_scene(
     path: &Path,
     materials: MaterialUse,
 ) -> Result<(Mesh, GltfScene, ImportReport), SceneError> {
-    let fail = |(place, reason)| SceneError::Gltf {
+    let fail = |(place, reason)| SceneError::Part {
         path: path.to_owned(),
         place,
         reason,
@@ -116,7 +115,8 @@ pub fn parse_gltf_scene(
     };
     let nodes = Nodes::new(&document, &beside, placements.animations.nodes()).map_err(fail)?;
     import.read_nodes(nodes.as_ref()).map_err(fail)?;
-    let (mesh, report) = import.finish();
+    let materials = import.materials.all.into_iter().map(|read| read.material);
+    let (mesh, report) = import.builder.finish(materials.collect());
     check_read(&mesh, &report, path)?;
     let mut scene = GltfScene::new(&placements, nodes.as_ref(), mesh.bounds());
     if let Some(nodes) = &nodes {
@@ -190,12 +190,6 @@ struct Arrays {
 }
 
 impl<'a> Import<'a> {
-    fn finish(self) -> (Mesh, ImportReport) {
-        let materials = self.materials.all.into_iter().map(|read| read.material);
-        let materials: Vec<Material> = materials.collect();
-        self.builder.finish(materials)
-    }
-
     /// Those of the scene; of a document without scenes all meshes.
     fn read_nodes(&mut self, nodes: Option<&Nodes<'a>>) -> Result<(), Fault> {
         let Some(nodes) = nodes else {

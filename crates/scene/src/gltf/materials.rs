@@ -23,8 +23,9 @@ const WAY_OUT: &str = "mend it, or give --materials color (every surface is opaq
 /// cannot be left to chance.
 const BASIS: &str = "KHR_texture_basisu";
 
-/// A material, and which texture coordinates it takes.
-#[derive(Clone)]
+/// A material, and which texture coordinates it takes; without more said, that of surfaces that
+/// have none.
+#[derive(Clone, Default)]
 pub(super) struct Read {
     pub material: Material,
     pub uv_set: u32,
@@ -43,26 +44,19 @@ pub(super) struct Cut {
 }
 
 impl Read {
-    /// That of surfaces without one.
-    pub fn plain() -> Self {
-        Self {
-            material: Material::default(),
-            uv_set: 0,
-            uv_transform: (Mat2::IDENTITY, Vec2::ZERO),
-            cut: None,
-        }
-    }
-
     /// The mask with an alpha, once more multiplied by `alpha`.
     ///
     /// # Errors
     /// The texture cannot be read.
     pub fn masked(&self, cut: Cut, alpha: f32) -> Result<Option<Arc<Mask>>, String> {
-        let mask = mask(
-            self.material.texture.as_ref(),
-            cut.alpha * alpha,
-            cut.cutoff,
-        )?;
+        let (alpha, cutoff) = (cut.alpha * alpha, cut.cutoff);
+        let mask = match &self.material.texture {
+            Some(texture) => {
+                let opacity = |texel: [u8; 4]| f32::from(texel[3]) / 255.0 * alpha;
+                Mask::from_texels(texture.texels()?, texture.wrap, opacity, cutoff)
+            }
+            None => Mask::new([1, 1], [Wrap::Repeat; 2], |_, _| alpha >= cutoff),
+        };
         Ok((!mask.is_solid()).then(|| Arc::new(mask)))
     }
 }
@@ -185,13 +179,4 @@ impl Reader<'_> {
         let wrap = [wrap(sampler.wrap_s()), wrap(sampler.wrap_t())];
         Ok(Texture::new(name, source, wrap))
     }
-}
-
-fn mask(texture: Option<&Texture>, alpha: f32, cutoff: f32) -> Result<Mask, String> {
-    let Some(texture) = texture else {
-        return Ok(Mask::new([1, 1], [Wrap::Repeat; 2], |_, _| alpha >= cutoff));
-    };
-    let texels = texture.texels()?;
-    let opacity = |texel: [u8; 4]| f32::from(texel[3]) / 255.0 * alpha;
-    Ok(Mask::from_texels(texels, texture.wrap, opacity, cutoff))
 }

@@ -176,21 +176,22 @@ pub(super) fn instances(
         let missing = || format!("its instances name accessor {number}, which is not there");
         document.accessors().nth(number).ok_or_else(missing)
     };
-    let accessor = |number: Option<usize>| number.map(there).transpose();
-    let translation = accessor(of.translation)?;
-    let translation = translation.map(|of| vectors(&of, buffers)).transpose()?;
-    let scale = accessor(of.scale)?;
-    let scale = scale.map(|of| vectors(&of, buffers)).transpose()?;
-    let rotation = accessor(of.rotation)?;
-    let rotation = rotation.map(|of| accessor::floats::<4>(&of, buffers));
+    let read = |number: Option<usize>| {
+        let read = number.map(|number| vectors(&there(number)?, buffers));
+        read.transpose()
+    };
+    let [translation, rotation, scale] = of;
+    let (translation, scale) = (read(translation)?, read(scale)?);
+    let rotation = rotation.map(|number| accessor::floats::<4>(&there(number)?, buffers));
     let rotation = rotation.transpose()?;
     let counts = [
         translation.as_ref().map(Vec::len),
         rotation.as_ref().map(Vec::len),
         scale.as_ref().map(Vec::len),
     ];
-    let count = counts.into_iter().flatten().min().unwrap_or(0);
-    if counts.into_iter().flatten().any(|other| other != count) {
+    let mut counts = counts.into_iter().flatten();
+    let count = counts.next().unwrap_or(0);
+    if counts.any(|other| other != count) {
         return Err("its instances have attributes of different counts".to_owned());
     }
     let turn = |[x, y, z, w]: [f32; 4]| {

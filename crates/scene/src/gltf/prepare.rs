@@ -84,13 +84,9 @@ fn nodes(root: &mut Value, beside: &mut Beside) {
             .and_then(|of| of.get("attributes"));
         if let Some(attributes) = attributes {
             let accessor = |name| index(attributes.get(name));
-            let instances = Instances {
-                translation: accessor("TRANSLATION"),
-                rotation: accessor("ROTATION"),
-                scale: accessor("SCALE"),
-            };
+            let instances: Instances = ["TRANSLATION", "ROTATION", "SCALE"].map(accessor);
             // Without any there is no number of instances.
-            if instances != Instances::default() {
+            if instances.iter().any(Option::is_some) {
                 beside.instances.insert(number, instances);
             }
         }

@@ -41,13 +41,7 @@ fn used_accessors(root: &Value, beside: &Beside) -> HashSet<usize> {
         }
     }
     used.extend(items(root, "skins").filter_map(|skin| index(skin.get("inverseBindMatrices"))));
-    for of in beside.instances.values() {
-        used.extend(
-            [of.translation, of.rotation, of.scale]
-                .into_iter()
-                .flatten(),
-        );
-    }
+    used.extend(beside.instances.values().flatten().flatten());
     used
 }
 

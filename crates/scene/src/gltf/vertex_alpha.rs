@@ -23,7 +23,7 @@ pub(super) type Chosen = (usize, Option<[Vec2; 3]>);
 impl Materials {
     pub fn new(mut document: Vec<Read>) -> Self {
         let plain = document.len();
-        document.push(Read::plain());
+        document.push(Read::default());
         Self {
             all: document,
             plain,
@@ -105,7 +105,7 @@ mod tests {
             alpha: 0.5,
             cutoff: 0.3,
         };
-        let mut materials = Materials::new(vec![Read::plain()]);
+        let mut materials = Materials::new(vec![Read::default()]);
         let alphas = [0.2, 1.0, 1.0];
         let (made, uvs) = materials.with_alpha(0, cut, alphas).unwrap().unwrap();
         let uvs = uvs.unwrap();

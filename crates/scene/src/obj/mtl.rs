@@ -56,7 +56,7 @@ pub(super) struct Found {
 /// Reads the materials that the faces of an OBJ file use.
 ///
 /// # Errors
-/// [`SceneError::Material`] where a mask depends on what cannot be read.
+/// [`SceneError::Part`] where a mask depends on what cannot be read.
 pub(super) fn materials(
     guard: &Guard<'_>,
     options: &ObjOptions,
@@ -127,11 +127,12 @@ fn made(
     path: &Path,
 ) -> Result<Vec<Material>, SceneError> {
     if let Some(unknown) = patterns.keys().find(|name| !guard.materials.contains(name)) {
-        return Err(SceneError::Material {
+        return Err(SceneError::Part {
             path: path.to_owned(),
             place: format!("material {unknown:?}"),
-            reason: "the scene file makes a mask for it, but no face uses it".to_owned(),
-            way_out: "leave it out of the scene file",
+            reason: "the scene file makes a mask for it, but no face uses it; leave it out of the \
+                     scene file"
+                .to_owned(),
         });
     }
     let masks: BTreeMap<&String, Arc<Mask>> = patterns
@@ -194,12 +195,10 @@ impl Reading<'_> {
         way_out: &'static str,
     ) -> Result<(), SceneError> {
         if self.with_masks {
-            let path = self.path.to_owned();
-            return Err(SceneError::Material {
-                path,
+            return Err(SceneError::Part {
+                path: self.path.to_owned(),
                 place,
-                reason,
-                way_out,
+                reason: format!("{reason}; {way_out}"),
             });
         }
         self.found

@@ -35,39 +35,7 @@ impl MtlMaterial {
         let transparent = self.transparency.map(|transparency| 1.0 - transparency);
         self.dissolve.or(transparent).unwrap_or(1.0)
     }
-}
 
-/// The materials of a file's bytes. A material without a name cannot be used, and is left out.
-pub(super) fn parse(bytes: &[u8]) -> Vec<MtlMaterial> {
-    let bytes = without_mark(bytes);
-    let mut materials: Vec<MtlMaterial> = Vec::new();
-    let mut is_named = false;
-    let mut rest = &*bytes;
-    let lines = std::iter::from_fn(|| next_line(&mut rest));
-    for (number, (line, _)) in (1..).zip(lines) {
-        let line = line_text(line.trim_ascii());
-        let (keyword, rest) = line
-            .trim()
-            .split_once(char::is_whitespace)
-            .unwrap_or((line.trim(), ""));
-        let rest = rest.trim();
-        if keyword.eq_ignore_ascii_case("newmtl") {
-            is_named = !rest.is_empty();
-            if is_named {
-                let name = rest.to_owned();
-                materials.push(MtlMaterial {
-                    name,
-                    ..MtlMaterial::default()
-                });
-            }
-        } else if let Some(material) = materials.last_mut().filter(|_| is_named) {
-            material.take(keyword, rest, number);
-        }
-    }
-    materials
-}
-
-impl MtlMaterial {
     fn take(&mut self, keyword: &str, rest: &str, line: usize) {
         let is = |other: &str| keyword.eq_ignore_ascii_case(other);
         let shown = || format!("line {line}: `{}`", beginning(&format!("{keyword} {rest}")));
@@ -101,6 +69,36 @@ impl MtlMaterial {
             self.remarks.push(text);
         }
     }
+}
+
+/// The materials of a file's bytes. A material without a name cannot be used, and is left out.
+pub(super) fn parse(bytes: &[u8]) -> Vec<MtlMaterial> {
+    let bytes = without_mark(bytes);
+    let mut materials: Vec<MtlMaterial> = Vec::new();
+    let mut is_named = false;
+    let mut rest = &*bytes;
+    let lines = std::iter::from_fn(|| next_line(&mut rest));
+    for (number, (line, _)) in (1..).zip(lines) {
+        let line = line_text(line.trim_ascii());
+        let (keyword, rest) = line
+            .trim()
+            .split_once(char::is_whitespace)
+            .unwrap_or((line.trim(), ""));
+        let rest = rest.trim();
+        if keyword.eq_ignore_ascii_case("newmtl") {
+            is_named = !rest.is_empty();
+            if is_named {
+                let name = rest.to_owned();
+                materials.push(MtlMaterial {
+                    name,
+                    ..MtlMaterial::default()
+                });
+            }
+        } else if let Some(material) = materials.last_mut().filter(|_| is_named) {
+            material.take(keyword, rest, number);
+        }
+    }
+    materials
 }
 
 /// Red, green, blue. Green and blue that are left out equal red; colours of spectra and in XYZ are

@@ -160,7 +160,7 @@ fn method(ui: &mut Ui, viewer: &mut Viewer, index: usize) {
                 viewer.choose_method(index, &chosen);
             }
             if index == 1 && ui.small_button("x").on_hover_text("close").clicked() {
-                viewer.close_second();
+                viewer.desired.methods.truncate(1);
             }
         });
         let Some(shown) = viewer.method(index) else {

@@ -25,7 +25,7 @@ pub fn show(ui: &mut Ui, viewer: &mut Viewer, index: usize) {
         }
     }
     if !set.is_empty() && ui.button("Defaults").clicked() {
-        viewer.reset_params(index);
+        viewer.desired.methods[index].params.clear();
     }
 }
 

@@ -120,7 +120,7 @@ fn reading(ui: &mut Ui, viewer: &mut Viewer, index: usize) {
         .drawn
         .texels
         .as_ref()
-        .map_or(0, |texels| texels.channels());
+        .map_or(0, |texels| texels.channels);
     if channels > 1 {
         ui.add(egui::Slider::new(&mut reading.channel, 0..=channels - 1).text("channel"));
     }
@@ -220,7 +220,7 @@ fn below(ui: &mut Ui, viewer: &Viewer, index: usize, response: &Response, rect: 
     let drawn = &viewer.panes[index].drawn;
     ui.small(&drawn.legend);
     if viewer.is_judged {
-        ui.small(match viewer.answer() {
+        ui.small(match &viewer.answer {
             None => "reference: tracing; none of this frame yet",
             Some(answer) => of_pixels(answer.stride),
         });

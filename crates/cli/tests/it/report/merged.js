@@ -16,7 +16,7 @@ try {
   const far = choices.find((text) => text.includes('Far GPU'));
   set('#table-choice', far);
   await settled();
-  const warning = find('#facts .warning');
+  const warning = all('#facts .warning').at(-1);
   check('the band is warned of', warning?.textContent.startsWith('warning: the band is larger than 0.1 %'), find('#facts').textContent);
   check('where it is seen', warning?.getBoundingClientRect().height > 10 && warning.getBoundingClientRect().top < 600);
   check('with the pixels that face the light', find('#facts').textContent.includes('facing the light'), find('#facts').textContent);

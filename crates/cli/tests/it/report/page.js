@@ -79,6 +79,17 @@ try {
   set('#kind-right', 'wrong pixels');
   await settled();
   check('a legend in the picture', all('.stage')[1].textContent.includes('wrongly lit'), all('.stage')[1].textContent);
+  set('#kind-right', 'map texels per pixel');
+  await settled();
+  check('a scale of texels', all('.stage')[1].textContent.includes('64 or more'), all('.stage')[1].textContent);
+  const figures = find('#viewer .figures').textContent;
+  check('and their figures', figures.startsWith('nsm 64, texels per pixel: median '), figures);
+  ['texels by distance', 'texels by angles'].forEach((kind) => set('#kind-right', kind));
+  await settled();
+  check('of their parts, too', find('#viewer .figures').textContent === figures);
+  set('#kind-right', 'wrong pixels');
+  await settled();
+  check('which go with them', !find('#viewer .figures'));
   const whole = copy(canvases()[1]);
   point(canvases()[1], 'wheel', 0.3, 0.6, { deltaY: -700 });
   check('the wheel zooms', copy(canvases()[1]) !== whole && parseFloat(find('#zoom').textContent) > 4, find('#zoom').textContent);
@@ -91,6 +102,7 @@ try {
   const values = find('#values').textContent;
   check('values of every picture', ['pixel ', 'reference', 'rt', 'nsm 64', 'light_buffer 128'].every((name) => values.includes(name)), values);
   check('in words', /lit|in shadow|facing away|background/.test(values), values);
+  check('texels in numbers', /about [0-9.e-]+/.test(values), values);
   find('#zoom-fit').click();
   check('and all of it again', copy(canvases()[1]) === whole);
   check('single wrong pixels are seen from afar', await (async () => {

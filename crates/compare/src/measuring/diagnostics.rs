@@ -1,0 +1,80 @@
+//! Outputs on request that tell of a method's shadow map, for figures and a picture: drawn after it
+//! was timed and judged, by a plan of their own.
+
+use crate::error::{explain, is_fatal};
+use crate::graphs::method::Method;
+use crate::graphs::planning::Capabilities;
+use crate::graphs::preset::{MAP_LAYER, TEXEL_DENSITY};
+use crate::graphs::shadow_method::{Outputs, of_light};
+use crate::measuring::frame::{self, Contents};
+use crate::measuring::ground_truth::GroundTruthView;
+use crate::measuring::stop::Stop;
+use crate::sink::Session;
+use skiagraph_gpu::{Content, ExecuteError, Provider};
+use skiagraph_graph::Plan;
+use skiagraph_reference::{Footprint, LayerJump, TexelsPerPixel};
+
+/// Findings, as far as the document gives the outputs for them.
+#[derive(Default)]
+pub struct Diagnostics {
+    /// Each pixel's part of the map.
+    pub footprints: Option<Vec<Option<Footprint>>>,
+    /// The same in figures.
+    pub texels: Option<TexelsPerPixel>,
+    /// How errors jump between layers of the map.
+    pub layer_jump: Option<LayerJump>,
+}
+
+/// Draws a method's diagnostics of a view, whose judged `outputs` under one of its lights are
+/// known. Whatever this adapter cannot draw is told to the sink and left out.
+///
+/// # Errors
+/// Ctrl-C, a lost device, outputs that do not fit the reference.
+pub fn diagnose(
+    session: Session,
+    method: &Method,
+    truth_view: &GroundTruthView<'_>,
+    (outputs, light): (&Outputs, usize),
+    provider: &mut dyn Provider,
+) -> Result<Diagnostics, Stop> {
+    let names = method.preset.diagnostics();
+    let viewport = truth_view.ground_truth.pixels.viewport;
+    let capabilities = Capabilities::new(session.gpu);
+    let plan = method.plan_of(&names, viewport, capabilities, provider);
+    // All of it was planned for the greatest adapter; this one may lack what it needs.
+    let Some(plan) = plan.ok().filter(|plan| !plan.outputs().is_empty()) else {
+        return Ok(Diagnostics::default());
+    };
+    let mut contents = match contents(session, plan, provider) {
+        Ok(contents) => contents,
+        Err(error) if is_fatal(&error) => return Err(error.into()),
+        Err(error) => {
+            let reason = explain(&error);
+            let text = format!("no diagnostics of `{}`: {reason}", method.name);
+            session.sink.note(&text);
+            return Ok(Diagnostics::default());
+        }
+    };
+    let mut of = |name: &str| Some(of_light(contents.remove(name)?, light));
+    let density = of(TEXEL_DENSITY).as_ref().and_then(Content::as_f32);
+    let layers = of(MAP_LAYER).as_ref().and_then(Content::as_u32);
+    let footprints = density.map(|density| truth_view.footprints(&density));
+    let footprints = footprints.transpose()?;
+    let layer_jump = layers.map(|layers| truth_view.layer_jump(outputs, &layers));
+    Ok(Diagnostics {
+        texels: footprints.as_deref().map(TexelsPerPixel::new),
+        footprints,
+        layer_jump: layer_jump.transpose()?.flatten(),
+    })
+}
+
+fn contents(
+    session: Session,
+    plan: Plan,
+    provider: &mut dyn Provider,
+) -> Result<Contents, ExecuteError> {
+    let outputs = plan.outputs();
+    let names: Vec<&str> = outputs.iter().map(|output| output.name.as_str()).collect();
+    let (mut executor, _) = frame::settled(session, plan, provider)?;
+    frame::read(session, &mut executor, &names)
+}

@@ -1,0 +1,116 @@
+//! The frames of a view or a path: from where each is seen, and its mesh where parts of it move.
+//!
+//! ```
+//! use skiagraph_compare::measuring::{frame_sequence::FrameSequence, view_or_path::ViewOrPath};
+//! use skiagraph_scene::{SceneLibrary, SceneRequest};
+//!
+//! let library = SceneLibrary::default();
+//! let request = SceneRequest { argument: "park".into(), obj: None };
+//! let (scene, _) = library.load(&request)?;
+//! for path in library.paths("park")? {
+//!     let frames = FrameSequence::new(&ViewOrPath::Path(path), &scene, None, Some(2))?;
+//!     match &frames.meshes {
+//!         Some(meshes) => assert_ne!(meshes[0].positions, meshes[1].positions),
+//!         None => println!("nothing moves along {}", frames.poses[0].view.name),
+//!     }
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use crate::error::CompareError;
+use crate::measuring::camera_pose::CameraPose;
+use crate::measuring::view_or_path::ViewOrPath;
+use skiagraph_passes::SceneProvider;
+use skiagraph_scene::{CameraPath, Mesh, Scene};
+
+/// The frames of a view or path in order: the camera of each, and its mesh where parts move.
+pub struct FrameSequence {
+    /// From where each is seen.
+    pub poses: Vec<CameraPose>,
+    /// The mesh of each, all with the same triangles; `None` where nothing moves.
+    pub meshes: Option<Vec<Mesh>>,
+    /// Frames per second of the path's clock, which says when each is; not how fast they are drawn.
+    frames_per_second: f64,
+}
+
+impl FrameSequence {
+    /// The first `count` frames of a view or path, by default one of a view and all of a path.
+    /// `jitter`: how many frames are blended; each then looks through another point of its pixels.
+    ///
+    /// # Errors
+    /// A part that the mesh has not, that is welded to others, or that f32 cannot hold where it is
+    /// moved to.
+    pub fn new(
+        of: &ViewOrPath,
+        scene: &Scene,
+        jitter: Option<u32>,
+        count: Option<u32>,
+    ) -> Result<Self, CompareError> {
+        let (views, meshes, frames_per_second) = match of {
+            ViewOrPath::Still(view) => {
+                (vec![view.clone(); count.unwrap_or(1) as usize], None, 30.0)
+            }
+            ViewOrPath::Path(path) => {
+                let count = path.frames().min(count.unwrap_or(u32::MAX));
+                let views = (0..count).map(|frame| path.view(frame)).collect();
+                let meshes = meshes(path, &scene.mesh, count).map_err(CompareError::Input)?;
+                (views, meshes, path.frames_per_second)
+            }
+        };
+        Ok(Self {
+            poses: CameraPose::numbered(views, jitter),
+            meshes,
+            frames_per_second,
+        })
+    }
+
+    /// Gives the provider the mesh of the first frame, whose triangles and normals may be others
+    /// than those that it has.
+    pub fn begin(&self, provider: &mut SceneProvider) {
+        if let Some(first) = self.meshes.iter().flatten().next() {
+            provider.set_mesh(first.clone());
+        }
+    }
+
+    /// Gives the provider a frame's camera, light and mesh, this as the host of a moving mesh does;
+    /// what stands is not given again.
+    ///
+    /// # Errors
+    /// Places that are no longer finite.
+    pub fn show(
+        &self,
+        frame: usize,
+        viewport: [u32; 2],
+        provider: &mut SceneProvider,
+    ) -> Result<(), CompareError> {
+        self.poses[frame].show(provider, viewport);
+        let Some(Mesh {
+            positions, normals, ..
+        }) = self.meshes.as_ref().map(|all| &all[frame])
+        else {
+            return Ok(());
+        };
+        let shown = &provider.scene().mesh;
+        if (&shown.positions, &shown.normals) == (positions, normals) {
+            return Ok(());
+        }
+        let deformed = provider.deform(positions.clone(), normals.clone());
+        deformed.map_err(|error| CompareError::Input(format!("frame {frame}: {error}")))
+    }
+
+    /// When a frame is.
+    pub fn seconds(&self, frame: usize) -> f32 {
+        (frame as f64 / self.frames_per_second) as f32
+    }
+}
+
+/// Builds the meshes of the first frames of a path; `None` where nothing moves.
+fn meshes(path: &CameraPath, mesh: &Mesh, frames: u32) -> Result<Option<Vec<Mesh>>, String> {
+    let movable = path.movable(mesh)?;
+    let shapes = movable.map(|movable| {
+        (0..frames)
+            .map(|frame| path.shape(&movable, frame))
+            .collect()
+    });
+    shapes.transpose()
+}

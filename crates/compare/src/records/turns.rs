@@ -1,0 +1,117 @@
+//! Times of methods that took turns frame by frame, and the ratio of two of them.
+//!
+//! Whatever slows the machine down for a while slows the frames of one turn down alike, so the
+//! ratio of two methods in each turn tells more than the ratio of their medians.
+//!
+//! ```
+//! use skiagraph_compare::records::turns::PairedRatio;
+//!
+//! let fast = [1.0, 1.1, 1.0, 5.0, 1.0, 1.2, 1.0, 1.1];
+//! let slow = fast.map(|ms| 2.0 * ms);
+//! let ratio = PairedRatio::new(&slow, &fast).ok_or("too few frames")?;
+//! assert_eq!((ratio.low, ratio.median, ratio.high), (2.0, 2.0, 2.0));
+//! assert!(ratio.is_told_apart());
+//! assert!(!PairedRatio::new(&fast, &fast).ok_or("too few")?.is_told_apart());
+//! # Ok::<(), &str>(())
+//! ```
+
+use crate::records::statistics::FrameTimes;
+use serde::{Deserialize, Serialize};
+
+/// The group of methods that a run took turns with.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Turns {
+    /// Index of the group in the view and viewport: all methods that fit the memory at once.
+    pub group: u32,
+    /// Times of the frames of the group's first method, which is the same in all groups of the view
+    /// and viewport: their common measure.
+    pub anchor: FrameTimes,
+}
+
+/// The ratio of the times of two methods over their turns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PairedRatio {
+    /// Lower end of the interval in which the median of all such ratios lies, with a confidence of
+    /// at least 99 % (order statistics: no distribution is supposed).
+    pub low: f64,
+    /// Median of the ratios.
+    pub median: f64,
+    /// Upper end of the interval.
+    pub high: f64,
+}
+
+/// The confidence of an interval.
+const CONFIDENCE: f64 = 0.99;
+
+/// Times that differ by less than this share are level whatever the interval says: it knows nothing
+/// of how memory happens to lie.
+const LEVEL: f64 = 0.03;
+
+/// One nanosecond in milliseconds, so that nothing is divided by zero.
+const RESOLUTION_MS: f64 = 1e-6;
+
+impl PairedRatio {
+    /// Divides the times of `one` by those of `other`, turn by turn; `None` if there are too few
+    /// for an interval, fewer than eight.
+    pub fn new(one: &[f64], other: &[f64]) -> Option<Self> {
+        let pairs = one.iter().zip(other);
+        let ratio = |(one, other): (&f64, &f64)| one.max(RESOLUTION_MS) / other.max(RESOLUTION_MS);
+        let mut ratios: Vec<f64> = pairs.map(ratio).collect();
+        ratios.sort_by(f64::total_cmp);
+        let (count, rank) = (ratios.len(), rank(ratios.len())?);
+        Some(Self {
+            low: ratios[rank],
+            median: (ratios[(count - 1) / 2] + ratios[count / 2]) * 0.5,
+            high: ratios[count - 1 - rank],
+        })
+    }
+
+    /// True if 1 lies outside the interval, and the times differ by 3 % or more.
+    pub fn is_told_apart(&self) -> bool {
+        let differs = self.median >= 1.0 + LEVEL || self.median <= 1.0 / (1.0 + LEVEL);
+        differs && (self.low > 1.0 || self.high < 1.0)
+    }
+}
+
+/// The greatest rank from both ends between which the median lies with the confidence: each sample
+/// lies above it or below it like a tossed coin.
+fn rank(count: usize) -> Option<usize> {
+    let mut probability = 0.5f64.powi(count as i32);
+    let (mut below, mut rank) = (0.0, None);
+    for ends in 0..count.div_ceil(2) {
+        below += probability;
+        if 1.0 - 2.0 * below < CONFIDENCE {
+            break;
+        }
+        rank = Some(ends);
+        probability *= (count - ends) as f64 / (ends + 1) as f64;
+    }
+    rank
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_interval_has_the_ranks_of_the_sign_tests_tables() {
+        // Both ends from 8 samples on: 1 - 2/256 = 0.992. One sample is left out at each end from
+        // 12 on: 1 - 2 * 13/4096 = 0.9937.
+        let ranks = [7, 8, 11, 12, 20, 100].map(rank);
+        assert_eq!(ranks, [None, Some(0), Some(0), Some(1), Some(3), Some(36)]);
+    }
+
+    #[test]
+    fn only_what_all_turns_agree_on_is_told_apart() {
+        let even: Vec<f64> = (0..10).map(|turn| 10.0 + f64::from(turn)).collect();
+        let scaled = |by: f64| even.iter().map(|ms| ms * by).collect::<Vec<f64>>();
+        let apart = |other: &[f64]| PairedRatio::new(&even, other).unwrap().is_told_apart();
+        assert!(apart(&scaled(1.1)) && apart(&scaled(0.9)));
+        assert!(!apart(&scaled(1.02)), "level");
+        let mut one_faster = scaled(1.1);
+        one_faster[3] = 0.5 * even[3];
+        assert!(!apart(&one_faster));
+        assert_eq!(PairedRatio::new(&even[..7], &even[..7]), None);
+        assert!(PairedRatio::new(&[0.0; 8], &[0.0; 8]).unwrap().median == 1.0);
+    }
+}

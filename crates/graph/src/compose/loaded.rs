@@ -1,0 +1,265 @@
+//! [`Loaded`]: a document that was read, with its shaders and pictures.
+
+use super::{
+    reader::{IncludeSite, Reader, label},
+    used::{Used, drop_unused},
+};
+use crate::{
+    diagnostics::{
+        diagnostic::{Diagnostic, Severity},
+        list::Diagnostics,
+        reports::{Reported, Reports},
+    },
+    document::{
+        materials::{Material, TextureEntry},
+        typed::Document,
+    },
+    errors::{compose::ComposeError, resource::SizeError, shader::ShaderError},
+    kinds::registry::Registry,
+    language::syntax::Leaf,
+    param::{Param, ParamError, find},
+    picture::Picture,
+    shader::{
+        expand::ShaderFiles,
+        store::{self, Shaders},
+        unused,
+    },
+    source::{
+        paths::{escapes, include_candidates},
+        sources::Sources,
+        span::{Located, Span},
+    },
+};
+use std::{
+    collections::{BTreeMap, BTreeSet, HashMap},
+    sync::Arc,
+};
+
+/// A document that was read, with all shaders and pictures that it names.
+#[derive(Debug)]
+pub(crate) struct Loaded {
+    pub document: Arc<Document>,
+    pub shaders: Shaders,
+    pub pictures: Pictures,
+    include_sites: Vec<IncludeSite>,
+    /// Features that the documents require.
+    pub required: wgt::Features,
+    /// Features that they ask for by `has`, or that their passes can make use of.
+    asked_for: wgt::Features,
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// The pictures of all documents, by the path of the document and their own.
+#[derive(Debug, Default)]
+pub(crate) struct Pictures(HashMap<(Arc<str>, String), Reported<Picture>>);
+
+impl Pictures {
+    pub fn get(&self, document: &Document, file: &Located<String>) -> Reported<Picture> {
+        let key = (Arc::clone(&document.file.name), file.value.clone());
+        self.0[&key].clone()
+    }
+}
+
+impl Loaded {
+    /// Reads a document. Returns its readable part, and the mistakes.
+    pub fn read(
+        path: &str,
+        registry: &Registry,
+        sources: &dyn Sources,
+        chosen: &BTreeMap<String, String>,
+    ) -> Result<(Self, Vec<Diagnostic>), Diagnostics> {
+        let mut reports = Reports::default();
+        let mut reader = Reader::new(registry, sources, chosen, &mut reports);
+        let root = reader.root(path);
+        let included: Vec<Arc<Document>> = reader.documents().cloned().collect();
+        let asked = std::mem::take(&mut reader.include_sites);
+        let Ok(mut root) = root else {
+            let mut list = reports.into_list();
+            label(&mut list, path, &asked);
+            return Err(Diagnostics::new(list));
+        };
+        if root.outputs.is_empty() && reports.errors() == 0 {
+            let end = root.file.text.trim_end().len();
+            let place = root.file.span(end.saturating_sub(1)..end);
+            reports.report(ComposeError::NoOutputs(place));
+        }
+        let documents: Vec<&Document> = [&root]
+            .into_iter()
+            .chain(included.iter().map(|d| &**d))
+            .collect();
+        let shaders = store::load(&root, ShaderFiles::new(sources), &mut reports);
+        let pictures = load_pictures(&documents, sources, &mut reports);
+        let (required, asked_for) = (required(&documents), asked_for(&documents));
+        // The uses of a missing shader are not known.
+        let is_known = reports.errors() == 0;
+        if is_known {
+            drop_unused(&mut root, &shaders, &mut HashMap::new(), &mut reports);
+        }
+        let mut loaded = Self {
+            required,
+            asked_for,
+            document: Arc::new(root),
+            shaders,
+            pictures,
+            include_sites: asked,
+            warnings: Vec::new(),
+        };
+        if is_known {
+            loaded.unused(&mut reports);
+        }
+        let is_error = |diagnostic: &Diagnostic| diagnostic.severity == Severity::Error;
+        let (errors, warnings) = reports.into_list().into_iter().partition(is_error);
+        loaded.warnings = warnings;
+        Ok((loaded, errors))
+    }
+
+    /// Where the document was read from.
+    pub fn path(&self) -> &str {
+        &self.document.file.name
+    }
+
+    /// The place of the document itself, for mistakes of a request.
+    pub fn place(&self) -> Span {
+        self.document.file.span(0..0)
+    }
+
+    /// The features that the documents require, ask for, or have passes that can make use of.
+    pub fn features(&self) -> wgt::Features {
+        self.required | self.asked_for
+    }
+
+    pub fn param(&self, name: &str) -> Result<&Param, ParamError> {
+        find(&self.document.params, name, self.path())
+    }
+
+    /// Collects the mistakes of the document. Those in other documents get the place where they are
+    /// asked for.
+    pub fn diagnostics(&self, mut list: Vec<Diagnostic>) -> Diagnostics {
+        label(&mut list, self.path(), &self.include_sites);
+        Diagnostics::new(list)
+    }
+
+    /// Warns of materials and params of the document that nothing names; those of documents that it
+    /// includes or extends need not all be of use.
+    fn unused(&self, reports: &mut Reports) {
+        let document = &self.document;
+        let used = Used::new(document, &self.shaders);
+        for material in &document.materials {
+            let name = material.name();
+            if document.is_own(&name.span) && !used.materials.contains(name.as_str()) {
+                reports.warn(ComposeError::UnusedMaterial(name.text()));
+            }
+        }
+        for (name, _) in &document.values {
+            let is_used =
+                used.params.contains(name.as_str()) || used.materials.contains(name.as_str());
+            if document.is_own(&name.span) && !is_used {
+                reports.warn(ComposeError::UnusedValue(name.text()));
+            }
+        }
+        for param in &document.params[..document.declared] {
+            if document.is_own(&param.name.span) && !used.params.contains(&param.name.value) {
+                reports.warn(ComposeError::UnusedParam(param.name.clone()));
+            }
+        }
+        let imported = self.shaders.imported();
+        for entry in &document.imports {
+            let path = self.shaders.module(&entry.of);
+            if document.is_own(&entry.of.span)
+                && path.is_some_and(|path| !imported.contains(&**path))
+            {
+                reports.warn(ComposeError::UnusedImport(entry.of.clone()));
+            }
+        }
+        for (unused, shader) in self.unused_in_shaders() {
+            reports.warn(ShaderError::Unused(unused.what, unused.name, shader));
+        }
+    }
+
+    /// Returns the unused items of the shaders of the document's own passes, whatever modules they
+    /// import, each with its shader.
+    fn unused_in_shaders(&self) -> Vec<(unused::Unused, String)> {
+        let mut found: Vec<(unused::Unused, String)> = Vec::new();
+        let mut finder = unused::UnusedFinder::default();
+        let mut constants = BTreeSet::new();
+        self.document.visit(&mut |leaf| {
+            if let Leaf::Constant(name) = leaf {
+                constants.insert(name);
+            }
+        });
+        for shader in self.document.passes().flat_map(|pass| &pass.shaders) {
+            let mut variants = self.shaders.variants(&self.document, shader);
+            let Some(first) = variants.next() else {
+                continue;
+            };
+            let mut unused = finder.find(first, &constants);
+            for other in variants {
+                let other = finder.find(other, &constants);
+                unused.retain(|unused| other.contains(unused));
+            }
+            unused.retain(|unused| found.iter().all(|(known, _)| known != unused));
+            found.extend(unused.into_iter().map(|it| (it, first.file().to_owned())));
+        }
+        found
+    }
+}
+
+fn required(documents: &[&Document]) -> wgt::Features {
+    let required = documents.iter().flat_map(|document| &document.requires);
+    required.fold(wgt::Features::empty(), |all, (_, flag)| all | *flag)
+}
+
+fn asked_for(documents: &[&Document]) -> wgt::Features {
+    let mut features = wgt::Features::empty();
+    for document in documents {
+        document.visit(&mut |leaf| {
+            if let Leaf::Has(flag) = leaf {
+                features |= flag;
+            }
+        });
+        for pass in document.passes() {
+            features |= pass.features;
+        }
+    }
+    features
+}
+
+fn load_pictures(
+    documents: &[&Document],
+    sources: &dyn Sources,
+    reports: &mut Reports,
+) -> Pictures {
+    let mut pictures = HashMap::new();
+    for document in documents {
+        for material in &document.materials {
+            let Material::Texture(TextureEntry {
+                file: Some(file), ..
+            }) = material
+            else {
+                continue;
+            };
+            let key = (Arc::clone(&document.file.name), file.value.clone());
+            pictures.entry(key).or_insert_with(|| {
+                let picture = load_picture(file, sources);
+                picture.map_err(|error| reports.report(error))
+            });
+        }
+    }
+    Pictures(pictures)
+}
+
+/// The picture of that name, beside the file in which it is written or in `pipelines/`.
+fn load_picture(file: &Located<String>, sources: &dyn Sources) -> Result<Picture, SizeError> {
+    let candidates = include_candidates(&file.span.file.name, file);
+    if escapes(file) {
+        return Err(SizeError::NoPicture(file.clone(), candidates));
+    }
+    for path in &candidates {
+        match sources.picture(path) {
+            Ok(Some(picture)) => return Ok(picture),
+            Ok(None) => {}
+            Err(why) => return Err(SizeError::Picture(file.clone(), why)),
+        }
+    }
+    Err(SizeError::NoPicture(file.clone(), candidates))
+}

@@ -1,0 +1,132 @@
+//! Conditions under which a comparison fails, for a team's own CI: `nsm: wrong > 0.1%`.
+
+use crate::summary::{Row, by_wall};
+use crate::summary_table::summaries;
+use skiagraph_compare::records::results::Results;
+use skiagraph_compare::wording::{bytes, ms, size};
+
+/// A figure of a method that must not be greater than a value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gate {
+    /// Name of the method, with its setting: `crsm@n=1`.
+    pub method: String,
+    /// The figure.
+    pub figure: Figure,
+    /// The greatest value that passes, in the unit of the figure.
+    pub most: f64,
+}
+
+/// A figure of a method over all views of a viewport.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Figure {
+    /// Wrong pixels outside the band, in percent of those facing the light.
+    Wrong,
+    /// Root mean square error of the shares of light.
+    Rmse,
+    /// FLIP of the shaded pictures.
+    Flip,
+    /// Milliseconds of a frame in which every pass runs.
+    Frame,
+    /// Bytes of the method's own materials and of what it reads of the scene.
+    Memory,
+}
+
+impl Figure {
+    /// All of them.
+    pub const ALL: [Self; 5] = [
+        Self::Wrong,
+        Self::Rmse,
+        Self::Flip,
+        Self::Frame,
+        Self::Memory,
+    ];
+
+    /// Its name in a condition.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Wrong => "wrong",
+            Self::Rmse => "rmse",
+            Self::Flip => "flip",
+            Self::Frame => "frame",
+            Self::Memory => "memory",
+        }
+    }
+
+    fn of(self, row: &Row, by_wall: bool) -> Option<f64> {
+        match self {
+            Self::Wrong => Some(100.0 * row.wrong().share()),
+            Self::Rmse => row.rmse(),
+            Self::Flip => row.flip(),
+            Self::Frame => row.frame_ms(by_wall),
+            Self::Memory => Some(row.bytes() as f64),
+        }
+    }
+
+    fn text(self, value: f64) -> String {
+        match self {
+            Self::Wrong => format!("{value:.4} %"),
+            Self::Rmse | Self::Flip => format!("{value:.5}"),
+            Self::Frame => format!("{} ms", ms(value)),
+            Self::Memory => bytes(value as u64),
+        }
+    }
+}
+
+impl Gate {
+    /// Returns a line for each row that this condition fails: of the method in each map and
+    /// viewport. One that could not run fails, too.
+    pub fn failures(&self, results: &Results) -> Vec<String> {
+        let mut lines = Vec::new();
+        for summary in summaries(results) {
+            let by_wall = by_wall(&summary.rows);
+            let viewport = size(summary.viewport);
+            for row in summary.rows.iter().filter(|row| row.method == self.method) {
+                let (label, word) = (&row.label, self.figure.word());
+                let value = self.figure.of(row, by_wall).filter(|_| row.views() > 0);
+                let text = |value| self.figure.text(value);
+                match value {
+                    None => lines.push(format!(
+                        "`{label}` at {viewport} has no {word}: it could not run"
+                    )),
+                    Some(value) if value > self.most => lines.push(format!(
+                        "`{label}` at {viewport}: {word} {} is more than {}",
+                        text(value),
+                        text(self.most)
+                    )),
+                    Some(_) => {}
+                }
+            }
+        }
+        lines
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::samples::results as sample;
+
+    #[test]
+    fn a_condition_fails_for_what_is_above_it_or_could_not_run() {
+        let failures = |method: &str, figure, most| {
+            let method = method.into();
+            Gate {
+                method,
+                figure,
+                most,
+            }
+            .failures(&sample())
+        };
+        assert_eq!(
+            failures("nsm", Figure::Wrong, 0.1),
+            ["`nsm 1024` at 512x256: wrong 0.4970 % is more than 0.1000 %"]
+        );
+        assert_eq!(failures("nsm", Figure::Wrong, 0.5), [""; 0]);
+        let all = Figure::ALL.map(|figure| failures("nsm", figure, 0.0).len());
+        assert_eq!(all, [1; 5]);
+        assert_eq!(
+            failures("rt_hw", Figure::Frame, 1e9),
+            ["`rt_hw` at 512x256 has no frame: it could not run"]
+        );
+    }
+}

@@ -316,31 +316,55 @@ fn per_frame(of: &Contender, when: When) -> String {
 }
 
 fn none_exact(all: &[Contender]) -> Vec<String> {
-    let when = When::AnythingMoves;
-    let right = all.iter().min_by(|one, other| {
-        let shares = one.wrong.share().total_cmp(&other.wrong.share());
-        shares.then(one.frame.total_cmp(&other.frame))
-    });
-    let (Some(right), Some(fastest)) = (right, least(all, |of| of.frame)) else {
-        return Vec::new();
-    };
-    let none = match right.condition {
+    let none = match all.iter().find_map(|of| of.condition) {
         Some(_) => "Each method is wrong on some",
         None => "None is exact here",
     };
-    let least_wrong = format!("{}, {}", right.error(), per_frame(right, when));
-    vec![if right.index == fastest.index {
-        format!(
-            "{none}. {} is the least wrong and the fastest ({least_wrong}).",
-            right.name()
-        )
-    } else {
-        format!(
-            "{none}. {} is the least wrong ({least_wrong}). {}.",
-            right.name(),
-            faster(fastest, right, when)
-        )
-    }]
+    let said = by_error(
+        all,
+        |of| of.wrong.share(),
+        ["is the least wrong", "are the least wrong"],
+    );
+    said.map(|said| format!("{none}. {said}."))
+        .into_iter()
+        .collect()
+}
+
+/// The method with the least error, those that are as right and cannot be told apart from it in
+/// time, and the fastest one beside it. `words` say of one and of several that they are it.
+fn by_error(
+    all: &[Contender],
+    error: impl Fn(&Contender) -> f64,
+    words: [&str; 2],
+) -> Option<String> {
+    let when = When::AnythingMoves;
+    let least_error = error(least(all, &error)?);
+    let best = least(all.iter().filter(|of| error(of) == least_error), |of| {
+        of.frame
+    })?;
+    let others = || all.iter().filter(|of| of.index != best.index);
+    let is_level = |of: &&Contender| !of.is_told_apart(best, when);
+    let equals = others().filter(|of| error(of) == least_error && is_level(of));
+    let equals: Vec<String> = equals.map(Contender::name).collect();
+    let figures = format!("{}, {}", best.error(), per_frame(best, when));
+    let mut text = match &equals[..] {
+        [] => format!("{} {} ({figures})", best.name(), words[0]),
+        equals => format!(
+            "{} and {} {} and cannot be told apart in time ({figures})",
+            best.name(),
+            equals.join(" and "),
+            words[1]
+        ),
+    };
+    let rest = || others().filter(|of| error(of) > least_error);
+    text += &match least(rest(), |of| of.frame) {
+        Some(fastest) if fastest.frame < best.frame || is_level(&fastest) => {
+            format!(". {}", faster(fastest, best, when))
+        }
+        Some(_) => ". No other is faster".into(),
+        None => String::new(),
+    };
+    Some(text)
 }
 
 /// How much faster another method is, and its error.
@@ -356,19 +380,11 @@ fn faster(fastest: &Contender, than: &Contender, when: When) -> String {
 
 /// Judges errors of shares: the least one, and the fastest.
 fn graded(all: &[Contender], rows: &[Row]) -> Verdict {
-    let when = When::AnythingMoves;
-    let (Some(right), Some(fastest)) = (least(all, |of| of.rmse), least(all, |of| of.frame)) else {
+    let words = ["has the least error", "have the least error"];
+    let (Some(right), Some(mut text)) =
+        (least(all, |of| of.rmse), by_error(all, |of| of.rmse, words))
+    else {
         return Verdict::default();
-    };
-    let figures = format!("{}, {}", right.error(), per_frame(right, when));
-    let mut text = if right.index == fastest.index {
-        format!(
-            "{} has the least error and is the fastest ({figures})",
-            right.name()
-        )
-    } else {
-        let faster = faster(fastest, right, when);
-        format!("{} has the least error ({figures}). {faster}", right.name())
     };
     let own = rows
         .iter()
@@ -576,6 +592,28 @@ mod tests {
         let mut dark = run("rt", 0, 10.0, 10.0);
         dark.pixels.facing_light = 0;
         assert_eq!(outcome(&[dark]), (None, Vec::new()), "nothing to judge");
+    }
+
+    #[test]
+    fn a_method_that_is_there_twice_has_no_winner() {
+        let twice = |wrong| {
+            [
+                run("nsm", wrong, 10.0, 10.0),
+                run("nsm@bias=0", wrong, 10.1, 10.1),
+            ]
+        };
+        let (_, said) = outcome(&twice(500));
+        assert_eq!(
+            said,
+            [
+                "None is exact here. `nsm` and `nsm@bias=0` are the least wrong and cannot be told \
+                 apart in time (wrong on 0.500 % of the surfaces that face the light, 10.0 ms a \
+                 frame)."
+            ]
+        );
+        assert!(outcome(&twice(0)).1[0].starts_with("Take `nsm` or `nsm@bias=0`: their times"));
+        let soft = [graded("pcf", 0.1, 10.0), graded("pcf@bias=0", 0.1, 10.1)];
+        assert!(outcome(&soft).1[0].starts_with("`pcf` and `pcf@bias=0` have the least error"));
     }
 
     #[test]

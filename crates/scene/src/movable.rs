@@ -156,8 +156,9 @@ impl Movable {
         self.all(|part| self.moved_part(part, &maps[part]))
     }
 
-    /// The same by any map, which is given the part and a place on it at rest, and returns the
-    /// place where that is now and the map's derivative there.
+    /// The mesh after each part was moved by a map that need not be affine. `map` gets the part's
+    /// index and a place on it at rest, and returns the place where that is now and the map's
+    /// derivative there.
     ///
     /// # Errors
     /// A map by which a part cannot be moved, or that mirrors only some of it.

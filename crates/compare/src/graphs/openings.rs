@@ -28,9 +28,11 @@ use itertools::Itertools;
 use skiagraph_graph::Sources;
 use std::collections::BTreeSet;
 
-/// Reads methods as the command line names them. Assignments that name a document for an open
-/// include, the method's own or of `params`, move into the name of the graph, one argument for each
-/// document of a list; the other assignments for all are returned beside.
+/// Parses the methods of a command line. An assignment whose name is an open include of the
+/// method's graph chooses the document that stands there, and becomes part of the graph's name; a
+/// list of documents gives an argument for each. This holds of a method's own assignments and of
+/// `params`, which apply to all methods. Returns the arguments, and those of `params` that chose no
+/// document.
 ///
 /// # Errors
 /// A graph that does not exist.

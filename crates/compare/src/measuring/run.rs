@@ -166,9 +166,10 @@ impl MeasureContext<'_> {
         })
     }
 
-    /// Times judged methods in turns, and returns the run of each. `group` is their place among
-    /// those of the view and viewport, the first of them is their anchor. `done` hears how many
-    /// turns are over.
+    /// Times judged methods in turns, and returns the run of each. `group` is the index of this
+    /// group among those into which the methods of the view and viewport are split to fit the
+    /// memory. The first method is the anchor: it is in every group, so that groups can be compared
+    /// ([`Turns`]). `done` hears how many turns are over.
     ///
     /// # Errors
     /// Ctrl-C, a lost device.

@@ -114,7 +114,7 @@ pub fn in_turns(
 /// The times of a frame that was run with timing.
 ///
 /// # Errors
-/// There are none.
+/// The report has no times, as the frame was run without timing.
 pub fn timed_frame(
     report: FrameReport,
     began: Duration,
@@ -163,8 +163,9 @@ impl Times {
     }
 }
 
-/// The times of frames in which only the camera moves, of executors in turns; none of one whose
-/// passes all run then, too.
+/// Times frames in which only the camera moves, the executors taking turns. An executor that skips
+/// no pass in such a frame has `None`: its times would be those of any frame. All have none if
+/// `frames` is 0. What ended an executor stands in its place.
 ///
 /// # Errors
 /// Ctrl-C.

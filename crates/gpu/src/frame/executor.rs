@@ -390,9 +390,9 @@ impl Executor {
         Ok(())
     }
 
-    /// Asks the provider for every resource of another [version](Provider::version) than before,
-    /// and for what it could not build then. Frames that were encoded before keep what they were
-    /// encoded with.
+    /// Asks the provider again for every resource whose [version](Provider::version) has changed
+    /// since it was last asked, and for those that it could not build the last time. Frames that
+    /// were encoded before keep what they were encoded with.
     ///
     /// # Errors
     /// If one cannot be built, or is described otherwise than when the graph was planned (more

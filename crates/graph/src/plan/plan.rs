@@ -96,8 +96,8 @@ impl Plan {
         dependences(view, runs)
     }
 
-    /// The `values` of the documents that something asked for, by full name, and what each came to,
-    /// as a document would write it.
+    /// The `values` of the documents that were computed for this plan, by full name, each with its
+    /// result as a document would write it. A value that no expression uses is not among them.
     pub fn named_values(&self) -> &[(String, String)] {
         &self.0.named_values
     }
@@ -174,9 +174,9 @@ impl Plan {
         Err(self.0.graph.diagnostics(reports.into_list()))
     }
 
-    /// The params that were asked for and change nothing here: with their defaults a frame would do
-    /// the same, and shaders read the same values. A `fit` of shadow maps does not, say, where the
-    /// light has but one.
+    /// Params that the request sets and that change nothing in this plan: with their defaults a
+    /// frame would run the same passes, and shaders read the same values. For example the `fit` of
+    /// a shadow map changes nothing under a light whose map has one fit alone.
     pub fn idle_params(&self) -> Vec<&str> {
         let by_default = |name: &&String| {
             let others = self.with(|request| {

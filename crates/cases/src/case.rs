@@ -8,18 +8,19 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use skiagraph_scene::{LightKind, Scene};
 
-/// One case of the catalogue.
+/// Case of the catalogue: a small scene on which shadow methods go wrong.
 #[derive(Clone, Copy, Debug)]
 pub struct HardCase {
-    /// Name on the command line: lower case, words joined by `_`.
+    /// Name of the case on the command line: lower case, words joined by `_`.
     pub name: &'static str,
-    /// Error that it provokes, in one line.
+    /// Error that the case provokes, in one line.
     pub reason: &'static str,
-    /// Kind of its casters, which decides how methods that cull front faces are tested.
+    /// Kind of the scene's casters, which decides how methods that cull front faces are tested.
     pub casters: Casters,
-    /// Most indeterminate pixels, as a share of the pixels that face the light.
+    /// Largest allowed number of indeterminate pixels, as a share of the pixels that face the
+    /// light.
     pub indeterminate_cap: f64,
-    /// Answers that its picture shows.
+    /// Answers that occur in the picture of the case.
     pub shows: Shows,
     seen: Seen,
     geometry: Geometry,
@@ -35,33 +36,33 @@ enum Geometry {
     Boxes(&'static [Block], f64),
 }
 
-/// Kinds of casters in a scene.
+/// Kind of the casters in a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Casters {
     /// Closed surfaces wound outward that do not pass through each other: no lit surface is its own
     /// caster when front faces are culled.
     Closed,
-    /// Sheets, surfaces wound both ways, or solids that pass through each other: front faces
-    /// culled, some cast no shadow.
+    /// Sheets, surfaces wound both ways, or solids that pass through each other: some of them cast
+    /// no shadow when front faces are culled.
     Open,
 }
 
-/// Answers of the pixels of a case's picture.
+/// Answers that occur among the pixels of a case's picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shows {
-    /// Some lit, some in shadow.
+    /// Some pixels are lit, some are in shadow.
     Both,
-    /// All that face the light are lit.
+    /// All pixels that face the light are lit.
     LitOnly,
-    /// All that face the light are in shadow.
+    /// All pixels that face the light are in shadow.
     ShadowOnly,
-    /// None faces the light.
+    /// No pixel faces the light.
     Nothing,
 }
 
 impl HardCase {
-    /// A case of closed casters.
+    /// Creates a case of closed casters.
     pub(crate) const fn closed(
         name: &'static str,
         reason: &'static str,
@@ -81,7 +82,8 @@ impl HardCase {
         }
     }
 
-    /// A case of boxes, whose light is told to all points but those within a margin of an edge.
+    /// Creates a case of boxes, which tells where light arrives for all points but those within a
+    /// margin of an edge.
     pub(crate) const fn boxes(
         name: &'static str,
         reason: &'static str,
@@ -94,7 +96,7 @@ impl HardCase {
         }
     }
 
-    /// A case of open ones.
+    /// Creates a case of open casters.
     pub(crate) const fn open(
         name: &'static str,
         reason: &'static str,
@@ -107,36 +109,36 @@ impl HardCase {
         }
     }
 
-    /// Changed once it is built.
+    /// Changes the case's scene after it is built.
     pub(crate) const fn changed(mut self, change: fn(&mut Scene)) -> Self {
         self.change = change;
         self
     }
 
-    /// Whose light is told from the geometry, too, as by [`HardCase::lit`].
+    /// Gives the case an answer from the geometry, as [`HardCase::lit`] returns it.
     pub(crate) const fn with_answer(mut self, lit: fn(DVec3) -> Option<bool>) -> Self {
         self.lit = Some(lit);
         self
     }
 
-    /// Whose points are all lit that face the light.
+    /// Marks a case in which all points that face the light are lit.
     pub(crate) const fn all_lit(self) -> Self {
         self.with_answer(|_| Some(true)).showing(Shows::LitOnly)
     }
 
-    /// Whose picture does not show both light and shadow.
+    /// Marks a case whose picture does not show both light and shadow.
     pub(crate) const fn showing(mut self, shows: Shows) -> Self {
         self.shows = shows;
         self
     }
 
-    /// With another share of indeterminate pixels than a hundredth at most.
+    /// Sets the largest share of indeterminate pixels, a hundredth without it.
     pub(crate) const fn indeterminate_up_to(mut self, share: f64) -> Self {
         self.indeterminate_cap = share;
         self
     }
 
-    /// Builds it.
+    /// Builds the scene of the case.
     pub fn scene(&self) -> Scene {
         let shape = match self.geometry {
             Geometry::Drawn(draw) => draw(),
@@ -148,8 +150,8 @@ impl HardCase {
         scene
     }
 
-    /// Returns true if light reaches a point of a surface that faces the light, told from the
-    /// geometry; `None` where it is too close to call or the case has no such answer.
+    /// Tells from the geometry if light reaches a point of a surface that faces the light. Returns
+    /// `None` where it is too close to call, or if the case has no such answer.
     pub fn lit(&self, point: DVec3) -> Option<bool> {
         match (self.lit, self.geometry, self.seen.light) {
             (Some(lit), ..) => lit(point),
@@ -163,7 +165,7 @@ impl HardCase {
         }
     }
 
-    /// Returns true if [`HardCase::lit`] has answers at all.
+    /// Returns true if [`HardCase::lit`] has answers for this case.
     pub fn is_analytic(&self) -> bool {
         self.lit.is_some() || matches!(self.geometry, Geometry::Boxes(..))
     }

@@ -5,7 +5,7 @@ use crate::{
     topology,
 };
 
-/// The catalogue, in the order in which it is shown.
+/// Returns all cases of the catalogue, in the order in which they are shown.
 pub fn cases() -> Vec<HardCase> {
     [
         plain::CASES,
@@ -24,7 +24,7 @@ pub fn cases() -> Vec<HardCase> {
     .concat()
 }
 
-/// The case of that name.
+/// Finds the case with this name. Returns `None` for an unknown name.
 pub fn case(name: &str) -> Option<HardCase> {
     cases().into_iter().find(|case| case.name == name)
 }

@@ -1,8 +1,8 @@
 //! Scenes on which shadow methods go wrong: the catalogue of `skiagraph stress`.
 //!
-//! Every case is a function that builds a small scene, the same bits on every machine, with one
-//! view named `main`, and says in a line what it provokes. Where geometry alone tells which points
-//! are lit, it tells so, so that the oracle is tested, too.
+//! Every case is a function that builds a small scene with one view named `main`, with the same
+//! bits on every machine. One line of text says which error the case provokes. Some cases also tell
+//! from the geometry alone which points are lit, so that the oracle is tested, too.
 
 mod answer;
 mod case;

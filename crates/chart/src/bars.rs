@@ -15,7 +15,8 @@ const FILL: f64 = 0.84;
 /// Above the highest bar, as a share of it: a mark stands on it.
 const MARGIN: f64 = 0.06;
 
-/// Draws a panel, its axes fitted to several, into a rectangle of `root`: corner and size.
+/// Draws a panel of bars into a rectangle of `root`, given by corner and size. The axes are fitted
+/// to all panels in `fitted`.
 pub(crate) fn draw(
     panel: &Panel,
     groups: &[String],
@@ -65,7 +66,7 @@ pub(crate) fn draw(
     Ok(())
 }
 
-/// The upper end of a linear axis.
+/// Returns the upper end of a linear axis that is fitted to these panels.
 pub(crate) fn top(fitted: &[Panel]) -> f64 {
     let marks = |series: &Series| series.marks.iter().map(|mark| mark.y).fold(0.0, f64::max);
     let series = fitted.iter().flat_map(|panel| &panel.series);
@@ -84,7 +85,7 @@ fn label_step(groups: &[String], wide: f64) -> usize {
     (f64::from(widest.unwrap_or(0)) / wide).ceil().max(1.0) as usize
 }
 
-/// A tick's number without what f64 adds to it.
+/// Returns the label of a tick, without rounding errors of f64.
 pub(crate) fn tick(value: &f64) -> String {
     let rounded: f64 = format!("{value:.9e}").parse().unwrap_or(*value);
     rounded.to_string()

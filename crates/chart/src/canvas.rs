@@ -16,15 +16,15 @@ use std::io;
 /// Drawing area, in pixels.
 pub(crate) type Root<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// Width of a figure that is a file, pixels.
+/// Width of a figure in a file, pixels.
 pub(crate) const WIDTH: i32 = 800;
 /// plotters writes text of this share of the size that it is told.
 const TOLD: f64 = 1.24;
 
-/// A picture in the making: groups of elements, one behind the other.
+/// A picture that groups of elements are added to, one on top of another.
 pub(crate) struct Canvas {
     size: (i32, i32),
-    /// True if a page holds it, whose script and style get to know its parts.
+    /// True if the picture is part of a web page, whose script and style use its elements.
     pub is_embedded: bool,
     elements: String,
 }
@@ -39,7 +39,7 @@ impl Canvas {
         }
     }
 
-    /// Adds what `draw` draws.
+    /// Adds the elements that `draw` draws.
     pub fn draw<T>(&mut self, draw: impl FnOnce(&Root) -> Result<T, Error>) -> Result<T, Error> {
         let mut svg = String::new();
         let root = SVGBackend::with_string(&mut svg, (self.size.0 as u32, self.size.1 as u32));
@@ -53,8 +53,8 @@ impl Canvas {
         Ok(drawn)
     }
 
-    /// The same as a group with these attributes, where a page holds the picture. `words` stand in
-    /// the group, too.
+    /// Adds the elements that `draw` draws. If a page holds the picture, they form a group with
+    /// these attributes, which also contains the elements in `words`.
     pub fn group(
         &mut self,
         attributes: &str,
@@ -70,7 +70,8 @@ impl Canvas {
         Ok(())
     }
 
-    /// The picture. That of a page has the colours of the page's style.
+    /// Returns the picture as SVG. If a page holds it, its colours are variables of the page's
+    /// style.
     pub fn svg(self) -> String {
         let (width, height) = self.size;
         let svg = format!(
@@ -92,7 +93,7 @@ impl From<DrawingAreaErrorKind<io::Error>> for Error {
     }
 }
 
-/// Text that begins at `at`, its middle at that height.
+/// Draws text that begins at `at` and is vertically centred there.
 pub(crate) fn words(root: &Root, at: (i32, i32), size: f64, text: &str) -> Result<(), Error> {
     let style = style(size).pos(Pos::new(HPos::Left, VPos::Center));
     // The library centres at half the height of an x, which is less than that of most words.
@@ -101,7 +102,7 @@ pub(crate) fn words(root: &Root, at: (i32, i32), size: f64, text: &str) -> Resul
     Ok(())
 }
 
-/// Black words of a size; titles are bold.
+/// Returns the style of black text of this size; titles are bold.
 pub(crate) fn style(size: f64) -> TextStyle<'static> {
     let font = ("sans-serif", size * TOLD).into_font();
     let font = if size > HEAD {

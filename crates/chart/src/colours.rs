@@ -2,8 +2,8 @@
 
 use plotters::style::{RGBColor, WHITE};
 
-/// Okabe and Ito, "Color Universal Design" (2008), without its black and with a darker yellow:
-/// theirs is hard to see on white.
+/// Colours of series: those of Okabe and Ito, "Color Universal Design" (2008), without black. The
+/// yellow is darker, to be seen on white.
 pub(crate) const LOOKS: [RGBColor; 7] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
@@ -14,23 +14,23 @@ pub(crate) const LOOKS: [RGBColor; 7] = [
     RGBColor(148, 130, 0),
 ];
 
-/// Words.
+/// Colour of text.
 pub(crate) const INK: RGBColor = RGBColor(30, 30, 30);
-/// Lines of axes.
+/// Colour of the lines of axes.
 pub(crate) const AXIS: RGBColor = RGBColor(90, 90, 90);
-/// Lines of a grid at labels, and between them.
+/// Colours of grid lines at labels, and between labels.
 pub(crate) const GRID: [RGBColor; 2] = [RGBColor(205, 205, 205), RGBColor(234, 234, 234)];
-/// The strip for zero.
+/// Background of the strip for zero.
 pub(crate) const STRIP: RGBColor = RGBColor(238, 238, 238);
-/// The Pareto front's line.
+/// Colour of the line of the Pareto front.
 pub(crate) const FRONT: RGBColor = RGBColor(70, 70, 70);
-/// The line of slope 1.
+/// Colour of the line of slope 1.
 pub(crate) const GUIDE: RGBColor = RGBColor(120, 120, 120);
 
 /// Names of these colours in the style of a page.
 const VARIABLES: &str = "s0 s1 s2 s3 s4 s5 s6 ink quiet quiet front line faint strip card";
 
-/// The same picture with variables of a page's style for colours.
+/// Replaces the colours of a picture by variables of a page's style.
 pub(crate) fn as_variables(svg: String) -> String {
     let others = [INK, AXIS, GUIDE, FRONT, GRID[0], GRID[1], STRIP, WHITE];
     let all = LOOKS.into_iter().chain(others).zip(VARIABLES.split(' '));

@@ -1,11 +1,12 @@
-//! Parts of a chart.
+//! Input of a chart: panels, series and marks.
 
-/// One pair of axes: logarithmic, or linear in [`Kind::Bars`] and [`Kind::Frames`].
+/// A chart with one pair of axes. The axes are logarithmic, or linear in [`Kind::Bars`] and
+/// [`Kind::Frames`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
-    /// Heading above it.
+    /// Heading above the axes.
     pub title: String,
-    /// Kind of the panel, which decides the lines beside the marks.
+    /// Kind of the panel, which decides how marks are joined and what else is drawn.
     pub kind: Kind,
     /// Label of the horizontal axis, with its unit.
     pub x: String,
@@ -18,43 +19,45 @@ pub struct Panel {
 /// Kinds of panels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Costs in both directions, less is better: the Pareto front. Zero is allowed upwards and has
-    /// a strip of its own.
+    /// Two costs, of which less is better: the Pareto front is drawn. The vertical value may be 0;
+    /// zero has a strip of its own.
     Front,
-    /// How something grows: the marks of a series are joined, and a dashed line has slope 1.
+    /// Growth of a value: the marks of a series are joined, and a dashed line shows slope 1.
     Growth,
-    /// A bar for each mark, in groups of these names, upwards from 0 on a linear axis.
+    /// A bar for each mark, upwards from 0 on a linear axis. The list holds the names of the groups
+    /// of bars.
     Bars(Vec<String>),
-    /// The frames of a path to the right and a figure of each upwards, both on linear axes from 0:
-    /// the marks of a series are joined.
+    /// A value for each frame of a camera path, on linear axes from 0. The marks of a series are
+    /// joined.
     Frames,
 }
 
-/// Marks of one colour and shape.
+/// Marks with the same name, colour and shape.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
-    /// Name in the legend.
+    /// Name in the legend. It identifies the series: the same name has the same look in all panels.
     pub name: String,
     /// The marks; lines join them in this order.
     pub marks: Vec<Mark>,
 }
 
-/// A measurement.
+/// A measurement, drawn as one mark.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mark {
-    /// To the right: finite and above 0; in [`Kind::Bars`] the index of the group, in
-    /// [`Kind::Frames`] that of the frame.
+    /// Horizontal value: finite and above 0. In [`Kind::Bars`] it is the index of the group, in
+    /// [`Kind::Frames`] the index of the frame, both from 0.
     pub x: f64,
-    /// Upwards: finite and above 0; in all kinds but [`Kind::Growth`] also 0.
+    /// Vertical value: finite and above 0. It may be 0 in all kinds but [`Kind::Growth`].
     pub y: f64,
-    /// Index into [`Figure::sizes`](crate::Figure::sizes); 0 where these are empty.
+    /// Size of the mark: an index into [`Figure::sizes`](crate::Figure::sizes); 0 if that list is
+    /// empty.
     pub size: usize,
-    /// Lines that a page tells of it, the first one its name.
+    /// Lines of text that a page shows for the mark; the first line is the mark's name.
     pub about: String,
 }
 
 impl Mark {
-    /// A mark of the smallest size of which there is no more to tell.
+    /// Creates a mark of the smallest size, without text.
     pub fn new(x: f64, y: f64) -> Self {
         let about = String::new();
         Self {
@@ -65,7 +68,7 @@ impl Mark {
         }
     }
 
-    /// Name: the first line of what there is to tell of it.
+    /// Returns the name: the first line of the text.
     pub(crate) fn name(&self) -> &str {
         self.about.lines().next().unwrap_or_default()
     }

@@ -1,28 +1,28 @@
-//! Why a chart cannot be drawn.
+//! Error of a chart that cannot be drawn.
 
 use thiserror::Error;
 
-/// Why a chart cannot be drawn.
+/// Reasons why a chart cannot be drawn.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// A figure without a mark.
+    /// A panel has no marks.
     #[error("there is nothing to draw: panel {panel:?} has no marks")]
     Empty {
-        /// The panel's title.
+        /// Title of the panel.
         panel: String,
     },
-    /// A mark that has no place in its panel, or a size without a meaning.
+    /// A mark lies outside its panel's axes, or its size is not in the list of sizes.
     #[error("panel {panel:?}, series {series:?}: {why}")]
     Mark {
-        /// The panel's title.
+        /// Title of the panel.
         panel: String,
-        /// The series' name.
+        /// Name of the series.
         series: String,
-        /// Place or size of the mark, and what is expected of it.
+        /// Value or size of the mark, and the expected ones.
         why: String,
     },
-    /// The library that draws gave up.
+    /// The drawing library failed; the text is its message.
     #[error("the chart cannot be drawn: {0}")]
     Drawing(String),
 }

@@ -1,4 +1,4 @@
-//! A figure's layout: title, notes, legend, then the panels in rows.
+//! Lays out a figure: title, notes and legend, then the panels in rows.
 
 use crate::{
     bars,
@@ -18,34 +18,36 @@ const LEFT: i32 = 12;
 /// Height of the title, of a line of the notes, and below the legend.
 const LINES: [i32; 3] = [34, 18, 8];
 
-/// A picture of panels under one title and one legend.
+/// A picture of one or several panels under one title and one legend.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Figure {
-    /// First line.
+    /// Title, the first line of the picture.
     pub title: String,
-    /// Lines below the title: under which conditions the figures hold. Long ones are wrapped.
+    /// Lines below the title, for example the conditions of the measurement. Long lines are
+    /// wrapped.
     pub notes: Vec<String>,
-    /// Meanings of the sizes of marks, smallest first; none if they are all alike.
+    /// Meanings of the sizes of marks, smallest first; empty if all marks have the same size.
     pub sizes: Vec<String>,
-    /// Names of series that look the same in all figures with this list, whichever of them are
-    /// drawn.
+    /// Names of series whose colours and shapes are fixed by their position in this list. Figures
+    /// with the same list give them the same look, even if some are not drawn.
     pub looks: Vec<String>,
-    /// Values that have labels along logarithmic horizontal axes, with these; none: decades.
+    /// Labels of logarithmic horizontal axes: values with their text. If empty, decades are
+    /// labelled.
     pub ticks: Vec<(f64, String)>,
-    /// Panels of the figure, row by row. Panels in which a series has the same name give it the
-    /// same colour and shape.
+    /// Panels, row by row. A series with the same name in several panels has the same colour and
+    /// shape.
     pub panels: Vec<Panel>,
-    /// Panels beside each other; 0 counts as 1.
+    /// Number of panels side by side in a row; 0 counts as 1.
     pub columns: usize,
-    /// True if panels beside each other have the same axes, so that heights can be compared.
+    /// True if the panels of a row have the same ranges of axes, so that heights can be compared.
     pub shared_axes: bool,
 }
 
 impl Figure {
-    /// The figure as SVG, 800 pixels wide.
+    /// Returns the figure as SVG, 800 pixels wide.
     ///
     /// # Errors
-    /// A panel without marks, values that have no place on its axes, sizes that there are not.
+    /// If a panel has no marks, or a mark has a value that its axes cannot show or an unknown size.
     pub fn to_svg(&self) -> Result<String, Error> {
         self.check()?;
         let names = self.names();
@@ -71,10 +73,11 @@ impl Figure {
         Ok(canvas.svg())
     }
 
-    /// The panels alone as SVG of that width, for a page. Colours are the variables `--s0` to
-    /// `--s6`, `--ink`, `--quiet`, `--front`, `--line`, `--faint`, `--strip` and `--card` of its
-    /// style. Elements with `data-series` are of that series; a mark is a `g` of class `mark`, its
-    /// name in `data-name` and what there is to tell of it in `aria-label`.
+    /// Returns the panels without title and legend as SVG for a web page, `width` pixels wide.
+    /// Colours are the variables `--s0` to `--s6`, `--ink`, `--quiet`, `--front`, `--line`,
+    /// `--faint`, `--strip` and `--card` of the page's style. Elements of a series carry its name
+    /// in `data-series`. A mark is a `g` of class `mark`, with its name in `data-name` and its text
+    /// in `aria-label`.
     ///
     /// # Errors
     /// Those of [`Figure::to_svg`].
@@ -86,10 +89,11 @@ impl Figure {
         Ok(canvas.svg())
     }
 
-    /// The sign of a series in the legend of a page, as SVG of 18 pixels in a square.
+    /// Returns the sign of the series with this name for the legend of a web page, as SVG of 18 ×
+    /// 18 pixels.
     ///
     /// # Errors
-    /// The library that draws gave up.
+    /// If the drawing library fails.
     pub fn sign(&self, series: &str) -> Result<String, Error> {
         let mut canvas = Canvas::new((18, 18), true);
         let look = self.look(&self.names(), series);

@@ -10,7 +10,8 @@ use crate::{
     text::HEAD,
 };
 
-/// Draws a panel, its axes fitted to several, into a rectangle of the canvas: corner and size.
+/// Draws a panel of frames into a rectangle of the canvas, given by corner and size. The axes are
+/// fitted to all panels in `fitted`.
 pub(crate) fn draw(
     panel: &Panel,
     fitted: &[Panel],

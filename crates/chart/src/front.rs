@@ -1,7 +1,8 @@
 //! The Pareto front of points whose coordinates are both costs.
 
-/// Indices of the points that no other point beats: none is at most as large in both coordinates
-/// and smaller in one. By growing x, then growing y, then index; of equal points the first.
+/// Returns the indices of the Pareto front: the points for which no other point is at most as large
+/// in both coordinates and smaller in one. They are sorted by x. Of equal points only the first is
+/// included.
 pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..points.len()).collect();
     order.sort_by(|&a, &b| {

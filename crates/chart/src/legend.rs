@@ -1,4 +1,4 @@
-//! The legend: rows of entries above the panels, where they cover nothing.
+//! The legend: rows of entries above the panels.
 
 use crate::{
     canvas::{Root, WIDTH, words},
@@ -16,25 +16,25 @@ const GAP: i32 = 16;
 /// Height of a row.
 const ROW: i32 = 22;
 
-/// Sign before the words.
+/// Sign before the text of an entry.
 #[derive(Clone, Copy)]
 pub(crate) enum Sign {
     Series(Look),
     Size(usize),
     Front,
     Guide,
-    /// A full mark and an empty one.
+    /// An entry without a sign.
     None,
 }
 
-/// An entry, and whether it begins a row.
+/// An entry of the legend. `begins_row` is true if it starts a new row.
 pub(crate) struct Entry {
     pub sign: Sign,
     pub words: String,
     pub begins_row: bool,
 }
 
-/// Entries with their places, and the height of all.
+/// Entries with their positions, and the height of the legend in pixels.
 pub(crate) struct Legend {
     entries: Vec<(Entry, (i32, i32))>,
     pub height: i32,

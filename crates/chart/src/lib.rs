@@ -1,19 +1,22 @@
-//! Charts of measurements: plain data in, SVG out. The crate knows nothing of what was measured.
+//! Draws charts of measurements: takes plain values and returns SVG. It knows nothing about the
+//! quantities.
 //!
 //! A [`Figure`] is one picture of one or several [`Panel`]s that share a legend. Both axes of a
-//! panel are logarithmic, but those of bars and of frames. In a [`Kind::Front`], whose values may
-//! be 0, zero has a strip of its own below the axis, with a lane per series, so that exact methods
-//! stand beside each other instead of nowhere; the Pareto front is drawn, and what is on it is
-//! filled. A [`Kind::Growth`] joins the marks of a series and draws what linear growth would be.
-//! [`Kind::Bars`] stand in groups on a linear axis; [`Kind::Frames`] show how a figure changes
-//! along a path.
+//! panel are logarithmic, except in [`Kind::Bars`] and [`Kind::Frames`].
 //!
-//! [`Figure::to_svg`] is for files. [`Figure::to_page_svg`] is for a page that has title and legend
-//! of its own: its colours are variables of the page's style, its series and marks are groups that
-//! a script finds, each mark with its name beside it where there is room.
+//! - [`Kind::Front`] shows two costs, draws the Pareto front and fills the marks on it. Values of 0
+//!   stand in a strip below the axis, with a lane for each series, so that exact methods can be
+//!   seen.
+//! - [`Kind::Growth`] joins the marks of a series and draws a line of linear growth.
+//! - [`Kind::Bars`] shows groups of bars on a linear axis.
+//! - [`Kind::Frames`] shows how a value changes along a path.
+//!
+//! [`Figure::to_svg`] is for files. [`Figure::to_page_svg`] is for a web page that has its own
+//! title and legend: colours are variables of the page's style, series and marks are groups that a
+//! script can find, and marks have their names beside them where there is room.
 //!
 //! Series differ by colour (Okabe and Ito's palette for colour-blind readers, 2008) *and* shape.
-//! The same data always give the same bytes.
+//! The same input always gives the same bytes.
 //!
 //! ```
 //! use skiagraph_chart::{Figure, Kind, Mark, Panel, Series};

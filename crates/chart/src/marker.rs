@@ -1,4 +1,4 @@
-//! Colours and shapes: 7 × 6 of them before a pair returns.
+//! Colours and shapes of series: 42 combinations before one repeats.
 
 use crate::{
     canvas::Root,
@@ -33,7 +33,7 @@ const SHAPES: [&[(i32, i32)]; 6] = [
 /// Radius of the smallest mark, pixels, and how much each size adds.
 const RADIUS: (f64, f64) = (4.0, 1.3);
 
-/// How a series looks.
+/// Colour and shape of a series.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Look {
     pub colour: RGBColor,
@@ -41,7 +41,7 @@ pub(crate) struct Look {
 }
 
 impl Look {
-    /// Creates the look of the series that stands at `index` in the legend.
+    /// Returns the look of the series with this index in the legend.
     pub fn new(index: usize) -> Self {
         Self {
             colour: LOOKS[index % LOOKS.len()],
@@ -49,7 +49,7 @@ impl Look {
         }
     }
 
-    /// Creates the look that belongs to no series.
+    /// Returns the look of marks outside any series.
     pub fn neutral() -> Self {
         Self {
             colour: AXIS,
@@ -57,7 +57,7 @@ impl Look {
         }
     }
 
-    /// Draws a mark; an empty one is white inside.
+    /// Draws a mark; one that is not `full` is white inside.
     pub fn draw(self, root: &Root, at: (i32, i32), size: usize, full: bool) -> Result<(), Error> {
         let radius = RADIUS.0 + RADIUS.1 * size as f64;
         let inside = if full { self.colour } else { WHITE };

@@ -46,7 +46,7 @@ fn scales(fitted: &[Panel]) -> (Scale, Scale) {
     (x, y)
 }
 
-/// Height of a panel whose axes are fitted to these, pixels.
+/// Returns the height of a panel whose axes are fitted to these panels, in pixels.
 pub(crate) fn height(fitted: &[Panel]) -> i32 {
     match fitted.first().map(|panel| &panel.kind) {
         Some(Kind::Bars(_) | Kind::Frames) => ABOVE + BARS + LABELS.1,
@@ -54,7 +54,7 @@ pub(crate) fn height(fitted: &[Panel]) -> i32 {
     }
 }
 
-/// A chart in the making, with the room that its labels take.
+/// Returns a chart builder with room for labels.
 pub(crate) fn builder<'a, 'c>(area: &'a Root<'c>) -> ChartBuilder<'a, 'static, SVGBackend<'c>> {
     let mut chart = ChartBuilder::on(area);
     chart
@@ -67,7 +67,7 @@ pub(crate) fn builder<'a, 'c>(area: &'a Root<'c>) -> ChartBuilder<'a, 'static, S
     chart
 }
 
-/// Gives a mesh its lines, its text and the names of its axes.
+/// Sets the grid lines, the text style and the axis titles of a mesh.
 pub(crate) fn label<'m, 'a, 'b, X: Ranged, Y: Ranged, B: DrawingBackend>(
     mesh: &'m mut MeshStyle<'a, 'b, X, Y, B>,
     panel: &Panel,
@@ -81,7 +81,8 @@ pub(crate) fn label<'m, 'a, 'b, X: Ranged, Y: Ranged, B: DrawingBackend>(
 
 type Axes<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<Scale, Scale>>;
 
-/// Draws a panel, its axes fitted to several, into a rectangle of the canvas: corner and size.
+/// Draws a logarithmic panel into a rectangle of the canvas, given by corner and size. The axes are
+/// fitted to all panels in `fitted`.
 pub(crate) fn draw(
     panel: &Panel,
     fitted: &[Panel],
@@ -141,7 +142,7 @@ pub(crate) fn draw(
     Ok(())
 }
 
-/// Joins the places of a series.
+/// Draws the line that joins the marks of a series.
 pub(crate) fn draw_line(
     canvas: &mut Canvas,
     series: &Series,
@@ -154,7 +155,8 @@ pub(crate) fn draw_line(
     canvas.group(&of, "", |root| Ok(root.draw(&line)?))
 }
 
-/// Draws a mark of a series as a group that a page's script finds, with its name as an element.
+/// Draws a mark of a series as a group that a page's script can find. `name` is the element with
+/// the mark's name, or empty.
 pub(crate) fn draw_mark(
     canvas: &mut Canvas,
     (series, mark): (&Series, &Mark),

@@ -15,20 +15,21 @@ const LEAST: f64 = 0.6;
 /// Beyond the outermost values, as a share of the span between them.
 const MARGIN: f64 = 0.06;
 
-/// Values above 0 stand at their logarithm. A value −k is no value but the k-th lane of the strip
-/// below, counted from above; 0 is the middle of the strip.
+/// A logarithmic axis with an optional strip for zero. Values above 0 lie at their logarithm. A
+/// value −k stands for the k-th lane of the strip, counted from above; 0 is the middle of the
+/// strip.
 #[derive(Clone, Debug)]
 pub(crate) struct Scale {
     /// Logarithms to base 10 of both ends.
     low: f64,
     high: f64,
     lanes: usize,
-    /// Values that have labels, with these; none: those of decades.
+    /// Labels of the axis: values with their text. If empty, decades are labelled.
     pub named: Vec<(f64, String)>,
 }
 
 impl Scale {
-    /// Around some values, of which those that are not above 0 do not count, with that many lanes
+    /// Returns an axis with room for the positive values among `values`, and with this many lanes
     /// for zero.
     pub fn around(values: impl Iterator<Item = f64>, lanes: usize) -> Self {
         let logarithms = values.filter(|value| *value > 0.0).map(f64::log10);
@@ -51,7 +52,7 @@ impl Scale {
         }
     }
 
-    /// Height of the strip for zero, pixels.
+    /// Returns the height of the strip for zero in pixels.
     pub fn strip(&self) -> f64 {
         if self.lanes == 0 {
             return 0.0;
@@ -59,7 +60,7 @@ impl Scale {
         self.lanes as f64 * LANE + 2.0 * RIM
     }
 
-    /// The values at both ends of the logarithmic part.
+    /// Returns the values at both ends of the logarithmic part.
     pub fn ends(&self) -> (f64, f64) {
         (10f64.powf(self.low), 10f64.powf(self.high))
     }

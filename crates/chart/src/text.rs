@@ -1,4 +1,4 @@
-//! Words in charts: measured without a font, broken into lines, numbers as axes show them.
+//! Text in charts: measured without a font, broken into lines; and numbers as axes show them.
 
 /// Size of the title, pixels.
 pub(crate) const TITLE: f64 = 18.0;
@@ -7,13 +7,13 @@ pub(crate) const HEAD: f64 = 14.0;
 /// Size of everything else, pixels.
 pub(crate) const BODY: f64 = 13.0;
 
-/// Width of a text, never less than what a browser makes of it: which font a reader has is not
-/// known.
+/// Returns the width of a text in pixels, never less than in a browser; the reader's font is
+/// unknown.
 pub(crate) fn width(text: &str, size: f64) -> i32 {
     (text.chars().count() as f64 * size * 0.62).ceil() as i32
 }
 
-/// The text in lines no wider than `room`, broken between words.
+/// Breaks a text between words into lines no wider than `room`.
 pub(crate) fn wrap(text: &str, size: f64, room: i32) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
@@ -28,7 +28,7 @@ pub(crate) fn wrap(text: &str, size: f64, room: i32) -> Vec<String> {
     lines
 }
 
-/// Without what XML cannot hold.
+/// Replaces the characters that XML cannot hold by U+FFFD.
 pub(crate) fn clean(text: &str) -> String {
     let fits = |c: char| !c.is_control() && !matches!(c, '\u{fffe}' | '\u{ffff}');
     text.chars()
@@ -36,7 +36,8 @@ pub(crate) fn clean(text: &str) -> String {
         .collect()
 }
 
-/// Text for XML and HTML, attributes included; line breaks stay.
+/// Escapes text for XML and HTML, attributes included. Line breaks are kept as `&#10;`; characters
+/// that XML cannot hold become U+FFFD.
 pub fn xml(text: &str) -> String {
     let lines = text.lines().map(|line| {
         let line = clean(line).replace('&', "&amp;").replace('<', "&lt;");
@@ -45,7 +46,7 @@ pub fn xml(text: &str) -> String {
     lines.collect::<Vec<_>>().join("&#10;")
 }
 
-/// A tick's number: `0.05`, `200`, `10⁵`, `2·10⁵`.
+/// Returns the label of a tick: `0.05`, `200`, `10⁵`, `2·10⁵`.
 pub(crate) fn number(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();

@@ -1,42 +1,42 @@
-//! Everything that can end a command early, with its exit code.
+//! Errors that end a command early, with their exit codes.
 
 use skiagraph_compare::error::{CompareError, is_fatal};
 use std::{error::Error, io};
 
-/// Why a command ended early.
+/// Reasons why a command ended early.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CliError {
-    /// Arguments that clap accepts one by one but that do not go together.
+    /// Arguments that are valid one by one but not together.
     #[error("{0}\n\nFor more information, try '--help'.")]
     Usage(String),
-    /// A file, name or value from the user that cannot be used as asked.
+    /// A file, name or value of the user that cannot be used.
     #[error("{0}")]
     Input(String),
     /// A scene that cannot be loaded.
     #[error("cannot load the scene `{name}`")]
     Scene {
-        /// As given on the command line.
+        /// Name of the scene, as on the command line.
         name: String,
-        /// Why.
+        /// Error of the scene's files.
         source: Box<dyn Error + Send + Sync>,
     },
-    /// Methods or cases that are not as they must be; which ones was printed before.
+    /// Methods or cases that failed their check; the output before names them.
     #[error("{0}")]
     Judged(String),
-    /// A figure is beyond a condition of `--fail-if`.
+    /// A figure beyond a limit of `--fail-if`.
     #[error("{0}")]
     Gate(String),
-    /// Standard output is closed or full.
+    /// A write to standard output failed.
     #[error("cannot write to standard output")]
     Stdout(#[source] io::Error),
-    /// Ctrl-C.
+    /// Ctrl-C stopped the command.
     #[error("stopped by Ctrl-C; {kept}")]
     Interrupted {
-        /// The part of the work so far that is kept.
+        /// Results that were kept, as text for the user.
         kept: String,
     },
-    /// All else that ends a comparison.
+    /// Any other error of a comparison.
     #[error(transparent)]
     Compare(CompareError),
 }
@@ -53,7 +53,7 @@ impl From<CompareError> for CliError {
 }
 
 impl CliError {
-    /// The process's exit code.
+    /// Returns the exit code of the process.
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Usage(_) => 2,

@@ -1,8 +1,8 @@
 //! `skiagraph`: runs, times and judges shadow methods that are written as RON graphs and WGSL
 //! shaders.
 //!
-//! The program is the first user of the graph's embedding interface and has no rights of its own:
-//! whatever it does, a host program can do as well.
+//! The program uses the graph's embedding interface as any host does: a host program can do
+//! whatever it does.
 
 mod args;
 mod commands;

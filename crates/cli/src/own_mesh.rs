@@ -1,5 +1,5 @@
-//! A mesh file as a scene: with the views and lights that it holds, and those that are chosen where
-//! it holds none.
+//! Loads a mesh file as a scene: with the views and lights of the file, and default ones where it
+//! has none.
 
 use crate::{args::shared::SceneArgs, terminal::console::note};
 use glam::DVec3;
@@ -12,32 +12,32 @@ use skiagraph_scene::{
 };
 use std::path::Path;
 
-/// Parts of a scene that its file does not hold.
+/// Parts of a scene that the mesh file lacked and the program chose.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Chosen {
-    /// True if its only view was chosen here.
+    /// True if the file had no camera and the only view was chosen.
     pub view: bool,
-    /// True if its only light was chosen here, or is that of the arguments.
+    /// True if the file had no light and the only light was chosen or given as an argument.
     pub light: bool,
-    /// Direction up on the ground that was added.
+    /// Up direction of the added ground; `None` if no ground was added.
     pub ground: Option<DVec3>,
 }
 
-/// A scene, most often a mesh file as one.
+/// A loaded scene, usually from a mesh file, with the parts that were chosen for it.
 #[derive(Debug)]
 pub struct OwnMesh {
-    /// The scene.
+    /// The loaded scene.
     pub scene: Scene,
-    /// Changes by the import, and parts left out.
+    /// Changes that the import made, and parts that it left out.
     pub report: ImportReport,
-    /// Parts that were chosen.
+    /// Parts of the scene that the file lacked.
     pub chosen: Chosen,
-    /// Animations of the file.
+    /// Animations of the mesh file.
     pub clips: Vec<Clip>,
 }
 
 impl From<(Scene, ImportReport)> for OwnMesh {
-    /// A scene whose file holds all of it.
+    /// Wraps a scene whose file holds all parts.
     fn from((scene, report): (Scene, ImportReport)) -> Self {
         Self {
             scene,
@@ -49,7 +49,8 @@ impl From<(Scene, ImportReport)> for OwnMesh {
 }
 
 impl OwnMesh {
-    /// The paths of its animations, seen from a view where no camera moves; says which are none.
+    /// Returns the camera paths of the scene's animations. A path without a moving camera is seen
+    /// from `standing`. Prints the names of the paths, and the animations that cannot be used.
     pub fn paths(&self, args: &SceneArgs, standing: &View) -> Vec<CameraPath> {
         let Scene { views, lights, .. } = &self.scene;
         let clips = self.clips.iter();
@@ -76,10 +77,10 @@ const FALLBACK_LIGHT: DVec3 = DVec3::new(-0.4, -1.0, -0.55);
 /// Vertical field of view of a view that is chosen, degrees.
 const DEFAULT_FOV: f64 = 60.0;
 
-/// Loads a mesh file, and says which views and lights it holds and which were chosen.
+/// Loads a mesh file as a scene. Prints which views and lights it holds and which were chosen.
 ///
 /// # Errors
-/// A file that cannot be read, a sun that is none.
+/// If the file cannot be read, or the light of the arguments is invalid.
 pub fn load(args: &SceneArgs) -> Result<OwnMesh, SceneError> {
     let path = Path::new(&args.scene);
     let MeshFile {

@@ -1,4 +1,4 @@
-//! From the scene arguments to a loaded scene and the views to draw.
+//! Loads the scene and the views that the arguments name.
 
 use crate::args::shared::SceneArgs;
 use crate::error::CliError;
@@ -15,22 +15,25 @@ use skiagraph_scene::{
 };
 use std::path::Path;
 
-/// A scene and the views that were asked for, at least one.
+/// A loaded scene with the views that the arguments select, at least one.
 #[derive(Debug)]
 pub struct SceneSelection {
-    /// The scene.
+    /// The loaded scene.
     pub scene: Scene,
-    /// The views to draw.
+    /// The selected views.
     pub views: Vec<View>,
-    /// The camera paths of a mesh file: its animations. Those of other scenes stand in their file.
+    /// Camera paths from the animations of a mesh file; empty for other scenes, whose files list
+    /// them.
     pub paths: Vec<CameraPath>,
 }
 
 impl SceneSelection {
-    /// Loads what the arguments name; warns of what an import had to mend.
+    /// Loads the scene and selects its views. Prints a warning if the import had to repair or leave
+    /// out something.
     ///
     /// # Errors
-    /// A scene that cannot be loaded, a view that it does not have, a camera that is none.
+    /// If the scene cannot be loaded, lacks a named view, or the camera of the arguments is
+    /// invalid.
     pub fn load(args: &SceneArgs) -> Result<Self, CliError> {
         let is_mesh = MeshFile::is_one(Path::new(&args.scene));
         if !is_mesh && (args.materials.is_some() || args.concave.is_some() || args.ground) {
@@ -137,11 +140,11 @@ fn explain(error: SceneError, args: &SceneArgs, library: &SceneLibrary) -> CliEr
 /// A depth buffer of 32-bit floats tells depths apart well over this range.
 const NEAR_TO_FAR: f64 = 1e4;
 
-/// The camera paths of a scene that `--path` names, under the lights that `light` does; `own` are
-/// those of a mesh file.
+/// Returns the camera paths that `name`, the value of `--path`, selects, under the lights that
+/// `light` selects. `own` holds the paths of a mesh file; other scenes list theirs in their file.
 ///
 /// # Errors
-/// A view or a light of one's own beside it, no such path or light.
+/// If the arguments set a camera or a light as well, or the path or light does not exist.
 pub fn paths(
     args: &SceneArgs,
     scene: &Scene,

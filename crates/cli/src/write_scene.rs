@@ -1,4 +1,4 @@
-//! `--write-scene`: the chosen scene as a file, to be edited.
+//! `--write-scene`: writes the selected scene to a scene file that the user can edit.
 
 use crate::{args::shared::SceneArgs, error::CliError, own_mesh::Chosen, terminal::console::note};
 use skiagraph_scene::{
@@ -9,7 +9,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The scene file of a mesh file that was taken by itself.
+/// Returns the scene file for a scene that was loaded from a mesh file.
 pub fn of_mesh(args: &SceneArgs, scene: &Scene, chosen: Chosen, paths: &[CameraPath]) -> SceneFile {
     let MeshFileOptions {
         quads,
@@ -48,11 +48,12 @@ pub fn of_mesh(args: &SceneArgs, scene: &Scene, chosen: Chosen, paths: &[CameraP
     }
 }
 
-/// Writes a scene, with the views that were chosen before the others, and says so. A file of that
-/// name is left alone: a user may have changed it.
+/// Writes a scene file, with the selected views before the others, and prints its path. An existing
+/// file with other content is kept, because the user may have changed it.
 ///
 /// # Errors
-/// A name that is no scene file's, a file of other content, a path that cannot be written.
+/// If the path does not end with `.ron`, a file of other content exists there, or it cannot be
+/// written.
 pub fn write(path: &Path, mut scene: SceneFile, views: &[View]) -> Result<(), CliError> {
     let is_scene = path
         .extension()

@@ -1,4 +1,4 @@
-//! The input of a comparison: methods, a scene, places to see it from, and the protocol.
+//! Describes a comparison: methods, a scene, views or camera paths, viewports and the protocol.
 //!
 //! ```
 //! use skiagraph_compare::{comparison::Comparison, graphs::shadow_method::load_methods};
@@ -35,21 +35,23 @@ use skiagraph_reference::OracleMode;
 use skiagraph_scene::{LightKind, Scene};
 use std::sync::Arc;
 
-/// How methods are run and judged.
+/// Settings of how methods are run, timed and judged.
 #[derive(Clone, Copy, Debug)]
 pub struct Protocol {
-    /// Timed frames of a still view. The frame that is judged and pictured is one more behind them,
-    /// as its readback would be timed, too.
+    /// Number of timed frames of a still view. The frame that is judged and pictured is an extra
+    /// one, so that its readback is not timed.
     pub frames: u32,
-    /// Frames before the timed ones.
+    /// Number of warm-up frames before the timed ones.
     pub warmup: u32,
-    /// Timed frames in which only the camera moves, so that passes may be skipped; 0 for none.
+    /// Number of timed frames in which only the camera changes, so that passes with unchanged
+    /// inputs may be skipped; 0 to time none.
     pub cached_frames: u32,
-    /// Places within a pixel that the camera of a path takes in turns; `None` for its centre alone.
+    /// Number of sample positions within a pixel that the camera takes in turns, frame by frame;
+    /// `None` to sample the pixel's centre.
     pub jitter: Option<u32>,
-    /// How rays of the ground truth leave their receivers.
+    /// Mode of the reference: how its shadow rays leave their receivers.
     pub oracle: OracleMode,
-    /// Rays of the ground truth from a pixel to a light that has an extent.
+    /// Number of shadow rays that the reference traces from a pixel to a light with an extent.
     pub reference_samples: u32,
     /// True if pictures of every run are drawn into the folder of the results.
     pub pictures: bool,
@@ -69,30 +71,33 @@ impl Default for Protocol {
     }
 }
 
-/// Methods, the scene that they run on, the places that it is seen from, and the protocol.
+/// Methods, a scene, views or camera paths, viewports and the protocol. Every method runs on every
+/// view or path in every viewport.
 pub struct Comparison {
-    /// The scene.
+    /// The scene on which the methods run.
     pub scene: Arc<Scene>,
-    /// The places that it is seen from.
+    /// Still views and camera paths from which the scene is seen.
     pub views: Vec<ViewOrPath>,
-    /// Sizes of viewports, pixels.
+    /// Width and height of each viewport in pixels.
     pub viewports: Vec<[u32; 2]>,
-    /// The methods, each in one setting.
+    /// The methods, each with one setting of its params.
     pub methods: Vec<Method>,
-    /// How they are run and judged.
+    /// Settings of how the methods are run, timed and judged.
     pub protocol: Protocol,
-    /// Finds the visible triangles.
+    /// Graph that finds the visible triangle of each pixel for the reference.
     pub primary: PrimaryVisibility,
-    /// Limits on methods that are to be taken.
+    /// Limits on frame time, wrong pixels and memory that an acceptable method keeps.
     pub budgets: Budgets,
-    /// Figures that others have published, to stand beside the runs that they are of.
+    /// Published figures, to stand beside those of the runs that they apply to.
     pub published: Vec<Row>,
-    /// The command that the results are to name, so that they can be measured again.
+    /// Command line that the results record, so that they can be measured again; `None` to record
+    /// none.
     pub command: Option<String>,
 }
 
 impl Comparison {
-    /// Compares methods on all views of a scene in 512×512 pixels.
+    /// Creates a comparison of methods on all views of a scene, in 512×512 pixels with the default
+    /// protocol.
     ///
     /// # Errors
     /// The built-in G-buffer cannot be loaded.
@@ -111,8 +116,8 @@ impl Comparison {
         })
     }
 
-    /// Plans everything, so that a mistake in the last method is told at once and not after an
-    /// hour, and notes params that have no effect.
+    /// Checks a comparison before it runs: plans every method in every viewport, so that a mistake
+    /// in the last one is found at once. Tells the session's sink which params have no effect.
     ///
     /// # Errors
     /// Every fault of every graph together; no method that this GPU can run; runs whose pictures
@@ -136,14 +141,16 @@ impl Comparison {
         Ok(())
     }
 
-    /// The methods as this GPU runs them: defaults of params may depend on its features.
+    /// Returns the methods with their params as the session's GPU runs them: defaults of params may
+    /// depend on its features.
     pub fn settled(&self, session: Session) -> Vec<Method> {
         let features = session.gpu.device.features();
         let methods = self.methods.iter().cloned();
         methods.map(|method| method.settled(features)).collect()
     }
 
-    /// One light of each kind that the views are under, in their order.
+    /// Returns the first light of each kind (directional, spot, point) that the views are under, in
+    /// the order of the views.
     pub fn kinds_of_light(&self) -> Vec<LightKind> {
         let lights = self.views.iter().map(|view| view.light(&self.scene));
         lights.unique_by(|light| light.word()).collect()

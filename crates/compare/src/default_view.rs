@@ -1,5 +1,5 @@
-//! A view of a mesh that comes without one: from inside where the mesh surrounds the camera, else
-//! from the side on which most shadow is seen.
+//! Chooses a view of a mesh that comes without one: from inside if surfaces surround the camera,
+//! otherwise from outside, such that both light and shadow are seen.
 //!
 //! ```
 //! use skiagraph_compare::default_view::default_view;
@@ -61,22 +61,26 @@ struct Eye {
     openness: f64,
 }
 
-/// A view of a mesh.
+/// A view that was chosen for a mesh, with a position for a lamp.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DefaultView {
-    /// Its clip planes hold the whole mesh.
+    /// The view. Its far plane lies behind the whole mesh, its near plane at 1/10,000 of that
+    /// distance.
     pub view: View,
-    /// True if the mesh surrounds the eye.
+    /// True if the eye is inside the mesh, with surfaces all around it.
     pub is_inside: bool,
-    /// True if nothing that it would show is lit, inside: the view is then one under the lamp.
+    /// True if the eye is inside and less than 1 % of the pixels would be lit by the scene's light.
+    /// The view was then chosen under a lamp at `lamp` instead.
     pub is_dark: bool,
-    /// A place for a lamp, before the eye and above it.
+    /// Position for a lamp, in front of the eye and above it.
     pub lamp: DVec3,
 }
 
-/// Looks around in a mesh, and returns a view from the inside if at a quarter of the places on its
-/// floors surfaces stand all around; else one from outside that holds all of it. Of such views it
-/// is one that shows both light and shadow, far and wide. `None` of an empty mesh.
+/// Chooses a view of a mesh under a light, with an up direction and a vertical field of view in
+/// degrees. The view is from inside if surfaces stand all around at a quarter or more of the places
+/// that are tried above the floors; otherwise it is from outside and shows the whole mesh. Among
+/// the candidates, the one with most light beside shadow and the farthest sight wins. Returns
+/// `None` if the mesh is empty, `up` is zero or no candidate is a valid view.
 pub fn default_view(
     mesh: &Mesh,
     light: &LightKind,

@@ -1,4 +1,4 @@
-//! Everything that can end a comparison early, with the way out.
+//! Errors that end a comparison early, with advice on what to do.
 //!
 //! ```
 //! use skiagraph_compare::{error::with_causes, graphs::preset};
@@ -18,56 +18,56 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Why work ended early.
+/// Reason why work ended early.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CompareError {
-    /// A request whose parts do not go together, or that is not written as it must be.
+    /// A request whose parts contradict each other, or that is not in the expected form.
     #[error("{0}")]
     Request(String),
     /// A file, name or value from the user that cannot be used as asked.
     #[error("{0}")]
     Input(String),
-    /// Faults in files, in the order in which these were named.
+    /// Faults in graphs or other files, in the order in which the files were named.
     #[error("{}{summary}", rendered(faults, false))]
     Diagnostics {
-        /// The faults of each file.
+        /// Lists of faults, in the order in which they are shown.
         faults: Vec<Vec<Diagnostic>>,
-        /// One sentence for the end.
+        /// Last line of the message, such as `2 errors in 1 graph`.
         summary: String,
     },
-    /// Graphs that ran, but whose outputs do not hold what a shadow method's must.
+    /// Outputs of graphs that ran but break the contract of a shadow method's outputs.
     #[error("{0}")]
     InvalidOutputs(String),
-    /// No adapter to run on.
+    /// No GPU adapter that can be used.
     #[error("{0}")]
     NoGpu(String),
-    /// A graph that the GPU would not run.
+    /// A graph that failed to run on the GPU.
     #[error("`{graph}` cannot run")]
     Gpu {
         /// Name of the preset or path of the graph.
         graph: String,
-        /// Why.
+        /// The error that running the graph ended with.
         source: Box<ExecuteError>,
     },
     /// A file or folder that cannot be written.
     #[error("cannot write {}", path.display())]
     Write {
-        /// The file or folder.
+        /// The file or folder that cannot be written.
         path: PathBuf,
-        /// Why.
+        /// The cause of the failure.
         source: Box<dyn Error + Send + Sync>,
     },
-    /// [`Sink::stop`](crate::sink::Sink::stop) was raised.
+    /// An early end that [`Sink::stop`](crate::sink::Sink::stop) asked for.
     #[error("stopped; {kept}")]
     Interrupted {
-        /// The part of the work so far that is kept.
+        /// Says how much of the work is kept; empty if the caller is to say it.
         kept: String,
     },
 }
 
 impl CompareError {
-    /// A failure to write `path`.
+    /// Creates the error for a failure to write `path`.
     pub fn write(path: &Path, source: impl Into<Box<dyn Error + Send + Sync>>) -> Self {
         Self::Write {
             path: path.to_path_buf(),
@@ -75,7 +75,8 @@ impl CompareError {
         }
     }
 
-    /// An early end, where only the caller knows what is kept.
+    /// Creates the error for an early end. Its `kept` is empty, as only the caller knows what is
+    /// kept.
     pub fn interrupted() -> Self {
         Self::Interrupted {
             kept: String::new(),
@@ -83,13 +84,14 @@ impl CompareError {
     }
 }
 
-/// Faults with their source lines, coloured for a terminal or not.
+/// Returns faults as text with their source lines, coloured for a terminal if `colour` is true.
 pub fn rendered(faults: &[Vec<Diagnostic>], colour: bool) -> String {
     let rendered = faults.iter().map(|list| diagnostics::render(list, colour));
     rendered.collect()
 }
 
-/// True if the device is of no more use after an error, for any graph.
+/// True if an error leaves the device unusable for every graph: it is lost, or its frame was given
+/// up.
 pub fn is_fatal(error: &ExecuteError) -> bool {
     matches!(
         error,
@@ -97,7 +99,7 @@ pub fn is_fatal(error: &ExecuteError) -> bool {
     )
 }
 
-/// Advises how to avert an error.
+/// Returns advice on how to avoid a GPU error; `None` for errors without advice.
 pub fn advice(error: &ExecuteError) -> Option<&'static str> {
     match error {
         ExecuteError::OutOfMemory { .. } => Some("use a smaller viewport or map"),
@@ -113,7 +115,7 @@ pub fn advice(error: &ExecuteError) -> Option<&'static str> {
     }
 }
 
-/// Advises what to do about a file that cannot be written.
+/// Returns advice on a file that cannot be written; `None` for errors without advice.
 pub fn io_advice(error: &io::Error) -> Option<&'static str> {
     use io::ErrorKind as Kind;
     Some(match error.kind() {
@@ -131,7 +133,7 @@ pub fn io_advice(error: &io::Error) -> Option<&'static str> {
     })
 }
 
-/// An error, its causes and what may avert it in one line.
+/// Returns a GPU error, its causes and its [`advice`] in one line.
 pub fn explain(error: &ExecuteError) -> String {
     let text = with_causes(error);
     match advice(error) {
@@ -140,7 +142,7 @@ pub fn explain(error: &ExecuteError) -> String {
     }
 }
 
-/// An error and its causes in one line.
+/// Returns an error and its causes in one line, separated by colons.
 pub fn with_causes(error: &(dyn Error + 'static)) -> String {
     iter::successors(Some(error), |&error| error.source()).join(": ")
 }

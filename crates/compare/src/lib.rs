@@ -23,19 +23,19 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A [`Comparison`](comparison::Comparison) names methods, a scene, the places that it is seen from
-//! and a [`Protocol`](comparison::Protocol); [`run`](measuring::series::run) returns
-//! [`Results`](records::results::Results): for each run the pixels that are wrong against an exact
-//! reference, and times. A [`Sink`](sink::Sink) hears of the work and may end it early. To keep
-//! results in a folder, and to go on from those that are there, take a
-//! [`Series`](measuring::series::Series) step by step. So an engine's own tests can ask which
-//! methods are right on a scene of that engine (`tests/it/engine.rs`).
+//! A [`Comparison`](comparison::Comparison) holds methods, a scene, the views and camera paths from
+//! which it is seen, and a [`Protocol`](comparison::Protocol). [`run`](measuring::series::run)
+//! returns [`Results`](records::results::Results): for each run its times, and the pixels that are
+//! wrong against an exact reference. A [`Sink`](sink::Sink) receives the progress of the work and
+//! may end it early. To write results into a folder, and to continue from earlier ones in it, use a
+//! [`Series`](measuring::series::Series) step by step. In this way an engine's own tests can find
+//! out which methods are right on a scene of that engine (`tests/it/engine.rs`).
 //!
-//! - [`graphs`]: from a name to a method that can run.
-//! - [`measuring`]: runs, times and judges.
-//! - [`records`]: measurements as plain data and as files.
-//! - [`pictures`]: texels as pictures.
-//! - [`files`]: writing whole files, locks, watching.
+//! - [`graphs`]: turns names into methods that can run.
+//! - [`measuring`]: runs methods, times them and judges their pictures.
+//! - [`records`]: holds measurements as plain data, and reads and writes their files.
+//! - [`pictures`]: writes texels as pictures.
+//! - [`files`]: writes, locks and watches files.
 
 pub mod comparison;
 pub mod default_view;

@@ -1,4 +1,4 @@
-//! Lists without repeats, and lists of keys in their own order.
+//! Helps with lists: removes repeats, and finds or adds items and keys.
 //!
 //! ```
 //! use skiagraph_compare::lists::unique;
@@ -6,7 +6,7 @@
 //! assert_eq!(unique(["rt", "nsm", "rt"]), ["rt", "nsm"]);
 //! ```
 
-/// A list without repeats, in its own order.
+/// Returns the items in their order, without repeats: the first of equal items is kept.
 pub fn unique<T: PartialEq>(list: impl IntoIterator<Item = T>) -> Vec<T> {
     let mut kept = Vec::new();
     for item in list {
@@ -17,7 +17,7 @@ pub fn unique<T: PartialEq>(list: impl IntoIterator<Item = T>) -> Vec<T> {
     kept
 }
 
-/// Where an item stands in a list; one that is missing is put at its end.
+/// Returns the index of an item in a list; a missing item is added at the end first.
 pub fn place<T: PartialEq>(list: &mut Vec<T>, item: T) -> usize {
     let known = list.iter().position(|known| *known == item);
     known.unwrap_or_else(|| {
@@ -26,7 +26,8 @@ pub fn place<T: PartialEq>(list: &mut Vec<T>, item: T) -> usize {
     })
 }
 
-/// The value of a key in a list; a key that is missing is put at its end.
+/// Returns the value of a key in a list of pairs; a missing key is added at the end with a default
+/// value first.
 pub fn entry<K: PartialEq, V: Default>(list: &mut Vec<(K, V)>, key: K) -> &mut V {
     let known = list.iter().position(|(known, _)| *known == key);
     let place = known.unwrap_or_else(|| {

@@ -1,4 +1,4 @@
-//! Hearing of work under way, and ending it early.
+//! Reports progress and remarks of work under way, and lets the caller end it early.
 //!
 //! ```
 //! use skiagraph_compare::sink::{Silent, Sink, Step};
@@ -27,43 +27,46 @@ use skiagraph_gpu::device::Gpu;
 use skiagraph_graph::{Diagnostic, diagnostics};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Hears of work under way, from any thread. Only [`note`](Self::note) has to be implemented.
+/// Receives progress and remarks of work under way, from any thread, and can ask for an early end.
+/// Only [`note`](Self::note) has to be implemented; the other functions have defaults.
 pub trait Sink: Sync {
-    /// A remark that is not an error, a line or several.
+    /// Receives a remark that is not an error: text of one or several lines.
     fn note(&self, text: &str);
 
-    /// Warnings of a graph and its plan, at least one; [`note`](Self::note) of their text unless
-    /// said otherwise.
+    /// Receives the warnings of a graph and its plan, at least one. By default, their text is
+    /// passed to [`note`](Self::note).
     fn warnings(&self, warnings: &[Diagnostic]) {
         self.note(diagnostics::render(warnings, false).trim_end());
     }
 
-    /// So many runs begin, each of several steps.
+    /// Receives the start of `total` runs, each of several steps.
     fn begin_runs(&self, _total: u64) {}
 
-    /// One of the runs is done.
+    /// Receives the end of one run.
     fn count_run(&self) {}
 
-    /// No runs are under way any more.
+    /// Receives the end of all runs.
     fn end_runs(&self) {}
 
-    /// A step of `total` parts begins, counted in `unit`. One step is under way at a time.
+    /// Receives the start of a step named `name`, of `total` parts that are counted in `unit`. Only
+    /// one step is under way at a time.
     fn begin_step(&self, _name: &str, _total: u64, _unit: &'static str) {}
 
-    /// So many parts of the step are done.
+    /// Receives the number of parts of the current step that are done.
     fn set_done(&self, _done: u64) {}
 
-    /// The step has ended, early if not `is_whole`.
+    /// Receives the end of the current step. `is_whole` is false if it ended early.
     fn end_step(&self, _is_whole: bool) {}
 
-    /// The flag that asks for an early end: what is done until then is kept.
+    /// Returns the flag that asks the work to end early; results until then are kept. By default
+    /// the flag is never set.
     fn stop(&self) -> &AtomicBool {
         static NEVER: AtomicBool = AtomicBool::new(false);
         &NEVER
     }
 }
 
-/// Hears nothing.
+/// A sink that ignores all progress and remarks, and never asks for an early end.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Silent;
 
@@ -71,30 +74,30 @@ impl Sink for Silent {
     fn note(&self, _text: &str) {}
 }
 
-/// An opened GPU, and who hears of the work on it.
+/// An opened GPU, and the sink that receives the progress of work on it.
 #[derive(Clone, Copy)]
 pub struct Session<'a> {
-    /// The GPU.
+    /// The GPU that work runs on.
     pub gpu: &'a Gpu,
-    /// Hears of the work.
+    /// The sink that receives progress and remarks.
     pub sink: &'a dyn Sink,
 }
 
 impl<'a> Session<'a> {
-    /// Creates one of a GPU and a sink.
+    /// Creates a session from a GPU and a sink.
     pub fn new(gpu: &'a Gpu, sink: &'a dyn Sink) -> Self {
         Self { gpu, sink }
     }
 
-    /// True once the work is asked to end early.
+    /// True once the sink has asked for an early end.
     pub fn is_stopped(&self) -> bool {
         self.sink.stop().load(Ordering::Relaxed)
     }
 
-    /// Ends work that is asked to end early.
+    /// Returns an error once the sink has asked for an early end.
     ///
     /// # Errors
-    /// It is asked to.
+    /// [`CompareError::Interrupted`].
     pub fn check_stopped(&self) -> Result<(), CompareError> {
         if self.is_stopped() {
             return Err(CompareError::interrupted());
@@ -103,26 +106,27 @@ impl<'a> Session<'a> {
     }
 }
 
-/// A step under way; it ends early if it is dropped.
+/// A step under way, reported to a sink. If it is dropped without [`end`](Self::end), it counts as
+/// ended early.
 pub struct Step<'a> {
     sink: &'a dyn Sink,
     is_whole: bool,
 }
 
 impl<'a> Step<'a> {
-    /// Begins a step of `total` parts, counted in `unit`.
+    /// Tells the sink that the step `name` begins, of `total` parts that are counted in `unit`.
     pub fn begin(sink: &'a dyn Sink, name: &str, total: u64, unit: &'static str) -> Self {
         sink.begin_step(name, total, unit);
         let is_whole = false;
         Self { sink, is_whole }
     }
 
-    /// Says how many parts are done; from any thread.
+    /// Tells the sink how many parts are done; can be called from any thread.
     pub fn set_done(&self, done: u64) {
         self.sink.set_done(done);
     }
 
-    /// Ends the step.
+    /// Tells the sink that the whole step is done.
     pub fn end(mut self) {
         self.is_whole = true;
     }
@@ -134,17 +138,17 @@ impl Drop for Step<'_> {
     }
 }
 
-/// Runs under way; they end when it is dropped.
+/// Runs under way, reported to a sink. They end when this value is dropped.
 pub struct Runs<'a>(&'a dyn Sink);
 
 impl<'a> Runs<'a> {
-    /// Begins so many runs.
+    /// Tells the sink that `total` runs begin.
     pub fn begin(sink: &'a dyn Sink, total: u64) -> Self {
         sink.begin_runs(total);
         Self(sink)
     }
 
-    /// Counts a run that is done.
+    /// Tells the sink that one run is done.
     pub fn count(&self) {
         self.0.count_run();
     }

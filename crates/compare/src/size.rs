@@ -1,4 +1,4 @@
-//! Sizes of viewports as they are written.
+//! Sizes of viewports in the notation `WIDTHxHEIGHT`.
 //!
 //! ```
 //! use skiagraph_compare::size::Size;
@@ -12,7 +12,7 @@
 
 use std::{fmt, str::FromStr};
 
-/// A viewport, `WIDTHxHEIGHT` in pixels.
+/// Width and height of a viewport in pixels, each at least 1 when parsed; written `WIDTHxHEIGHT`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Size(pub [u32; 2]);
 

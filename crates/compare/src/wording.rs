@@ -1,4 +1,4 @@
-//! Numbers, suggestions and command lines in words.
+//! Formats numbers, suggestions and command lines as text for messages and tables.
 //!
 //! ```
 //! use skiagraph_compare::wording::{did_you_mean, ms, percent, thousands};
@@ -14,7 +14,8 @@ use skiagraph_graph::diagnostics::closest;
 pub use skiagraph_graph::text::bytes;
 use std::ffi::OsString;
 
-/// Three significant digits or milliseconds to the microsecond, whichever is shorter.
+/// Returns a time in milliseconds as text with three significant digits, at most three of them
+/// decimals; whole milliseconds from 100 on.
 pub fn ms(ms: f64) -> String {
     match ms {
         _ if ms >= 99.95 => format!("{ms:.0}"),
@@ -24,7 +25,8 @@ pub fn ms(ms: f64) -> String {
     }
 }
 
-/// A share in percent; a count that is not zero never shows as zero.
+/// Returns `count` as a percentage of `whole` with three decimals: `33.333 %`. A count that is not
+/// zero never shows as zero but as `<0.001 %`; a `whole` of 0 gives `–`.
 pub fn percent(count: u64, whole: u64) -> String {
     let share = count as f64 / whole as f64 * 100.0;
     match (count, whole) {
@@ -35,7 +37,8 @@ pub fn percent(count: u64, whole: u64) -> String {
     }
 }
 
-/// A share in percent without its sign, as documents have it.
+/// Returns `count` as a percentage of `whole` without the percent sign, for documents: three
+/// decimals below 1, two from 1 on. A small share is `<0.001`; a `whole` of 0 gives `–`.
 pub fn share(count: u64, whole: u64) -> String {
     let share = count as f64 / whole as f64 * 100.0;
     match (count, whole) {
@@ -47,7 +50,7 @@ pub fn share(count: u64, whole: u64) -> String {
     }
 }
 
-/// 1234567 as 1,234,567.
+/// Returns a number with commas between thousands: `1,234,567`.
 pub fn thousands(number: u64) -> String {
     let digits = number.to_string();
     let mut text = String::new();
@@ -60,34 +63,37 @@ pub fn thousands(number: u64) -> String {
     text
 }
 
-/// So many things: `1 frame`, `2 frames`.
+/// Returns a count with its noun in singular or plural: `1 frame`, `2 frames`.
 pub fn plural(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 
-/// So many frames, in words.
+/// Returns a number of frames as text: `1 frame`, `2 frames`.
 pub fn frames(count: u32) -> String {
     plural(count as usize, "frame")
 }
 
-/// Width and height in pixels: `512x256`.
+/// Returns a size in pixels as `WIDTHxHEIGHT`: `512x256`.
 pub fn size([width, height]: [u32; 2]) -> String {
     format!("{width}x{height}")
 }
 
-/// Returns the end of a message about a name that is not there: the [`closest`] one, if any.
+/// Returns the end of a message about an unknown name, which suggests the [`closest`] of `names`;
+/// empty if none of them is close.
 pub fn did_you_mean<'a>(wanted: &str, names: impl Iterator<Item = &'a str>) -> String {
     let hint = |name| format!("; did you mean `{name}`?");
     closest(wanted, names).map_or(String::new(), hint)
 }
 
-/// Says of a name that it is not there: `what`, the nearest known name, and all of them.
+/// Returns a message about an unknown name: the text `what`, the name in `known` that is closest to
+/// `wanted`, and a line with `nouns` and all of `known`.
 pub fn unknown(what: &str, wanted: &str, nouns: &str, known: &[&str]) -> String {
     let hint = did_you_mean(wanted, known.iter().copied());
     format!("{what}{hint}\n  {nouns}: {}", known.join(", "))
 }
 
-/// The command line as it was typed, but for the program's path.
+/// Returns the command line of this process as it can be typed again, with `skiagraph` instead of
+/// the program's path. `arguments` begin with that path.
 pub fn command_line(arguments: impl Iterator<Item = OsString>) -> String {
     let quoted = |argument: OsString| {
         let text = argument.to_string_lossy().into_owned();

@@ -12,7 +12,7 @@ impl Canvas {
         self.0.push('\n');
     }
 
-    /// Groups the drawing made `inside` under a style, with a title shown under the pointer.
+    /// Draws `inside` as a group with these attributes and a tooltip.
     pub fn group(&mut self, style: &str, title: &str, inside: impl FnOnce(&mut Self)) {
         self.add(format!("<g {style}><title>{}</title>", xml(title)));
         inside(self);

@@ -1,5 +1,5 @@
-//! The elements of the chart and where they stand. Plain numbers, in pixels, so that tests can ask
-//! whether anything overlaps.
+//! Elements of the chart and their positions, in pixels. They are plain numbers, so tests can check
+//! that nothing overlaps.
 
 use crate::{
     drawing::{Edge, Material, Pass},
@@ -9,14 +9,14 @@ use crate::{
 use skiagraph_graph::Hazard;
 use std::collections::HashMap;
 
-/// Room around the page.
+/// Distance of the chart from the border of the page, pixels.
 pub(crate) const MARGIN: f64 = 20.0;
 /// Slant of the column heads, degrees: flat enough to be read, steep enough for two lines per
 /// column.
 pub(crate) const SLANT: f64 = 55.0;
-/// Least width of a column.
+/// Least width of a column, pixels.
 pub(crate) const COLUMN: f64 = 34.0;
-/// From the middle of a mark to its note.
+/// Distance from the middle of a mark to its note, pixels.
 pub(crate) const BESIDE: f64 = 7.5;
 
 /// A rectangle.
@@ -28,73 +28,74 @@ pub(crate) struct Area {
     pub height: f64,
 }
 
-/// A pass.
+/// A row of the chart: a pass.
 pub(crate) struct Row<'a> {
     pub pass: &'a Pass,
     pub name: Label,
     pub about: String,
-    /// Why it is culled, in lines.
+    /// Lines of the reason why the pass does not run; empty if it runs.
     pub reason: Vec<String>,
     pub band: Area,
-    /// Where its name and its kind stand.
+    /// Area of the pass's name and kind.
     pub label: Area,
-    /// Height of its marks.
+    /// Vertical position of the row's marks.
     pub middle: f64,
-    /// Its last mark; a line leads there from its name.
+    /// Horizontal position of the row's last mark, where the line from its name ends. `None`
+    /// without marks.
     pub reach: Option<f64>,
 }
 
-/// A material.
+/// A column of the chart: a material.
 pub(crate) struct Column<'a> {
     pub material: &'a Material,
     pub name: Label,
     pub detail: String,
-    /// Width of the notes at its marks.
+    /// Width of the widest note at the column's marks.
     pub notes: f64,
     pub x: f64,
-    /// Top and bottom of its lifetime.
+    /// Top and bottom of the lifetime's bar; `None` if no pass that runs uses the material.
     pub bar: Option<[f64; 2]>,
-    /// Bottom of its lane: its last mark of any pass.
+    /// Bottom of the column's line: its last mark, also of passes that do not run.
     pub end: f64,
 }
 
-/// Accesses of a pass to a material, over all of its parts.
+/// Mark in a cell of the chart: the accesses of a pass to all parts of a material.
 pub(crate) struct Mark {
-    /// Number of its row.
+    /// Index of the mark's row.
     pub row: usize,
-    /// Number of its column.
+    /// Index of the mark's column.
     pub column: usize,
     pub reads: bool,
     pub writes: bool,
     pub runs: bool,
-    /// The part, if it is not the whole.
+    /// The accessed part, or empty for the whole material.
     pub note: String,
     pub title: String,
 }
 
-/// An edge.
+/// Arc on the left of the chart: the order of two passes.
 pub(crate) struct Arc<'a> {
     pub edge: &'a Edge,
     pub hazard: Hazard,
-    /// Numbers of the rows that it leads from and to.
+    /// Indices of the rows of the earlier and the later pass.
     pub rows: [usize; 2],
-    /// How far it swings out to the left.
+    /// Distance by which the arc swings out to the left.
     pub swing: f64,
 }
 
-/// Columns that share memory.
+/// Bracket over columns that share memory.
 pub(crate) struct Group {
     pub from: f64,
     pub to: f64,
     pub title: String,
 }
 
-/// The number of each name.
+/// Returns the index of each name.
 pub(crate) fn numbers<'n>(names: impl Iterator<Item = &'n str>) -> HashMap<&'n str, usize> {
     names.zip(0..).collect()
 }
 
-/// The chart.
+/// Layout of the whole chart.
 #[derive(Default)]
 pub(crate) struct Chart<'a> {
     pub title: &'a str,
@@ -102,27 +103,28 @@ pub(crate) struct Chart<'a> {
     pub width: f64,
     pub height: f64,
     pub legend: Vec<([f64; 2], Item)>,
-    /// Bottom of the column heads.
+    /// Vertical position of the bottom of the column heads.
     pub top: f64,
-    /// Bottom of the passes that run.
+    /// Vertical position of the bottom of the passes that run.
     pub bottom: f64,
-    /// Right ends of the arcs.
+    /// Horizontal position of the right ends of the arcs.
     pub spine: f64,
     pub names: f64,
     pub abouts: f64,
     pub lanes: f64,
-    /// How many passes run.
+    /// Number of passes that run; they are the first rows.
     pub live: usize,
-    /// The passes that run, in order, then the others.
+    /// Passes that run, in order, then those that do not.
     pub rows: Vec<Row<'a>>,
     pub columns: Vec<Column<'a>>,
     pub marks: Vec<Mark>,
-    /// Names of materials where they begin, in charts so long that the heads are far away.
+    /// Positions and names of materials at the row where each is first used. They are only in
+    /// charts so long that the column heads are far away.
     pub beginnings: Vec<([f64; 2], String)>,
     pub arcs: Vec<Arc<'a>>,
     pub groups: Vec<Group>,
-    /// Height of the outputs' arrows.
+    /// Vertical position of the arrows of outputs; `None` if there are no outputs.
     pub outputs: Option<f64>,
-    /// Top of the passes that do not run.
+    /// Vertical position of the line above passes that do not run; `None` if all run.
     pub culled: Option<f64>,
 }

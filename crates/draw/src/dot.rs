@@ -1,4 +1,4 @@
-//! The plan as nodes and links, for Graphviz.
+//! Draws a plan as a graph of nodes and links for Graphviz.
 
 use crate::{
     drawing::{Access, Drawing, Edge, Material, Origin, Pass},
@@ -7,8 +7,9 @@ use crate::{
 use skiagraph_graph::Hazard;
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-/// Nodes and links for Graphviz: passes are boxes, materials ellipses, passes that do not run
-/// dashed; what an include or group calls `eye.draw` stands in the cluster `eye`.
+/// Returns the drawing in Graphviz's DOT language. Passes are boxes and materials are ellipses;
+/// passes that do not run are dashed. A prefix of names, such as `eye` of `eye.draw`, becomes a
+/// cluster.
 pub fn to_dot(drawing: &Drawing) -> String {
     render(drawing).join("\n") + "\n"
 }

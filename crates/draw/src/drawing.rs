@@ -1,40 +1,40 @@
-//! [`Drawing`]: a plan as plain data.
+//! [`Drawing`]: a plan as plain, serialisable values.
 
 use serde::Serialize;
 use skiagraph_graph::Hazard;
 use std::{collections::HashMap, ops::Range};
 
-/// A plan, to be looked at. Serialises as it is; passes and materials are referred to by name.
+/// A plan as plain values, for display and serialisation. Passes and materials refer to each other
+/// by name.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Drawing {
-    /// Heading, for example the graph's path and the viewport. Empty as it comes from a plan, which
-    /// knows neither.
+    /// Heading, for example the graph's path and the viewport. [`from_plan`](crate::from_plan)
+    /// leaves it empty.
     pub title: String,
-    /// All passes in the order of the file, those that do not run included.
+    /// All passes in the order of the document, including those that do not run.
     pub passes: Vec<Pass>,
-    /// All materials: declared, provided, imported, and what passes and captures made for
-    /// themselves.
+    /// All materials: declared, provided, imported, and those made for passes and captures.
     pub materials: Vec<Material>,
-    /// Which pass reads and writes which part of which material; a pass has one entry per part.
+    /// Reads and writes of materials by passes: an entry for each pass, material and part.
     pub accesses: Vec<Access>,
-    /// Order of the passes. For a pass that does not run, only the passes whose results it would
-    /// read.
+    /// Pairs of passes that must run in a given order. For a pass that does not run there are only
+    /// edges from the passes whose results it would read.
     pub edges: Vec<Edge>,
-    /// Bytes of the graph's own textures and buffers.
+    /// Bytes of the textures and buffers that the graph makes.
     pub memory_bytes: u64,
-    /// Bytes that sharing saves.
+    /// Bytes saved by sharing memory between materials.
     pub saved_bytes: u64,
 }
 
 impl Drawing {
-    /// The same drawing under a heading.
+    /// Returns the drawing with this heading.
     #[must_use]
     pub fn titled(mut self, title: impl Into<String>) -> Self {
         self.title = title.into();
         self
     }
 
-    /// The materials by name.
+    /// Returns the materials by name.
     pub(crate) fn by_name(&self) -> HashMap<&str, &Material> {
         let materials = self.materials.iter();
         materials
@@ -43,24 +43,24 @@ impl Drawing {
     }
 }
 
-/// A pass of the document, or a copy that a capture asked for.
+/// A pass of the document, or the copy pass of a capture.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Pass {
-    /// Full name: `sample[3].trace_rays`.
+    /// Full name, for example `sample[3].trace_rays`.
     pub name: String,
-    /// Kind, as the document writes it; `Capture` for a copy that is read back.
+    /// Kind, as the document writes it; `Capture` for the copy pass of a capture.
     pub kind: String,
-    /// Shader files of its steps, each once.
+    /// Shader files that the pass uses, each once.
     pub shaders: Vec<String>,
-    /// The document it stands in.
+    /// Path of the document that declares the pass.
     pub file: String,
-    /// Line of its name there, from 1.
+    /// Line of the pass's name in the document, counted from 1.
     pub line: usize,
-    /// Place in the schedule, from 0; `None` if it does not run.
+    /// Position in the schedule, counted from 0; `None` if the pass does not run.
     pub position: Option<usize>,
-    /// Why it does not run.
+    /// Reason why the pass does not run; `None` if it runs.
     pub culled: Option<String>,
-    /// When it runs, if not in every frame; as the document writes it.
+    /// Run condition, as the document writes it; `None` if the pass runs in every frame.
     pub run: Option<String>,
 }
 
@@ -79,137 +79,137 @@ pub enum Kind {
     AccelerationStructure,
 }
 
-/// Where a material comes from.
+/// Sources of a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Origin {
-    /// The document declares it, and the passes fill it.
+    /// Declared by the document and filled by passes.
     Declared,
-    /// The document declares it with its content: a file, or numbers.
+    /// Declared by the document with its content: a file or numbers.
     Constant,
-    /// A pass made it for itself.
+    /// Made for a single pass as working memory.
     Scratch,
-    /// A copy of a material as it stands after a pass.
+    /// Copy of a material as it is after a pass.
     Capture,
-    /// The provider gives it.
+    /// Built by the host's provider.
     Provided,
-    /// The host owns it.
+    /// Created and handed over by the host.
     Imported,
-    /// The graph's own uniform `frame`: number and seconds of the frame.
+    /// The uniform `frame`, with the number and time of the frame.
     Frame,
-    /// Content of another material at the end of the frame before.
+    /// Content of another material at the end of the previous frame.
     Previous,
 }
 
 impl Origin {
-    /// Returns true if it has its content before the frame begins.
+    /// True if the material has its content before the frame begins.
     pub fn is_given(self) -> bool {
         !matches!(self, Self::Declared | Self::Scratch | Self::Capture)
     }
 
-    /// Returns true if it takes memory of the graph.
+    /// True if the graph allocates the material.
     pub fn is_made(self) -> bool {
         !self.is_given() || self == Self::Constant
     }
 }
 
-/// A texture, buffer or sampler.
+/// A material: a texture, buffer, sampler or acceleration structure.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Material {
-    /// Full name.
+    /// Full name, for example `sample[3].rays`.
     pub name: String,
     /// Kind of the material.
     pub kind: Kind,
-    /// Where it comes from.
+    /// Source of the material.
     pub origin: Origin,
-    /// Format of a texture, as the document writes it.
+    /// Format of a texture, as the document writes it; `None` for other kinds.
     pub format: Option<String>,
-    /// Width and height of a texture in texels.
+    /// Width and height of a texture's mip 0 in texels; `None` for other kinds.
     pub size: Option<[u32; 2]>,
-    /// Mips of a texture; 1 otherwise.
+    /// Number of mips of a texture; 1 for other kinds.
     pub mips: u32,
-    /// Layers of a texture, or slices of a 3D texture's mip 0; 1 otherwise.
+    /// Number of layers of a texture, or of slices of a 3D texture's mip 0; 1 for other kinds.
     pub layers: u32,
     /// True if the layers are slices of a 3D texture.
     pub is_3d: bool,
-    /// Samples of each texel of a texture; 1 otherwise.
+    /// Samples per texel of a texture; 1 for other kinds.
     pub samples: u32,
-    /// How many textures or buffers it takes: 2 if it is also read as it was in the frame before.
+    /// Number of allocations: 1, or 2 if the material is also read as it was in the previous frame.
     pub versions: usize,
-    /// Bytes of a texture or buffer that the graph makes, all versions together.
+    /// Bytes of all allocations of a texture or buffer that the graph makes; `None` for others.
     pub bytes: Option<u64>,
-    /// Places in the schedule of the first and the last pass that use it; `None` if none does, and
-    /// it is not made.
+    /// Positions in the schedule of the first and the last pass that use the material. `None` if no
+    /// pass that runs uses it; it is then not allocated.
     pub lifetime: Option<[usize; 2]>,
-    /// Names of the outputs and captures that hand it out after the frame.
+    /// Names of the outputs and captures that read the material back after the frame.
     pub outputs: Vec<String>,
-    /// Materials of equal number live in the same memory, one after the other; `None` if it shares
-    /// with none.
+    /// Number of the shared memory: materials with the same number use it one after another. `None`
+    /// if the material shares no memory.
     pub memory: Option<usize>,
 }
 
-/// One use of a material by a pass.
+/// Use of a material, or of a part of it, by a pass.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Access {
     /// Name of the pass.
     pub pass: String,
     /// Name of the material.
     pub material: String,
-    /// True if it reads.
+    /// True if the pass reads the part.
     pub reads: bool,
-    /// True if it writes.
+    /// True if the pass writes the part.
     pub writes: bool,
-    /// The part of a texture or buffer; `None` = the whole material.
+    /// The used part of a texture or buffer; `None` for the whole material.
     pub part: Option<Part>,
 }
 
-/// A part of a texture or buffer. Ranges count from 0, the end is not included.
+/// Part of a texture or buffer. Ranges count from 0 and exclude their end.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Part {
-    /// Mips of a texture; `None` = all.
+    /// Mips of a texture; `None` for all.
     pub mips: Option<Range<u32>>,
-    /// Layers of a texture, slices of a 3D texture or items of a buffer; `None` = all.
+    /// Layers of a texture, slices of a 3D texture or items of a buffer; `None` for all.
     pub layers: Option<Range<u32>>,
-    /// One aspect of a texture that has two; `None` = all that it has.
+    /// Depth or stencil of a texture that has both; `None` for all aspects.
     pub aspect: Option<Aspect>,
 }
 
-/// Aspects of a depth-stencil texel.
+/// Aspects of a depth-stencil texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Aspect {
-    /// Depth.
+    /// The depth values.
     Depth,
-    /// Stencil.
+    /// The stencil values.
     Stencil,
 }
 
-/// One pass that must come before another.
+/// Order of two passes: one must run before the other.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Edge {
     /// Name of the earlier pass.
     pub from: String,
     /// Name of the later pass.
     pub to: String,
-    /// Why, the strongest reason first.
+    /// Reasons for the order, the strongest first.
     pub because: Vec<Reason>,
-    /// Other edges already keep the two in order.
+    /// True if other edges already imply this order.
     pub implied: bool,
 }
 
 impl Edge {
-    /// The strongest reason.
+    /// Returns the strongest reason; `None` without reasons.
     pub(crate) fn hazard(&self) -> Option<Hazard> {
         self.because.iter().map(|reason| reason.hazard).min()
     }
 }
 
-/// Why one pass must come before another.
+/// Reason why one pass must run before another.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Reason {
-    /// Hazard in another order.
+    /// Kind of conflict that the order avoids.
     pub hazard: Hazard,
-    /// Names of the materials through which it would.
+    /// Names of the materials that cause the conflict.
     pub materials: Vec<String>,
 }

@@ -1,4 +1,4 @@
-//! From a plan to plain data.
+//! Converts a plan into a [`Drawing`].
 
 use crate::{
     drawing::{Access, Aspect, Drawing, Edge, Kind, Material, Origin, Part, Pass, Reason},
@@ -12,7 +12,7 @@ use std::{
     ops::Range,
 };
 
-/// A plan as plain data, to be looked at: serialise it, or have it drawn.
+/// Converts a plan into plain values that can be serialised or drawn.
 pub fn from_plan(plan: &Plan) -> Drawing {
     let mut positions = vec![None; plan.all_passes().len()];
     for (position, pass) in plan.schedule().passes.iter().enumerate() {

@@ -166,8 +166,9 @@ fn rows(drawing: &Drawing) -> (Vec<Row<'_>>, usize) {
     (passes.into_iter().map(row).collect(), live)
 }
 
-/// The materials that any pass touches: what is there before the frame, then by first use, those of
-/// one memory side by side, then those that only passes touch that do not run.
+/// Returns the columns of all materials that a pass uses. First come those that exist before the
+/// frame, then the others by first use, with those of one memory side by side. Last come those that
+/// only passes use that do not run.
 fn columns(drawing: &Drawing) -> Vec<Column<'_>> {
     let touched = drawing.accesses.iter();
     let touched: HashSet<&str> = touched.map(|access| &*access.material).collect();

@@ -8,7 +8,7 @@ use crate::{
 use skiagraph_graph::Hazard;
 use std::collections::{BTreeSet, HashMap, HashSet};
 
-/// A sign that is explained, in the order in which they stand.
+/// Signs that the legend explains, in their order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Item {
     Write,
@@ -41,7 +41,8 @@ impl Tint {
         }
     }
 
-    /// After Okabe and Ito, Color Universal Design (2008): told apart by every kind of sight.
+    /// Returns the colour, after Okabe and Ito, Color Universal Design (2008), for colour-blind
+    /// readers.
     pub fn colour(self) -> &'static str {
         match self {
             Self::Texture => "#56b4e9",
@@ -52,7 +53,7 @@ impl Tint {
     }
 }
 
-/// Width of a sign with the room behind it.
+/// Width of a sign with the space behind it, pixels.
 pub(crate) const SIGN: f64 = 28.0;
 const LINE: f64 = 20.0;
 
@@ -86,8 +87,8 @@ impl Item {
     }
 }
 
-/// The items with their places from `start` on, in lines no longer than `room`, and the height of
-/// all of them: marks and bars in the first line, edges in the second.
+/// Returns the items with their positions and the height of the legend. Positions begin at `start`;
+/// lines are at most `room` wide. Marks and bars come first, edges on a line of their own.
 pub(crate) fn place(drawing: &Drawing, start: [f64; 2], room: f64) -> (Vec<([f64; 2], Item)>, f64) {
     let [left, top] = start;
     let mut at = start;

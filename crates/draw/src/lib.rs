@@ -1,9 +1,9 @@
-//! Seeing a plan: [`Drawing`] holds as plain data what a plan made of a document; [`to_svg`] and
+//! Draws plans: [`from_plan`] converts a plan into a [`Drawing`] of plain values; [`to_svg`] and
 //! [`to_dot`] draw it.
 //!
-//! The SVG is a chart of lifetimes, not of nodes and links: passes are rows in the order in which
-//! they run, materials are columns, a bar is the time that a material lives. It grows with passes ×
-//! materials but never tangles; AMD's RPS visualiser draws the same way.
+//! The SVG is a chart of lifetimes. Passes are rows in the order in which they run, materials are
+//! columns, and a bar spans the passes during which a material lives. Its size is passes ×
+//! materials, and it never tangles as nodes and links do; AMD's RPS visualiser draws the same way.
 
 mod canvas;
 mod chart;

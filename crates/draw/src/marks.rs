@@ -9,8 +9,8 @@ use crate::{
 use skiagraph_graph::text::{bytes, cut};
 use std::collections::BTreeMap;
 
-/// Rows from which on the column heads are too far away, and what begins in a row is named there
-/// too.
+/// Number of rows from which on the column heads are too far away, so that materials are also named
+/// at the row of their first use.
 const FAR: usize = 12;
 
 /// Adds a mark for each pass and material with accesses, and the room that it takes.
@@ -46,7 +46,7 @@ pub(crate) fn mark(chart: &mut Chart<'_>, accesses: &[Access]) {
     }
 }
 
-/// How far the lines of rows and columns lead: to their last marks.
+/// Extends the lines of rows and columns to their last marks.
 pub(crate) fn reach(chart: &mut Chart<'_>) {
     for mark in &chart.marks {
         let (row, column) = (&mut chart.rows[mark.row], &mut chart.columns[mark.column]);
@@ -55,8 +55,8 @@ pub(crate) fn reach(chart: &mut Chart<'_>) {
     }
 }
 
-/// Names what begins to live in a row behind its mark, where nothing is in the way and the page
-/// has room. Neighbours that begin together are named together.
+/// Adds the names of materials behind the mark of their first use, where there is room. Neighbours
+/// that begin in the same row share a label.
 pub(crate) fn name_beginnings(chart: &mut Chart<'_>) {
     if chart.live <= FAR {
         return;
@@ -84,7 +84,7 @@ pub(crate) fn name_beginnings(chart: &mut Chart<'_>) {
     }
 }
 
-/// Brackets over the columns that share memory; they stand side by side.
+/// Adds brackets over the columns that share memory; such columns are side by side.
 pub(crate) fn group(chart: &mut Chart<'_>) {
     for columns in chart
         .columns

@@ -2,7 +2,8 @@
 
 use petgraph::{adj::UnweightedList, algo::tred::dag_transitive_reduction_closure};
 
-/// The edges that a longer path replaces. Every edge leads to a greater number; they are in order.
+/// Returns the edges that a longer path makes superfluous. `edges` must be sorted and lead from
+/// smaller to greater numbers, which are below `nodes`.
 pub(crate) fn implied(nodes: usize, edges: &[[usize; 2]]) -> Vec<[usize; 2]> {
     let mut graph = UnweightedList::<usize>::with_capacity(nodes);
     for _ in 0..nodes {

@@ -9,7 +9,7 @@ pub(crate) const SMALL: f64 = 10.5;
 /// Size of notes at marks, pixels.
 pub(crate) const NOTE: f64 = 8.0;
 
-/// Text for XML, attributes included. Characters that XML cannot hold become U+FFFD.
+/// Escapes text for XML, attributes included. Characters that XML cannot hold become U+FFFD.
 pub(crate) fn xml(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for character in text.chars() {
@@ -40,23 +40,23 @@ fn advance(character: char) -> f64 {
     }
 }
 
-/// Width of a text, never less than what a browser makes of it.
+/// Returns the width of a text in pixels, never less than in a browser.
 pub(crate) fn width(text: &str, size: f64) -> f64 {
     size * text.chars().map(advance).sum::<f64>()
 }
 
-/// Width of a text in bold.
+/// Returns the width of a bold text in pixels.
 pub(crate) fn bold(text: &str, size: f64) -> f64 {
     1.1 * width(text, size)
 }
 
-/// The largest of some widths.
+/// Returns the greatest of the widths; 0 if there are none.
 pub(crate) fn widest(widths: impl Iterator<Item = f64>) -> f64 {
     widths.fold(0.0, f64::max)
 }
 
-/// The text in lines no wider than `room`, broken between words; a longer word stands by itself,
-/// cut.
+/// Breaks a text between words into lines no wider than `room`. A word that is longer gets a line
+/// of its own and is cut.
 pub(crate) fn wrap(text: &str, size: f64, room: f64) -> Vec<String> {
     let most = (room / (0.64 * size)).max(8.0) as usize;
     let mut lines: Vec<String> = Vec::new();
@@ -73,7 +73,7 @@ pub(crate) fn wrap(text: &str, size: f64, room: f64) -> Vec<String> {
     lines
 }
 
-/// `1 pass`, `2 passes`.
+/// Returns the count with the noun: `1 pass`, `2 passes`.
 pub(crate) fn plural(count: usize, one: &str, many: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { many })
 }

@@ -10,21 +10,22 @@ use skiagraph_graph::{
 };
 use std::ops::Range;
 
-/// Characters of a name in a picture; longer ones are cut, and whole in their titles.
+/// Greatest number of characters of a name in a picture. Longer names are cut; tooltips show them
+/// whole.
 pub(crate) const MOST: usize = 36;
 
-/// How the name of what a material held in the frame before ends.
+/// End of the name of a material's content in the previous frame.
 pub(crate) const PREVIOUS: &str = ".previous";
 
-/// Splits a name behind its prefix, which ends with a dot: `sample[3].` and `trace_rays`. Nothing
-/// stands before the two names of a capture (`rays@sample[3].trace_rays`).
+/// Splits a name into its prefix, which ends with a dot, and the rest: `sample[3].` and
+/// `trace_rays`. The prefix of a capture (`rays@sample[3].trace_rays`) is empty.
 pub(crate) fn split(name: &str) -> (&str, &str) {
     let latest = name.strip_suffix(PREVIOUS).unwrap_or(name);
     let dot = latest.rfind('.').filter(|_| !name.contains('@'));
     name.split_at(dot.map_or(0, |dot| dot + 1))
 }
 
-/// [`split`], cut to what a picture has room for: of what stands before the name first.
+/// A name that [`split`] has divided, cut to the room in a picture; the prefix is cut first.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Label {
     pub before: String,
@@ -44,7 +45,7 @@ impl Label {
     }
 }
 
-/// Returns the kind of a material, in a few words.
+/// Describes a material in a few words: kind, format, size, source and bytes.
 pub(crate) fn detail(material: &Material) -> String {
     let mut words = vec![match (material.kind, &material.format, material.size) {
         (Kind::Texture, Some(format), Some([width, height])) => {
@@ -107,7 +108,7 @@ impl Unit {
         }
     }
 
-    /// The word where there is little room.
+    /// Returns the abbreviation for notes at marks.
     pub fn letter(self) -> &'static str {
         match self {
             Self::Slice => "z",
@@ -125,7 +126,7 @@ impl Unit {
     }
 }
 
-/// Returns the verb for a pass's access to a material.
+/// Returns the verb for an access: `reads`, `writes` or `reads and writes`.
 pub(crate) fn verb(access: &Access) -> &'static str {
     match (access.reads, access.writes) {
         (true, true) => "reads and writes",
@@ -135,7 +136,7 @@ pub(crate) fn verb(access: &Access) -> &'static str {
     }
 }
 
-/// The later pass's part in a sentence.
+/// Says how the later pass conflicts with the earlier one.
 pub(crate) fn consequence(hazard: Hazard) -> &'static str {
     match hazard {
         Hazard::ReadAfterWrite => "reads what it wrote",
@@ -144,7 +145,8 @@ pub(crate) fn consequence(hazard: Hazard) -> &'static str {
     }
 }
 
-/// Returns the narrowing of a part: some mips, layers or items, or one aspect.
+/// Returns the units in which a part is narrower than the whole material, each with its range. An
+/// aspect has no range.
 pub(crate) fn narrowed<'a>(
     part: &'a Part,
     material: &Material,
@@ -170,7 +172,7 @@ fn numbers(range: &Range<u32>) -> String {
     }
 }
 
-/// `mip 1, layers 0–3`.
+/// Describes a part of a material: `mip 1, layers 0–3`.
 pub(crate) fn part(part: &Part, material: &Material) -> String {
     let words = |(unit, range): (Unit, Option<&Range<u32>>)| match range {
         None => unit.word().to_owned(),
@@ -181,7 +183,7 @@ pub(crate) fn part(part: &Part, material: &Material) -> String {
     words.join(", ")
 }
 
-/// [`part`] where there is little room: `m1l0–3`.
+/// Describes a part of a material briefly: `m1l0–3`.
 fn short(part: &Part, material: &Material) -> String {
     let words = |(unit, range): (Unit, Option<&Range<u32>>)| {
         format!("{}{}", unit.letter(), range.map_or(String::new(), numbers))
@@ -189,7 +191,7 @@ fn short(part: &Part, material: &Material) -> String {
     narrowed(part, material).map(words).collect()
 }
 
-/// `m0→m1` for a pass that reads one mip and writes the next.
+/// Returns the note at a mark: `m0→m1` if a pass reads mip 0 and writes mip 1.
 pub(crate) fn note(accesses: &[&Access], material: &Material) -> String {
     let parts = |writes: bool| {
         let of_kind = accesses.iter().filter(|access| access.writes == writes);
@@ -206,8 +208,7 @@ pub(crate) fn note(accesses: &[&Access], material: &Material) -> String {
     }
 }
 
-/// Kind, shaders and condition of a pass. A shader of the pass's own name is what everybody
-/// expects.
+/// Describes a pass: kind, shaders and run condition. A shader named like the pass is left out.
 pub(crate) fn about(pass: &Pass) -> String {
     let stem = |path: &str| {
         let file = path.rsplit('/').next().unwrap_or(path);
@@ -227,7 +228,8 @@ pub(crate) fn about(pass: &Pass) -> String {
     parts.join(" · ")
 }
 
-/// Name, kind, place in the document, shaders, and why it is culled.
+/// Describes a pass for a tooltip: name, kind, place in the document, shaders, and why it is
+/// culled.
 pub(crate) fn origin(pass: &Pass) -> String {
     let Pass { name, kind, .. } = pass;
     let mut words = format!("{name} ({kind}), {}:{}", pass.file, pass.line);
@@ -240,7 +242,7 @@ pub(crate) fn origin(pass: &Pass) -> String {
     words
 }
 
-/// Which pass comes before which, and why.
+/// Describes an edge for a tooltip: both passes and the reasons for their order.
 pub(crate) fn because(edge: &Edge) -> String {
     let reason = |reason: &Reason| {
         let verb = consequence(reason.hazard);
@@ -260,14 +262,14 @@ pub(crate) fn because(edge: &Edge) -> String {
     )
 }
 
-/// Names of the outputs that are not called like their material.
+/// Returns the names of the outputs that differ from their material's name.
 pub(crate) fn renamed(material: &Material) -> String {
     let names = material.outputs.iter().map(String::as_str);
     let names: Vec<&str> = names.filter(|name| *name != material.name).collect();
     cut(&names.join(", "), MOST)
 }
 
-/// How many passes run, and what memory they take.
+/// Returns the line below the heading: how many passes run, and the memory they use.
 pub(crate) fn summary(drawing: &Drawing) -> String {
     let live = drawing.passes.iter().filter(|pass| pass.position.is_some());
     let live = live.count();

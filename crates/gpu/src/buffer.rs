@@ -1,8 +1,8 @@
-//! Buffers, made and filled alike everywhere.
+//! Creates and fills buffers.
 
 use crate::error::ExecuteError;
 
-/// Makes a buffer that is not mapped.
+/// Creates a buffer that is not mapped.
 pub(crate) fn make(
     device: &wgpu::Device,
     label: &str,
@@ -17,7 +17,7 @@ pub(crate) fn make(
     })
 }
 
-/// Makes a buffer that is mapped from the first.
+/// Creates a buffer that is mapped at once.
 pub(crate) fn mapped(
     device: &wgpu::Device,
     label: &str,
@@ -32,10 +32,10 @@ pub(crate) fn mapped(
     })
 }
 
-/// Makes a buffer with a content.
+/// Creates a buffer with the given content.
 ///
 /// # Errors
-/// With the words of `failed` if it cannot be written.
+/// An internal error with the text `failed` if the buffer cannot be written.
 pub(crate) fn filled(
     device: &wgpu::Device,
     label: &str,
@@ -49,10 +49,10 @@ pub(crate) fn filled(
     Ok(buffer)
 }
 
-/// Writes all of a mapped buffer.
+/// Fills the whole of a mapped buffer.
 ///
 /// # Errors
-/// With the words of `failed` if it is not mapped.
+/// An internal error with the text `failed` if the buffer is not mapped.
 pub(crate) fn write(
     buffer: &wgpu::Buffer,
     content: &[u8],

@@ -1,5 +1,5 @@
-//! Opening an adapter and a device as the command line and the tests do. A host program brings its
-//! own.
+//! Opens an adapter and a device as the command line and the tests do. A host program may pass its
+//! own device and queue to [`Executor::new`](crate::Executor::new) instead.
 //!
 //! ```no_run
 //! use skiagraph_gpu::device::{self, Wanted};
@@ -17,50 +17,53 @@ use crate::experimental;
 use skiagraph_graph::PartialBackend;
 use std::{cmp::Reverse, time::Duration};
 
-/// An open device.
+/// An open wgpu device with its instance, adapter and queue.
 #[derive(Clone, Debug)]
 pub struct Gpu {
-    /// The instance.
+    /// The wgpu instance that the adapter was found in.
     pub instance: wgpu::Instance,
-    /// The adapter.
+    /// The adapter that the device was opened on.
     pub adapter: wgpu::Adapter,
-    /// The device, with the adapter's own limits and those of [`useful_features`] (and of what was
-    /// wanted) that it has.
+    /// The device. It has all limits of the adapter. Its features are those of [`useful_features`]
+    /// and of [`Wanted::features`] that the adapter offers.
     pub device: wgpu::Device,
-    /// Its queue.
+    /// The queue of the device.
     pub queue: wgpu::Queue,
-    /// Bytes for the textures and buffers of a graph, where they are known: for
-    /// [`PlanRequest::memory_limit`](skiagraph_graph::PlanRequest::memory_limit).
+    /// Bytes that the textures and buffers of a graph may take, for
+    /// [`PlanRequest::memory_limit`](skiagraph_graph::PlanRequest::memory_limit). `None` if
+    /// unknown; [`open`] and [`open_with`] leave it so.
     pub memory: Option<u64>,
-    /// How long a frame may take, where there is a limit: for
-    /// [`Executor::finish_within`](crate::Executor::finish_within).
+    /// Longest time that a frame may take, for
+    /// [`Executor::finish_within`](crate::Executor::finish_within). `None` for no limit; [`open`]
+    /// and [`open_with`] leave it so.
     pub timeout: Option<Duration>,
 }
 
-/// Which device to open. Fields left out are chosen automatically.
+/// Choice of the device that [`open_with`] opens. [`Default`] leaves every choice to it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Wanted<'a> {
-    /// A part of the adapter's name, in any case. `None`: `WGPU_ADAPTER_NAME`, else any name.
+    /// Part of the adapter's name, in any case. `None`: `WGPU_ADAPTER_NAME` if set, else any name.
     pub adapter: Option<&'a str>,
-    /// The backends that it may be of. `None`: those that `WGPU_BACKEND` lists, else [`BACKENDS`].
+    /// The backends to search. `None`: those that `WGPU_BACKEND` lists if it is set, else
+    /// [`BACKENDS`].
     pub backends: Option<wgpu::Backends>,
-    /// Features besides [`useful_features`] that the device shall have if the adapter has them:
-    /// those of `Graph::features`. Experimental ones, which wgpu holds may misbehave, stay off but
-    /// for `EXPERIMENTAL_RAY_QUERY`, whose use here was reviewed.
+    /// Features that the device gets besides [`useful_features`] if the adapter offers them;
+    /// usually `Graph::features`. Experimental features of wgpu stay off, except
+    /// `EXPERIMENTAL_RAY_QUERY`, whose use here was reviewed.
     pub features: wgpu::Features,
 }
 
-/// The backends that are searched unless others are asked for. GL is none of them: what it runs is
-/// the same GPU once more, with fewer features, and not every graph is proven there.
+/// The backends that are searched by default. GL is left out: it would list the same GPU a second
+/// time with fewer features, and not every graph is proven on it.
 pub const BACKENDS: wgpu::Backends = wgpu::Backends::VULKAN
     .union(wgpu::Backends::METAL)
     .union(wgpu::Backends::DX12);
 
-/// Why no device could be opened.
+/// Reasons why no device could be opened.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum GpuError {
-    /// There is no adapter at all.
+    /// No adapter was found on any backend.
     #[error(
         "no usable GPU adapter was found (Vulkan, Metal and Direct3D 12 were tried).\n\
          Install a driver; without a GPU, a software one: \
@@ -69,37 +72,37 @@ pub enum GpuError {
          `pacman -S vulkan-swrast vulkan-icd-loader` on Arch"
     )]
     NoAdapter,
-    /// The backends that were asked for have no adapter.
+    /// The requested backends have no adapter.
     #[error(
         "no GPU adapter of the backend {wanted} was found; there are: {seen}.\n\
          GL needs the driver's EGL: `apt-get install libegl1 libgles2 libgl1-mesa-dri` on Debian \
          and Ubuntu"
     )]
     NoSuchBackend {
-        /// Their names, or what `WGPU_BACKEND` says where that names none.
+        /// Names of the requested backends, or the text of `WGPU_BACKEND`.
         wanted: String,
-        /// Names and backends of the adapters there are.
+        /// Names and backends of all adapters found.
         seen: String,
     },
-    /// There are adapters, but none of that name.
+    /// No adapter has the requested name.
     #[error("no adapter is called `{name}`; there are: {seen}")]
     NoSuchAdapter {
         /// The name that was asked for.
         name: String,
-        /// Names and backends of those there are.
+        /// Names and backends of the adapters found.
         seen: String,
     },
-    /// The adapter gives no device.
+    /// The adapter refused to open a device.
     #[error("the adapter `{adapter}` gives no device: {why}")]
     Device {
-        /// Its name.
+        /// Name of the adapter.
         adapter: String,
         /// The driver's reason.
         why: String,
     },
 }
 
-/// Optional features that graphs and their timing make use of where an adapter has them.
+/// Returns the optional features that graphs and their timing use where an adapter has them.
 pub fn useful_features() -> wgpu::Features {
     wgpu::Features::TIMESTAMP_QUERY
         | wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS
@@ -110,8 +113,8 @@ pub fn useful_features() -> wgpu::Features {
         | wgpu::Features::DEPTH_CLIP_CONTROL
 }
 
-/// Returns the backend as [`PlanRequest::partial_backend`](skiagraph_graph::PlanRequest) wants it:
-/// `None` if it gives all of WebGPU.
+/// Returns the description of a backend that lacks part of WebGPU, for
+/// [`PlanRequest::partial_backend`](skiagraph_graph::PlanRequest). `None` for every backend but GL.
 pub fn partial(backend: wgpu::Backend) -> Option<PartialBackend> {
     (backend == wgpu::Backend::Gl).then(|| PartialBackend {
         name: backend.to_str().to_owned(),
@@ -146,8 +149,8 @@ fn enumerate(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {
     adapters
 }
 
-/// Every usable adapter of every backend, once for each: the one that [`open`] prefers first, and
-/// those of GL, which it does not take unless asked to, behind their like.
+/// Lists the adapters of all backends, in the order in which [`open`] prefers them. GL adapters,
+/// which [`open`] skips by default, stand behind the other adapters of their device type.
 pub fn adapters() -> Vec<wgpu::AdapterInfo> {
     enumerate(&instance(wgpu::Backends::all()))
         .iter()
@@ -155,9 +158,10 @@ pub fn adapters() -> Vec<wgpu::AdapterInfo> {
         .collect()
 }
 
-/// Opens the adapter whose name contains `name` (in any case), or `WGPU_ADAPTER_NAME`, or the best
-/// there is: a discrete GPU before an integrated one before a software adapter. Its backend is one
-/// of those that `WGPU_BACKEND` lists, or of [`BACKENDS`].
+/// Opens the adapter whose name contains `name`, in any case. `None` stands for
+/// `WGPU_ADAPTER_NAME`, and for any name if that is not set. Of several matches it takes a discrete
+/// GPU before an integrated one before a software adapter. It searches the backends that
+/// `WGPU_BACKEND` lists, or [`BACKENDS`].
 ///
 /// # Errors
 /// See [`GpuError`].
@@ -168,7 +172,7 @@ pub fn open(name: Option<&str>) -> Result<Gpu, GpuError> {
     })
 }
 
-/// [`open`] with more to be chosen.
+/// Opens a device as [`open`] does, with a choice of backends and features as well.
 ///
 /// # Errors
 /// See [`GpuError`].

@@ -3,175 +3,176 @@
 use skiagraph_graph::{Diagnostics, Panicked, Plan, Provided, caught};
 use std::time::Duration;
 
-/// Why a plan could not be allocated or a frame not be run.
+/// Reasons why a plan could not be put on a device or a frame could not be run.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExecuteError {
     /// wgpu refused something that a pass needs.
     #[error("{place}: pass `{pass}` was refused by the device: {message}")]
     Gpu {
-        /// The pass.
+        /// Name of the pass.
         pass: String,
-        /// Its place in the document.
+        /// Place of the pass in the graph document.
         place: String,
-        /// wgpu's words.
+        /// Message of wgpu.
         message: String,
     },
-    /// wgpu refused to make a resource.
+    /// wgpu refused to create a resource.
     #[error("`{name}` could not be made: {message}")]
     Resource {
-        /// The resource.
+        /// Name of the resource.
         name: String,
-        /// wgpu's words.
+        /// Message of wgpu.
         message: String,
     },
-    /// wgpu, naga, the driver's layer or a provider panicked: a mistake of theirs.
+    /// wgpu, naga, a driver layer or a provider panicked, which is a bug in that code.
     #[error(
         "{name}: {panicked}; this is a mistake of the library, which may take the same written \
          differently"
     )]
     Panicked {
-        /// The resource, or the pass with its place in the document.
+        /// Name of the resource, or of the pass with its place in the graph document.
         name: String,
         /// The panic.
         panicked: Panicked,
     },
-    /// The device has no memory for this.
+    /// The device has too little memory for a resource or pass.
     #[error("the device has not enough memory for `{name}`")]
     OutOfMemory {
-        /// The resource or pass.
+        /// Name of the resource or pass.
         name: String,
-        /// Largest resources of the graph: [`Plan::memory_table`].
+        /// The largest resources of the graph as text: [`Plan::memory_table`].
         table: String,
     },
-    /// A provided resource could not be built.
+    /// The provider failed to build a resource.
     #[error("the provided resource `{name}` could not be built: {why}")]
     Provider {
-        /// The resource.
+        /// Name of the resource.
         name: String,
-        /// The provider's words.
+        /// Message of the provider.
         why: String,
     },
-    /// A provided resource is another than the graph was planned for: other numbers of items, or
-    /// another kind of light.
+    /// A provided resource differs from the description that the graph was planned for: in its
+    /// binding, its number of items, its bytes per item or its kind of light.
     #[error(
         "{}: plan the graph anew (`executor.plan().with(|request| request.provider = …)`) and hand \
          the plan to `replace_graph`",
         change(name, planned, given)
     )]
     OtherThanPlanned {
-        /// The resource.
+        /// Name of the resource.
         name: String,
         /// The provider's description when the graph was planned.
         planned: Provided,
-        /// Its description now.
+        /// The provider's description now.
         given: Provided,
     },
-    /// A pass reads a provided resource that the host has not set yet.
+    /// A pass reads a provided resource that the provider cannot build yet.
     #[error("{place}: pass `{pass}` reads `{name}`, which is not there yet: {why}")]
     NotProvided {
-        /// The resource.
+        /// Name of the resource.
         name: String,
-        /// The first pass that reads it.
+        /// Name of the first pass that reads the resource.
         pass: String,
-        /// The pass's place in the document.
+        /// Place of the pass in the graph document.
         place: String,
-        /// The provider's word for it: [missing](crate::Provider::missing).
+        /// The missing part, as [`Provider::missing`](crate::Provider::missing) names it.
         why: String,
     },
-    /// An import that the plan does not know.
+    /// The plan has no import of this name.
     #[error("the plan has no import `{name}`; it has {known}")]
     NoSuchImport {
-        /// The name.
+        /// Name that was given.
         name: String,
-        /// Names that exist.
+        /// Names of the plan's imports, for the message.
         known: String,
     },
-    /// The changed name is neither an import nor a provided resource.
+    /// The name given to [`Executor::touch`](crate::Executor::touch) is neither an import nor a
+    /// provided resource.
     #[error(
         "neither an import nor a provided resource is called `{name}`; live passes use {known}"
     )]
     NotOfHost {
-        /// The name.
+        /// Name that was given.
         name: String,
-        /// Names that exist.
+        /// Names of the imports and provided resources that live passes use, for the message.
         known: String,
     },
-    /// An import is not what the plan was made for.
+    /// An imported texture, buffer or sampler differs from the import that the plan was made for.
     #[error(
         "`{name}` cannot be imported where another was planned for: {why}; plan again with what \
          it is"
     )]
     Import {
-        /// The name.
+        /// Name of the import.
         name: String,
-        /// How they differ.
+        /// Differences between the planned and the given import.
         why: String,
     },
-    /// A pass uses an import that the host has not handed over.
+    /// A pass uses an import that the host has not set yet.
     #[error(
         "{place}: pass `{pass}` uses the import `{name}`, which was not handed over: call \
          `import_texture`, `import_buffer` or `import_sampler` first"
     )]
     NotImported {
-        /// The import.
+        /// Name of the import.
         name: String,
-        /// The first pass that uses it.
+        /// Name of the first pass that uses the import.
         pass: String,
-        /// The pass's place in the document.
+        /// Place of the pass in the graph document.
         place: String,
     },
-    /// The request cannot be planned.
+    /// The graph cannot be planned for the changed request.
     #[error("{0}")]
     Plan(Box<Diagnostics>),
-    /// A readback that the plan does not know.
+    /// The plan has no output or capture of this name.
     #[error("the plan has no output `{name}`; it has {known}")]
     NoSuchOutput {
-        /// The name.
+        /// Name that was given.
         name: String,
-        /// Names that exist.
+        /// Names of the plan's outputs and captures, for the message.
         known: String,
     },
-    /// A readback of something that the host made for other purposes.
+    /// An output lies in a texture or buffer of the host that was created without `COPY_SRC`.
     #[error("`{name}` cannot be read back: the host must make it with {usage}")]
     NotReadable {
-        /// The output.
+        /// Name of the output.
         name: String,
-        /// Usage that it lacks.
+        /// The usage that the texture or buffer lacks.
         usage: &'static str,
     },
-    /// A readback did not arrive.
+    /// The content of an output could not be read back.
     #[error("the content of `{name}` could not be read back")]
     Readback {
-        /// The output.
+        /// Name of the output.
         name: String,
     },
-    /// The device was lost or did not answer.
+    /// The device was lost or did not answer; the text says how that showed.
     #[error("the device was lost: {0}")]
     DeviceLost(String),
-    /// The GPU had not finished a frame in the time that it was given, and may never do so.
+    /// The GPU had not finished a frame within the given time. It may never finish.
     #[error(
         "the GPU was not done with the frame after {:.1} s; in it ran {passes}",
         after.as_secs_f64()
     )]
     Unfinished {
-        /// How long it was waited for.
+        /// Time that was waited.
         after: Duration,
-        /// The passes of the frame.
+        /// Names of the passes that ran in the frame.
         passes: String,
     },
-    /// A frame is waited for whose encoder was not submitted.
+    /// The host waits for a frame whose encoder it has not submitted.
     #[error("the frame that is waited for was encoded, but not submitted")]
     NotSubmitted,
-    /// Timestamps could not be taken.
+    /// GPU timestamps could not be taken; the text is the reason.
     #[error("timestamps could not be taken: {0}")]
     Timing(String),
-    /// A mistake of this crate.
+    /// A bug in this crate; the text says which assumption failed.
     #[error("internal error: {0}")]
     Internal(&'static str),
 }
 
-/// How a provided resource differs from what was planned for.
+/// Says how a provided resource differs from the description that the graph was planned for.
 fn change(name: &str, planned: &Provided, given: &Provided) -> String {
     if let (Some(planned), Some(given)) = (&planned.kind, &given.kind)
         && planned != given
@@ -191,8 +192,8 @@ fn change(name: &str, planned: &Provided, given: &Provided) -> String {
     format!("`{name}` is bound as {given:?} now, but the graph was planned for {planned:?}")
 }
 
-/// Runs `make` inside error scopes, so that what wgpu finds wrong comes back as an error, and so
-/// does a panic: wgpu validates shaders once more and compiles them, and naga panics on some.
+/// Runs `make` inside error scopes and returns errors of wgpu as an error. A panic becomes an
+/// error, too: wgpu validates and compiles shaders once more, and naga panics on some.
 pub(crate) fn scoped<T>(
     device: &wgpu::Device,
     name: &str,
@@ -228,7 +229,7 @@ pub(crate) fn scoped<T>(
     }
 }
 
-/// The error of something that a pass needs.
+/// Adds the name and place of a pass to an error of creating something for it.
 pub(crate) fn named(error: ExecuteError, pass: &str, place: &str) -> ExecuteError {
     match error {
         ExecuteError::Resource { message, .. } => ExecuteError::Gpu {
@@ -244,7 +245,7 @@ pub(crate) fn named(error: ExecuteError, pass: &str, place: &str) -> ExecuteErro
     }
 }
 
-/// The error of making or running what a plan says; without memory it shows where the plan's went.
+/// Adds the table of the plan's largest resources to an out-of-memory error.
 pub(crate) fn with_table(error: ExecuteError, plan: &Plan) -> ExecuteError {
     match error {
         ExecuteError::OutOfMemory { name, .. } => ExecuteError::OutOfMemory {
@@ -261,7 +262,7 @@ impl From<Diagnostics> for ExecuteError {
     }
 }
 
-/// Waits until all that was submitted is done; false if it is not after so long a time.
+/// Waits until all submitted work is done; returns false if that takes longer than `timeout`.
 pub(crate) fn wait(device: &wgpu::Device, timeout: Option<Duration>) -> Result<bool, ExecuteError> {
     let all = wgpu::PollType::Wait {
         submission_index: None,
@@ -270,7 +271,7 @@ pub(crate) fn wait(device: &wgpu::Device, timeout: Option<Duration>) -> Result<b
     poll(device, all)
 }
 
-/// Looks what of the submitted work is done; false if a timeout came first.
+/// Polls the device for finished work; returns false if a timeout came first.
 pub(crate) fn poll(device: &wgpu::Device, how: wgpu::PollType) -> Result<bool, ExecuteError> {
     // wgpu panics where a device is lost while it is waited for.
     let polled = caught(|| device.poll(how));

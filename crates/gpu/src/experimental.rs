@@ -1,9 +1,9 @@
-//! Experimental features of wgpu, the one place with `unsafe` code, but for the
+//! Experimental features of wgpu. This is the only place with `unsafe` code, except for the
 //! allocator of a test.
 
 #![allow(unsafe_code)]
 
-/// The experimental features that were reviewed: devices are opened with no others.
+/// The experimental features whose use was reviewed. Devices are opened without the others.
 pub(crate) const REVIEWED: wgpu::Features = wgpu::Features::EXPERIMENTAL_RAY_QUERY;
 
 /// Returns the token that opens a device with these features.

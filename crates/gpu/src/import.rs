@@ -1,4 +1,4 @@
-//! Descriptions of what a host hands over, for
+//! Describes textures and buffers of the host for
 //! [`PlanRequest::imports`](skiagraph_graph::PlanRequest::imports).
 //!
 //! ```no_run
@@ -20,7 +20,7 @@
 
 use skiagraph_graph::Import;
 
-/// The description of a texture.
+/// Returns the description of a texture that the host will import.
 pub fn texture(texture: &wgpu::Texture) -> Import {
     Import::Texture {
         format: texture.format(),
@@ -33,7 +33,8 @@ pub fn texture(texture: &wgpu::Texture) -> Import {
     }
 }
 
-/// The description of a buffer; `items` where a pass is dispatched over them or counts them.
+/// Returns the description of a buffer that the host will import. `items` is the number of its
+/// items; `None` is enough unless a pass is dispatched over the items or counts them.
 pub fn buffer(buffer: &wgpu::Buffer, items: Option<u64>) -> Import {
     Import::Buffer {
         bytes: buffer.size(),

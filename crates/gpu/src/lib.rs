@@ -1,4 +1,4 @@
-//! Plans of [`skiagraph_graph`] on a wgpu device, encoded into the host's own frames.
+//! Runs the plans of [`skiagraph_graph`] on a wgpu device, inside the host's own command encoders.
 //!
 //! ```no_run
 //! use skiagraph_gpu::{Executor, Frame, device};
@@ -20,8 +20,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`Executor`] is a plan on a device: what the live passes touch is made, frames are encoded,
-//! timed and read back. [`Provider`] makes what the graph does not make itself.
+//! [`Executor`] puts a plan on a device: it creates the textures, buffers and pipelines that live
+//! passes use, and it encodes, times and reads back frames. [`Provider`] builds the resources that
+//! a graph expects from its host, such as scene buffers.
 
 mod buffer;
 pub mod device;

@@ -1,4 +1,4 @@
-//! Checks before each frame that a device is still there, without making anything.
+//! Checks before each frame that the device is not lost, without allocating anything.
 
 use crate::{
     buffer,
@@ -6,12 +6,11 @@ use crate::{
     signal::{Progress, Signal},
 };
 
-/// Says whether a device is lost.
+/// Tells whether a device is lost.
 ///
-/// wgpu tells of a loss only to the one callback that the host may have set. But it refuses at
-/// once to map a buffer of a lost device, while a device that is there maps it when it is polled
-/// next. So the mapping of a kept buffer is asked for and called off: the driver hears nothing of
-/// it.
+/// wgpu reports a loss only to a single callback, which the host may have set. But it refuses at
+/// once to map a buffer of a lost device, while a working device maps it at the next poll. So this
+/// requests the mapping of a kept buffer and cancels it; the driver is not involved.
 pub(crate) struct Presence {
     device: wgpu::Device,
     buffer: wgpu::Buffer,
@@ -19,7 +18,7 @@ pub(crate) struct Presence {
 }
 
 impl Presence {
-    /// Makes the buffer that is asked for.
+    /// Creates the buffer whose mapping is requested.
     ///
     /// # Errors
     /// If the device is lost, or has no memory for a few bytes.
@@ -61,7 +60,7 @@ impl Presence {
     }
 }
 
-/// Makes a buffer that is mapped from the first, which a lost device does not.
+/// True if a new buffer can be mapped at once, which a lost device refuses.
 fn maps_another(device: &wgpu::Device) -> bool {
     let buffer = buffer::mapped(device, NAME, wgpu::MAP_ALIGNMENT, USAGE);
     buffer.get_mapped_range(..).is_ok()

@@ -1,35 +1,37 @@
-//! Resources that a graph does not make itself, built when a live pass binds them.
+//! Resources that the host builds for a graph, such as scene buffers.
 
 use skiagraph_graph::{Describe, NoProvider};
 
-/// Gives what a graph does not make itself: scene buffers, camera and light uniforms, acceleration
-/// structures. [`Describe`] describes them, which needs no device.
+/// Builds the resources that a graph expects from its host: scene buffers, camera and light
+/// uniforms, acceleration structures. The supertrait [`Describe`] describes them without a device.
 pub trait Provider: Describe {
-    /// Counts the changes of what stands behind a name.
-    /// [`Executor::refresh`](crate::Executor::refresh) builds anew what has another version than
-    /// before.
+    /// Returns the version of a resource: a number that changes whenever its content or buffer
+    /// does. [`Executor::refresh`](crate::Executor::refresh) rebuilds the resources whose version
+    /// has changed. The default is always 0.
     fn version(&self, name: &str) -> u64 {
         let _ = name;
         0
     }
 
-    /// Names the part that the host has to set before a resource can be built; `None` if it can be
-    /// built now. Executors are made without what is missing, [`refresh`](crate::Executor::refresh)
-    /// asks again, and until it is there `encode` fails with these words, in passes that read it.
+    /// Names the part that the host must set before a resource can be built; `None` if it can be
+    /// built now. An executor is created without missing resources, and
+    /// [`refresh`](crate::Executor::refresh) asks for them again. Until then `encode` fails with
+    /// the returned text if a pass that reads the resource runs.
     fn missing(&self, name: &str) -> Option<String> {
         let _ = name;
         None
     }
 
-    /// Builds the buffer, or hands out the one built before. Frames that are encoded and not yet
-    /// submitted read what it holds when they are submitted: a provider whose executors may be
-    /// encoded for one submission hands out another buffer for another content. Called only for
+    /// Builds the buffer of a resource, or returns the buffer built before. It is called only for
     /// names that a live pass binds. The buffer needs the
-    /// [usages](skiagraph_graph::ProvidedBinding::usages) that it is described with; `COPY_SRC`
-    /// where it may be saved, or read as it was in the frame before.
+    /// [usages](skiagraph_graph::ProvidedBinding::usages) of its description, and `COPY_SRC` if it
+    /// may be saved or is read as `.previous`.
+    ///
+    /// A frame reads the content that the buffer has when the frame is submitted. A provider that
+    /// changes a content while encoded frames wait for submission must return a new buffer for it.
     ///
     /// # Errors
-    /// Why it cannot be built.
+    /// If the resource cannot be built.
     fn build(
         &mut self,
         name: &str,
@@ -37,13 +39,13 @@ pub trait Provider: Describe {
         queue: &wgpu::Queue,
     ) -> Result<wgpu::Buffer, ProviderError>;
 
-    /// Builds what is described as
-    /// [`ACCELERATION_STRUCTURE`](skiagraph_graph::Provided::ACCELERATION_STRUCTURE), or hands out
-    /// the one built before, its build submitted to the queue. Called only for names that a live
-    /// pass binds, on devices with `EXPERIMENTAL_RAY_QUERY`.
+    /// Builds a resource that is described as
+    /// [`ACCELERATION_STRUCTURE`](skiagraph_graph::Provided::ACCELERATION_STRUCTURE), or returns
+    /// the structure built before. Its build must be submitted to `queue` before this returns. It
+    /// is called only for names that a live pass binds, on devices with `EXPERIMENTAL_RAY_QUERY`.
     ///
     /// # Errors
-    /// Why it cannot be built; that of a provider that describes none, if it has no such function.
+    /// If the structure cannot be built. The default implementation always fails.
     fn build_acceleration_structure(
         &mut self,
         name: &str,
@@ -57,7 +59,7 @@ pub trait Provider: Describe {
     }
 }
 
-/// Why a provided resource could not be built.
+/// Reason why a provider could not build a resource.
 #[derive(Clone, Debug, thiserror::Error)]
 #[error("{0}")]
 pub struct ProviderError(pub String);

@@ -1,33 +1,33 @@
-//! Contents of outputs and captures, read back.
+//! Contents of outputs and captures that were read back from the GPU.
 
-/// An output or capture on the host.
+/// Content of an output or capture, read back to the host.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Readback {
-    /// Its name.
+    /// Name of the output or capture.
     pub name: String,
-    /// Its content.
+    /// Content of the output or capture.
     pub content: Content,
 }
 
-/// Bytes of a texture or buffer.
+/// Bytes of a texture or buffer that was read back.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Content {
-    /// The mips and layers of an output.
+    /// The mips and layers of a texture that belong to the output.
     Texture {
         /// Format of the texels.
         format: wgpu::TextureFormat,
-        /// Size in texels of each mip of each layer (or slice): the layers of the first mip, then
-        /// those of the next.
+        /// Width and height in texels of each part. A part is one mip of one layer (or slice). All
+        /// layers of the first mip come first, then all layers of the second mip, and so on.
         parts: Vec<[u32; 2]>,
-        /// Rows from the top, tightly packed, one part after the other.
+        /// Texels of all parts in the order of `parts`: rows from the top, without padding.
         bytes: Vec<u8>,
     },
-    /// The buffer, or those of its items that the output is.
+    /// Bytes of a buffer, or of its items that belong to the output.
     Buffer(Vec<u8>),
 }
 
 impl Content {
-    /// Width and height of the first mip of a texture.
+    /// Returns width and height of the first part of a texture in texels; `None` for a buffer.
     pub fn size(&self) -> Option<[u32; 2]> {
         match self {
             Self::Texture { parts, .. } => parts.first().copied(),
@@ -35,7 +35,8 @@ impl Content {
         }
     }
 
-    /// Each mip of each layer of a texture by itself.
+    /// Splits a texture into one content for each mip of each layer, in the order of its `parts`. A
+    /// buffer comes back whole, as the only element.
     pub fn split(&self) -> Vec<Self> {
         let Self::Texture {
             format,
@@ -60,15 +61,15 @@ impl Content {
         parts.iter().map(part).collect()
     }
 
-    /// The raw bytes.
+    /// Returns the raw bytes of all parts or of the buffer.
     pub fn bytes(&self) -> &[u8] {
         match self {
             Self::Texture { bytes, .. } | Self::Buffer(bytes) => bytes,
         }
     }
 
-    /// Channels of the texels of a `Uint` texture, one texel after the other, or the words of a
-    /// buffer.
+    /// Returns the channels of a `Uint` texture, texel after texel, or the 32-bit words of a
+    /// buffer. `None` for a texture of any other format, and for packed formats.
     pub fn as_u32(&self) -> Option<Vec<u32>> {
         match self {
             Self::Buffer(bytes) => Some(bytes.chunks_exact(4).map(unsigned).collect()),
@@ -76,14 +77,15 @@ impl Content {
         }
     }
 
-    /// Channels of the texels of a `Sint` texture, one texel after the other.
+    /// Returns the channels of a `Sint` texture, texel after texel. `None` for a buffer and for a
+    /// texture of any other format.
     pub fn as_i32(&self) -> Option<Vec<i32>> {
         self.channels(Kind::Sint, signed)
     }
 
-    /// Channels of the texels of a texture of floats, depths or normalised integers, one texel
-    /// after the other, in the order red, green, blue, alpha. Those of an sRGB texture come as they
-    /// are stored.
+    /// Returns the channels of a texture of floats, depths or normalised integers, texel after
+    /// texel, in the order red, green, blue, alpha. Values of an sRGB texture are returned as
+    /// stored, not linear. `None` for a buffer and for integer, packed or compressed formats.
     pub fn as_f32(&self) -> Option<Vec<f32>> {
         let float = |bytes: &[u8]| match *bytes {
             [a, b] => half::f16::from_le_bytes([a, b]).to_f32(),
@@ -159,7 +161,7 @@ fn unsigned(bytes: &[u8]) -> u32 {
         .fold(0, |value, byte| value << 8 | u32::from(*byte))
 }
 
-/// The same in two's complement.
+/// A little-endian two's complement integer of one, two or four bytes.
 fn signed(bytes: &[u8]) -> i32 {
     let unused = 32 - 8 * bytes.len() as u32;
     (unsigned(bytes) << unused).cast_signed() >> unused

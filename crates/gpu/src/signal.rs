@@ -1,29 +1,29 @@
-//! Signals from wgpu's callbacks that work of the GPU is done, polled without waiting.
+//! Signals by which wgpu's callbacks tell that GPU work is done. They are polled without waiting.
 
 use std::sync::{
     Arc,
     atomic::{AtomicU8, Ordering},
 };
 
-/// How far something is.
+/// State of a piece of work that a [`Signal`] follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Progress {
-    /// It has come, or nothing was asked for.
+    /// The work is done, or none was started.
     Done,
-    /// Not submitted, or not done.
+    /// The work is not submitted or not done.
     UnderWay,
     /// wgpu refused it, or the device is lost.
     Failed,
-    /// It will not come: the encoder was dropped and not submitted.
+    /// The work will never be done: its encoder was dropped without being submitted.
     Dropped,
 }
 
 impl Progress {
-    /// By their numbers.
+    /// All states by number.
     const ALL: [Self; 4] = [Self::Done, Self::UnderWay, Self::Failed, Self::Dropped];
 }
 
-/// The progress of one thing after the other.
+/// Follows the progress of one piece of work after another.
 #[derive(Debug, Default)]
 pub(crate) struct Signal(Arc<AtomicU8>);
 
@@ -35,13 +35,13 @@ impl Signal {
         Progress::ALL[usize::from(self.0.load(Ordering::Acquire))]
     }
 
-    /// Says when the GPU is done with what is in the encoder.
+    /// Signals when the GPU is done with the commands of the encoder.
     pub fn when_done(&self, encoder: &wgpu::CommandEncoder) {
         let teller = self.teller();
         encoder.on_submitted_work_done(move || teller.tell(Progress::Done));
     }
 
-    /// Maps a buffer as soon as the encoder is submitted, and says when it is mapped.
+    /// Maps a buffer as soon as the encoder is submitted, and signals when it is mapped.
     pub fn when_mapped(
         &self,
         buffer: &wgpu::Buffer,
@@ -52,8 +52,8 @@ impl Signal {
         encoder.map_buffer_on_submit(buffer, mode, .., move |result| teller.tell_mapped(&result));
     }
 
-    /// Asks for the mapping of a buffer that no submitted work uses, and says when it is mapped;
-    /// where the device is lost, says at once that it failed.
+    /// Starts mapping a buffer that no submitted work uses, and signals when it is mapped. On a
+    /// lost device it signals the failure at once.
     pub fn when_mapped_now(&self, buffer: &wgpu::Buffer, mode: wgpu::MapMode) {
         let teller = self.teller();
         buffer.map_async(mode, .., move |result| teller.tell_mapped(&result));

@@ -1,4 +1,4 @@
-//! Types of fields: names, expressions, references, words of the language.
+//! Deserialisation of names, expressions, references and words in the fields of documents.
 use crate::{
     errors::{document::DocumentError, language::SyntaxFault},
     expressions::parser,
@@ -55,7 +55,7 @@ thread_local! {
 }
 
 impl Mentions {
-    /// Those that were read on this thread since this was last asked.
+    /// Takes the expressions and references that were read on this thread since the last call.
     pub fn take() -> Self {
         MENTIONS.take()
     }
@@ -106,13 +106,13 @@ impl<'de> Deserialize<'de> for Expr {
     }
 }
 
-/// A word of the language, or an expression that comes to a word. A type for fields of pass kinds;
-/// [`Lowering::word`](crate::Lowering::word) reads it.
+/// Value of a pass kind's field that takes one word of a fixed set, of type `T`: the word itself,
+/// or an expression that yields it. [`Lowering::word`](crate::Lowering::word) returns the word.
 #[derive(Clone, Debug)]
 pub enum Chosen<T> {
-    /// Written out.
+    /// A word, written without quotes.
     Word(T),
-    /// A `Choice` param, in quotes.
+    /// An expression in quotes that yields a word, such as the name of a `Choice` param.
     Expr(Expr),
 }
 

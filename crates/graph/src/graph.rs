@@ -17,19 +17,19 @@ use crate::{
 };
 use std::{collections::BTreeMap, sync::Arc};
 
-/// A document that was read, with all shaders that its passes name. No GPU has been touched.
+/// A graph loaded from a document: its materials and passes, with every shader that the passes
+/// name. Loading touches no GPU.
 ///
-/// Cheap to clone.
+/// Clones share their content and are cheap.
 #[derive(Clone, Debug)]
 pub struct Graph(Arc<Loaded>);
 
 impl Graph {
-    /// Reads the document at `path` and every shader it names, from `sources`. Parses and validates
-    /// all WGSL.
+    /// Loads the document at `path` and every shader that it names from `sources`, and parses and
+    /// validates all WGSL. `registry` holds the pass kinds that the document may use.
     ///
     /// # Errors
-    /// Everything that is wrong with the document and its shaders, as far as it can be said without
-    /// sizes and a device.
+    /// All mistakes in the document and its shaders that can be found without sizes and a device.
     pub fn load(
         path: &str,
         registry: &Registry,
@@ -38,12 +38,13 @@ impl Graph {
         Self::load_over(path, registry, sources, &BTreeMap::new())
     }
 
-    /// Reads the document at `path` as [`Graph::load`] does, with other documents in its open
-    /// includes (`Include(open: "over", …)`). `chosen`: their paths, by the names of the includes
-    /// ([`Graph::openings`]).
+    /// Loads the document at `path` as [`Graph::load`] does, with other documents in place of its
+    /// open includes (`Include(open: "over", …)`). `chosen` maps the name of an open include
+    /// ([`Graph::openings`]) to the path of the document to include instead.
     ///
     /// # Errors
-    /// As [`Graph::load`]; a name that is no open include of the document at `path`.
+    /// The mistakes that [`Graph::load`] reports, and a name in `chosen` that no open include of
+    /// the document has.
     pub fn load_over(
         path: &str,
         registry: &Registry,
@@ -58,23 +59,24 @@ impl Graph {
         }
     }
 
-    /// Plans the graph: resolves names and sizes, links shaders, orders and culls passes. Touches
-    /// no GPU.
+    /// Plans the graph: resolves names and sizes, links shaders, orders the passes and drops those
+    /// that no output needs. Touches no GPU.
     ///
     /// # Errors
-    /// Everything that is wrong, with its place.
+    /// All mistakes found while planning, each with its place in a document or shader.
     pub fn plan(&self, request: &PlanRequest<'_>) -> Result<Plan, Diagnostics> {
         Plan::new(&self.0, request)
     }
 
-    /// [`Graph::load`] and [`Graph::plan`] in one, for all mistakes at once. The readable part of a
-    /// document is planned even if another part is wrong, and for each param and feature in an `if`
-    /// changed alone. Inputs that the request does not import are taken for what the document asks
-    /// for.
+    /// Loads and plans the document at `path` and reports all mistakes at once. The readable part
+    /// of a document is planned even if another part is wrong. The graph is also planned once for
+    /// each other value of each param and feature in an `if`, changed one at a time. For an input
+    /// that the request does not import, the check assumes the texture, buffer or sampler that the
+    /// document asks for.
     ///
     /// # Errors
-    /// Everything that is wrong. Reads before writes and cycles are looked for above the first pass
-    /// that has a mistake.
+    /// All mistakes of loading and planning. Reads before writes, and cycles, are only reported for
+    /// passes above the first pass with a mistake.
     pub fn check(
         path: &str,
         registry: &Registry,
@@ -87,11 +89,13 @@ impl Graph {
         Ok((Self(loaded), plan))
     }
 
-    /// The text of the document at `path` with all that it extends written out, each line with its
-    /// origin. It reads as the document does; one with mistakes keeps what nothing uses.
+    /// Returns the document at `path` as one text, with everything that it extends merged in. A
+    /// comment at the end of a line names the file and line that it comes from. The text loads as
+    /// the document does. Params, values, inputs and materials that nothing uses are left out,
+    /// unless the document has mistakes.
     ///
     /// # Errors
-    /// Mistakes in one of the documents as a file, or in an edit.
+    /// Mistakes in the syntax of one of the documents, or in an edit that one makes to another.
     pub fn flat(
         path: &str,
         registry: &Registry,
@@ -119,74 +123,81 @@ impl Graph {
         }
     }
 
-    /// Where the document was read from.
+    /// Returns the path that the document was loaded from.
     pub fn path(&self) -> &str {
         self.0.path()
     }
 
-    /// Returns the document's description of itself.
+    /// Returns the `description` of the document; empty if it has none.
     pub fn description(&self) -> &str {
         &self.0.document.description
     }
 
-    /// The params that the document declares, and those of included documents that it exposes.
+    /// Returns the params of the graph: those that the document declares, then those of included
+    /// documents that it exposes.
     pub fn params(&self) -> &[Param] {
         &self.0.document.params
     }
 
-    /// Names of the declared outputs that are materials, whatever their conditions.
+    /// Returns the names of the outputs that are textures or buffers, those on request and those
+    /// whose conditions are false included.
     pub fn outputs(&self) -> Vec<&str> {
         let outputs = self.0.document.material_outputs();
         outputs.map(|output| output.name.as_str()).collect()
     }
 
-    /// The same without those that a host gets only if it names them.
+    /// Returns the names of the outputs that a host gets without naming them: those of
+    /// [`Graph::outputs`] that are not `on_request`.
     pub fn default_outputs(&self) -> Vec<&str> {
         let outputs = self.0.document.material_outputs();
         let outputs = outputs.filter(|output| !output.on_request);
         outputs.map(|output| output.name.as_str()).collect()
     }
 
-    /// The words of the section `lights`: the kinds of light that the method takes, each where it
-    /// was written. The graph does not know what they mean.
+    /// Returns the words of the document's section `lights`: the kinds of light that the method
+    /// takes, each with its place. The graph does not know their meaning. If the section is empty,
+    /// the method takes the first kind that the provider knows.
     pub fn lights(&self) -> impl Iterator<Item = &Located<Name>> {
         self.0.document.lights.iter()
     }
 
-    /// The words of the section `proven_on`: backends that give less than WebGPU, on which the
-    /// graph is known to be right.
+    /// Returns the words of the document's section `proven_on`: names of backends that lack part of
+    /// WebGPU ([`PartialBackend`](crate::PartialBackend)), on which the graph is known to be right.
     pub fn proven_on(&self) -> impl Iterator<Item = &Located<Name>> {
         self.0.document.proven_on.iter()
     }
 
-    /// The open includes of the document: each one's name, and the document that stands there.
+    /// Returns the open includes of the document, which [`Graph::load_over`] can replace: pairs of
+    /// the include's name and the path of the document that it includes now.
     pub fn openings(&self) -> impl Iterator<Item = (&str, &str)> {
         let openings = self.0.document.openings();
         openings.map(|(name, include)| (name.as_str(), include.graph.as_str()))
     }
 
-    /// Names of what the host must import.
+    /// Returns the names of the document's inputs, for which the host must put an import into
+    /// [`PlanRequest::imports`](crate::Request::imports).
     pub fn inputs(&self) -> Vec<&str> {
         let inputs = self.0.document.inputs.iter();
         inputs.map(|input| input.name.as_str()).collect()
     }
 
-    /// The features that the document and those that it includes require, ask for by `has`, or have
-    /// passes that can make use of. A device that has those of them that its adapter offers runs
-    /// the graph as well as it can be run there.
+    /// Returns every device feature that the document or an included document requires, asks for by
+    /// `has`, or can make use of in a pass. A device with all of these that its adapter offers runs
+    /// the graph as well as that adapter can.
     pub fn features(&self) -> wgt::Features {
         self.0.features()
     }
 
-    /// Returns the warnings about the document.
+    /// Returns the warnings that loading the document gave.
     pub fn warnings(&self) -> &[Diagnostic] {
         &self.0.warnings
     }
 
-    /// Reads a param's value from text, as the command line gives it.
+    /// Reads the value of the param `name` from text as the command line writes it: `1024`, `0.5`,
+    /// `true`, `front`, `1,2,3`.
     ///
     /// # Errors
-    /// If there is no such param, or the value has the wrong type or is out of range.
+    /// If the graph has no param of this name, or the value has the wrong type or is out of range.
     pub fn parse_param(&self, name: &str, text: &str) -> Result<ParamValue, ParamError> {
         let param = self.0.param(name)?;
         param.parse(text).map_err(|why| ParamError::Value {
@@ -196,11 +207,12 @@ impl Graph {
         })
     }
 
-    /// The value of every param: that which is asked for, else the default for this viewport on a
-    /// device with these features.
+    /// Returns the value of every param by name: the value in `asked`, or else the param's default
+    /// for a viewport of this width and height in pixels on a device with these features.
     ///
     /// # Errors
-    /// If there is no such param, or a value does not fit.
+    /// If `asked` names a param that the graph does not have, or a value has the wrong type or is
+    /// out of range.
     pub fn values(
         &self,
         asked: &BTreeMap<String, ParamValue>,
@@ -215,11 +227,12 @@ impl Graph {
         }
     }
 
-    /// Returns the promises of the document about itself for these values of params and this
-    /// viewport, on a device with these features.
+    /// Returns the entries of the document's section `claims`, each with the value of its
+    /// condition. Params have the values in `asked` or else their defaults for a viewport of this
+    /// width and height in pixels on a device with these features.
     ///
     /// # Errors
-    /// If a value does not fit, or a condition has no value.
+    /// If a value in `asked` does not fit its param, or a condition cannot be evaluated.
     pub fn claims(
         &self,
         asked: &BTreeMap<String, ParamValue>,

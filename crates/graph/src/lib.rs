@@ -4,7 +4,7 @@
 //! use skiagraph_graph::{Graph, NoProvider, PlanRequest, Registry, Sources};
 //! use std::sync::Arc;
 //!
-//! /// A document and its shader; `FolderSources` reads those of a folder.
+//! /// Store with one document and its shader; `FolderSources` reads files of a folder instead.
 //! struct Ramp;
 //!
 //! impl Sources for Ramp {
@@ -34,11 +34,12 @@
 //! # Ok::<(), skiagraph_graph::Diagnostics>(())
 //! ```
 //!
-//! A document names *materials* (textures, buffers, samplers) and *passes*; bindings and access
-//! come from the shaders by reflection, order from what passes read and write. The phases are a
-//! folder each, in this order: `document` (with `compose`, which reads what it extends and
-//! includes), `shader`, `instantiate`, `link`, `flow`, `plan`. `language` has the two small
-//! grammars inside of strings, `errors` what can be wrong in each phase and how it is told.
+//! A document names *materials* (textures, buffers, samplers) and *passes*. Bindings and access
+//! come from the shaders by reflection; the order of passes comes from the materials that they read
+//! and write. Each phase is a folder, in this order: `document` (with `compose`, which reads the
+//! documents that a document extends and includes), `shader`, `instantiate`, `link`, `flow`,
+//! `plan`. `language` and `expressions` hold the two small grammars inside of strings; `errors`
+//! holds the mistakes that each phase can report, and their messages.
 //!
 //! The crate knows no scenes and no shadows. A provider describes the resources that a graph does
 //! not make itself ([`Describe`]); the crate `skiagraph-gpu` makes them on a device.

@@ -1,4 +1,4 @@
-//! Params: the typed knobs of a document.
+//! Params: the typed values that a document takes from outside.
 
 use crate::{
     diagnostics::suggest::{likeness, suggestion},
@@ -12,33 +12,33 @@ use crate::{
 use serde::Serialize;
 use std::{collections::BTreeMap, fmt, sync::Arc};
 
-/// Why a param cannot be set.
+/// Reason why a param of a graph cannot be set.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ParamError {
     /// The graph has no such param.
     #[error("`{graph}` has no param `{name}`{hint}")]
     Unknown {
-        /// The graph's path.
+        /// Path of the graph's document.
         graph: String,
-        /// The name.
+        /// Name that was asked for.
         name: String,
-        /// A suggestion, or the list of params.
+        /// End of the message: a suggestion, or the list of the graph's params.
         hint: String,
     },
     /// The value has the wrong type or is out of range.
     #[error("param `{name}` of `{graph}`: {why}")]
     Value {
-        /// The graph's path.
+        /// Path of the graph's document.
         graph: String,
-        /// The name.
+        /// Name of the param.
         name: String,
-        /// The expected type or range.
+        /// Reason why the value does not fit the param.
         why: ParamFault,
     },
 }
 
-/// The param of that name, of a graph's.
+/// Returns the param called `name` of `params`; `graph` is the path of their graph, for the error.
 pub(crate) fn find<'p>(
     params: &'p [Param],
     name: &str,
@@ -64,7 +64,7 @@ pub enum ParamType {
     I32,
     /// 32-bit unsigned integer.
     U32,
-    /// Boolean; travels to WGSL as `u32` 0 or 1.
+    /// Boolean; a `u32` in WGSL, 0 or 1.
     Bool,
     /// Two floats.
     Vec2,
@@ -72,7 +72,7 @@ pub enum ParamType {
     Vec3,
     /// Four floats.
     Vec4,
-    /// One of the named words; travels to WGSL as its index, `u32`.
+    /// One of the given words; in WGSL a `u32`, the word's index in this list.
     Choice(Arc<[Name]>),
 }
 
@@ -87,8 +87,8 @@ impl ParamType {
         }
     }
 
-    /// A number as a value of this type, of a vector that of each component; `None` of a type that
-    /// has no numbers.
+    /// Returns `number` as a value of this type; a vector has it in each component. `None` for
+    /// `Bool` and `Choice`.
     pub(crate) fn with_number(&self, number: f64) -> Option<ParamValue> {
         Some(match self {
             Self::F32 => ParamValue::F32(number as f32),
@@ -111,7 +111,8 @@ impl fmt::Display for ParamType {
     }
 }
 
-/// Value of a param.
+/// Value of a param. Each variant belongs to the [`ParamType`] of the same name; `Vec` to all
+/// vectors.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum ParamValue {
@@ -123,7 +124,7 @@ pub enum ParamValue {
     U32(u32),
     /// Boolean.
     Bool(bool),
-    /// Two to four floats.
+    /// Two to four floats, for `Vec2`, `Vec3` and `Vec4`.
     Vec(Vec<f32>),
     /// A word of the param's [`ParamType::Choice`].
     Choice(String),
@@ -145,38 +146,42 @@ impl fmt::Display for ParamValue {
     }
 }
 
-/// A declared param.
+/// A param that a document declares, or exposes of a document that it includes.
 #[derive(Clone, Debug)]
 pub struct Param {
-    /// Name, as in `params.NAME` of a shader and `--set NAME=…`; that of a named include has a dot.
+    /// Name, as in `params.NAME` of a shader and `--set NAME=…`. A param that a named include
+    /// exposes has the include's name before it: `left.radius`.
     pub name: Located<String>,
-    /// Type.
+    /// Type of the param's values.
     pub ty: ParamType,
-    /// Value where nothing else is asked for; `None` if a value must be given.
+    /// Value that the param has unless it is set; `None` if it must be set.
     pub default: Option<Expr>,
-    /// Least value of a number (each component of a vector).
+    /// Least value of a number, or of each component of a vector; `None` for no lower bound.
     pub min: Option<f64>,
-    /// Greatest value of a number (each component of a vector).
+    /// Greatest value of a number, or of each component of a vector; `None` for no upper bound.
     pub max: Option<f64>,
-    /// Description of its effect.
+    /// Description of the param's effect, as its document gives it; may be empty.
     pub description: String,
-    /// Words of a [`ParamType::Choice`] that `narrow` took away, each with the reason.
+    /// Words of a [`ParamType::Choice`] that `narrow` took away, each with the reason. They cannot
+    /// be set.
     pub refused: BTreeMap<String, String>,
 }
 
-/// Why a param, or a value of one, cannot be.
+/// Reason why a value does not fit a param.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ParamFault {
-    /// The value has another type.
+    /// The value has another type; holds the expected type in words, such as `f32` or `front|back`.
     #[error("the value must be of type {0}")]
     Type(String),
-    /// The value has the type, but is not allowed.
+    /// The value has the right type, but lies out of range or is not an allowed word; holds the
+    /// message.
     #[error("{0}")]
     Value(String),
 }
 
 impl Param {
-    /// The words of a `Choice` that may be set; none of another type.
+    /// Iterates over the words of a [`ParamType::Choice`] that may be set, without the refused
+    /// ones. Empty for every other type.
     pub fn words(&self) -> impl Iterator<Item = &Name> {
         let words = match &self.ty {
             ParamType::Choice(words) => &words[..],
@@ -186,8 +191,12 @@ impl Param {
         words.iter().filter(is_left)
     }
 
-    /// Keeps only these words; numbers of words stay. Fails with the first that is none, or with
-    /// `None` if this is no `Choice`.
+    /// Keeps only the words `kept` of a `Choice`, and refuses its others with the reason `because`.
+    /// The indices of words do not change.
+    ///
+    /// # Errors
+    /// The first word in `kept` that is not a word of the param, or `None` if the param is not a
+    /// `Choice`.
     pub(crate) fn narrow(
         &mut self,
         kept: &[Located<Name>],
@@ -211,7 +220,10 @@ impl Param {
         Ok(())
     }
 
-    /// The value of an expression as one of this param.
+    /// Converts the value of an expression to a value of this param, and checks its range.
+    ///
+    /// # Errors
+    /// The expected type or range.
     pub(crate) fn convert(&self, value: &Value) -> Result<ParamValue, ParamFault> {
         let wrong = || ParamFault::Type(self.ty.to_string());
         let converted = match (&self.ty, value) {
@@ -233,7 +245,7 @@ impl Param {
         self.check(&converted).map(|()| converted)
     }
 
-    /// A value of this param in an expression.
+    /// Returns `value`, a value of this param, as a value of an expression.
     pub(crate) fn value(&self, value: &ParamValue) -> Value {
         // The decimal number that it was written as: 0.51 is no f32, and yet `n >= 0.51` holds of
         // it.
@@ -262,7 +274,8 @@ impl Param {
         }
     }
 
-    /// Returns a value where none is given: `min`, else 1, false, the first word.
+    /// Returns a valid value to use where none is given: for a number `min`, else 1; for a bool
+    /// false; for a choice its first word.
     pub(crate) fn stand_in(&self) -> ParamValue {
         let number = self
             .min
@@ -290,7 +303,7 @@ impl Param {
         }
     }
 
-    /// Reads a value from text as the command line writes it: `1024`, `0.5`, `true`, `front`,
+    /// Reads a value from text, as the command line writes it: `1024`, `0.5`, `true`, `front`,
     /// `1,2,3`.
     ///
     /// # Errors
@@ -398,7 +411,8 @@ impl Param {
         Ok(())
     }
 
-    /// The index of a choice's word, the number of a bool, or the integer of a value.
+    /// Returns a value of this param as the `u32` of a shader: the index of a word, 0 or 1 of a
+    /// bool, or a non-negative integer. `None` for other values.
     pub(crate) fn as_u32(&self, value: &ParamValue) -> Option<u32> {
         match (value, &self.ty) {
             (ParamValue::U32(value), _) => Some(*value),

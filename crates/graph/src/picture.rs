@@ -1,14 +1,14 @@
-//! Pictures as the content of textures.
+//! Decoded pictures, as the content of textures.
 
 use std::sync::Arc;
 use wgt::TextureFormat as F;
 
-/// A decoded picture.
+/// A decoded picture: RGBA texels with 16 bits per channel.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Picture {
     /// Width and height in texels.
     pub size: [u32; 2],
-    /// Red, green, blue and alpha of each texel, rows from the top; 65,535 is one.
+    /// Red, green, blue and alpha of each texel, row by row from the top; 65,535 stands for 1.0.
     pub texels: Arc<[[u16; 4]]>,
 }
 
@@ -47,8 +47,9 @@ pub(crate) fn can_hold(format: F) -> bool {
 }
 
 impl Picture {
-    /// The texels in a format, rows from the top, tightly packed; `None` if it cannot hold a
-    /// picture. Values are put in as they are, sRGB or not; 65,535 is 1.0.
+    /// Converts the texels to a texture format: row by row from the top, without padding. Channels
+    /// that the format lacks are left out. Values are converted linearly, for sRGB formats too;
+    /// 65,535 becomes 1.0. `None` if a texture of this format cannot hold a picture.
     pub fn bytes(&self, format: F) -> Option<Vec<u8>> {
         let (count, channel) = channels(format)?;
         let mut bytes = Vec::new();

@@ -1,17 +1,18 @@
-//! Which of several kinds something is that a graph does not make itself.
+//! Kinds of provided resources, such as kinds of light.
 
-/// The kind of something that is provided: `light.kind` is its word in expressions, and a shader's
-/// `override light_kind: u32` its number.
+/// Kind of a provided resource, such as the kind of a light. An expression reads it as a word,
+/// `light.kind`; a shader reads it as a number, `override light_kind: u32`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProvidedKind {
-    /// The words for all kinds, names as documents have them.
+    /// The words for all kinds that this resource can be of.
     pub words: &'static [&'static str],
-    /// Which of them it is.
+    /// Index in `words` of the kind that this resource is of.
     pub number: u32,
 }
 
 impl ProvidedKind {
-    /// The word; the first where there is none of this number.
+    /// Returns the word for the kind; the first of `words` if `number` is out of range, and an
+    /// empty text if there are no words.
     pub fn word(&self) -> &'static str {
         let word = self.words.get(self.number as usize);
         word.or(self.words.first()).copied().unwrap_or_default()

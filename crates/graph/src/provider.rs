@@ -1,38 +1,41 @@
-//! Resources that a graph does not make itself, described by name for planning. (The GPU crate
-//! builds them.)
+//! Descriptions, for planning, of the resources that a graph does not make itself. (The GPU crate
+//! builds these resources.)
 
 use crate::{document::materials::Filter, provided_kind::ProvidedKind};
 use std::collections::BTreeMap;
 
-/// Describes what a graph does not make itself: scene buffers, camera and light uniforms,
-/// acceleration structures.
+/// Source of descriptions of the resources that a graph does not make itself: scene buffers, camera
+/// and light uniforms, acceleration structures.
 ///
-/// Names have dots (`scene.positions`); a shader global spells them with underscores
-/// (`scene_positions`).
+/// Names have dots, such as `scene.positions`. A shader's global has underscores in their place:
+/// `scene_positions`.
 pub trait Describe {
-    /// Every name that [`Describe::describe`] knows, for suggestions.
+    /// Returns every name that [`Describe::describe`] knows. Error messages suggest names from this
+    /// list.
     fn names(&self) -> Vec<String>;
 
-    /// Describes the resource behind a name: enough to plan with. Must be cheap, and must not build
-    /// anything.
+    /// Describes the resource `name` as far as planning needs; `None` if the name is unknown.
+    /// Called often: it must be cheap and build nothing.
     fn describe(&self, name: &str) -> Option<Provided>;
 }
 
 /// Description of a provided buffer or acceleration structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Provided {
-    /// Number of items, where it is known without building.
+    /// Number of items of the buffer; `None` if it is not known before the buffer is built.
     pub items: Option<u64>,
-    /// Bytes per item; of a uniform, its whole size; 0 of what is no buffer.
+    /// Size in bytes of one item, or of the whole buffer for a uniform; 0 for an acceleration
+    /// structure.
     pub stride: u64,
-    /// How shaders may bind it.
+    /// The ways in which shaders may bind the resource.
     pub binding: ProvidedBinding,
-    /// Which of several kinds it is, where plans depend on that.
+    /// Kind of the resource, for those that come in several kinds and on which plans depend, such
+    /// as a light; `None` for all others.
     pub kind: Option<ProvidedKind>,
 }
 
 impl Provided {
-    /// Resource that shaders see as `acceleration_structure`.
+    /// Description of an acceleration structure, which shaders declare as `acceleration_structure`.
     pub const ACCELERATION_STRUCTURE: Self = Self {
         items: None,
         stride: 0,
@@ -41,21 +44,22 @@ impl Provided {
     };
 }
 
-/// How shaders may bind what is provided.
+/// The ways in which shaders may bind a provided resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProvidedBinding {
-    /// `var<uniform>`.
+    /// As `var<uniform>`, the whole buffer.
     Uniform,
-    /// `var<storage, read>`.
+    /// As `var<storage, read>`.
     Storage,
-    /// Either: an array whose items can be bound alone, as `lights[2]`.
+    /// As `var<storage, read>` for a whole array, or as `var<uniform>` for one of its items, such
+    /// as `lights[2]`.
     Both,
-    /// `acceleration_structure`, which ray queries ask: no buffer.
+    /// As `acceleration_structure`, for ray queries. The resource is not a buffer.
     AccelerationStructure,
 }
 
 impl ProvidedBinding {
-    /// The usages that the buffer is made with; none of what is no buffer.
+    /// Returns the usages to create the buffer with; empty for an acceleration structure.
     pub fn usages(self) -> wgt::BufferUsages {
         match self {
             Self::Uniform => wgt::BufferUsages::UNIFORM,
@@ -66,41 +70,42 @@ impl ProvidedBinding {
     }
 }
 
-/// Description of what the host hands over for an input of the root document. Its content is there
-/// before the first pass; a pass that writes it is never left out.
+/// Description of a resource that the host hands over for an input of the root document. The
+/// resource has content before the first pass runs. A pass that writes it is never culled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Import {
     /// A texture.
     Texture {
-        /// Format.
+        /// Format of the texels.
         format: wgt::TextureFormat,
-        /// Width and height of mip 0, texels.
+        /// Width and height of mip 0 in texels.
         size: [u32; 2],
-        /// Number of mips.
+        /// Number of mip levels.
         mips: u32,
-        /// Number of layers, or of slices of a 3D texture.
+        /// Number of array layers, or of slices of mip 0 of a 3D texture.
         layers: u32,
         /// True for a 3D texture.
         is_3d: bool,
-        /// Samples of each texel.
+        /// Number of samples of each texel; 1 without multisampling.
         samples: u32,
-        /// Usages that it was made with.
+        /// Usages that the texture was created with.
         usage: wgt::TextureUsages,
     },
     /// A buffer.
     Buffer {
         /// Size in bytes.
         bytes: u64,
-        /// Number of items, where a pass is dispatched over them or counts them.
+        /// Number of items; needed only if a pass is dispatched over the items or an expression
+        /// counts them.
         items: Option<u64>,
-        /// Usages that it was made with.
+        /// Usages that the buffer was created with.
         usage: wgt::BufferUsages,
     },
     /// A sampler.
     Sampler {
         /// Filtering of the sampler.
         filter: Filter,
-        /// True if it compares.
+        /// True for a comparison sampler.
         compare: bool,
     },
 }
@@ -111,7 +116,7 @@ impl std::fmt::Debug for dyn Describe + '_ {
     }
 }
 
-/// Describes what another provider described, for plans that are made again.
+/// Copy of the descriptions of another provider, by name, with which a plan is made again.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Described(pub BTreeMap<String, Provided>);
 
@@ -132,7 +137,7 @@ impl Describe for Described {
     }
 }
 
-/// Provides nothing: for graphs that need no scene.
+/// A provider without resources, for graphs that need no scene.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoProvider;
 

@@ -7,65 +7,69 @@ use crate::{
 };
 use std::collections::BTreeMap;
 
-/// A backend that gives less than WebGPU. Checks and proofs of a graph elsewhere need not hold
-/// there.
+/// A graphics backend that lacks part of WebGPU, such as OpenGL. A graph that passed its checks on
+/// another backend may fail on it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PartialBackend {
-    /// The word by which documents list it in `proven_on`.
+    /// Name of the backend, as documents list it in `proven_on`.
     pub name: String,
-    /// Abilities that it lacks, for a message: "no …".
+    /// Abilities that the backend lacks, as text for error messages: "no 32-bit float targets".
     pub lacks: String,
 }
 
-/// Request for a plan.
+/// A [`Request`] with a borrowed provider, which [`Graph::plan`](crate::Graph::plan) takes. Create
+/// one with [`PlanRequest::new`](Request::new) and change its fields.
 pub type PlanRequest<'a> = Request<&'a dyn Describe>;
 
-/// Viewport, params, limits and imports to plan a graph with. `P` describes the resources that the
-/// scene provides: a borrowed `&dyn Describe` in a [`PlanRequest`], which callers use, and a stored
-/// copy inside of a plan, to plan again.
+/// Settings for planning a graph: viewport, params, outputs, the device's limits and features, and
+/// imports. `P` is the type of [`provider`](Request::provider): `&dyn Describe` in a
+/// [`PlanRequest`], which callers use. A plan keeps a copy of its request with an owned provider.
 #[derive(Clone, Debug)]
 pub struct Request<P> {
-    /// Width and height in pixels.
+    /// Width and height of the viewport in pixels.
     pub viewport: [u32; 2],
-    /// Values of params; where missing, the document's default.
+    /// Values of params by name. A param that is not listed has the document's default.
     pub params: BTreeMap<String, ParamValue>,
-    /// The outputs that are wanted; `None` = all that the document declares, but for those on
-    /// request that no capture names.
+    /// Names of the outputs to compute. `None` means all that the document declares, without those
+    /// `on_request` that no capture names.
     pub outputs: Option<Vec<String>>,
-    /// Materials that are to be read back beside the outputs.
+    /// Materials to read back in addition to the outputs.
     pub captures: Vec<Capture>,
-    /// Limits that the device will have.
+    /// Limits of the device that will run the graph.
     pub limits: wgt::Limits,
-    /// Features that the device will have.
+    /// Features of the device that will run the graph.
     pub features: wgt::Features,
-    /// The backend that the device will have, if it gives less than WebGPU: graphs that do not list
-    /// it in `proven_on` are refused. An executor refuses them too, so what is left out here is
-    /// only told later.
+    /// The backend of the device, if it lacks part of WebGPU; `None` for any other. A graph that
+    /// does not list this backend in `proven_on` is refused. An executor refuses it too, so `None`
+    /// only delays the error.
     pub partial_backend: Option<PartialBackend>,
-    /// Bytes that the graph's own textures and buffers may take together; one that takes more is
-    /// refused with a table of what takes the most, before anything is allocated. `None`: whatever
-    /// the device gives. (wgpu does not tell how much memory there is.)
+    /// Most bytes that the graph's own textures and buffers may take together. A graph that takes
+    /// more is refused before anything is allocated, with a table of the largest allocations.
+    /// `None` sets no limit. (wgpu does not tell how much memory a device has.)
     pub memory_limit: Option<u64>,
-    /// Imports of the host for the inputs of the root document, by name.
+    /// Descriptions of the textures, buffers and samplers that the host hands over, by the name of
+    /// the root document's input.
     pub imports: BTreeMap<String, Import>,
-    /// Items that buffers with `grow`, and layers that textures with it, are known to need, by full
-    /// name: they are made as large, up to their `max`. A graph that was loaded again goes on with
-    /// what [`Plan::grown`] says.
+    /// Number of items or layers that growing buffers and textures (`grow`) need, by full name of
+    /// the material. Each is made that large, up to its `max`. To keep grown sizes when a graph is
+    /// loaded again, pass the result of [`Plan::grown`].
     ///
     /// [`Plan::grown`]: crate::Plan::grown
     pub grown: BTreeMap<String, u64>,
-    /// Fills memory between uses with a pattern made of this byte: a graph whose outputs change
-    /// with it reads what it has not written. Costs time; for finding mistakes.
+    /// Byte that memory is filled with before a resource is first used in a frame; `None` fills
+    /// nothing. A graph whose outputs change with this byte reads memory that it has not written.
+    /// Filling costs time; it is meant for finding mistakes.
     pub poison: Option<u8>,
-    /// True if the device that will run the graph is not known: exceeding `limits` and `features`
-    /// is then a warning.
+    /// True if the device that will run the graph is not known. Exceeding `limits` and `features`
+    /// is then a warning instead of an error.
     pub any_adapter: bool,
-    /// Describes the provided resources.
+    /// Describes the resources that the graph does not make itself: scene buffers, camera, lights.
     pub provider: P,
 }
 
 impl<'a> PlanRequest<'a> {
-    /// A request with wgpu's default limits, no features, default params and all outputs.
+    /// Creates a request with wgpu's default limits, no features, default params and the default
+    /// outputs. `viewport` is width and height in pixels.
     pub fn new(viewport: [u32; 2], provider: &'a dyn Describe) -> Self {
         Self {
             viewport,
@@ -93,8 +97,9 @@ impl<'a> PlanRequest<'a> {
 }
 
 impl<P> Request<P> {
-    /// The same request to another provider. A plan keeps its request with what was described, so
-    /// that it can be sent to another thread and made again with something changed.
+    /// Copies the request with another provider. A plan stores its request with the descriptions
+    /// that the provider gave, so that it can be sent to another thread and planned again with a
+    /// change.
     pub(crate) fn to<Q>(&self, provider: Q) -> Request<Q> {
         Request {
             viewport: self.viewport,
@@ -114,17 +119,20 @@ impl<P> Request<P> {
     }
 }
 
-/// A material to be read back.
+/// A material whose content is to be read back after a frame.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Capture {
-    /// Material, view or provided resource.
+    /// Full name of a material, or a part of one such as `maps[2]`. Without `after` also the name
+    /// of an output; with `after` also a provided buffer.
     pub material: String,
-    /// The pass after which its content is wanted; `None` = at the end of the frame.
+    /// Full name of the pass after which the content is captured; `None` captures it at the end of
+    /// the frame.
     pub after: Option<String>,
 }
 
 impl Capture {
-    /// The name under which it is read back: `material` or `material@pass`.
+    /// Returns the name under which the content is read back: `material`, or `material@pass` for a
+    /// capture after a pass.
     pub fn name(&self) -> String {
         match &self.after {
             Some(pass) => format!("{}@{pass}", self.material),

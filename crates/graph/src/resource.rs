@@ -8,36 +8,37 @@ use crate::{
 };
 use std::{ops::Range, sync::Arc};
 
-/// Number of a resource of a plan.
+/// Index of a resource in [`Plan::resources`](crate::Plan::resources).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ResourceId(pub(crate) usize);
 
 impl ResourceId {
-    /// The number: resources count from 0.
+    /// Returns the index, counted from 0.
     pub fn index(self) -> usize {
         self.0
     }
 }
 
-/// A texture, buffer or sampler that passes may name.
+/// A texture, buffer, sampler, acceleration structure or uniform that passes may use.
 #[derive(Clone, Debug)]
 pub struct Resource {
-    /// Its full name.
+    /// Full name: for a material of a named include with the include's name in front, `left.depth`.
     pub name: String,
-    /// Place where it is declared; resources of the host and a pass's own buffers have none.
+    /// Place of the declaration in a document; `None` for provided resources and for a pass's own
+    /// buffers.
     pub declared: Option<Span>,
-    /// Kind of the resource.
+    /// Kind of the resource, with its description.
     pub kind: ResourceKind,
-    /// Whose content it holds.
+    /// Origin of the content: the graph, the document, the host, or the frame before.
     pub origin: Origin,
-    /// How it grows between frames.
+    /// Growth of the buffer or texture between frames; `None` if its size is fixed.
     pub growth: Option<Growth>,
-    /// True if its content stays from frame to frame until a pass overwrites it.
+    /// True if the content stays from frame to frame until a pass overwrites it (`keep: true`).
     pub keep: bool,
 }
 
 impl Resource {
-    /// One that no document declares.
+    /// Creates a resource that no document declares.
     pub(crate) fn new(name: String, kind: ResourceKind, origin: Origin) -> Self {
         Self {
             name,
@@ -50,20 +51,20 @@ impl Resource {
     }
 }
 
-/// Whose content a resource holds.
+/// Origin of a resource's content.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {
-    /// The graph's own, made by its passes in every frame.
+    /// The graph: its passes write the content.
     Own,
-    /// The document's: a file or numbers that stand in it. It is never written.
+    /// The document: a picture file, or numbers that stand in the document. No pass may write it.
     Constant,
-    /// The host's: an import or a provided resource. It has content before the first pass.
+    /// The host: the resource is imported or provided, and has content before the first pass.
     Host,
-    /// Content of another resource at the end of the frame before.
+    /// The frame before: the content that this other resource had at the end of that frame.
     Previous(ResourceId),
 }
 
-/// Kind of a resource.
+/// Kind of a resource, with its description.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ResourceKind {
     /// A texture.
@@ -72,23 +73,23 @@ pub enum ResourceKind {
     Buffer(Buffer),
     /// A sampler.
     Sampler(Sampler),
-    /// A buffer of the host's, described before it is built.
+    /// A buffer that the provider builds later, by its description.
     Provided(Provided),
-    /// An acceleration structure of the host's.
+    /// An acceleration structure that the provider builds.
     AccelerationStructure,
-    /// The graph's own uniform `frame`: number, seconds and flags of the frame
+    /// The uniform `frame`, which the executor fills: index, seconds and flags of the frame
     /// (`shared/frame.wgsl`).
     Frame,
 }
 
-/// Bytes of the uniform `frame`: index `u32`, seconds `f32`, the flags `changed_scene`,
-/// `changed_light` and `fresh`, each a `u32`, and padding.
+/// Size in bytes of the uniform `frame`: index `u32`, seconds `f32`, the flags `changed_scene`,
+/// `changed_light` and `fresh` as a `u32` each, then padding.
 pub const FRAME_BYTES: u64 = 32;
 
-/// Bytes of its index and seconds, which stand in front of the flags.
+/// Size in bytes of index and seconds, which stand at the start of the uniform `frame`.
 pub(crate) const CLOCK_BYTES: u32 = 8;
 
-/// The name under which shaders find the uniform `frame`.
+/// Name by which shaders find the uniform `frame`.
 pub(crate) const FRAME: &str = "frame";
 
 impl ResourceKind {
@@ -107,7 +108,8 @@ impl ResourceKind {
         }
     }
 
-    /// Bytes that it takes.
+    /// Returns the size in bytes of a texture or buffer; 0 for every other kind, provided buffers
+    /// included.
     pub fn bytes(&self) -> u64 {
         match self {
             Self::Texture(texture) => texture.bytes(),
@@ -117,32 +119,33 @@ impl ResourceKind {
     }
 }
 
-/// A 2D texture, an array of such, or a 3D texture.
+/// Description of a 2D texture, a 2D array texture or a 3D texture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
-    /// Format of its texels.
+    /// Format of the texels.
     pub format: wgt::TextureFormat,
     /// Width and height of mip 0 in texels.
     pub size: [u32; 2],
-    /// Layers of an array, or slices of a 3D texture's mip 0.
+    /// Number of array layers, or of slices of mip 0 of a 3D texture.
     pub layers: u32,
-    /// True if the layers are slices of a 3D texture.
+    /// True for a 3D texture, whose `layers` are slices.
     pub is_3d: bool,
-    /// Mip levels.
+    /// Number of mip levels.
     pub mips: u32,
-    /// Samples of each texel.
+    /// Number of samples of each texel; 1 without multisampling.
     pub samples: u32,
-    /// The picture that it holds.
+    /// Picture that the document fills the texture with; `None` without a picture.
     pub picture: Option<Picture>,
 }
 
 impl Texture {
-    /// Width and height of a mip.
+    /// Returns the width and height of a mip level in texels.
     pub fn mip_size(&self, mip: u32) -> [u32; 2] {
         self.size.map(|edge| (edge >> mip).max(1))
     }
 
-    /// Layers of a mip: slices of a 3D texture become fewer.
+    /// Returns the number of layers of a mip level. An array has the same layers in every mip; the
+    /// slices of a 3D texture are halved with each mip.
     pub fn mip_layers(&self, mip: u32) -> u32 {
         if self.is_3d {
             (self.layers >> mip).max(1)
@@ -151,7 +154,7 @@ impl Texture {
         }
     }
 
-    /// Returns the bytes of its texels.
+    /// Returns the size in bytes of all texels of all mips, layers and samples.
     pub fn bytes(&self) -> u64 {
         let footprint = |format: wgt::TextureFormat| {
             format.theoretical_memory_footprint(wgt::Extent3d::default())
@@ -167,7 +170,7 @@ impl Texture {
         (0..self.mips).map(mip).fold(0, u64::saturating_add)
     }
 
-    /// All of it.
+    /// Returns the range of all mips and all layers.
     pub fn whole(&self) -> SubresourceRange {
         SubresourceRange {
             mips: 0..self.mips,
@@ -177,62 +180,67 @@ impl Texture {
     }
 }
 
-/// A buffer.
+/// Description of a buffer.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Buffer {
-    /// Items of the runtime-sized array, where the document gives them.
+    /// Number of items of the buffer's runtime-sized array; `None` if the document does not give
+    /// it.
     pub count: Option<u64>,
-    /// Bytes from one item to the next, known after linking where a shader sees such an array.
+    /// Distance in bytes from one item to the next; 0 before linking, and if no shader declares the
+    /// buffer as a runtime-sized array.
     pub stride: u64,
-    /// Size, known after linking (item layouts come from WGSL).
+    /// Size in bytes. Before linking it is 0, because item layouts come from WGSL, except for an
+    /// import.
     pub bytes: u64,
-    /// The numbers that it holds, item by item; bytes are laid out when a shader's type is known.
+    /// Content that stands in the document: a list of items, each a list of its numbers; `None`
+    /// without such content. The bytes are laid out when a shader's type is known.
     pub data: Option<Arc<Vec<Vec<f64>>>>,
-    /// The bytes of `data`.
+    /// The bytes of `data` in the layout of the shader; `None` before linking, or without `data`.
     pub content: Option<Arc<[u8]>>,
 }
 
-/// How the items of a buffer or the layers of a texture become more between frames.
+/// Rule by which a buffer gets more items, or a texture more layers, from frame to frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Growth {
-    /// The buffer, or the item of one, whose first `u32` says how many items or layers the frame
-    /// would have needed.
+    /// Buffer, or item of a buffer, whose first `u32` holds the number of items or layers that the
+    /// frame would have needed.
     pub counter: Target,
-    /// Most items or layers that the document lets it have.
+    /// Greatest number of items or layers.
     pub max: u64,
 }
 
-/// A sampler.
+/// Description of a sampler.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sampler {
-    /// Minification, magnification and mip filter.
+    /// Filter for minification, magnification and between mips.
     pub filter: Filter,
-    /// Addressing in all directions.
+    /// Address mode in all directions.
     pub address: Address,
-    /// Comparison of a comparison sampler.
+    /// Comparison function; `None` for a sampler that does not compare.
     pub compare: Option<wgt::CompareFunction>,
 }
 
-/// Mips and layers of a texture (slices of a 3D one), or items of a buffer as layers of one mip.
+/// Part of a texture or buffer: a range of mips and layers of a texture (slices, if it is 3D), or a
+/// range of items of a buffer, which stand in `layers`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SubresourceRange {
-    /// Mip levels; `0..1` of a buffer.
+    /// Range of mip levels; `0..1` for a buffer.
     pub mips: Range<u32>,
-    /// Layers, slices or items.
+    /// Range of array layers, slices or items; `0..u32::MAX` for a whole buffer.
     pub layers: Range<u32>,
-    /// Depth or stencil of a texture that has both.
+    /// Depth or stencil aspect of a texture that has both; otherwise `All`.
     pub aspect: wgt::TextureAspect,
 }
 
 impl SubresourceRange {
-    /// A buffer, or whatever else has no parts.
+    /// The whole of a buffer, or of a resource without parts.
     pub(crate) const WHOLE: Self = Self {
         mips: 0..1,
         layers: 0..u32::MAX,
         aspect: wgt::TextureAspect::All,
     };
 
-    /// True if the two have something in common.
+    /// True if two parts of a resource overlap.
     pub(crate) fn overlaps(&self, other: &Self) -> bool {
         use wgt::TextureAspect::{DepthOnly, StencilOnly};
         let meet = |a: &Range<u32>, b: &Range<u32>| a.start < b.end && b.start < a.end;
@@ -243,17 +251,17 @@ impl SubresourceRange {
         !apart && meet(&self.mips, &other.mips) && meet(&self.layers, &other.layers)
     }
 
-    /// True if it is one mip of one layer.
+    /// True if the part is one mip of one layer, slice or item.
     pub(crate) fn is_single(&self) -> bool {
         self.mips.len() == 1 && self.layers.len() == 1
     }
 
-    /// The items of a buffer that are meant; `None` if all are.
+    /// Returns the range of items of a buffer; `None` if it is the whole buffer.
     pub fn items(&self) -> Option<Range<u32>> {
         (*self != Self::WHOLE).then(|| self.layers.clone())
     }
 
-    /// The same part of one aspect.
+    /// Returns the same mips and layers in another aspect.
     pub(crate) fn of_aspect(&self, aspect: wgt::TextureAspect) -> Self {
         Self {
             aspect,
@@ -262,11 +270,11 @@ impl SubresourceRange {
     }
 }
 
-/// A resource or a part of one.
+/// A resource and the part of it that is used.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Target {
-    /// The resource.
+    /// Id of the resource.
     pub id: ResourceId,
-    /// The part.
+    /// The mips and layers, or items, that are used; all of them for a whole resource.
     pub part: SubresourceRange,
 }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// Type of one channel of a texture in a shader.
+/// Scalar type of the channels of a texture, as a shader sees it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ScalarClass {
     Float,

@@ -15,7 +15,7 @@ macro_rules! written {
 }
 pub(crate) use written;
 
-/// The same for one that is a reference alone, or has fields.
+/// Writes the schema of a type that documents write as a reference alone, or with fields.
 macro_rules! short_or_long {
     ($type:ty, $name:literal, $long:ty) => {
         $crate::written::written!($type, $name, generator => {

@@ -1,7 +1,9 @@
-//! RON whose values know their places, and mistakes told with the lines that they are about.
+//! A RON reader whose values keep their place in the source text, and diagnostics that point at
+//! that place.
 //!
-//! [`reader`] splits a text into nodes and reads each by itself, so that one mistake does not hide
-//! the next; [`diagnostics`] tells them: kind, message, places, the way out.
+//! [`reader`] splits a text into nodes and reads each node by itself, so that one mistake does not
+//! hide the next. A [`diagnostics::Diagnostic`] holds the kind of a mistake, its message, the
+//! places in the text, and a hint how to mend it.
 //!
 //! ```
 //! use serde::Deserialize;

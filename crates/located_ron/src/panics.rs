@@ -1,5 +1,5 @@
-//! Panics of libraries as errors: naga, wgpu and ron panic on some texts, and no file may end the
-//! program.
+//! Turns panics of libraries into errors: naga, wgpu and ron panic on some texts, and no file may
+//! end the program.
 
 use std::{
     cell::RefCell,
@@ -7,18 +7,20 @@ use std::{
     sync::Once,
 };
 
-/// A panic that was caught: its message, and its place in the library's source.
+/// A panic that [`caught`] has caught, with its place in the source of the library that panicked.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{message} ({place})")]
 pub struct Panicked {
-    /// The words of the panic.
+    /// Message of the panic.
     pub message: String,
-    /// File and line in the source of the library, without the folders before its own.
+    /// File and line in the library's source, from the folder of the crate on:
+    /// `naga-30.0.1/src/proc/a.rs:12`.
     pub place: String,
 }
 
 impl Panicked {
-    /// The way out for an author.
+    /// Returns the help text of a diagnostic about this panic, for the author of the file that was
+    /// read.
     pub fn way_out(&self) -> String {
         format!(
             "this is a mistake of the library ({}), which may take the same written differently",
@@ -32,8 +34,8 @@ thread_local! {
     static HEARD: RefCell<Option<Option<Panicked>>> = const { RefCell::new(None) };
 }
 
-/// Runs what calls a library, and makes an error of its panic. Nothing is printed of it: the panic
-/// hook of the process is kept, and asked on threads that are not inside of this function.
+/// Calls `run` and returns its result, or its panic as an error. The panic is not printed: the
+/// first call sets a panic hook, which passes panics outside of `caught` on to the hook set before.
 ///
 /// State that `run` changes may be left half changed by a panic and must not be relied on.
 ///

@@ -1,9 +1,9 @@
-//! Reading RON piece by piece, so that every error of a document is found and every name keeps its
+//! Reads RON piece by piece, so that every error of a document is found and every name keeps its
 //! place.
 //!
 //! ron stops at its first error, so each list entry and each field of a pass is deserialised by
-//! itself from its raw text. A raw value borrows the source, hence the difference of pointers is
-//! the byte offset.
+//! itself from its raw text. A raw value borrows the source, so the difference of their pointers is
+//! the value's byte offset.
 
 use crate::{
     diagnostics::{Code, Diagnostic},
@@ -46,7 +46,8 @@ fn fail(diagnostic: impl FnOnce(&SourceFile) -> Option<Diagnostic>) {
     });
 }
 
-/// An error of serde's that is told as this mistake.
+/// Returns a serde error that stands for `mistake`. The [`Node`] that is being read then reports
+/// `mistake` itself, not the text of the error. For use in implementations of `Deserialize`.
 pub fn refuse<E: serde::de::Error>(mistake: impl Into<Diagnostic>) -> E {
     let diagnostic = mistake.into();
     let message = diagnostic.message.clone();
@@ -120,7 +121,11 @@ fn word_around(text: &str, start: usize, end: usize, base: usize) -> Range<usize
     base + low..base + text.len() - rest.len()
 }
 
-/// The raw text of a value and its place in the file that is being read.
+/// Returns the raw text of a value, and its place in the file that is being read. For use in
+/// implementations of `Deserialize`.
+///
+/// # Errors
+/// If the value is not well-formed, or is not read through a [`Node`].
 pub fn raw<'de, D: Deserializer<'de>>(deserializer: D) -> Result<(&'de str, Span), D::Error> {
     let text = bare(<&RawValue>::deserialize(deserializer)?);
     let span = READING.with_borrow(|reading| {
@@ -131,7 +136,11 @@ pub fn raw<'de, D: Deserializer<'de>>(deserializer: D) -> Result<(&'de str, Span
     Ok((text, span.ok_or_else(outside)?))
 }
 
-/// Deserialises a value from its raw text.
+/// Deserialises a value from its raw text, as [`raw`] returns it.
+///
+/// # Errors
+/// If the text cannot be read as a `T`. The [`Node`] that is being read reports the innermost
+/// place.
 pub fn read<T: DeserializeOwned, E: serde::de::Error>(text: &str) -> Result<T, E> {
     read_part(text).map_err(E::custom)
 }
@@ -144,27 +153,27 @@ impl<'de, T: DeserializeOwned> Deserialize<'de> for Located<T> {
     }
 }
 
-/// A piece of a document: raw RON at its place.
+/// A piece of a document: the place of one RON value, whose text is read on demand.
 pub type Node = Span;
 
-/// A named field of a [`Node`].
+/// A field of a struct, `name: value`.
 #[derive(Clone, Debug)]
 pub struct Field {
-    /// The field's name.
+    /// Name of the field, at its place.
     pub name: Located<String>,
-    /// Its value.
+    /// Place of the field's value.
     pub node: Node,
 }
 
 impl Node {
-    /// The whole file, without what stands before its opening bracket.
+    /// Returns the node of a whole file, without a byte order mark before it.
     pub fn root(file: &SourceFile) -> Self {
         // Some editors begin UTF-8 with a byte order mark.
         let start = file.text.len() - file.text.trim_start_matches('\u{feff}').len();
         file.span(start..file.text.len())
     }
 
-    /// The first line of it, which stands for the whole where that is to be shown.
+    /// Returns the place of the node's first line, which stands for the whole node in a diagnostic.
     pub fn head(&self) -> Span {
         let start = self.range.start;
         let length = self.text().lines().next().map_or(0, str::len);
@@ -176,7 +185,7 @@ impl Node {
         self.file.span(range)
     }
 
-    /// Deserialises the piece.
+    /// Deserialises the node's text.
     ///
     /// # Errors
     /// One diagnostic at the innermost place that failed.
@@ -205,20 +214,21 @@ impl Node {
         })
     }
 
-    /// The entries of a list, `[…]`, or of a tuple, `(…)`.
+    /// Returns the entries of a list, `[…]`, or of a tuple, `(…)`, in order.
     ///
     /// # Errors
-    /// If the piece is neither or is not well-formed.
+    /// If the node is neither a list nor a tuple, or is not well-formed.
     pub fn list(&self) -> Result<Vec<Node>, Diagnostic> {
         // A tuple of one name looks like a struct to ron.
         let parts = self.parts(Shape::List)?.into_iter();
         Ok(parts.map(|(_, part)| self.sub(part)).collect())
     }
 
-    /// The entries of a map, `{"name": value}`, in order; duplicates are the caller's to find.
+    /// Returns the entries of a map, `{"name": value}`, in order: each name, and the node of its
+    /// value. A name that is given twice is returned twice.
     ///
     /// # Errors
-    /// If the piece is no map of names or is not well-formed.
+    /// If the node is not a map of names, or is not well-formed.
     pub fn map(&self) -> Result<Vec<(Located<String>, Node)>, Diagnostic> {
         let entry = |(key, value): (Cow<'_, str>, _)| {
             let key = self.sub(&key);
@@ -228,10 +238,11 @@ impl Node {
         self.parts(Shape::Map)?.into_iter().map(entry).collect()
     }
 
-    /// The fields of a struct, `(name: value, …)`, in order; duplicates are the caller's to find.
+    /// Returns the fields of a struct, `(name: value, …)`, in order. A field that is given twice is
+    /// returned twice.
     ///
     /// # Errors
-    /// If the piece is no struct with named fields or is not well-formed.
+    /// If the node is not a struct with named fields, or is not well-formed.
     pub fn fields(&self) -> Result<Vec<Field>, Diagnostic> {
         let field = |(name, value): (Cow<'_, str>, _)| {
             let node = self.sub(value);
@@ -263,7 +274,8 @@ impl Node {
         }
     }
 
-    /// Splits `Tag(…)` into the tag and its body; a bare `Tag` has an empty body.
+    /// Splits `Tag(…)` into the tag and the node of its body, `(…)`; a bare `Tag` has an empty
+    /// body. `None` if the text does not begin with a letter.
     pub fn variant(&self) -> Option<(Located<String>, Node)> {
         let text = self.text();
         let end = text.find(|c: char| !c.is_alphanumeric() && c != '_');
@@ -355,17 +367,22 @@ impl<'de> Deserialize<'de> for Word {
     }
 }
 
-/// Deserialises a struct from fields that were split before, each from its own text.
+/// Deserialises a struct from fields that were split before, each from its own text. `whole` is the
+/// place of the struct, where a missing field is reported.
 ///
 /// # Errors
-/// One diagnostic: an unknown, missing or duplicate field, or a value of the wrong type, at its
-/// place.
+/// One diagnostic at its place: an unknown, missing or duplicate field, or a value of the wrong
+/// type.
 pub fn from_fields<T: DeserializeOwned>(fields: &[Field], whole: &Span) -> Result<T, Diagnostic> {
     from_some_fields(fields, whole, &[])
 }
 
-/// [`from_fields`] of an entry that has `more` fields, which were taken out of it before: who
-/// misspells one is told of them, too.
+/// Deserialises a struct as [`from_fields`] does, where the caller has taken some fields out
+/// before. `more` names these: the suggestion for a misspelt field lists them, too.
+///
+/// # Errors
+/// One diagnostic at its place: an unknown, missing or duplicate field, or a value of the wrong
+/// type.
 pub fn from_some_fields<T: DeserializeOwned>(
     fields: &[Field],
     whole: &Span,
@@ -380,8 +397,9 @@ pub fn from_some_fields<T: DeserializeOwned>(
     }
 }
 
-/// [`from_some_fields`] that tells of every field that cannot be read: each is left out, until the
-/// rest can be.
+/// Deserialises a struct as [`from_some_fields`] does, but adds a diagnostic to `told` for every
+/// field that cannot be read, not only for the first. `None` if a field could not be read or is
+/// missing.
 pub fn from_all_fields<T: DeserializeOwned>(
     mut fields: Vec<Field>,
     whole: &Span,
@@ -507,7 +525,8 @@ impl<'de> MapAccess<'de> for Access<'de> {
     }
 }
 
-/// A field that is not one of those known.
+/// Returns the error for a field whose name is not in `known`, at the place of the name, with a
+/// suggestion.
 pub fn unknown_field<S: AsRef<str>>(
     name: &Located<String>,
     known: impl IntoIterator<Item = S>,
@@ -517,7 +536,8 @@ pub fn unknown_field<S: AsRef<str>>(
         .suggest(name, known)
 }
 
-/// A word that is not one of those known.
+/// Returns the error for a word that is not in `known`, at the place of the word, with a
+/// suggestion.
 pub fn unknown_word<S: AsRef<str>>(
     word: &Located<String>,
     known: impl IntoIterator<Item = S>,
@@ -527,13 +547,13 @@ pub fn unknown_word<S: AsRef<str>>(
         .suggest(word, known)
 }
 
-/// A field that is not there.
+/// Returns the error for a required field `field` that is missing in the struct at `place`.
 pub fn missing_field(place: impl Into<Span>, field: &str) -> Diagnostic {
     let what = format!("the field `{field}` is missing");
     Diagnostic::error(Code::MissingField, what).at(place, "it must be given here")
 }
 
-/// A field whose name is that of one before it.
+/// Returns the error for a field that is given twice; `field` is the name of the second one.
 pub fn field_twice(field: &Located<String>) -> Diagnostic {
     let what = format!("the field `{field}` is given twice");
     Diagnostic::error(Code::DuplicateName, what).at(field, "the second one")

@@ -1,4 +1,4 @@
-//! JSON Schemas of what is read (feature `schema`).
+//! JSON Schemas of the values that the reader reads (feature `schema`).
 
 use crate::span::Located;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
@@ -18,7 +18,8 @@ impl<T: JsonSchema> JsonSchema for Located<T> {
     }
 }
 
-/// Simplifies a schema: optional fields need not be null, too; descriptions have no line breaks.
+/// Simplifies a JSON Schema in place: takes the `null` alternative of optional fields out, and the
+/// line breaks of descriptions.
 pub fn plain(schema: &mut Value) {
     match schema {
         Value::Object(fields) => {

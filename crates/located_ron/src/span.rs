@@ -1,4 +1,4 @@
-//! Files that were read, and places in them.
+//! Source files, and places in them.
 
 use std::{
     fmt,
@@ -6,21 +6,21 @@ use std::{
     sync::Arc,
 };
 
-/// A file that was read. Cheap to clone, and small: every name of a document knows its place.
+/// A file that was read: its path and its text. Cheap to clone: clones share one text.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SourceFile(Arc<SourceText>);
 
-/// Name and text of a [`SourceFile`].
+/// Path and text of a [`SourceFile`].
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct SourceText {
-    /// Path as the reader was given it.
+    /// Path of the file, as it was given to the reader.
     pub name: Arc<str>,
-    /// Whole text.
+    /// Whole text of the file.
     pub text: Arc<str>,
 }
 
 impl SourceFile {
-    /// A file of that name and text.
+    /// Creates a file from its path and its text; nothing is read from disk.
     pub fn new(name: impl Into<Arc<str>>, text: impl Into<Arc<str>>) -> Self {
         Self(Arc::new(SourceText {
             name: name.into(),
@@ -28,7 +28,7 @@ impl SourceFile {
         }))
     }
 
-    /// The place of `range` (bytes) in this file.
+    /// Returns the place of `range`, in bytes, in this file.
     pub fn span(&self, range: Range<usize>) -> Span {
         Span {
             file: self.clone(),
@@ -44,22 +44,22 @@ impl Deref for SourceFile {
     }
 }
 
-/// A place in a file.
+/// A place in a file: a range of bytes of its text.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Span {
-    /// The file.
+    /// File that the place lies in.
     pub file: SourceFile,
-    /// Bytes of its text.
+    /// Range of the place in the file's text, in bytes.
     pub range: Range<usize>,
 }
 
 impl Span {
-    /// The text that stands there.
+    /// Returns the text at this place; empty if the range lies outside of the file.
     pub fn text(&self) -> &str {
         self.file.text.get(self.range.clone()).unwrap_or("")
     }
 
-    /// Line and column of the start, counted from 1, columns in characters.
+    /// Returns line and column of the start, both counted from 1; columns count characters.
     pub fn line_column(&self) -> (usize, usize) {
         let before = self
             .file
@@ -91,24 +91,24 @@ impl From<&Span> for Span {
     }
 }
 
-/// A value that knows where it stands.
+/// A value together with its place in a source file.
 #[derive(Clone, PartialEq)]
 pub struct Located<T> {
-    /// The value.
+    /// The value that was read.
     pub value: T,
-    /// Its place.
+    /// Place of the value in its file.
     pub span: Span,
 }
 
 impl<T> Located<T> {
-    /// A value at a place.
+    /// Creates a located value from a value and its place.
     pub fn new(value: T, span: Span) -> Self {
         Self { value, span }
     }
 }
 
 impl<T: fmt::Display> Located<T> {
-    /// The value as text, at its place.
+    /// Returns the value as text, at the same place.
     pub fn text(&self) -> Located<String> {
         Located::new(self.value.to_string(), self.span.clone())
     }

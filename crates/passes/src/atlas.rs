@@ -4,17 +4,18 @@ use crate::error::Error;
 use skiagraph_scene::{Surfaces, texture::SourceKey};
 use std::collections::HashMap;
 
-/// WGSL's record of a material in `scene.materials`.
+/// Material as shaders read it: an item of `scene.materials`, 32 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct MaterialRecord {
-    /// Linear red, green, blue, times the texture's.
+    /// Linear red, green and blue; shaders multiply them by the texture.
     pub base_color: [f32; 3],
-    /// The first of its texels in `scene.texels`, row by row; without meaning where it has none.
+    /// Index of the texture's first texel in `scene.texels`, row by row; without meaning if the
+    /// material has no texture.
     pub first_texel: u32,
-    /// Width and height of its texture; 0 without one.
+    /// Width and height of the texture in texels; 0 if the material has no texture.
     pub size: [u32; 2],
-    /// Wrapping beyond its edges, for u and v: 0 repeats, 1 mirrors, 2 clamps.
+    /// Wrapping of u and v beyond the texture's edges: 0 repeats, 1 mirrors, 2 clamps.
     pub wrap: [u32; 2],
 }
 
@@ -25,10 +26,10 @@ pub(crate) struct Atlas {
 }
 
 impl Atlas {
-    /// Reads every texture once.
+    /// Packs the materials of a mesh, and reads each texture once.
     ///
     /// # Errors
-    /// One that cannot be read.
+    /// [`Error::Texture`] for a texture that cannot be read.
     pub fn new(surfaces: &Surfaces) -> Result<Self, Error> {
         let mut atlas = Self {
             records: Vec::new(),

@@ -2,24 +2,24 @@
 
 use std::time::Duration;
 
-/// One resource as it was made last.
+/// Record of the last time that a resource was made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Built {
-    /// Its name.
+    /// Name of the resource.
     pub name: &'static str,
-    /// Kind of work.
+    /// Kind of work that made the resource.
     pub how: How,
-    /// Time that it took on the CPU, uploads included.
+    /// CPU time that the work took, uploads included.
     pub time: Duration,
-    /// How often it was made, this time included.
+    /// Number of times that the resource was made, this time included.
     pub times: u32,
 }
 
-/// Kinds of work for a resource.
+/// Kind of work that makes a resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum How {
-    /// Made of what is set.
+    /// The resource was made from the scene as it is set.
     Made,
-    /// A hierarchy whose boxes were fitted to a deformed mesh; its tree is as it was.
+    /// The boxes of a hierarchy were fitted to a deformed mesh; its tree stayed as it was.
     Refitted,
 }

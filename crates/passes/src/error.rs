@@ -1,108 +1,110 @@
 //! Why a scene cannot be brought to the GPU.
 
-/// Errors of this crate. They reach the caller as the message of a graph's provider error.
+/// Error of bringing a scene to the GPU. While a graph is executed, its text is that of the graph's
+/// provider error.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// The provider has nothing of that name.
+    /// The provider has no resource with the requested name.
     #[error("the scene provides no `{name}`; it has {}", known.join(", "))]
     Unknown {
-        /// Requested name.
+        /// Name that was requested.
         name: String,
-        /// Known names.
+        /// Names of the resources that the provider has.
         known: Vec<String>,
     },
-    /// The device's acceleration structures hold fewer triangles.
+    /// The mesh has more triangles than an acceleration structure of the device holds.
     #[error(
         "`scene.tlas` needs {triangles} triangles, but the device takes {most} at most: trace with \
          `engine: Hierarchy`"
     )]
     TooManyTriangles {
-        /// Triangles of the mesh.
+        /// Number of triangles of the mesh.
         triangles: usize,
-        /// The device's limit.
+        /// Number of triangles that the device takes at most.
         most: u32,
     },
-    /// The hierarchy in light space holds fewer triangles.
+    /// The mesh has more triangles than the hierarchy in light space holds.
     #[error(
         "`scene.light_space_nodes` cannot hold {triangles} triangles on this device: trace with \
          `engine: Hierarchy`"
     )]
     LightSpace {
-        /// Triangles of the mesh.
+        /// Number of triangles of the mesh.
         triangles: usize,
     },
-    /// The hierarchy in light space is that of one direction.
+    /// The hierarchy in light space needs a directional light, but the light has this kind.
     #[error(
         "`scene.light_space_nodes` is made for a directional light, not for a {0} light: trace \
          with `engine: Hierarchy`"
     )]
     LightSpaceKind(&'static str),
-    /// A texture of the mesh that cannot be read.
+    /// A texture of the mesh cannot be read.
     #[error("texture {0}")]
     Texture(
-        /// Which one, and why.
+        /// Name of the texture, and the reason.
         String,
     ),
-    /// A triangle without its corner.
+    /// A triangle has a corner beyond the mesh's positions.
     #[error("a triangle of the mesh has the corner {index}, but it has only {corners} positions")]
     Corner {
-        /// The index.
+        /// Index of the corner.
         index: u32,
-        /// Number of positions.
+        /// Number of positions of the mesh.
         corners: usize,
     },
-    /// A light that shines nowhere.
+    /// The light cannot be used.
     #[error("{0}")]
     Light(
-        /// Reason.
+        /// Reason why the light cannot be used.
         String,
     ),
-    /// A camera that sees nothing.
+    /// The camera has numbers that are infinite or NaN.
     #[error("the camera has numbers that are infinite or none: {0:?}")]
     Camera(
-        /// As shaders would have it.
+        /// Camera in the layout that shaders read.
         crate::uniforms::CameraUniform,
     ),
-    /// Not as many places or normals as the mesh has.
+    /// A deformed mesh has another number of positions or normals than the mesh.
     #[error(
         "a deformed mesh has {} positions and {} normals, as before; given were {} and {}: for \
          another mesh there is `set_mesh`",
         expected[0], expected[1], given[0], given[1]
     )]
     Deformed {
-        /// Positions and normals of the mesh.
+        /// Numbers of positions and normals of the mesh.
         expected: [usize; 2],
-        /// Those that were given.
+        /// Numbers of positions and normals that were given.
         given: [usize; 2],
     },
-    /// A place or normal that is infinite or no number.
+    /// A position or normal of a deformed mesh is infinite or NaN.
     #[error("{what} {index} of a deformed mesh is {value}, which is not finite")]
     NotFinite {
         /// `position` or `normal`.
         what: &'static str,
-        /// Which one, counted from 0.
+        /// Index of the position or normal, from 0.
         index: usize,
-        /// The number that was given.
+        /// Position or normal that was given.
         value: glam::Vec3,
     },
-    /// Transforms for a mesh in one piece.
+    /// Transforms were set for a mesh without parts.
     #[error(
         "the provider's mesh has no parts to be moved: make it with `SceneProvider::from_parts`, \
          or give it parts with `set_parts`"
     )]
     NoParts,
-    /// A part that cannot be moved so.
+    /// A part cannot be moved by its map.
     #[error(transparent)]
     Move(#[from] skiagraph_scene::MoveError),
-    /// The device cannot bind a buffer of that size.
+    /// A resource needs a larger buffer than the device can bind.
     #[error("`{name}` needs a buffer of {bytes} bytes, but the device binds at most {limit}")]
     TooLarge {
-        /// The resource.
+        /// Name of the resource.
         name: String,
-        /// Its size.
+        /// Number of bytes that the resource needs.
         bytes: u64,
-        /// The smaller of the device's buffer size and binding size limits.
+        /// Number of bytes that the device binds at most: the smaller of its buffer size and
+        /// binding size limits.
         limit: u64,
     },
 }

@@ -7,48 +7,49 @@ use crate::{
 use glam::{DMat4, DVec2, DVec3};
 use skiagraph_scene::{Camera, LEAST_DEPTH};
 
-/// Which end of the depth buffer is near.
+/// Direction of a depth buffer: the end that is near.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Depth {
-    /// 0 is near, 1 is far.
+    /// Depth 0 is near, depth 1 is far.
     Standard,
-    /// 1 is near, 0 is far.
+    /// Depth 1 is near, depth 0 is far.
     Reversed,
 }
 
 /// How many times as far off as the near plane the far plane is taken to be where it is infinite.
 const FARTHEST: f64 = 65536.0;
 
-/// A camera by its matrices: perspective or orthographic, symmetric or not, jittered, with a far
-/// plane or without.
+/// Camera of a host program, given by its matrices: perspective or orthographic, symmetric or not,
+/// jittered or not, with a far plane or without.
 ///
-/// Positions reconstructed from a depth buffer (`shared/from_depth.ron`) are right for any of them.
-/// Fits to the eye's frustum (`fit: camera`, `pssm`) are laid over a symmetric one that holds it;
-/// one without a far plane counts as ending at 65,536 times its near plane. `shared/gbuffer.ron`
-/// draws that symmetric frustum, too, in reversed depth whatever the host's is.
+/// Positions reconstructed from a depth buffer (`shared/from_depth.ron`) are right for any such
+/// camera. Fits to the eye's frustum (`fit: camera`, `pssm`) use a symmetric frustum that holds the
+/// camera's own. A camera without a far plane counts as ending at 65,536 times its near plane.
+/// `shared/gbuffer.ron` draws the symmetric frustum, too, in reversed depth whatever the host's
+/// depth is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Eye {
     pub(crate) camera: CameraUniform,
     pub(crate) unprojection: UnprojectionUniform,
 }
 
-/// Matrices that are no camera's.
+/// Reason why matrices do not form a camera.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EyeError {
-    /// One has entries that are infinite or no numbers.
+    /// A matrix has entries that are infinite or NaN.
     #[error("the {0} matrix has entries that are not finite")]
     NotFinite(
-        /// `view` or `projection`.
+        /// Name of the matrix: `view` or `projection`.
         &'static str,
     ),
-    /// One cannot be inverted.
+    /// A matrix cannot be inverted.
     #[error("the {0} matrix is singular")]
     Singular(
-        /// `view` or `projection`.
+        /// Name of the matrix: `view` or `projection`.
         &'static str,
     ),
-    /// The numbers of the frustum do not fit f32.
+    /// The frustum of the projection does not fit f32.
     #[error("the frustum of the projection is none that f32 can hold: near {near}, far {far}")]
     Frustum {
         /// Distance of the near plane.
@@ -56,7 +57,7 @@ pub enum EyeError {
         /// Distance of the far plane.
         far: f64,
     },
-    /// Depth grows the other way.
+    /// The depth of the projection does not grow in the direction that was given.
     #[error("the depth of the projection is not {0:?}: its near plane is not before the eye")]
     Depth(Depth),
 }
@@ -67,7 +68,7 @@ impl Eye {
     /// space.
     ///
     /// # Errors
-    /// Matrices that are no camera's.
+    /// [`EyeError`] for matrices that do not form a camera.
     pub fn new(view: DMat4, projection: DMat4, depth: Depth) -> Result<Self, EyeError> {
         for (name, matrix) in [("view", view), ("projection", projection)] {
             if !matrix.is_finite() {

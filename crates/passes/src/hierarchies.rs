@@ -65,8 +65,8 @@ impl Hierarchies {
         }
     }
 
-    /// The same along the rays to a light. Trees are kept for rays of the directions that were
-    /// asked for last.
+    /// Returns the tree of a mesh in the light space of `space`. Trees are kept for the directions
+    /// that were asked for last.
     ///
     /// # Errors
     /// More triangles than its links can name.
@@ -119,7 +119,7 @@ impl Hierarchies {
         })
     }
 
-    /// For a mesh of another topology.
+    /// Forgets all trees, for a mesh of another topology.
     pub fn forget(&mut self) {
         *self = Self::default();
     }

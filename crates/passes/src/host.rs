@@ -3,70 +3,71 @@
 use skiagraph_scene::{Indexed, IndexedError, Mesh};
 use std::sync::mpsc;
 
-/// A mesh in vertex and index buffers of a host.
+/// Mesh in vertex and index buffers of a host program.
 ///
-/// Presets need positions on the CPU as well: light space is laid around them, and hierarchies and
-/// adjacency are made of them.
+/// Presets need the positions on the CPU, too: light space is laid around them, and hierarchies and
+/// adjacency are built from them.
 #[derive(Clone, Copy, Debug)]
 pub struct GpuMesh<'a> {
-    /// Vertices, one behind the other, in a buffer with `COPY_SRC`.
+    /// Vertices one behind the other, in a buffer with the usage `COPY_SRC`.
     pub vertices: wgpu::BufferSlice<'a>,
-    /// Bytes from one vertex to the next.
+    /// Distance from one vertex to the next, in bytes.
     pub stride: usize,
-    /// Where in a vertex its position is, three f32.
+    /// Offset of the position within a vertex, in bytes; it is three f32.
     pub position: usize,
-    /// Where its normal is, three f32; without, faces are flat.
+    /// Offset of the normal within a vertex, in bytes; it is three f32. `None` makes faces flat.
     pub normal: Option<usize>,
-    /// Three indices for each triangle, in a buffer with `COPY_SRC`.
+    /// Three indices for each triangle, in a buffer with the usage `COPY_SRC`.
     pub indices: wgpu::BufferSlice<'a>,
-    /// Type of an index.
+    /// Type of the indices: 16 or 32 bits.
     pub format: wgpu::IndexFormat,
 }
 
-/// Why a [`GpuMesh`] cannot be read.
+/// Reason why a [`GpuMesh`] cannot be read.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum GpuMeshError {
-    /// A buffer without `COPY_SRC`.
+    /// A buffer lacks the usage `COPY_SRC`.
     #[error("the buffer of {0} cannot be read: it needs the usage COPY_SRC")]
     Usage(
-        /// `vertices` or `indices`.
+        /// Content of the buffer: `vertices` or `indices`.
         &'static str,
     ),
-    /// A part of a buffer that cannot be copied.
+    /// A buffer cannot be copied: its size, or an offset in it, is not divisible by 4.
     #[error("the {0} lie at an offset, or in a buffer, that is not divisible by 4")]
     Alignment(
-        /// `vertices` or `indices`.
+        /// Content of the buffer: `vertices` or `indices`.
         &'static str,
     ),
-    /// A vertex that is too short for what is in it.
+    /// A position or normal reaches beyond the end of its vertex.
     #[error("{what} at byte {at} does not fit a vertex of {stride} bytes")]
     Vertex {
-        /// `position` or `normal`.
+        /// Attribute of the vertex: `position` or `normal`.
         what: &'static str,
-        /// Where it should be.
+        /// Offset of the attribute within a vertex, in bytes.
         at: usize,
-        /// Bytes of a vertex.
+        /// Size of a vertex in bytes.
         stride: usize,
     },
-    /// Numbers that are no mesh.
+    /// The numbers in the buffers do not form a mesh.
     #[error(transparent)]
     Mesh(#[from] IndexedError),
-    /// The device gave nothing back.
+    /// The device could not read a buffer back.
     #[error("the {what} could not be read back: {why}")]
     Device {
-        /// `vertices` or `indices`.
+        /// Content of the buffer: `vertices` or `indices`.
         what: &'static str,
-        /// wgpu's reason.
+        /// Reason that wgpu gives.
         why: String,
     },
 }
 
 impl GpuMesh<'_> {
-    /// Copies the mesh back, once, and welds it. Waits for the GPU: nothing for a frame.
+    /// Copies the buffers back from the GPU and welds them into a mesh. Waits for the GPU, so call
+    /// it when a mesh is loaded, not in each frame.
     ///
     /// # Errors
-    /// Buffers that cannot be read, and numbers that are no mesh.
+    /// [`GpuMeshError`]: buffers that cannot be read, or numbers that do not form a mesh.
     pub fn read(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Mesh, GpuMeshError> {
         let stride = self.stride;
         let parts = [("position", Some(self.position)), ("normal", self.normal)];

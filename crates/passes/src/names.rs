@@ -1,6 +1,6 @@
-//! The names of what a scene gives, and what each depends on.
+//! Names of the resources that a scene provides.
 //!
-//! A plan says which of them it asks for:
+//! A plan lists the names that its passes ask for:
 //!
 //! ```
 //! use skiagraph_graph::{Graph, PlanRequest};
@@ -41,21 +41,21 @@ names! {
     pub(crate) LIGHT_SPACE_NODES = "scene.light_space_nodes";
     pub(crate) LIGHT_SPACE_PRIMITIVES = "scene.light_space_primitives";
     pub(crate) TLAS = "scene.tlas";
-    /// Name of the buffer that `shared/masks.wgsl` reads: no items in a scene where no triangle is
-    /// masked or double-sided.
+    /// Name of the buffer that `shared/masks.wgsl` reads. It has no items if no triangle of the
+    /// scene is masked or double-sided.
     pub MASKS = "scene.masks";
     pub(crate) UVS = "scene.uvs";
     pub(crate) UV_INDICES = "scene.uv_indices";
     pub(crate) MATERIALS = "scene.materials";
     pub(crate) MATERIAL_INDICES = "scene.material_indices";
     pub(crate) TEXELS = "scene.texels";
-    /// The uniform of `shared/camera.wgsl`.
+    /// Name of the uniform that `shared/camera.wgsl` reads.
     pub CAMERA = "camera";
-    /// The uniform of `shared/unprojection.wgsl`.
+    /// Name of the uniform that `shared/unprojection.wgsl` reads.
     pub UNPROJECTION = "unprojection";
-    /// The uniform of `shared/light.wgsl`.
+    /// Name of the uniform that `shared/light.wgsl` reads.
     pub LIGHT = "light";
-    /// The uniform of `shared/light_area.wgsl`.
+    /// Name of the uniform that `shared/light_area.wgsl` reads.
     pub LIGHT_AREA = "light_area";
 }
 
@@ -148,19 +148,19 @@ impl Versions {
         self.lay();
     }
 
-    /// Another mesh.
+    /// Notes that the mesh was replaced by another mesh.
     pub fn change_mesh(&mut self) {
         self.mesh = next_version();
         self.change_winding();
         self.change_shape();
     }
 
-    /// Triangles are wound the other way.
+    /// Notes that triangles are wound the other way.
     pub fn change_winding(&mut self) {
         self.winding = next_version();
     }
 
-    /// Corners are elsewhere.
+    /// Notes that corners of the mesh have moved.
     pub fn change_shape(&mut self) {
         self.shape = next_version();
         self.lay();
@@ -171,7 +171,7 @@ impl Versions {
         self.lights_over.set([self.lights.number, self.shape]);
     }
 
-    /// That of a resource.
+    /// Returns the version of the resource `name`.
     pub fn get(&self, name: &str) -> u64 {
         match name {
             CAMERA | UNPROJECTION => self.eye.number,
@@ -183,7 +183,7 @@ impl Versions {
         }
     }
 
-    /// That of `lights` and `light_areas`, and of what is in them.
+    /// Returns the version of `lights` and `light_areas`, and of the lights in them.
     pub fn of_lists(&self) -> u64 {
         self.lights_over.number
     }

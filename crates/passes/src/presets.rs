@@ -8,8 +8,8 @@ use std::sync::Arc;
 static PIPELINES: Dir = include_dir!("$CARGO_MANIFEST_DIR/pipelines");
 static SHADERS: Dir = include_dir!("$CARGO_MANIFEST_DIR/shaders");
 
-/// `pipelines/…` and `shaders/…` as they were when the crate was compiled. Put it below a
-/// `FolderSources` in a `LayeredSources` to let files on disk win.
+/// Source of the files `pipelines/…` and `shaders/…` as they were when the crate was compiled. Put
+/// it below a `FolderSources` in a `LayeredSources` to let files on disk win.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct EmbeddedSources;
 
@@ -51,17 +51,17 @@ impl Sources for EmbeddedSources {
     }
 }
 
-/// A preset: a document that can be named without its path.
+/// Preset: a pipeline document that can be named without its path.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Preset {
-    /// Name on the command line: the file's name without `.ron`.
+    /// Name of the preset on the command line: the file's name without `.ron`.
     pub name: String,
-    /// Path to hand to `Graph::load` with [`EmbeddedSources`] or a folder that holds the same
-    /// files.
+    /// Path of the document. Hand it to `Graph::load` with [`EmbeddedSources`] or a folder that
+    /// holds the same files.
     pub path: String,
 }
 
-/// The embedded presets by name: every document directly in `pipelines/`.
+/// Lists the embedded presets, sorted by name: every document directly in `pipelines/`.
 pub fn presets() -> Vec<Preset> {
     let mut presets: Vec<Preset> = EmbeddedSources
         .list("pipelines")
@@ -76,7 +76,7 @@ pub fn presets() -> Vec<Preset> {
     presets
 }
 
-/// The standard pass kinds and [`Trace`].
+/// Creates a registry of the standard pass kinds and [`Trace`].
 pub fn registry() -> Registry {
     let mut registry = Registry::standard();
     registry.register::<Trace>("Trace");

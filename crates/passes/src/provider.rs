@@ -22,7 +22,7 @@ use skiagraph_scene::{
 };
 use std::{sync::Arc, time::Instant};
 
-/// Provides one scene under one view, on one device.
+/// Provider of a scene's resources to graphs: one scene under one view, on one device.
 ///
 /// | resource | content |
 /// |---|---|
@@ -46,21 +46,21 @@ use std::{sync::Arc, time::Instant};
 /// | `unprojection` | [`UnprojectionUniform`] |
 /// | `light` | [`LightUniform`] |
 /// | `light_area` | [`LightAreaUniform`] |
-/// | `lights`, `light_areas` | the same of all lights, arrays; `lights[2]` alone is a uniform |
+/// | `lights`, `light_areas` | arrays with an item for each light; `lights[2]` alone is a uniform |
 ///
-/// Resources once built stay and are shared by all graphs that are executed with the same provider,
-/// which therefore belongs to the device that it was first used with. A new camera, light or mesh
-/// is seen by executors that are made from then on, and by others from their next
-/// [`refresh`](skiagraph_gpu::Executor::refresh) on, which makes the resources anew that depend on
-/// it and that a live pass reads.
+/// Resources that are built stay, and are shared by all graphs that are executed with the same
+/// provider. A provider therefore belongs to the device that it was first used with. Executors that
+/// are made after a camera, light or mesh was set see it at once. Others see it after their next
+/// [`refresh`](skiagraph_gpu::Executor::refresh), which makes those resources anew that depend on
+/// the change and that a live pass reads.
 ///
-/// No buffer is written once it was handed out, so any number of executors may be refreshed and
-/// encoded for one submission, each with a light, a camera and a mesh of its own. Setting the same
-/// value again changes nothing for an executor that has seen it.
+/// A buffer is never written again after it was handed out. So any number of executors may be
+/// refreshed and encoded for one submission, each with a light, a camera and a mesh of its own.
+/// Setting the same value again changes nothing for an executor that has seen it.
 ///
-/// wgpu binds no buffer of size zero: an array of an empty scene holds one zero item, its hierarchy
-/// one leaf around a triangle without area, which no ray hits. [`Describe::describe`] still says 0
-/// items, so that nothing is drawn.
+/// wgpu cannot bind a buffer of size zero. An array of an empty scene therefore holds one zero
+/// item, and its hierarchy one leaf around a triangle without area, which no ray hits.
+/// [`Describe::describe`] still says 0 items, so that nothing is drawn.
 #[derive(Clone)]
 pub struct SceneProvider {
     pub(crate) scene: Arc<Scene>,
@@ -75,8 +75,9 @@ pub struct SceneProvider {
 }
 
 impl SceneProvider {
-    /// Provides `scene`. Builds nothing; until [`set_view`](Self::set_view) the `camera` is all
-    /// zeros, and the light is the scene's.
+    /// Creates a provider of `scene` without building any resource. Until a view or a camera is
+    /// set, the `camera` is all zeros. Until a view or a light is set, the light is the scene's
+    /// default light.
     pub fn new(scene: Arc<Scene>) -> Self {
         let lights = lights::from_scene(&scene);
         Self {
@@ -91,16 +92,16 @@ impl SceneProvider {
         }
     }
 
-    /// One more provider of the same, which shares what was built: to be changed and
-    /// [prepared](Self::prepare) on a thread while frames are made with this one, and then given to
-    /// `refresh` in its place, or to be set otherwise beside it. It is the scene as it is now: what
-    /// is set in one of the two afterwards, the other one does not show.
+    /// Creates a second provider of the same scene that shares all built resources. It can be
+    /// changed and [prepared](Self::prepare) on another thread while frames are made with this one,
+    /// and then be passed to `refresh` in its place. Both can also be used side by side. The new
+    /// provider starts with the scene as it is now; later changes of one do not show in the other.
     pub fn branch(&self) -> Self {
         self.clone()
     }
 
-    /// Makes what a plan's live passes read and what is not there as it is now, so that `refresh`
-    /// has nothing left to make.
+    /// Builds the resources that a plan's live passes read and that are missing or out of date, so
+    /// that `refresh` has nothing left to build. Resources that cannot be built yet are skipped.
     ///
     /// # Errors
     /// Those of [`Provider::build`].
@@ -123,8 +124,8 @@ impl SceneProvider {
         Ok(())
     }
 
-    /// The resources that were built, in the order in which they first were, each with what was
-    /// done and how long it took the last time.
+    /// Lists the resources that were built, in the order of their first build. Each entry describes
+    /// the last build.
     pub fn built(&self) -> &[Built] {
         &self.built
     }
@@ -263,7 +264,8 @@ impl SceneProvider {
         }
     }
 
-    /// Provides a mesh under a light. Both can be changed, and a camera must be set.
+    /// Creates a provider of a mesh under a light. Both can be changed later, and a camera must be
+    /// set.
     pub fn from_mesh(mesh: Mesh, light: impl Into<LightKind>) -> Self {
         Self::new(Arc::new(Scene {
             name: String::new(),
@@ -273,21 +275,24 @@ impl SceneProvider {
         }))
     }
 
-    /// Provides a mesh of parts that [`set_transforms`](Self::set_transforms) moves, under a light.
-    /// Both can be changed, and a camera must be set. Parts that were [joined](Movable::joined)
-    /// have no places until they are given some, before or after executors are made.
+    /// Creates a provider of a mesh under a light, with parts that
+    /// [`set_transforms`](Self::set_transforms) moves. Mesh and light can be changed later, and a
+    /// camera must be set. Parts that were [joined](Movable::joined) have no places until they are
+    /// given transforms, before or after executors are made.
     pub fn from_parts(parts: impl Into<Arc<Movable>>, light: impl Into<LightKind>) -> Self {
         let mut provider = Self::from_mesh(Mesh::default(), light);
         provider.set_parts(parts);
         provider
     }
 
-    /// The scene, with the mesh as it was set last.
+    /// Returns the scene, with the mesh that was set last.
     pub fn scene(&self) -> &Arc<Scene> {
         &self.scene
     }
 
-    /// The camera of a view, and its first light or the scene's.
+    /// Sets the camera of a view on a viewport of `[width, height]` pixels, and the view's light:
+    /// its own, or else the scene's default light. [`lights`](Self::lights) becomes the list of the
+    /// scene's lights, or the view's light alone if that is not in the list.
     pub fn set_view(&mut self, view: &View, viewport: [u32; 2]) {
         self.set_camera(&view.camera(viewport));
         let light = self.scene.light_of(view);
@@ -300,44 +305,44 @@ impl SceneProvider {
         self.set_light(light);
     }
 
-    /// Another camera, whose depths are as `shared/gbuffer.ron` draws them: 1 near, 0 far. For
-    /// depths that a host draws itself, [`set_eye`](Self::set_eye) knows which end is near.
+    /// Sets the camera, for depths as `shared/gbuffer.ron` draws them: 1 near, 0 far. For depths
+    /// that a host draws itself use [`set_eye`](Self::set_eye), which is told the near end.
     pub fn set_camera(&mut self, camera: &Camera) {
         self.set_eye(&Eye::from(camera));
     }
 
-    /// Another camera, by its matrices.
+    /// Sets the camera by its matrices.
     pub fn set_eye(&mut self, eye: &Eye) {
         self.versions.eye.set(*eye);
     }
 
-    /// The light.
+    /// Returns the light that is set.
     pub fn light(&self) -> LightKind {
         self.versions.light.now
     }
 
-    /// Which of [`lights`](Self::lights) the light is; the first, if it is none of them.
+    /// Returns the index of the light in [`lights`](Self::lights); 0 if it is not in that list.
     pub fn light_number(&self) -> usize {
         let mut lights = self.lights().iter();
         let number = lights.position(|light| *light == self.light());
         number.unwrap_or_default()
     }
 
-    /// All lights of the scene, or the view's own.
+    /// Returns all lights of the scene, or the view's own light alone.
     pub fn lights(&self) -> &[LightKind] {
         &self.versions.lights.now
     }
 
-    /// Another light. A plan depends on the light's kind: what was planned under a light of another
-    /// kind is planned anew, and its `refresh` is
-    /// [`ExecuteError::OtherThanPlanned`](skiagraph_gpu::ExecuteError::OtherThanPlanned) until
-    /// then.
+    /// Sets the light. A plan depends on the light's kind: after a change of kind, graphs must be
+    /// planned anew. Until then their `refresh` fails with
+    /// [`ExecuteError::OtherThanPlanned`](skiagraph_gpu::ExecuteError::OtherThanPlanned).
     pub fn set_light(&mut self, light: LightKind) {
         self.versions.set_light(light);
     }
 
-    /// Another mesh, in one piece. A plan counts items: what was planned for a mesh of other counts
-    /// is planned anew ([`replace_graph`](skiagraph_gpu::Executor::replace_graph)).
+    /// Sets another mesh, in one piece. A plan depends on the numbers of positions, triangles and
+    /// other items: if they change, graphs must be planned anew
+    /// ([`replace_graph`](skiagraph_gpu::Executor::replace_graph)).
     pub fn set_mesh(&mut self, mesh: Mesh) {
         self.masks = mask_words(&mesh);
         Arc::make_mut(&mut self.scene).mesh = mesh;
@@ -346,9 +351,10 @@ impl SceneProvider {
         self.versions.change_mesh();
     }
 
-    /// Another mesh, in parts that [`set_transforms`](Self::set_transforms) moves; for plans, as
-    /// [`set_mesh`](Self::set_mesh). Parts that were [joined](Movable::joined) have no places until
-    /// they are given some: executors may be made before that, and `encode` is an error.
+    /// Sets another mesh, in parts that [`set_transforms`](Self::set_transforms) moves. Plans
+    /// depend on it as described at [`set_mesh`](Self::set_mesh). Parts that were
+    /// [joined](Movable::joined) have no places until they are given transforms. Executors may be
+    /// made before that, but `encode` is then an error.
     pub fn set_parts(&mut self, parts: impl Into<Arc<Movable>>) {
         let parts = parts.into();
         self.set_mesh(parts.rest.clone());
@@ -366,14 +372,15 @@ impl SceneProvider {
         };
     }
 
-    /// The same mesh at other places: positions and normals in the order and number of those that
-    /// are there. Hierarchies are refitted (or built, the first time, or when refitting has made
-    /// them bad), adjacency and all else is kept. Triangles stay wound as they are: what is
-    /// mirrored needs [`set_mesh`](Self::set_mesh) or [`set_transforms`](Self::set_transforms).
-    /// Equal places are no change.
+    /// Moves the corners of the mesh: replaces positions and normals by as many others in the same
+    /// order. Hierarchies are refitted (or built, the first time, or when refitting has made them
+    /// bad); adjacency and all else is kept. Triangles keep their winding: for a mirrored mesh use
+    /// [`set_mesh`](Self::set_mesh) or [`set_transforms`](Self::set_transforms). Equal positions
+    /// and normals are no change.
     ///
     /// # Errors
-    /// Other numbers of positions or normals, or one that is not finite. Nothing has changed then.
+    /// Another number of positions or normals, or one that is not finite. The mesh then stays as it
+    /// was.
     pub fn deform(&mut self, positions: Vec<Vec3>, normals: Vec<Vec3>) -> Result<(), Error> {
         let mesh = &self.scene.mesh;
         let expected = [mesh.positions.len(), mesh.normals.len()];
@@ -400,15 +407,16 @@ impl SceneProvider {
         Ok(())
     }
 
-    /// Moves each part of what [`set_parts`](Self::set_parts) or
-    /// [`from_parts`](Self::from_parts) was given from where it rests by the map of the same index.
-    /// Only parts whose maps are others than before are moved, and equal maps cost nothing. The
+    /// Moves part number n of the mesh from its place at rest by `maps[n]`, for each part. The
+    /// parts are those given to [`set_parts`](Self::set_parts) or [`from_parts`](Self::from_parts).
+    /// Only parts with another map than before are moved, and equal maps cost nothing. The
     /// triangles of a part that its map mirrors are wound the other way, as in glTF, so that its
     /// outside stays outside.
     ///
     /// # Errors
-    /// A provider without parts, other than one map for each part, or a map by which a part cannot
-    /// be moved (not finite, singular); the error names the part. Nothing has changed then.
+    /// The provider has no parts, the number of maps is not the number of parts, or a part cannot
+    /// be moved by its map (not finite, singular); the error names the part. The mesh then stays as
+    /// it was.
     pub fn set_transforms(&mut self, maps: &[DAffine3]) -> Result<(), Error> {
         let parts = self.shape.parts.clone().ok_or(Error::NoParts)?;
         parts.check_count(maps.len())?;

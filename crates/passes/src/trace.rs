@@ -50,7 +50,7 @@ const MASKED: [(&str, &str); 2] = [
 ];
 
 impl Engine {
-    /// The engines as words of a `Choice`.
+    /// Words by which a `Choice` in a document selects an engine, each with its engine.
     pub const WORDS: [(&str, Self); 3] = [
         ("hierarchy", Self::Hierarchy),
         ("ray_query", Self::RayQuery),

@@ -1,5 +1,5 @@
-//! Uniforms of the camera and the light. The structs of `shaders/shared/camera.wgsl` and
-//! `light.wgsl` are laid out alike; a test compares both with what naga makes of them.
+//! Uniforms of the camera and the light, laid out like the structs of `shaders/shared/camera.wgsl`
+//! and `light.wgsl`. A test checks this with naga.
 //!
 //! ```
 //! use glam::DVec3;
@@ -26,12 +26,12 @@ use skiagraph_scene::{Camera, DirectionalLight, LightKind, Mesh, SpotLight, ligh
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct CameraUniform {
-    /// Eye, world space, rounded to f32.
+    /// Eye position, world space, rounded to f32.
     pub eye: Vec3,
     /// Near plane distance.
     pub near: f32,
-    /// Remainder of rounding the eye, so that corners far from the origin keep their distance to
-    /// the eye.
+    /// Remainder of rounding `eye`, so that corners far from the origin keep their distance to the
+    /// eye.
     pub eye_low: Vec3,
     /// Far plane distance.
     pub far: f32,
@@ -47,9 +47,9 @@ pub struct CameraUniform {
     pub forward: Vec3,
     /// near / (far − near): clip z per unit of distance before the far plane.
     pub depth_scale: f32,
-    /// Where the ray of a pixel goes through it: from its centre, in pixels, y down.
+    /// Offset of each pixel's ray from the pixel's centre, in pixels, y down.
     pub jitter: Vec2,
-    /// The same in clip space, y up.
+    /// Jitter in clip space, y up.
     pub jitter_clip: Vec2,
 }
 
@@ -73,61 +73,68 @@ impl From<&Camera> for CameraUniform {
     }
 }
 
-/// WGSL's `Unprojection`: how places come back from a depth buffer, 96 bytes.
+/// WGSL's `Unprojection`: data to reconstruct positions from a depth buffer, 96 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct UnprojectionUniform {
-    /// From clip space to the world relative to `origin`, to be divided by w.
+    /// Matrix from clip space to world space relative to `origin`; the result is to be divided by
+    /// w.
     pub relative_from_clip: Mat4,
-    /// The eye, rounded to f32.
+    /// Eye position, world space, rounded to f32.
     pub origin: Vec3,
-    /// 1 if depth 1 is near, else 0.
+    /// 1 if depth 1 of the depth buffer is near, 0 if depth 0 is near.
     pub is_reversed: u32,
-    /// Remainder of rounding the origin.
+    /// Remainder of rounding `origin`.
     pub origin_low: Vec3,
-    /// Unused.
+    /// Unused filler at the end of the struct.
     pub padding: f32,
 }
 
-/// WGSL's `Light`: a light and its light space, of a directional light fitted to the scene's
-/// corners; 144 bytes.
+/// WGSL's `Light`: a light and its light space, 144 bytes. The light space of a directional light
+/// is fitted to the scene's corners.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct LightUniform {
-    /// From a position relative to `centre` to the light's clip space (w stays 1; z in 0..1 grows
-    /// away from the light). For a spot light, maps positions relative to the light to x, y and w,
-    /// of which w, the distance along the axis, is the half width of the map, and z, its share of
-    /// `range`.
+    /// Matrix to the light's clip space, in which z in 0..1 grows away from the light. For a
+    /// directional light it maps positions relative to `centre`, and w stays 1. For a spot light it
+    /// maps positions relative to the light: w is the distance along the axis, x and y reach from
+    /// −w to w across the map, and z is w as a share of `range`. For a point light it is 0.
     pub clip_from_relative: Mat4,
-    /// Unit vector towards the light; of a spot light, against its axis; of a point light, 0.
+    /// Unit vector towards a directional light; for a spot light, the reverse of its axis; for a
+    /// point light, 0.
     pub to_light: Vec3,
-    /// No two points of the scene are farther apart.
+    /// Upper bound on the distance between two points of the scene, in scene units.
     pub max_distance: f32,
     /// Centre of the scene's box, world space: a matrix on absolute positions would lose the detail
     /// of a far-off scene.
     pub centre: Vec3,
-    /// The most that is summed up, sizes alone, for clip x or y of a point in the scene's box: what
-    /// their rounding is a share of.
+    /// Largest sum of the magnitudes that are added up for clip x or y of a point in the scene's
+    /// box. The rounding error of clip x and y is a share of this sum. Only for a directional
+    /// light.
     pub corner_across: f32,
-    /// World units per unit of light-space clip x, y and z; of a spot or point light, at `range`.
+    /// World units per unit of light-space clip x, y and z; for a spot or point light, at distance
+    /// `range`.
     pub extent: Vec3,
-    /// The same for clip z.
+    /// Largest sum of the magnitudes that are added up for clip z of a point in the scene's box.
+    /// Only for a directional light.
     pub corner_along: f32,
-    /// Place of a spot or point light, rounded to f32.
+    /// Position of a spot or point light, world space, rounded to f32.
     pub position: Vec3,
     /// Cosine of the angle between a spot light's axis and the edge of its cone.
     pub edge_cosine: f32,
-    /// Remainder of rounding the position.
+    /// Remainder of rounding `position`.
     pub position_low: Vec3,
-    /// No point of the scene is farther from a spot or point light.
+    /// Upper bound on the distance from a spot or point light to any point of the scene.
     pub range: f32,
 }
 
-/// The kinds of light: words for documents and scene files, numbers for shaders.
+/// Words for the kinds of lights in documents and scene files. The index of a word is the kind's
+/// number in shaders.
 pub const LIGHT_KINDS: [&str; 3] = ["directional", "spot", "point"];
 
 impl LightUniform {
-    /// The light over all corners of a mesh; an empty one counts as a point at the origin.
+    /// Creates the uniform of a light over all corners of a mesh. An empty mesh counts as a point
+    /// at the origin.
     pub fn new(light: impl Into<LightKind>, mesh: &Mesh) -> Self {
         match light.into() {
             LightKind::Directional(light) => Self::directional(&light, mesh),
@@ -208,18 +215,18 @@ impl LightUniform {
     }
 }
 
-/// WGSL's `LightArea`: how far the light reaches around its centre, 32 bytes.
+/// WGSL's `LightArea`: extent of a light around its centre, 32 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct LightAreaUniform {
-    /// From the light's centre to its rim, of a directional light at distance 1; 0 of a point
-    /// light, whose disk faces each receiver.
+    /// Vector from the light's centre to its rim, for a directional light at distance 1; 0 for a
+    /// point light, whose disk faces each receiver.
     pub right: Vec3,
     /// Radius of the disk that `right` and `up` span; 0 for a light without extent.
     pub radius: f32,
-    /// As `right`, at a right angle to it.
+    /// Second vector from the light's centre to its rim, at a right angle to `right`.
     pub up: Vec3,
-    /// Unused.
+    /// Unused filler at the end of the struct.
     pub padding: f32,
 }
 

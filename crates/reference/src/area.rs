@@ -85,15 +85,18 @@ impl Emitter {
     }
 }
 
-/// The ground truth under this light: [`Oracle::shade`] of one without extent; of one that is an
-/// area the share of it that each pixel sees, too, of at least `samples` shadow rays (an even
-/// number; four at least). The rays of the exact mode pass the pixel's own primitive, whichever way
-/// they go; those of the mode with an offset begin at the receiver moved towards the light's
+/// Finds the ground truth of a view under a light.
+///
+/// For a light without extent it is the result of [`Oracle::shade`]. For a light with extent it
+/// also has the share of the light that each pixel sees, from at least `samples` shadow rays per
+/// pixel (rounded up to an even number, at least four). `primitives` is as for [`Oracle::shade`].
+/// In the mode [`OracleMode::Exact`] rays ignore the pixel's own primitive, in whichever direction
+/// they go. In the mode [`OracleMode::Offset`] they begin at the receiver moved towards the light's
 /// centre.
 ///
-/// Which pixels face the light, the centre of the light decides: dot(n, l) ≤ 0 is facing away,
-/// though a part of the light may be above the horizon. A pixel's class is *lit* where it sees
-/// half of the light or more. Indeterminate are those whose answer to the light's centre is.
+/// The centre of the light decides which pixels face it: with dot(n, l) ≤ 0 a pixel faces away,
+/// though a part of the light may be above its horizon. A pixel that sees half of the light or more
+/// is *lit*. A pixel is indeterminate if its answer to the light's centre is.
 ///
 /// # Errors
 /// Those of [`Oracle::shade`].

@@ -1,4 +1,4 @@
-//! Blockers between the light and the pixels that a method is certain and wrong of.
+//! Counts what blocks the light at pixels that a method calls certain and gets wrong.
 //!
 //! A method that culls front faces knows a caster by its back faces. A closed part has one behind
 //! each front face; an open part, such as a leaf or a curtain, may have none, and what it shadows
@@ -15,25 +15,26 @@ use serde::{Deserialize, Serialize};
 use skiagraph_scene::{Camera, LightKind, Parts, Towards};
 use std::ops::ControlFlow;
 
-/// Certain wrong pixels by the parts of the mesh that block them ([`Parts`] says which are open).
+/// Number of pixels that a method calls certain and gets wrong, by the parts of the mesh that block
+/// their light ([`Parts`] says which parts are open).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct BlockerCounts {
-    /// In shadow of open parts alone.
+    /// Pixels in the shadow of open parts alone.
     pub open_part: u64,
-    /// In shadow of a closed part, whatever else stands in the way.
+    /// Pixels in the shadow of a closed part, whatever else stands in the way.
     pub closed_part: u64,
-    /// With nothing in the way: wrongly in shadow, or facing away from the light.
+    /// Pixels with nothing in the way: wrongly in shadow, or facing away from the light.
     pub none: u64,
 }
 
-/// Finds the blockers of each of `pixels`, places in the buffer `primitives`; the other
-/// arguments are those of [`Oracle::shade`].
+/// Counts the blockers of some pixels. `pixels` holds their indices in the buffer `primitives`. The
+/// other arguments are those of [`Oracle::shade`].
 ///
 /// # Errors
 /// [`Error::UnknownPrimitive`].
 ///
 /// # Panics
-/// If a place lies outside the viewport.
+/// If an index in `pixels` lies outside the viewport.
 pub fn blockers(
     oracle: &Oracle<'_>,
     camera: &Camera,

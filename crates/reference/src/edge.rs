@@ -1,4 +1,4 @@
-//! How far wrong pixels lie from the reference's shadow edges.
+//! Distances of wrong pixels from the reference's shadow edges.
 //!
 //! The distances tell the causes apart: the steps of a map's texels stay within a texel of an edge,
 //! acne lies anywhere on lit surfaces, and a bias lights the shadow beside its caster.
@@ -17,8 +17,9 @@ use serde::{Deserialize, Serialize};
 /// Pixels within which a wrong pixel counts as lying at an edge.
 const NEAR: f64 = 2.0;
 
-/// Distances of the wrong pixels outside the band from the nearest pixel at an edge: one that faces
-/// the light beside another that does, where one is lit and the other in shadow.
+/// Distances of a method's wrong pixels from the nearest shadow edge of the reference.
+/// Indeterminate pixels are left out. A pixel is at an edge if it and a pixel beside it face the
+/// light, and one of the two is lit and the other in shadow.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct EdgeDistances {
     /// Distances of the wrongly lit pixels.
@@ -27,12 +28,12 @@ pub struct EdgeDistances {
     pub shadow: Distances,
 }
 
-/// Distances of some pixels from the nearest edge.
+/// Distances of a set of pixels from the nearest shadow edge.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Distances {
     /// Number of pixels that have a distance.
     pub count: u64,
-    /// Number of these that lie within two pixels of an edge.
+    /// Number of pixels that lie within two pixels of an edge.
     pub near: u64,
     /// Mean distance in pixels; 0 if the pixel is at the edge itself.
     pub mean_pixels: f64,
@@ -70,7 +71,7 @@ impl Distances {
         all
     }
 
-    /// Returns the distances of both sets of pixels.
+    /// Returns the distances of two sets of pixels together.
     pub fn with(self, other: Self) -> Self {
         let count = self.count + other.count;
         let mean = |one: f64, another: f64| {
@@ -90,7 +91,8 @@ impl Distances {
 }
 
 impl EdgeDistances {
-    /// Measures the wrong pixels of a method's picture; `visibility`, `status` and `truth` as for
+    /// Measures the distances of the wrong pixels of a method's picture. `seen` is the frame of the
+    /// picture. `visibility`, `status` and `truth` are as for
     /// [`Statistics::judged`](crate::Statistics::judged).
     ///
     /// # Errors
@@ -121,7 +123,7 @@ impl EdgeDistances {
         Ok(Self { lit, shadow })
     }
 
-    /// Returns the distances of both pictures' pixels.
+    /// Returns the distances of the wrong pixels of two pictures together.
     pub fn with(self, other: Self) -> Self {
         Self {
             lit: self.lit.with(other.lit),
@@ -129,7 +131,7 @@ impl EdgeDistances {
         }
     }
 
-    /// Returns the distances of all wrong pixels.
+    /// Returns the distances of all wrong pixels, wrongly lit and wrongly in shadow.
     pub fn all(self) -> Distances {
         self.lit.with(self.shadow)
     }

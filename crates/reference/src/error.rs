@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-/// Why an oracle run, a count or an image could not be made.
+/// Reason why an oracle run, a count or an image could not be made.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -16,13 +16,13 @@ pub enum Error {
         viewport[1]
     )]
     PixelCount {
-        /// Which buffer: `primitives`, `visibility` or `status`.
+        /// Name of the buffer, such as `primitives`, `visibility` or `status`.
         name: &'static str,
         /// Viewport width and height.
         viewport: [u32; 2],
-        /// Pixels of the viewport.
+        /// Number of pixels in the viewport.
         expected: u64,
-        /// Values in the buffer.
+        /// Number of values in the buffer.
         actual: u64,
     },
     /// The G-buffer names a triangle that the mesh does not have: it was drawn from another mesh.
@@ -34,39 +34,40 @@ pub enum Error {
         x: u32,
         /// Pixel row.
         y: u32,
-        /// The id found there.
+        /// Primitive id that the pixel shows.
         primitive: u32,
-        /// Triangles of the mesh.
+        /// Number of triangles of the mesh.
         count: u64,
     },
-    /// A `visibility` or `status` value that a shadow preset must not have.
+    /// A pixel has a `visibility` or `status` that a shadow preset must not write.
     #[error("{name} is {value} at pixel ({x}, {y}); {expected}")]
     Value {
-        /// Which buffer: `visibility` or `status`.
+        /// Name of the buffer: `visibility` or `status`.
         name: &'static str,
         /// Pixel column.
         x: u32,
         /// Pixel row.
         y: u32,
-        /// The value found there.
+        /// Value of that pixel.
         value: u32,
         /// The values that are allowed, as a sentence.
         expected: &'static str,
     },
-    /// Pixels whose `visibility` is [`UNANSWERED`](crate::statistics::UNANSWERED).
+    /// Some pixels have no answer: their `visibility` is
+    /// [`UNANSWERED`](crate::statistics::UNANSWERED).
     #[error(
         "{pixels} pixels have no answer, the first at ({x}, {y}): the driver ended loops of the \
          shader that traces their rays, which pass too many triangles; another adapter may answer"
     )]
     Unanswered {
-        /// Number of such pixels.
+        /// Number of pixels without an answer.
         pixels: usize,
-        /// Column of the first one.
+        /// Column of the first pixel without an answer.
         x: u32,
-        /// Row of the first one.
+        /// Row of the first pixel without an answer.
         y: u32,
     },
-    /// The light cannot be: its direction has no length, a number is not finite.
+    /// The light is not valid: its direction has no length, or a number is not finite.
     #[error("{0}")]
     Light(String),
     /// The offset of [`OracleMode::Offset`](crate::OracleMode::Offset) is negative or not finite.
@@ -81,10 +82,10 @@ pub enum Error {
     OffsetTooLong {
         /// The offset, in scene units.
         length: f64,
-        /// The longest one for this mesh: a million times the diagonal of its box.
+        /// Longest offset for this mesh: a million times the diagonal of its box.
         most: f64,
     },
-    /// Text that is neither `exact` nor `offset:LENGTH`.
+    /// A text is neither `exact` nor `offset:LENGTH`.
     #[error(
         "`{0}` is no oracle mode; expected `exact` or `offset:LENGTH` with a length of at least 0 \
          in scene units, such as `offset:0.03`"

@@ -19,17 +19,19 @@ const POSITIONAL_CASTER_ROUNDINGS: f64 = CASTER_ROUNDINGS + 4.0;
 /// the length (4) and of the distance at which a caster is met (8).
 const END_ROUNDINGS: f64 = 16.0;
 
-/// Where f32 arithmetic may put a receiver: its exact place + Σ [−1, 1] · segmentᵢ + a ball.
+/// Region in which f32 arithmetic may put a receiver: its exact position, plus −1 to 1 times each
+/// segment, plus a vector in a ball.
 #[derive(Clone, Copy, Debug)]
 pub struct Uncertainty {
-    /// Displacements in the receiver's plane, from its barycentrics.
+    /// Displacements in the receiver's plane that errors of its barycentrics cause, in scene units.
     pub segments: [DVec3; 3],
     /// Radius of the ball, scene units.
     pub radius: f64,
 }
 
 impl Uncertainty {
-    /// Half the extent of the displacements along `normal`, times its length, without the ball.
+    /// Returns half the extent of the segments' displacements along `normal`, times the length of
+    /// `normal`. The ball is left out.
     pub fn along(&self, normal: DVec3) -> f64 {
         self.segments
             .iter()

@@ -1,4 +1,4 @@
-//! FLIP of two pictures: how much of a difference an observer sees who flips between them.
+//! FLIP of two pictures: how large an observer finds the difference when the two alternate.
 //!
 //! Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström, Fairchild: *FLIP: A Difference Evaluator
 //! for Alternating Images*, HPG 2020 (sections 4.1 to 4.3), for pictures of low dynamic range.
@@ -42,7 +42,8 @@ const WIDEST: f64 = 0.04;
 
 type Colour = [f64; 3];
 
-/// The mean over all pixels, 0 (alike) to 1.
+/// Returns the FLIP error of a picture against a reference: the mean over all pixels, from 0
+/// (alike) to 1.
 ///
 /// # Errors
 /// [`Error::PixelCount`] if the pictures differ in size.

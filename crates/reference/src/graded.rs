@@ -1,4 +1,4 @@
-//! How far shares of light are from the reference's.
+//! Errors of pictures that show shares of light, against the reference.
 
 use crate::{
     error::Error,
@@ -10,50 +10,51 @@ use crate::{
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
-/// How a picture of shares, 0 in shadow to 1 in light, compares with the reference.
+/// Comparison of a picture of shares of light, 0 in shadow to 1 in light, with the reference.
 ///
-/// Judged are the pixels that face the light by the reference (PFL); in all others no light
-/// arrives, whatever the visibility. Values outside of 0 to 1 are counted in `invalid`, and judged
-/// as a texture of 0 to 1 would hold them: infinities and values outside are clamped. NaN counts as
-/// 1 off.
+/// Only pixels that face the light by the reference (PFL) are judged; no light arrives at other
+/// pixels, whatever their visibility. `invalid` counts values outside of 0 to 1. Such values,
+/// infinities included, are clamped and then judged, as a texture of 0 to 1 would hold them. NaN
+/// counts as 1 off.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Graded {
     /// Root of the mean squared error over PFL.
     pub rmse: f64,
-    /// The same over those pixels of PFL that are not indeterminate: of the others f32 may take
-    /// another receiver than the reference does.
+    /// Root mean squared error over the pixels of PFL that are not indeterminate. At an
+    /// indeterminate pixel f32 may find another receiver than the reference does.
     pub rmse_outside_band: f64,
-    /// Mean of the errors' sizes over PFL.
+    /// Mean absolute error over PFL.
     pub mean_absolute_error: f64,
-    /// PFL pixels that are off by more than some bounds.
+    /// Number of PFL pixels whose errors exceed some bounds.
     pub off: OffBy,
-    /// FLIP of the shaded picture against the reference's, its mean over the whole picture.
+    /// FLIP of the shaded picture against the reference's, the mean over the whole picture.
     pub flip: f64,
-    /// PFL pixels that hold no share at all.
+    /// Number of PFL pixels whose value is not a share.
     pub invalid: Invalid,
-    /// The errors apart by the light that the reference shows.
+    /// Errors in the umbra, in the penumbra and in the light of the reference.
     pub soft: SoftErrors,
 }
 
-/// Errors of shares, apart by the share that the reference shows: light in the umbra is seen as a
-/// leak, dark in the light as a stain, and an error in the penumbra hardly at all. Of pixels facing
-/// the light (PFL) that are not indeterminate.
+/// Errors of shares of light, apart by the share that the reference shows. Light in the umbra is
+/// seen as a leak, dark in the light as a stain, and an error in the penumbra hardly at all. Covers
+/// pixels that face the light (PFL) and are not indeterminate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SoftErrors {
-    /// Pixels in the umbra: they see less than a tenth of the light.
+    /// Number of pixels in the umbra: by the reference they see less than a tenth of the light.
     pub umbra: u64,
-    /// Mean share that they show beyond the reference's.
+    /// Mean excess of the shown share over the reference's, for pixels in the umbra.
     pub light_in_umbra: f64,
-    /// Pixels in the light: they see more than nine tenths of it.
+    /// Number of pixels in the light: by the reference they see more than nine tenths of it.
     pub light: u64,
-    /// Mean share that they show too little.
+    /// Mean lack of the shown share below the reference's, for pixels in the light.
     pub dark_in_light: f64,
-    /// Pixels in between.
+    /// Number of pixels in the penumbra: by the reference they see a tenth to nine tenths of the
+    /// light.
     pub penumbra: u64,
-    /// Root mean square error of their shares.
+    /// Root mean squared error of the share, for pixels in the penumbra.
     pub penumbra_rmse: f64,
-    /// Mean error of their shares: positive if too light.
+    /// Mean signed error of the share, for pixels in the penumbra: positive if too light.
     pub penumbra_bias: f64,
 }
 
@@ -95,30 +96,30 @@ impl SoftErrors {
     }
 }
 
-/// PFL pixels that are off by more than a bound; each holds those of the next.
+/// Number of PFL pixels with an error above a bound. Each count contains those of larger bounds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct OffBy {
-    /// By more than 1/255: what 8 bits can tell.
+    /// Pixels with an error above 1/255, which 8 bits can show.
     pub over_1_255: u64,
-    /// By more than 1/16.
+    /// Pixels with an error above 1/16.
     pub over_1_16: u64,
-    /// By more than 1/4.
+    /// Pixels with an error above 1/4.
     pub over_1_4: u64,
 }
 
-/// PFL pixels whose visibility is no share.
+/// Number of PFL pixels whose visibility is not a share, by the kind of its value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Invalid {
-    /// No number.
+    /// Pixels with the value NaN.
     pub nan: u64,
-    /// ∞ or −∞.
+    /// Pixels with the value ∞ or −∞.
     pub infinite: u64,
-    /// Finite, and below 0 or above 1.
+    /// Pixels with a finite value below 0 or above 1.
     pub outside: u64,
 }
 
 impl Invalid {
-    /// All of them.
+    /// Returns the number of all pixels whose visibility is not a share.
     pub fn total(&self) -> u64 {
         self.nan + self.infinite + self.outside
     }
@@ -130,12 +131,12 @@ impl Invalid {
     }
 }
 
-/// How many pixels the errors of a picture are means over.
+/// Number of pixels over which the errors of a picture are averaged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct JudgedPixels {
-    /// Pixels facing the light (PFL).
+    /// Number of pixels that face the light (PFL).
     pub facing_light: u64,
-    /// Number of these that are indeterminate.
+    /// Number of PFL pixels that are indeterminate.
     pub in_band: u64,
 }
 
@@ -190,7 +191,8 @@ impl Graded {
         Ok(graded)
     }
 
-    /// Errors of several pictures together, each with its pixels. FLIP is the mean of theirs.
+    /// Returns the errors of several pictures together, each given with the number of its pixels.
+    /// FLIP is the mean over the pictures.
     pub fn together(pictures: impl IntoIterator<Item = (Self, JudgedPixels)>) -> Self {
         let mut all = Self::default();
         let (mut count, mut facing, mut outside) = (0.0, 0.0, 0.0);

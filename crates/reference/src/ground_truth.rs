@@ -10,17 +10,17 @@ use rayon::prelude::*;
 use skiagraph_scene::{Camera, LightKind, Mesh};
 use std::borrow::Cow;
 
-/// Oracle's answer for a pixel.
+/// The oracle's answer for a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
-    /// Shows no geometry.
+    /// The pixel shows no geometry.
     Background,
-    /// dot(interpolated normal, l) ≤ 0, in its own shade, whatever stands in between; or outside of
-    /// a spot light's cone.
+    /// The pixel faces away from the light, dot(interpolated normal, l) ≤ 0, whatever stands in
+    /// between; or it lies outside of a spot light's cone.
     FacingAway,
-    /// Faces the light and sees it.
+    /// The pixel faces the light and sees it.
     Lit,
-    /// Faces the light and does not see it.
+    /// The pixel faces the light and does not see it.
     Shadow,
 }
 
@@ -32,20 +32,19 @@ impl Class {
     }
 }
 
-/// The exact answer for one view. All buffers have one entry per pixel, row by row from the top
-/// left.
+/// Exact answers for one view. Every list has one entry per pixel, row by row from the top left.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroundTruthPixels {
     /// Width and height in pixels.
     pub viewport: [u32; 2],
-    /// The answer.
+    /// Answer for each pixel.
     pub classes: Vec<Class>,
     /// True where the answer flips when receiver or casters move within their f32 error bounds: no
     /// f32 method can be blamed for it.
     pub indeterminate: Vec<bool>,
     /// dot(interpolated vertex normal, unit vector towards the light); 0 in the background.
     pub n_dot_l: Vec<f32>,
-    /// Linear base colour of each pixel, for pictures; nothing where the mesh has no materials.
+    /// Linear base colour of each pixel, for pictures; empty if the mesh has no materials.
     pub base_colors: Vec<[f32; 3]>,
 }
 
@@ -79,13 +78,13 @@ impl GroundTruthPixels {
         Ok((pixels, more))
     }
 
-    /// The reference's own shares of a light without extent: 1 where lit, 0 elsewhere.
+    /// Returns the share of a light without extent that each pixel sees: 1 where lit, 0 elsewhere.
     pub fn shares(&self) -> Vec<f32> {
         let share = |&class: &Class| f32::from(u8::from(class == Class::Lit));
         self.classes.iter().map(share).collect()
     }
 
-    /// The reference's own visibility: 1 where lit, 0 elsewhere.
+    /// Returns the reference's visibility, as a method would output it: 1 where lit, 0 elsewhere.
     pub fn visibility(&self) -> Vec<u8> {
         self.classes
             .iter()
@@ -93,7 +92,7 @@ impl GroundTruthPixels {
             .collect()
     }
 
-    /// The reference's own status: never uncertain.
+    /// Returns the reference's status, as a method would output it; it is never uncertain.
     pub fn status(&self) -> Vec<u8> {
         let status = |class: &Class| match class {
             Class::Background => status::BACKGROUND,
@@ -127,22 +126,24 @@ fn base_colors(mesh: &Mesh, camera: &Camera, primitives: &[u32]) -> Vec<[f32; 3]
     primitives.par_iter().enumerate().map(colour).collect()
 }
 
-/// The share of an area light that each pixel sees, row by row from the top left.
+/// Share of an area light that each pixel sees. Lists are row by row from the top left.
 ///
-/// The samples are two independent sets of as many strata of equal area, so that half the
-/// difference of their means estimates the standard error of the whole.
+/// The samples are two independent sets of as many strata of equal area. Half the difference of the
+/// two sets' means estimates the standard error of the share.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AreaVisibility {
-    /// Shadow rays per pixel that faces the light.
+    /// Number of shadow rays for each pixel that faces the light.
     pub samples: u32,
-    /// 0 in the umbra, 1 where all of the light is seen; 0 where the pixel does not face the light.
+    /// Share of the light that each pixel sees: 0 in the umbra, 1 where it sees all of the light, 0
+    /// where it faces away from the light.
     pub shares: Vec<f32>,
-    /// The estimated standard error of each share.
+    /// Estimated standard error of each pixel's share.
     pub standard_errors: Vec<f32>,
 }
 
 impl AreaVisibility {
-    /// The standard errors' root mean square and greatest over the pixels that face the light.
+    /// Returns the root mean square and the maximum of the standard errors, over the pixels that
+    /// face the light.
     pub fn standard_error(&self, truth: &GroundTruthPixels) -> [f64; 2] {
         let classes = truth.classes.iter().zip(&self.standard_errors);
         let facing = classes.filter(|(class, _)| class.faces_light());
@@ -155,18 +156,18 @@ impl AreaVisibility {
     }
 }
 
-/// Ground truth of one view: the lit pixels of a light without extent, and the visible share of a
-/// light with one.
+/// Ground truth of one view: the answer at each pixel, and the visible share of a light with
+/// extent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroundTruth {
-    /// Answer at each pixel.
+    /// Answer for each pixel.
     pub pixels: GroundTruthPixels,
-    /// The shares, of a light with extent.
+    /// Share of the light that each pixel sees; `None` for a light without extent.
     pub area: Option<AreaVisibility>,
 }
 
 impl GroundTruth {
-    /// Returns the share of the light that each pixel sees.
+    /// Returns the share of the light that each pixel sees, 0 to 1, row by row from the top left.
     pub fn shares(&self) -> Cow<'_, [f32]> {
         match &self.area {
             Some(area) => Cow::Borrowed(&area.shares),

@@ -40,15 +40,16 @@ const TEXELS: [Colour; 7] = [
 const OUTSIDE_MAP: Colour = [64, 64, 64];
 
 const NO_NUMBER: Colour = [255, 0, 255];
-/// The error from which on [`Image::difference`] shows its colours in full.
+/// Error from which on [`Image::difference`] shows its colours in full.
 pub const FULL_COLOUR: f64 = 0.25;
 
 /// Ambient light of [`Image::shaded`], as a share of the light's own at normal incidence.
 const AMBIENT: f32 = 0.2;
 
-/// Light that a pixel shows: 0 or 1, or a share of it.
+/// Visibility value of a pixel, which can be read as a share of light.
 pub trait Shown: Copy {
-    /// 0 in shadow to 1 in light; what is no share is clamped, NaN is shadow.
+    /// Returns the share of light, 0 in shadow to 1 in light. Values outside are clamped; NaN is
+    /// shadow.
     fn share(self) -> f32;
 }
 
@@ -85,9 +86,9 @@ pub struct Image {
 }
 
 impl Image {
-    /// Where a method is wrong: blue = wrongly lit, red = wrongly in shadow, both paler where
-    /// indeterminate, over the reference's shadows in pale grey. As many pixels are coloured as are
-    /// wrong, and no others. [`Statistics`](crate::Statistics) defines wrong pixels.
+    /// Draws where a method is wrong: blue = wrongly lit, red = wrongly in shadow, both paler where
+    /// indeterminate, over the reference's shadows in pale grey. Exactly the wrong pixels are
+    /// coloured. [`Statistics`](crate::Statistics) defines wrong pixels.
     ///
     /// # Errors
     /// Those of [`Statistics::judged`](crate::Statistics::judged).
@@ -116,8 +117,9 @@ impl Image {
         })
     }
 
-    /// Where shares of light are off: blue = too light, red = too dark, the stronger the farther,
-    /// at [`FULL_COLOUR`] in full, over the reference's shares in pale grey; magenta = no number.
+    /// Draws where shares of light are off: blue = too light, red = too dark, over the reference's
+    /// shares in pale grey; magenta = NaN. Colours are stronger for larger errors, up to
+    /// [`FULL_COLOUR`].
     ///
     /// # Errors
     /// [`Error::PixelCount`] if a buffer does not fit the reference.
@@ -150,9 +152,10 @@ impl Image {
         })
     }
 
-    /// Shadow-map texels that each pixel's receiver covers, in a heat scale from dark red (1/64 and
-    /// fewer) over pale yellow (1) to dark blue (64 and more); dark grey = outside the map. Where
-    /// there is no number, as in the background: pale, or grey if facing away.
+    /// Draws how many shadow-map texels each pixel's receiver covers. The heat scale goes from dark
+    /// red (1/64 and fewer) over pale yellow (1) to dark blue (64 and more). `texels` has an entry
+    /// for each pixel: 0 is outside the map and dark grey; `None` is pale in the background and
+    /// grey elsewhere.
     ///
     /// # Errors
     /// [`Error::PixelCount`] if `texels` does not fit the reference.
@@ -171,7 +174,7 @@ impl Image {
         })
     }
 
-    /// A method's shadows: white = lit, black = shadow, grey in between, green = facing away,
+    /// Draws a method's shadows: white = lit, black = shadow, grey in between, green = facing away,
     /// grey-blue = background.
     ///
     /// # Errors
@@ -198,7 +201,8 @@ impl Image {
         })
     }
 
-    /// As [`shaded`](Self::shaded), with the pixels that the method calls uncertain in purple.
+    /// Draws the shaded scene, as [`shaded`](Self::shaded) does, with the pixels that the method
+    /// calls uncertain in purple.
     ///
     /// # Errors
     /// [`Error::PixelCount`] if a buffer does not fit the reference.
@@ -217,8 +221,8 @@ impl Image {
         Ok(image)
     }
 
-    /// The scene in its base colours, or in grey where it has none, under Lambert's law: max(n · l,
-    /// 0) × visibility + ambient, with the reference's n · l and the given visibility.
+    /// Draws the scene in its base colours, or in grey without materials, under Lambert's law:
+    /// max(n · l, 0) × visibility + ambient, with the reference's n · l and the given visibility.
     ///
     /// # Errors
     /// [`Error::PixelCount`] if `visibility` does not fit the reference.

@@ -1,4 +1,4 @@
-//! How errors jump where two layers of a shadow map meet: at the planes between the splits of the
+//! Jump of the error where two layers of a shadow map meet: at the planes between the splits of the
 //! eye's frustum, or at the edges of a cube's faces.
 
 use crate::{
@@ -10,29 +10,31 @@ use crate::{
 };
 use serde::{Deserialize, Serialize};
 
-/// How much neighbouring pixels differ in error, across the border of two layers and elsewhere.
+/// Differences in error between neighbouring pixels, across the border of two layers and elsewhere.
 ///
 /// A *pair* is two pixels beside or below each other that face the light, are not indeterminate,
 /// and show one surface: the receiver of each lies within a pixel's width of the plane of the
-/// other's primitive. So an object before a far wall makes no pair with it, though they may ask two
-/// layers. A pair lies *across* if its pixels ask different layers, else *elsewhere*. The error of
-/// a pixel is the share of light that it shows less the reference's. A pair differs by the size of
-/// the difference of its errors, 0 to 2: of hard answers by 1 where one of the two is wrong.
+/// other's primitive. An object before a far wall thus makes no pair with the wall. A pair lies
+/// *across* if its pixels ask different layers of the map, else *elsewhere*. The error of a pixel
+/// is the share of light that it shows minus the reference's. The difference of a pair is the size
+/// of the difference of its two errors, 0 to 2; of hard answers it is 1 where one of the two is
+/// wrong.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LayerJump {
     /// Number of pairs across a border.
     pub pairs: u64,
-    /// By how much these differ, their mean.
+    /// Mean difference of the pairs across a border.
     pub across: f64,
-    /// Number of pairs elsewhere.
+    /// Number of pairs elsewhere, within one layer.
     pub pairs_elsewhere: u64,
-    /// By how much these differ, their mean.
+    /// Mean difference of the pairs elsewhere.
     pub elsewhere: f64,
 }
 
 impl LayerJump {
-    /// Measures a picture's `shown` shares against the reference's; `layers` says which layer each
-    /// pixel asks. `None` if no pair lies across a border.
+    /// Measures the jump in a picture. The first argument is the frame. The two lists are the
+    /// shares of light that the method shows, and those of the reference. `layers` holds the layer
+    /// of the map that each pixel asks. Returns `None` if no pair lies across a border.
     ///
     /// # Errors
     /// [`Error::PixelCount`] if a buffer does not fit the reference.
@@ -85,7 +87,7 @@ impl LayerJump {
         Ok((of.pairs > 0).then_some(of))
     }
 
-    /// By how much more pairs differ across a border than elsewhere.
+    /// Returns by how much more pairs differ across a border than elsewhere.
     pub fn jump(&self) -> f64 {
         self.across - self.elsewhere
     }

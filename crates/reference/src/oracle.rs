@@ -15,14 +15,14 @@ use rayon::prelude::*;
 use skiagraph_scene::{Camera, LIGHT_GAP, LightKind, Mesh, Parts, Towards};
 use std::{fmt, ops::ControlFlow, str::FromStr, sync::OnceLock};
 
-/// How a shadow ray leaves its receiver.
+/// Rule by which a shadow ray leaves its receiver.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum OracleMode {
-    /// From the receiver itself; the pixel's own primitive is no caster.
+    /// The ray begins at the receiver itself; the pixel's own primitive is not a caster.
     #[default]
     Exact,
-    /// From the receiver moved by this length, in scene units, towards the light; every primitive
-    /// is a caster. 0.03 on Sponza is the dissertation's convention.
+    /// The ray begins at the receiver moved by this length, in scene units, towards the light;
+    /// every primitive is a caster. 0.03 on Sponza is the dissertation's convention.
     Offset(f64),
 }
 
@@ -75,8 +75,8 @@ impl fmt::Display for OracleMode {
 /// The longest offset in extents of the mesh: far beyond it rays miss by rounding alone.
 const MOST_EXTENTS: f64 = 1e6;
 
-/// The ground truth of a mesh: a ray tracer in f64 with error bounds, against which methods are
-/// judged.
+/// Ray tracer in f64 with error bounds, which finds the ground truth of a mesh. Methods are judged
+/// against it.
 pub struct Oracle<'a> {
     pub(crate) mesh: &'a Mesh,
     pub(crate) tree: Tree<'a>,
@@ -84,18 +84,18 @@ pub struct Oracle<'a> {
     pub(crate) parts: OnceLock<Parts>,
 }
 
-/// Oracle's answer for a ray.
+/// The oracle's answer for a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Occlusion {
-    /// True if a triangle stands in its way.
+    /// True if a triangle stands in the ray's way.
     pub blocked: bool,
-    /// True if that changes when the triangles move by the f32 rounding of their corners, seen from
-    /// the ray's origin.
+    /// True if `blocked` changes when the triangles move by the f32 rounding of their corners, seen
+    /// from the ray's origin.
     pub indeterminate: bool,
 }
 
 impl<'a> Oracle<'a> {
-    /// Builds a hierarchy over the mesh, with all cores.
+    /// Creates an oracle: builds a hierarchy over the mesh, on all cores.
     ///
     /// # Panics
     /// If a triangle's index is out of range, which [`Mesh`] forbids.
@@ -104,14 +104,15 @@ impl<'a> Oracle<'a> {
         Self { mesh, tree, parts }
     }
 
-    /// Returns the mesh that it traces.
+    /// Returns the mesh that the oracle traces.
     pub fn mesh(&self) -> &'a Mesh {
         self.mesh
     }
 
-    /// The primitive that each pixel's centre shows, row by row from the top left, [`BACKGROUND`]
-    /// for none: the nearest front face (counter-clockwise) between the near and the far plane; of
-    /// equally near ones the lowest id, as a depth test with *less* keeps the first one drawn.
+    /// Finds the primitive that each pixel's centre shows, row by row from the top left;
+    /// [`BACKGROUND`] where it shows none. It is the nearest front face (counter-clockwise) between
+    /// the near and the far plane. Of equally near faces it is the one with the lowest id, as a
+    /// depth test with *less* keeps the first one drawn.
     ///
     /// # Errors
     /// [`Error::Interrupted`].
@@ -143,12 +144,12 @@ impl<'a> Oracle<'a> {
         nearest.1
     }
 
-    /// Classifies every pixel of a G-buffer. `primitives` holds the primitive id that each pixel
-    /// shows, row by row from the top left, [`BACKGROUND`] for none. The receiver is where the ray
-    /// through the pixel's centre meets that primitive: at a triangle's edge a rasteriser, which
-    /// snaps corners, may name a primitive that the centre lies slightly outside of, and the
-    /// receiver is within its edges all the same ([`Receiver::new`]). Casters are two-sided and
-    /// count at t > 0 by more than f64 rounding.
+    /// Classifies every pixel of a G-buffer under a light. `primitives` holds the primitive id that
+    /// each pixel shows, row by row from the top left; [`BACKGROUND`] for a pixel without geometry.
+    /// The receiver is the point where the ray through the pixel's centre meets that primitive. At
+    /// a triangle's edge a rasteriser, which snaps corners, may name a primitive that the centre
+    /// lies slightly outside of; the receiver is within the primitive's edges all the same
+    /// ([`Receiver::new`]). Casters are two-sided and count at t > 0 by more than f64 rounding.
     ///
     /// # Errors
     /// [`Error::PixelCount`], [`Error::UnknownPrimitive`], [`Error::Light`], [`Error::Offset`],
@@ -185,8 +186,9 @@ impl<'a> Oracle<'a> {
         Ok(())
     }
 
-    /// Traces rays given by origin and direction (any length but zero), for tracers of f32 to be
-    /// held against: both count as exact, t > 0, and triangles are two-sided.
+    /// Traces rays of an origin and a direction (any length but zero), and returns an answer for
+    /// each. Tracers in f32 are tested against it. Origin and direction count as exact, hits count
+    /// at t > 0, and triangles are two-sided.
     pub fn occlusion(&self, rays: &[(Vec3, Vec3)]) -> Vec<Occlusion> {
         let exact = Uncertainty {
             segments: [DVec3::ZERO; 3],
@@ -298,7 +300,7 @@ impl<'a> Oracle<'a> {
 }
 
 /// Shades each pixel of a G-buffer as if nothing cast shadows: every receiver that faces the light
-/// is lit. It needs no hierarchy. `primitives` as for [`Oracle::shade`].
+/// is lit. Needs no hierarchy. `primitives` is as for [`Oracle::shade`].
 ///
 /// # Errors
 /// [`Error::PixelCount`], [`Error::UnknownPrimitive`], [`Error::Light`], [`Error::Interrupted`].

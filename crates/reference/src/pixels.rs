@@ -1,4 +1,4 @@
-//! One value for each pixel of a viewport, on all cores.
+//! Computes one value for each pixel of a viewport, on all cores.
 
 use crate::error::Error;
 use rayon::prelude::*;
@@ -7,13 +7,13 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 /// Primitive id of a pixel that shows no geometry.
 pub const BACKGROUND: u32 = u32::MAX;
 
-/// How a run reports its progress and is stopped.
+/// Callback that reports a run's progress, and flag that stops the run.
 #[derive(Clone, Copy)]
 pub struct Progress<'a> {
-    /// Called from any thread whenever a row of pixels is done, with the number of rows done so
-    /// far, of `viewport[1]`.
+    /// Function that is called from any thread whenever a row of pixels is done, with the number of
+    /// rows done so far, out of `viewport[1]`.
     pub rows_done: &'a (dyn Fn(u64) + Sync),
-    /// Raised by the caller to stop; the run then ends within a row's time with
+    /// Flag that the caller raises to stop the run. The run then ends within a row's time with
     /// [`Error::Interrupted`].
     pub interrupted: &'a AtomicBool,
 }
@@ -21,7 +21,7 @@ pub struct Progress<'a> {
 static NEVER: AtomicBool = AtomicBool::new(false);
 
 impl Default for Progress<'_> {
-    /// Silent, and never interrupted.
+    /// Returns a progress that reports nothing and is never interrupted.
     fn default() -> Self {
         Self {
             rows_done: &|_| (),
@@ -30,8 +30,9 @@ impl Default for Progress<'_> {
     }
 }
 
-/// One value per pixel, rows in parallel; `pixel` gets column, row and a stack of its thread's. The
-/// first error, in no particular order, ends the run.
+/// Computes one value per pixel, rows in parallel, and returns them row by row from the top left.
+/// `pixel` gets column, row and a stack that its thread reuses. The first error, in no particular
+/// order, ends the run.
 ///
 /// # Errors
 /// Those of `pixel`, and [`Error::Interrupted`].

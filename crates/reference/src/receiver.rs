@@ -33,37 +33,38 @@ const POSITIONAL_FACING_ROUNDINGS: f64 = FACING_ROUNDINGS + 4.0;
 /// the cosine (5).
 const CONE_ROUNDINGS: f64 = 16.0;
 
-/// How far within its primitive's edges a receiver lies, in pixels: far more than f32 may move it,
-/// so that it does not touch what adjoins.
+/// Least distance of a receiver from the edges of its primitive, in pixels. It is far more than f32
+/// may move the receiver, which therefore does not touch adjoining surfaces.
 pub const INSET: f64 = 1.0 / 64.0;
 
 /// Share of the determinant beyond which the edge functions' error makes the hit meaningless.
 const INDETERMINATE: f64 = 0.25;
 
-/// A pixel's receiver.
+/// Receiver of a pixel: the point of the visible surface at which light arrives or not.
 pub struct Receiver {
-    /// The primitive that it lies on.
+    /// Primitive id of the surface.
     pub primitive: u32,
-    /// Its place on the primitive, world space.
+    /// Position of the receiver on its primitive, world space.
     pub position: DVec3,
-    /// The way to the light.
+    /// Direction and distance from the receiver to the light.
     pub towards: Towards,
-    /// True if it lies outside of a spot light's cone.
+    /// True if the receiver lies outside of a spot light's cone.
     pub outside_cone: bool,
-    /// True if f32 may take `outside_cone` for the contrary.
+    /// True if f32 may compute the contrary of `outside_cone`.
     pub on_cone_edge: bool,
-    /// Interpolated, unnormalised vertex normal · unit vector towards the light.
+    /// Dot product of the interpolated, unnormalised vertex normal and the unit vector towards the
+    /// light.
     pub n_dot_l: f64,
     /// Bound on the f32 error of `n_dot_l`.
     pub n_dot_l_error: f64,
-    /// Where f32 arithmetic may put the receiver; `None` where it may put it anywhere (a primitive
-    /// seen edge-on).
+    /// Region in which f32 arithmetic may put the receiver; `None` for a primitive seen edge-on,
+    /// where f32 may put it anywhere.
     pub uncertainty: Option<Uncertainty>,
 }
 
 impl Receiver {
-    /// The receiver of a pixel of a G-buffer, `None` in the background. `primitives` as for
-    /// [`Oracle::shade`](crate::Oracle::shade).
+    /// Finds the receiver of a pixel (column and row) of a G-buffer. Returns `None` in the
+    /// background. `primitives` is as for [`Oracle::shade`](crate::Oracle::shade).
     ///
     /// # Errors
     /// [`Error::UnknownPrimitive`].
@@ -79,12 +80,12 @@ impl Receiver {
         Ok(primitive.map(|primitive| Self::new(mesh, primitive, camera, pixel, light)))
     }
 
-    /// The point where the ray through a pixel's centre meets `primitive`.
+    /// Finds the point where the ray through a pixel's centre meets `primitive`.
     ///
-    /// A rasteriser snaps corners to a grid within the pixel, so that the centre may lie a little
+    /// A rasteriser snaps corners to a grid within the pixel. The centre may therefore lie a little
     /// outside of the primitive that covers it, where a neighbour may stand before it or beneath
-    /// it. So it is moved inside, [`INSET`] of a pixel from the edges, or, in a primitive that is
-    /// narrower than two of them, to its middle; shaders do the same. A primitive exactly edge-on
+    /// it. So the point is moved inside, [`INSET`] of a pixel from the edges, or to the middle of a
+    /// primitive that is narrower than twice that; shaders do the same. A primitive exactly edge-on
     /// has no such point; its centroid stands in, and the pixel is always indeterminate.
     pub fn new(
         mesh: &Mesh,

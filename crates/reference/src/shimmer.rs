@@ -15,24 +15,24 @@ const CHANGE: f32 = 1.0 / 16.0;
 /// A change of the right share of light that is none: what 8 bits cannot show.
 const SAME: f32 = 1.0 / 255.0;
 
-/// Counts of receivers that are seen in two frames one after the other.
+/// Number of receivers that two successive frames show, and of those whose answer changed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Shimmer {
-    /// Pixels whose receiver faces the light and had the same ground truth a frame before (to 1/255
-    /// of an area light), both outside the band.
+    /// Number of pixels whose receiver faces the light and had the same ground truth in the frame
+    /// before (to 1/255 of an area light), both times outside the band of indeterminate pixels.
     pub compared: u64,
-    /// Compared pixels whose visibility the method changed by more than 1/16.
+    /// Number of compared pixels whose visibility the method changed by more than 1/16.
     pub changed: u64,
 }
 
-/// A frame as shimmer sees it.
+/// One frame: mesh, camera, and the primitive at each pixel.
 #[derive(Clone, Copy)]
 pub struct Seen<'a> {
-    /// As it is in this frame; all frames have the same triangles.
+    /// Mesh as it is in this frame; all frames have the same triangles.
     pub mesh: &'a Mesh,
-    /// Where it is seen from.
+    /// Camera of the frame.
     pub camera: &'a Camera,
-    /// The primitive that each pixel shows, as for [`Oracle::shade`](crate::Oracle::shade).
+    /// Primitive id that each pixel shows, as for [`Oracle::shade`](crate::Oracle::shade).
     pub primitives: &'a [u32],
 }
 
@@ -72,9 +72,10 @@ impl Seen<'_> {
     }
 }
 
-/// For each pixel of `now`, the pixel of the frame before that shows the same receiver;
-/// [`BACKGROUND`] where none does. The receiver keeps its place on its primitive, which may have
-/// moved: the pixel is the one where that place was seen, if it showed this primitive.
+/// Finds, for each pixel of `now`, the pixel of the frame `before` that shows the same receiver.
+/// The result holds indices into the earlier frame's pixels, [`BACKGROUND`] where no pixel shows
+/// it. The receiver keeps its place on its primitive, which may have moved. The earlier pixel is
+/// the one where that place was seen, if it showed this primitive.
 ///
 /// # Errors
 /// [`Error::PixelCount`], [`Error::UnknownPrimitive`], [`Error::Interrupted`].
@@ -127,8 +128,9 @@ fn earlier(place: DVec3, primitive: u32, before: &Mesh, now: &Mesh) -> DVec3 {
     a + (b - a) * v + (c - a) * w
 }
 
-/// Counts the answers that changed: `same` is of [`same_receivers`], and of each frame there are
-/// what share of the light the method shows per pixel, and the ground truth.
+/// Counts the answers that changed between two frames. `same` is the result of [`same_receivers`].
+/// The pairs hold for the earlier and the later frame: the share of the light that the method shows
+/// at each pixel, and the ground truth.
 ///
 /// # Errors
 /// [`Error::PixelCount`] for buffers that are not as large as their frame.

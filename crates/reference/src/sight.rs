@@ -1,22 +1,24 @@
-//! The surfaces that rays meet first, from either side, for looking around in a mesh.
+//! Finds the surfaces that rays meet first, from either side, for looking around in a mesh.
 
 use crate::{oracle::Oracle, ray::Ray};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::ControlFlow;
 
-/// The first surface on a ray.
+/// First surface on a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sight {
-    /// Distance in units of the ray's direction.
+    /// Distance from the ray's origin, in lengths of the ray's direction.
     pub distance: f64,
-    /// Id of the triangle.
+    /// Primitive id of the surface.
     pub primitive: u32,
-    /// True if a picture would show it from there: its front, or a double-sided one.
+    /// True if a picture from the ray's origin would show the surface: a front face, or a
+    /// double-sided one.
     pub is_front: bool,
 }
 
-/// Returns the first surface on each ray, of origin and direction (any length but zero).
+/// Finds the first surface on each ray, given by its origin and direction (any length but zero). An
+/// entry is `None` for a ray that meets nothing.
 pub fn sights(oracle: &Oracle<'_>, rays: &[(DVec3, DVec3)]) -> Vec<Option<Sight>> {
     let tree = &oracle.tree;
     let sight = |stack: &mut Vec<u32>, &(origin, direction): &(DVec3, DVec3)| {

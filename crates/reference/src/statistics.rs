@@ -9,41 +9,42 @@ use serde::{Deserialize, Serialize};
 
 pub use crate::status;
 
-/// The `visibility` of a pixel whose ray the driver broke off. It shows as in shadow, and frames
-/// with such pixels are not judged.
+/// Value of `visibility` for a pixel whose ray the driver broke off. Pictures show the pixel in
+/// shadow; frames with such pixels are not judged.
 pub const UNANSWERED: u32 = 2;
 
-/// The reference's pixels. `background + facing_away + facing_light` is the viewport, `lit +
-/// shadow` is `facing_light`.
+/// Number of pixels by the reference's answer. `background + facing_away + facing_light` is the
+/// viewport, `lit + shadow` is `facing_light`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PixelCounts {
-    /// Show no geometry.
+    /// Pixels that show no geometry.
     pub background: u64,
-    /// Face away from the light (PnFL).
+    /// Pixels that face away from the light (PnFL).
     pub facing_away: u64,
-    /// Face the light (PFL), the denominator of every share.
+    /// Pixels that face the light (PFL), the denominator of every share.
     pub facing_light: u64,
     /// Pixels of `facing_light` that see the light.
     pub lit: u64,
-    /// Pixels of `facing_light` that do not.
+    /// Pixels of `facing_light` that do not see the light.
     pub shadow: u64,
 }
 
-/// PFL pixels (by the reference) that the method calls certain, right or wrong.
+/// Number of PFL pixels (facing the light by the reference) that the method calls certain, right or
+/// wrong.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CertainCounts {
-    /// Status *certain light*.
+    /// Pixels with the status *certain light*.
     pub lit: u64,
-    /// Status *certain shadow*.
+    /// Pixels with the status *certain shadow*.
     pub shadow: u64,
 }
 
-/// Pixels whose visibility is not the reference's.
+/// Number of pixels whose visibility differs from the reference's.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WrongCounts {
-    /// Lit by the method, not by the reference.
+    /// Pixels that are lit by the method, but not by the reference.
     pub lit: u64,
-    /// In shadow by the method, lit by the reference.
+    /// Pixels that are in shadow by the method, but lit by the reference.
     pub shadow: u64,
     /// `lit + shadow`, indeterminate pixels included.
     pub total: u64,
@@ -53,24 +54,24 @@ pub struct WrongCounts {
     pub in_band: u64,
 }
 
-/// The PFL pixels of one class by what the method said of them. `certain_right + certain_wrong +
-/// uncertain` is the class, but for pixels that the method does not take for facing the light;
-/// indeterminate pixels are included.
+/// Number of PFL pixels of one class of the reference, by the method's status.
+/// `certain_right + certain_wrong + uncertain` is the class, but for pixels that the method does
+/// not take for facing the light. Indeterminate pixels are included.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ClassSplit {
-    /// Called certain, and rightly so.
+    /// Pixels that the method calls certain and gets right.
     pub certain_right: u64,
-    /// Called certain, and wrong.
+    /// Pixels that the method calls certain and gets wrong.
     pub certain_wrong: u64,
     /// Pixels of `certain_wrong` that are not indeterminate.
     pub certain_wrong_outside_band: u64,
-    /// Called uncertain.
+    /// Pixels that the method calls uncertain.
     pub uncertain: u64,
     /// Pixels of `uncertain` that are wrong in the final picture.
     pub uncertain_wrong: u64,
 }
 
-/// [`ClassSplit`] of each class of the reference that faces the light.
+/// Number of PFL pixels by the method's status, apart for lit and shadowed pixels of the reference.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Split {
     /// Pixels that the reference lights.
@@ -99,18 +100,18 @@ impl ClassSplit {
 }
 
 impl Split {
-    /// PFL pixels called certain, and rightly so.
+    /// Returns the number of PFL pixels that the method calls certain and gets right.
     pub fn certain_right(&self) -> u64 {
         self.lit.certain_right + self.shadow.certain_right
     }
 
-    /// PFL pixels called certain, and wrong.
+    /// Returns the number of PFL pixels that the method calls certain and gets wrong.
     pub fn certain_wrong(&self) -> u64 {
         self.lit.certain_wrong + self.shadow.certain_wrong
     }
 }
 
-/// How one method's picture compares with the reference.
+/// Comparison of one method's picture with the reference.
 ///
 /// Fields are those of `results.json`, where the indeterminate pixels are called the *band*.
 ///
@@ -127,30 +128,32 @@ impl Split {
 /// take for such.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Statistics {
-    /// The reference's own pixels.
+    /// Number of pixels by the reference's answer.
     pub pixels: PixelCounts,
-    /// PFL pixels called certain.
+    /// Number of PFL pixels that the method calls certain.
     pub certain: CertainCounts,
-    /// PFL pixels called uncertain.
+    /// Number of PFL pixels that the method calls uncertain.
     pub uncertain: u64,
-    /// The same PFL pixels by the reference's class, and how many of them are wrong.
+    /// Number of PFL pixels by the reference's class and the method's status, and of those that are
+    /// wrong.
     pub split: Split,
-    /// Wrong pixels.
+    /// Number of wrong pixels.
     pub wrong: WrongCounts,
-    /// PFL pixels that are indeterminate, right or wrong.
+    /// Number of PFL pixels that are indeterminate, right or wrong.
     pub band: u64,
-    /// Pixels that face the light by the reference but not by the method's status, or the other way
-    /// round.
+    /// Number of pixels that face the light by the reference but not by the method's status, or the
+    /// other way round.
     pub facing_mismatch: u64,
 }
 
 impl Statistics {
-    /// Judges a method's outputs, one value per pixel, row by row from the top left, as u8 or u32:
-    /// `visibility` is 0 in shadow and 1 in light, `status` is one of [`status`].
+    /// Judges a method's outputs against the reference. Both buffers hold one value per pixel, row
+    /// by row from the top left, as u8 or u32: `visibility` is 0 in shadow and 1 in light, `status`
+    /// is one of [`status`].
     ///
     /// # Errors
-    /// [`Error::PixelCount`] if a buffer is not as large as the reference, [`Error::Value`] for a
-    /// value that is none of these.
+    /// [`Error::PixelCount`] if a buffer is not as large as the reference, [`Error::Unanswered`]
+    /// for pixels without an answer, [`Error::Value`] for any other value that is not allowed.
     pub fn judged(
         visibility: &[impl Copy + Into<u32>],
         status: &[impl Copy + Into<u32>],
@@ -197,7 +200,7 @@ impl Statistics {
         self.wrong.certain += u64::from(pixel.is_certain_wrong());
     }
 
-    /// The pixels that [`WrongCounts::certain`] counts, by their places in the buffers.
+    /// Finds the pixels that [`WrongCounts::certain`] counts, as indices into the buffers.
     ///
     /// # Errors
     /// Those of [`judged`](Self::judged).
@@ -215,7 +218,7 @@ impl Statistics {
         Ok(pixels)
     }
 
-    /// A count as a share of the pixels facing the light, 0..1; 0 where none does.
+    /// Returns a count as a share of the pixels that face the light, 0 to 1; 0 if no pixel does.
     pub fn share(&self, count: u64) -> f64 {
         if self.pixels.facing_light == 0 {
             0.0
@@ -224,17 +227,18 @@ impl Statistics {
         }
     }
 
-    /// Wrong pixels as a share of PFL.
+    /// Returns the number of wrong pixels as a share of PFL, the pixels that face the light.
     pub fn wrong_share(&self) -> f64 {
         self.share(self.wrong.total)
     }
 
-    /// Uncertain pixels as a share of PFL.
+    /// Returns the number of uncertain pixels as a share of PFL, the pixels that face the light.
     pub fn uncertain_share(&self) -> f64 {
         self.share(self.uncertain)
     }
 
-    /// Indeterminate pixels as a share of PFL.
+    /// Returns the number of indeterminate pixels as a share of PFL, the pixels that face the
+    /// light.
     pub fn indeterminate_share(&self) -> f64 {
         self.share(self.band)
     }

@@ -1,4 +1,4 @@
-//! How many texels of a shadow map the receiver of a pixel covers.
+//! Number of shadow-map texels that the receiver of a pixel covers.
 //!
 //! Fewer than one is *under-sampling*, which shows as steps. Zhang and others ("Parallel-Split
 //! Shadow Maps", VRCIA 2006, the dissertation's 3.2.1) write it as dp/ds = n · (dz / z ds) · (cos φ
@@ -11,27 +11,28 @@ use crate::{
 use serde::{Deserialize, Serialize};
 use skiagraph_scene::LightKind;
 
-/// A pixel's part of a shadow map.
+/// Area of a shadow map that one pixel covers, in texels, as the product of two factors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Footprint {
-    /// Texels per pixel if the surface stood across the eye's ray and across the light's: the
-    /// pixel's area at the receiver times the map's density there. 0 outside the map.
+    /// Texels per pixel if the surface stood at right angles to the eye's ray and to the light's
+    /// ray: the pixel's area at the receiver times the map's density there. 0 outside the map.
     pub perspective: f64,
-    /// Factor of the surface's angles: cos θ / cos φ, with θ between its normal and the light
-    /// and φ between its normal and the eye. Small where light grazes, great where the eye does.
+    /// Factor of the surface's angles: cos θ / cos φ, with θ between the surface's normal and the
+    /// light, and φ between its normal and the eye. It is small where light grazes the surface, and
+    /// large where the eye's ray does.
     pub projection: f64,
 }
 
 impl Footprint {
-    /// Texels per pixel.
+    /// Returns the texels per pixel, the product of both factors.
     pub fn texels(self) -> f64 {
         self.perspective * self.projection
     }
 }
 
-/// Finds what each pixel that faces the light covers of a map with this density: texels on a unit
-/// of area across the light's ray at its receiver, 0 outside the map. `None` for all other pixels,
-/// and for primitives that are seen edge-on.
+/// Finds how many texels of a shadow map each pixel covers. `density` holds the map's texels per
+/// unit of area across the light's ray, at each pixel's receiver; 0 is outside the map. An entry of
+/// the result is `None` for a pixel that does not face the light, and for a primitive seen edge-on.
 ///
 /// # Errors
 /// [`Error::PixelCount`] if a buffer does not fit the reference.
@@ -69,25 +70,26 @@ pub fn footprints(
     Ok(footprints.collect())
 }
 
-/// Map texels per pixel, over the pixels that face the light and lie in the map.
+/// Statistics of map texels per pixel, over the pixels that face the light and lie in the map.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct TexelsPerPixel {
-    /// Number of these pixels.
+    /// Number of pixels that face the light and lie in the map.
     pub pixels: u64,
-    /// Those of them that cover less than one texel: the map is too coarse there.
+    /// Number of pixels in the map that cover less than one texel: the map is too coarse there.
     pub under_one: u64,
-    /// Pixels that face the light outside the map.
+    /// Number of pixels that face the light outside the map.
     pub outside_map: u64,
-    /// Texels per pixel.
+    /// Quantiles of the texels per pixel.
     pub texels: Quantiles,
-    /// Their perspective part, of distance and map: texels per pixel of surfaces that face eye and
-    /// light.
+    /// Quantiles of the perspective part of texels per pixel, from distance and map: the value for
+    /// surfaces that face the eye and the light.
     pub perspective: Quantiles,
-    /// Their projection part, of angles: the cosine to the light by the cosine to the eye.
+    /// Quantiles of the projection part of texels per pixel, from angles: the cosine to the light
+    /// divided by the cosine to the eye.
     pub projection: Quantiles,
 }
 
-/// The values that at least 5, 50 and 95 % of the pixels do not exceed; 0 where there are none.
+/// Values that 5, 50 and 95 % of the pixels do not exceed; 0 if there are no pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Quantiles {
     /// 5th percentile.
@@ -99,7 +101,7 @@ pub struct Quantiles {
 }
 
 impl TexelsPerPixel {
-    /// Sums up the [`footprints`] of a picture.
+    /// Summarises the [`footprints`] of a picture.
     pub fn new(footprints: &[Option<Footprint>]) -> Self {
         let all = footprints.iter().flatten();
         let (inside, outside): (Vec<&Footprint>, Vec<_>) = all.partition(|of| of.perspective > 0.0);

@@ -24,13 +24,12 @@ const CORNER_ROUNDINGS: f64 = 8.0;
 /// depth that it has in the picture.
 const DEPTH_ROUNDINGS: f64 = 8.0;
 
-/// Number of pixels of a G-buffer that show a surface which is not seen there: another one
-/// stands before it, or it is elsewhere, or there is a surface where it shows none.
-/// `primitives` as for [`Oracle::shade`].
+/// Counts the pixels of a G-buffer that show a wrong surface: another surface stands before it, it
+/// is elsewhere, or the pixel shows the background although there is a surface. `primitives` is as
+/// for [`Oracle::shade`].
 ///
-/// Allows for the rounding of a rasteriser: corners moved by a sixteenth of a
-/// pixel, depths by a few ulps of the triangle's nearest one. So is a pixel that two surfaces
-/// share.
+/// Allows for the rounding of a rasteriser: corners may move by a sixteenth of a pixel, depths by a
+/// few ulps of the triangle's nearest depth. A pixel that two surfaces share may show either.
 ///
 /// # Errors
 /// [`Error::PixelCount`], [`Error::UnknownPrimitive`], [`Error::Interrupted`].

@@ -1,4 +1,5 @@
-//! Kept results as charts: what is drawn of which runs. How is `skiagraph-chart`'s affair.
+//! Builds charts from kept results: chooses the runs and the quantities to draw. `skiagraph-chart`
+//! draws them.
 
 use itertools::Itertools;
 use skiagraph_chart::{Figure, Kind, Mark, Panel, Series};
@@ -13,20 +14,20 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Results that `compare` kept in a folder.
+/// Results of `compare`, read back from the folder that it wrote.
 #[derive(Debug)]
 pub struct Kept {
-    /// The folder.
+    /// The folder that the results were read from.
     pub folder: PathBuf,
-    /// Its results.json.
+    /// Content of the folder's `results.json`.
     pub results: Results,
 }
 
 impl Kept {
-    /// Reads those of a folder.
+    /// Reads the results of a folder.
     ///
     /// # Errors
-    /// No such folder, no results.json in it, or one that cannot be read; with the place.
+    /// If the folder or its `results.json` is missing or cannot be read; the error names the file.
     pub fn read(folder: &Path) -> Result<Self, CompareError> {
         Ok(Self {
             results: read_back::kept(folder)?,
@@ -37,11 +38,12 @@ impl Kept {
 
 const TIME: &str = "GPU ms of a frame less its G-buffer";
 
-/// Time against error: a panel per folder and viewport, a mark per method and map size. What is
-/// measured on several views counts as their mean.
+/// Builds the chart of time against error: a panel for each folder and viewport, and a mark for
+/// each method and map size. Marks of several views show the mean of the views. `viewport` (pixels)
+/// limits the chart to one viewport; `None` draws all.
 ///
 /// # Errors
-/// Results without GPU times.
+/// If a drawn run has no GPU times.
 pub fn front(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, CompareError> {
     let results = || kept.iter().map(|kept| &kept.results);
     let runs = results().flat_map(|results| &results.runs);
@@ -109,11 +111,12 @@ fn front_panel(kept: &Kept, viewport: [u32; 2], maps: &[u32]) -> Result<Panel, C
     })
 }
 
-/// How time and memory grow with the number of triangles: two panels per scene, view and viewport,
-/// a line per method and map size.
+/// Builds the chart of time and memory against the number of triangles: two panels for each scene,
+/// view and viewport, and a line for each method and map size. `viewport` (pixels) limits the chart
+/// to one viewport; `None` draws all.
 ///
 /// # Errors
-/// Results without GPU times.
+/// If a drawn run has no GPU times.
 pub fn growth(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, CompareError> {
     let runs = || {
         kept.iter().flat_map(|kept| {
@@ -173,11 +176,12 @@ pub fn growth(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, Compa
     })
 }
 
-/// Errors over the frames of camera paths: a panel per folder, path and viewport, a line per method
-/// and map size.
+/// Builds the chart of errors over the frames of camera paths: a panel for each folder, path and
+/// viewport, and a line for each method and map size. `viewport` (pixels) limits the chart to one
+/// viewport; `None` draws all.
 ///
 /// # Errors
-/// None of the runs is of a path.
+/// If none of the runs is of a camera path.
 pub fn frames_of_paths(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, CompareError> {
     let mut panels = Vec::new();
     for kept in kept {
@@ -202,9 +206,11 @@ pub fn frames_of_paths(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figu
     })
 }
 
-/// The errors over the frames of each path of some runs of one viewport: wrong pixels outside the
-/// band, under a light with extent the root mean square error of shares. `name` is that of a run's
-/// series.
+/// Returns a panel for each camera path among `runs`: the error of each frame, a series for each
+/// run. The error is the percentage of wrong pixels outside the band among those that face the
+/// light. Under a light with an extent it is the root mean square error of the shares of light.
+/// Runs without frames of a path are skipped. All runs must have one viewport. `name` returns the
+/// name of a run's series.
 pub fn path_panels<'a>(
     runs: impl Iterator<Item = (&'a Run, &'a Measured)>,
     name: impl Fn(&Run) -> String,
@@ -254,7 +260,7 @@ pub fn path_panels<'a>(
     paths.into_iter().map(|(_, panel)| panel).collect()
 }
 
-/// A figure as a file.
+/// Renders a figure as the text of an SVG file.
 ///
 /// # Errors
 /// Those of [`Figure::to_svg`].
@@ -263,7 +269,7 @@ pub fn svg(figure: &Figure) -> Result<String, CompareError> {
     svg.map_err(|error| CompareError::Input(error.to_string()))
 }
 
-/// Methods that could not run, with the reason; each once.
+/// Lists the methods that could not run, with the reason, each once. Each entry is a line of text.
 pub fn unavailable(kept: &[Kept]) -> BTreeSet<String> {
     let runs = kept.iter().flat_map(|kept| &kept.results.runs);
     runs.filter_map(|run| {
@@ -273,7 +279,7 @@ pub fn unavailable(kept: &[Kept]) -> BTreeSet<String> {
     .collect()
 }
 
-/// Adds a mark to the series of that name.
+/// Adds a mark to the series called `name`, which it creates if it is missing.
 pub fn push(series: &mut Vec<Series>, name: &str, mark: Mark) {
     match series.iter_mut().find(|series| series.name == name) {
         Some(series) => series.marks.push(mark),
@@ -313,7 +319,8 @@ fn time(kept: &Kept, measured: &Measured) -> Result<f64, CompareError> {
     })
 }
 
-/// Lines that say under which conditions everything was measured.
+/// Returns lines that state the conditions of the measurements: the adapters, and how many frames
+/// the medians are of.
 pub fn conditions(kept: &[Kept]) -> Vec<String> {
     let results = || kept.iter().map(|kept| &kept.results);
     let adapters = results().map(|results| results.adapter.to_string());

@@ -1,38 +1,40 @@
-//! Conditions under which a comparison fails, for a team's own CI: `nsm: wrong > 0.1%`.
+//! Conditions under which `compare` fails, for continuous integration: `nsm: wrong > 0.1%`.
 
 use crate::summary::{Row, by_wall};
 use crate::summary_table::summaries;
 use skiagraph_compare::records::results::Results;
 use skiagraph_compare::wording::{bytes, ms, size};
 
-/// A figure of a method that must not be greater than a value.
+/// Upper limit for one figure of a method.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gate {
-    /// Name of the method, with its setting: `crsm@n=1`.
+    /// Name of the method with its setting, for example `crsm@n=1`.
     pub method: String,
-    /// The figure.
+    /// The figure that is limited.
     pub figure: Figure,
-    /// The greatest value that passes, in the unit of the figure.
+    /// The greatest value that passes. Its unit is that of the figure.
     pub most: f64,
 }
 
-/// A figure of a method over all views of a viewport.
+/// A figure of a method that a [`Gate`] can limit, taken over all views of a viewport.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Figure {
-    /// Wrong pixels outside the band, in percent of those facing the light.
+    /// Wrong pixels, in percent of the pixels that face the light. Those in the band, where
+    /// rounding decides the answer, do not count.
     Wrong,
     /// Root mean square error of the shares of light.
     Rmse,
-    /// FLIP of the shaded pictures.
+    /// FLIP error of the shaded pictures, the mean of the views.
     Flip,
     /// Milliseconds of a frame in which every pass runs.
     Frame,
-    /// Bytes of the method's own materials and of what it reads of the scene.
+    /// Bytes of the method's own materials and of the scene buffers that it reads; the most on any
+    /// view.
     Memory,
 }
 
 impl Figure {
-    /// All of them.
+    /// All figures.
     pub const ALL: [Self; 5] = [
         Self::Wrong,
         Self::Rmse,
@@ -41,7 +43,7 @@ impl Figure {
         Self::Memory,
     ];
 
-    /// Its name in a condition.
+    /// Returns the word for the figure in a condition, for example `wrong`.
     pub fn word(self) -> &'static str {
         match self {
             Self::Wrong => "wrong",
@@ -73,8 +75,9 @@ impl Figure {
 }
 
 impl Gate {
-    /// Returns a line for each row that this condition fails: of the method in each map and
-    /// viewport. One that could not run fails, too.
+    /// Returns a line of text for each row that fails this condition. Rows are those of the method,
+    /// in each map size, viewport and light. A row that could not run fails, too. The list is empty
+    /// if all pass.
     pub fn failures(&self, results: &Results) -> Vec<String> {
         let mut lines = Vec::new();
         for summary in summaries(results) {

@@ -1,11 +1,12 @@
-//! Remarks of tables and notes on graded answers, and on lights that have an extent.
+//! Remarks on visibility that is a share of light, and on lights with an extent.
 
 use itertools::Itertools;
 use skiagraph_compare::records::results::{AreaReference, Run};
 use skiagraph_compare::wording::thousands;
 use skiagraph_reference::Graded;
 
-/// How the reference of a light with extent was made.
+/// Describes the reference of a light with an extent: its samples per pixel, its standard error,
+/// and the pixels in penumbra. `band` is the number of pixels in the band.
 pub fn area_reference(area: &AreaReference, band: u64) -> String {
     format!(
         "the light has an extent: reference of {} samples per pixel, standard error {:.5} (root \
@@ -19,8 +20,8 @@ pub fn area_reference(area: &AreaReference, band: u64) -> String {
     )
 }
 
-/// Writes the remarks on graded answers: their rank under a light with extent, values that are no
-/// share, and the meaning of the colours of error pictures.
+/// Returns remarks on answers that are shares of light: the methods by error under a light with an
+/// extent, invalid shares, and the meaning of the colours of error pictures.
 pub fn graded(runs: &[Run]) -> Vec<String> {
     let mut notes: Vec<String> = ranks(runs).into_iter().collect();
     notes.extend(runs.iter().filter_map(no_shares));
@@ -40,7 +41,8 @@ fn errors(run: &Run) -> Option<Graded> {
     Some(run.measured.as_ref()?.graded)
 }
 
-/// Warns of a method whose visibility is not a share of light.
+/// Returns a warning with the number of pixels at which a method's visibility is NaN, infinite or
+/// outside 0 to 1. `None` if there are none.
 pub fn no_shares(run: &Run) -> Option<String> {
     let invalid = errors(run)?.invalid;
     let counts = [

@@ -1,10 +1,10 @@
-//! The reference of the language, in Markdown, from the JSON Schema of documents.
+//! Writes the reference of the document language in Markdown, from the JSON Schema of documents.
 
 use itertools::Itertools;
 use serde_json::{Map, Value};
 use std::collections::BTreeSet;
 
-/// Text before the tables.
+/// Text before the first heading of the page.
 const HEAD: &str = "# The language of documents: reference
 
 Format 3, as the types that read it have it: `skiagraph schema --format markdown` made this page,
@@ -13,7 +13,8 @@ Format 3, as the types that read it have it: `skiagraph schema --format markdown
 Fields in **bold** must be given; the others may be left out.
 ";
 
-/// The reference of the language that a schema of documents describes.
+/// Returns the reference page of the document language in Markdown. `schema` is the JSON Schema of
+/// documents.
 pub fn markdown(schema: &Value) -> String {
     let mut page = Page {
         text: HEAD.to_owned(),
@@ -38,7 +39,8 @@ pub fn markdown(schema: &Value) -> String {
     page.text
 }
 
-/// The fields of scene files that their schema describes.
+/// Returns the reference page of scene files in Markdown. `schema` is the JSON Schema of scene
+/// files.
 pub fn scenes(schema: &Value) -> String {
     let mut page = Page {
         text: "# Fields of scene files\n\nFields in **bold** must be given.\n".to_owned(),

@@ -1,5 +1,5 @@
-//! Measurements as people and spreadsheets read them: tables, documents, CSV, traces. No figure is
-//! worked out here that `records` does not hold.
+//! Presents measurements as tables, documents, charts, CSV and traces. It reads the records of
+//! `skiagraph-compare`, and measures nothing itself.
 
 pub mod charts;
 pub mod gate;

@@ -11,9 +11,9 @@ use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::{command_line, frames, ms, share, thousands};
 use std::{collections::BTreeSet, env};
 
-/// Writes the lines that all tables have in common. `today` is the date of the runs that are still
-/// to be measured, if there are any; `are_paths` if they are of camera paths, whose frames are
-/// timed.
+/// Returns the document's header: a heading, the command line, and the conditions that all tables
+/// share. `today` is the date of runs that are still to be measured; `None` if there are none.
+/// `are_paths` is true if the runs are of camera paths, whose frames are timed.
 pub fn header(
     results: &Results,
     today: Option<&str>,
@@ -69,12 +69,13 @@ pub fn header(
     )
 }
 
-/// The heading of a view.
+/// Returns the heading of a view in Markdown.
 pub fn view(name: &str) -> String {
     format!("\n### {name}\n")
 }
 
-/// The runs of one view and viewport: the reference's pixels, a table, and what cannot stand in it.
+/// Returns the section of one view and viewport in Markdown: the reference's pixel counts, a table
+/// of the measured runs, and notes. It is empty without runs.
 pub fn viewport(results: &Results, runs: &[Run]) -> String {
     let Some(first) = runs.first() else {
         return String::new();

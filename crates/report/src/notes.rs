@@ -1,4 +1,4 @@
-//! Notes below tables, wherever they stand.
+//! Notes below tables of results.
 
 use crate::graded::graded;
 use itertools::Itertools;
@@ -7,17 +7,19 @@ use skiagraph_compare::records::sequence::{FrameCost, Sequence};
 use skiagraph_compare::wording::{frames, ms, percent, plural, thousands};
 use skiagraph_reference::{BlockerCounts, Quantiles};
 
-/// A band of more than one pixel in so many of those facing the light leaves too much open.
+/// The band is too large if more than one in this many of the pixels that face the light lie in it.
 const MAX_BAND: u128 = 1000;
 
-/// That the band of a view and viewport leaves too much open, if it does.
+/// Returns a warning if the band of a run's view and viewport exceeds 0.1 % of the pixels that face
+/// the light; `None` otherwise.
 pub fn band_warning(run: &Run) -> Option<String> {
     let is_large = u128::from(run.band) * MAX_BAND > u128::from(run.pixels.facing_light);
     let text = "warning: the band is larger than 0.1 % of PFL; what lies in it is not proven";
     is_large.then(|| text.to_owned())
 }
 
-/// That others used the machine when the comparison began, if they took much of it.
+/// Returns a warning if other programs used much of the machine when the comparison began; `None`
+/// otherwise.
 pub fn load_warning(machine: &Machine) -> Option<String> {
     let load = machine.load.filter(|_| machine.is_loaded())?;
     let cores = plural(machine.cores as usize, "core");
@@ -27,8 +29,8 @@ pub fn load_warning(machine: &Machine) -> Option<String> {
     ))
 }
 
-/// That pixels of a view and viewport show what is not seen there, if any do. No method is to blame
-/// for it, and none is judged by it.
+/// Returns a warning if pixels of a run's view and viewport show a surface that is hidden there;
+/// `None` if none do. Such pixels do not count against a method.
 pub fn surface_warning(run: &Run) -> Option<String> {
     let background = run.pixels.background + run.pixels.facing_away;
     let all = background + run.pixels.facing_light;
@@ -36,7 +38,7 @@ pub fn surface_warning(run: &Run) -> Option<String> {
     (run.wrong_surface > 0).then(text)
 }
 
-/// That so many of all pixels show what is not seen there.
+/// Says that `count` of `all` pixels show a surface that is hidden there.
 pub fn wrong_surface(count: u64, all: u64) -> String {
     format!(
         "{} of {} pixels show a surface that another one hides, or none where there is one; every \
@@ -46,8 +48,8 @@ pub fn wrong_surface(count: u64, all: u64) -> String {
     )
 }
 
-/// Texels of a run's map per pixel, and how errors jump between its layers, in words; `None` where
-/// its graph does not tell.
+/// Describes the texels of a run's shadow map per pixel, and how errors jump between its layers.
+/// `None` if the run has no measurements of texels.
 pub fn map_figures(run: &Run) -> Option<String> {
     let measured = run.measured.as_ref()?;
     let of = measured.texels.as_ref()?;
@@ -81,8 +83,9 @@ fn digits(number: f64) -> String {
     format!("{number:.*}", behind.max(0.0) as usize)
 }
 
-/// Says of each method that is wrong of certain pixels how many they are, and what blocks them. All
-/// maps of a method, whose runs stand together, are in one line.
+/// Returns a line for each method that was wrong on pixels that it called certain: their number,
+/// and what blocks the light there. Runs of a method must stand together; all its map sizes share
+/// one line.
 pub fn certain_wrong(runs: &[Run]) -> Vec<String> {
     let wrong = |run: &Run| {
         let certain = run.measured.as_ref().map_or(0, |of| of.wrong.certain);
@@ -120,8 +123,9 @@ const KINDS: [Kind; 3] = [
     ("no blocker", |by| by.none),
 ];
 
-/// Says of certain wrong pixels, a count and its kinds of blocker for each run, how many they are
-/// and what blocks them; kinds that no run has are left out.
+/// Says how many pixels were certain and wrong, and what blocks the light there. `counts` has an
+/// entry for each run: the number of these pixels, and its split by kind of blocker. Kinds that no
+/// run has are left out.
 pub fn blocked_by(counts: &[(u64, BlockerCounts)]) -> String {
     let said = |name: &str, count: &dyn Fn(&(u64, BlockerCounts)) -> u64| {
         let counts: Vec<u64> = counts.iter().map(count).collect();
@@ -135,8 +139,8 @@ pub fn blocked_by(counts: &[(u64, BlockerCounts)]) -> String {
     parts.join(", ")
 }
 
-/// Notes of a group of runs: what is certain and wrong, grades, what is kept from frame to frame,
-/// and, of an adapter that has GPU times, those that are missing.
+/// Returns the notes of a group of runs: certain wrong pixels, shares of light, steady states,
+/// costs of camera paths, and missing GPU times if the adapter has them.
 pub fn of_runs(results: &Results, runs: &[Run]) -> Vec<String> {
     let mut notes = certain_wrong(runs);
     notes.extend(graded(runs));
@@ -148,7 +152,8 @@ pub fn of_runs(results: &Results, runs: &[Run]) -> Vec<String> {
     notes
 }
 
-/// Says what was judged of a method that remembers.
+/// Describes the steady state in which a method that reuses earlier frames was judged; `None` for
+/// other methods.
 pub fn remembering(run: &Run) -> Option<String> {
     let measured = run.measured.as_ref()?;
     let steady = measured.steady.as_ref()?;
@@ -178,7 +183,8 @@ pub fn remembering(run: &Run) -> Option<String> {
     })
 }
 
-/// Says what the frames of a camera path cost, with what is kept and without.
+/// Names the slowest frame of a camera path, both as the passes ran and with every pass run, and
+/// the CPU costs of scene changes. Each entry is a line. The list is empty for a single view.
 pub fn path_costs(run: &Run) -> Vec<String> {
     let sequence = run.measured.as_ref().and_then(|of| of.sequence.as_ref());
     let lines = sequence.map(|sequence| {
@@ -212,7 +218,8 @@ fn remade(run: &Run, sequence: &Sequence) -> Option<String> {
     (!remade.is_empty()).then(|| format!("{label} between frames, on the CPU: {remade}"))
 }
 
-/// Which GPU times a run lacks on an adapter whose timestamps are true.
+/// Names the GPU times that a run lacks on an adapter with true timestamps; `None` if it lacks
+/// none.
 pub fn times_missing(run: &Run) -> Option<String> {
     let measured = run.measured.as_ref()?;
     let passes = measured.passes.iter();
@@ -221,7 +228,8 @@ pub fn times_missing(run: &Run) -> Option<String> {
     Some(format!("{}: {why}", run.method_label()))
 }
 
-/// Which GPU times are missing: of passes, each with whether it has one, and of the frame.
+/// Names the GPU times that are missing; `None` if none are. `passes` yields the name of each pass
+/// and true if it was timed; `frame` is true if the whole frame was.
 pub fn untimed<'a>(passes: impl Iterator<Item = (&'a str, bool)>, frame: bool) -> Option<String> {
     let mut untimed = passes.filter_map(|(name, is_timed)| (!is_timed).then_some(name));
     let untimed = untimed.join(", ");

@@ -1,4 +1,4 @@
-//! The page of folders of results, `report.html`, as a file.
+//! Writes `report.html`, the page of results, to a file.
 
 use crate::charts::Kept;
 use crate::html::{page, sources};
@@ -9,10 +9,11 @@ use skiagraph_compare::records::read_back;
 use skiagraph_compare::sink::Sink;
 use std::path::{Path, PathBuf};
 
-/// The name of the page in a folder of results.
+/// Name of the page's file in a folder of results.
 pub const FILE: &str = "report.html";
 
-/// Writes the page of one folder into it, and tells the sink which pictures had no room in it.
+/// Writes the page of one folder of results into that folder. The sink gets a note about pictures
+/// that did not fit into the page.
 ///
 /// # Errors
 /// Those of [`write`](write()).
@@ -20,12 +21,12 @@ pub fn write_beside(folder: &Path, sink: &dyn Sink) -> Result<(), CompareError> 
     write(&[folder.to_path_buf()], &folder.join(FILE), sink)
 }
 
-/// Writes the page of some folders, and tells the sink which pictures had no room in it. A page
-/// that stands among results is written while no other process writes these: it is never older
-/// than they are.
+/// Writes the page of several folders of results to `file`. The sink gets a note about pictures
+/// that did not fit into the page. If `file` lies in one of the folders, that folder's lock is
+/// held, so the page is never older than the results beside it.
 ///
 /// # Errors
-/// A folder without results, results that cannot be read, a file that cannot be written.
+/// If a folder has no results, results cannot be read, or the file cannot be written.
 pub fn write(folders: &[PathBuf], file: &Path, sink: &dyn Sink) -> Result<(), CompareError> {
     let beside = file.parent();
     let beside = folders

@@ -1,4 +1,4 @@
-//! `profile --csv`: a line per pass and one for the frame of each profile, for spreadsheets.
+//! `profile --csv`: a line for each pass and one for the whole frame of each profile.
 
 use skiagraph_compare::records::profile::{Conditions, PassProfile, Profile};
 use skiagraph_compare::records::statistics::Series;
@@ -88,7 +88,7 @@ fn six_digits(number: f64) -> String {
     format!("{number:.6}")
 }
 
-/// The contents of the file; the frame's cell `pass` is empty.
+/// Returns the profiles as CSV. The cell `pass` is empty in the lines of whole frames.
 ///
 /// # Errors
 /// See [`Table::csv`].

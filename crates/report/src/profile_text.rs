@@ -1,4 +1,4 @@
-//! A profile as text: conditions, passes, memory, and how it stands to an older one.
+//! Writes a profile as text: conditions, passes, memory, and a comparison with an older profile.
 
 use crate::notes::untimed;
 use crate::table::terminal;
@@ -10,7 +10,7 @@ use skiagraph_compare::records::statistics::Series;
 use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::{bytes, frames, ms, size};
 
-/// Writes a profile as it is printed on standard output.
+/// Returns a profile as text for a terminal, with the comparison to its baseline if it has one.
 pub fn report(profile: &Profile) -> String {
     let mut text = conditions(profile);
     text += &format!("\nTimes, ms\n{}\n", times(profile));
@@ -36,7 +36,8 @@ pub fn report(profile: &Profile) -> String {
     text
 }
 
-/// Writes several profiles: a table per method, a row per pass, a column per view and size.
+/// Returns several profiles as text: a table for each method, with a row for each pass and a column
+/// for each view, viewport and map size. Cells are medians of GPU milliseconds.
 pub fn matrices(profiles: &[Profile]) -> String {
     let mut text = String::new();
     if let Some(first) = profiles.first() {

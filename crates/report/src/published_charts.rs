@@ -1,5 +1,5 @@
-//! Published figures and ours in charts beside each other: theirs left, ours right, on the same
-//! axes. A chart for each quantity that both have, by map size and by viewport.
+//! Charts published figures beside measured ones: published left, measured right, on the same axes.
+//! There is a chart for each quantity that both sides have, by map size and by viewport.
 
 use crate::charts::{Kept, conditions};
 use crate::published_left_out::{views_left_out, without_counterpart};
@@ -10,11 +10,11 @@ use skiagraph_compare::records::columns::{figure, head_of, quantities};
 use skiagraph_compare::records::published_row::Row;
 use skiagraph_compare::records::results::Run;
 
-/// The charts that could be drawn, and why others could not.
+/// Charts of published and measured figures, and the gaps in them.
 pub struct Charts {
-    /// Names of files without their ending, and what is in them.
+    /// Each chart with the name of its file, without an extension.
     pub charts: Vec<(String, Figure)>,
-    /// A line for each thing that has no counterpart.
+    /// Lines that name what is not drawn, and why.
     pub left_out: Vec<String>,
 }
 
@@ -25,8 +25,9 @@ const SUM: &str = "ms.steps";
 /// The chart of methods without a map, whose times have nothing to be a share of.
 const GROWTH: &str = "time-by-viewport";
 
-/// Draws everything that both have of these results, to whose runs the figures were attached.
-/// `rows` are all of them.
+/// Draws every quantity that is both published and measured. The published figures must be attached
+/// to the runs of `kept`; `published_rows` are all rows of the publication, and `label` is its name
+/// in the charts. `viewport` (pixels) limits the charts to one viewport; `None` draws all.
 pub fn draw(
     kept: &[Kept],
     published_rows: &[Row],

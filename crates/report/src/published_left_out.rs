@@ -1,4 +1,4 @@
-//! Gaps in charts of published figures and ours, because only one side has a figure.
+//! Names the gaps in charts of published and measured figures, where only one side has a figure.
 
 use crate::published_panels::{Cell, Groups, PanelRow};
 use itertools::Itertools;
@@ -7,7 +7,8 @@ use skiagraph_compare::records::published_row::Row;
 use skiagraph_compare::wording::size;
 use std::collections::BTreeSet;
 
-/// Views that a chart lacks which is drawn.
+/// Returns a line that names the views missing from a drawn chart; `None` if none are. `cells` are
+/// all measured runs, `chart` is the chart's name, and `drawn` are its rows of panels.
 pub fn views_left_out(
     cells: &[Cell],
     chart: &str,
@@ -32,7 +33,9 @@ pub fn views_left_out(
     ))
 }
 
-/// Lists what only one side has: scenes, and in a scene views, viewports, map sizes and presets.
+/// Returns a line for each scene of which only one side has figures, and for each scene in which
+/// only one side has a view, viewport, map size or preset. `cells` are the measured runs, `rows`
+/// the published ones, and `label` names the publication.
 pub fn without_counterpart<'a>(
     cells: &[Cell],
     rows: impl Iterator<Item = &'a Row>,

@@ -1,4 +1,4 @@
-//! Pairs of panels: what others published of some runs left, what we measured right.
+//! Pairs of panels: published figures left, measured ones right.
 
 use crate::charts::push;
 use skiagraph_chart::{Kind, Mark, Panel, Series};
@@ -7,15 +7,15 @@ use skiagraph_compare::records::results::{Published, Results, Run};
 use skiagraph_compare::wording::size;
 use std::collections::BTreeSet;
 
-/// A run with what was published about it.
+/// A measured run with the published figures attached to it.
 pub struct Cell<'a> {
-    /// All results that it is of.
+    /// The results that the run belongs to.
     pub results: &'a Results,
-    /// The run, which has measurements.
+    /// The run; it has measurements.
     pub run: &'a Run,
 }
 
-/// All runs with measurements.
+/// Returns the runs of the results that have measurements.
 pub fn cells(results: &Results) -> impl Iterator<Item = Cell<'_>> {
     let runs = results.runs.iter().filter(|run| run.measured.is_some());
     runs.map(move |run| Cell { results, run })
@@ -27,8 +27,8 @@ impl<'a> Cell<'a> {
         &self.results.scene.name
     }
 
-    /// The run of the same view and viewport that draws no map, and of which a quantity is
-    /// published.
+    /// Returns the run of the same view and viewport whose method draws no map and has a published
+    /// figure of this quantity. `None` if there is none.
     pub fn whole(&self, quantity: &str) -> Option<&'a Run> {
         let Run { view, viewport, .. } = self.run;
         let mut runs = self.results.runs.iter();
@@ -39,23 +39,23 @@ impl<'a> Cell<'a> {
     }
 }
 
-/// The published figure of that quantity.
+/// Returns the published figure of this quantity for a run; `None` if there is none.
 pub fn published<'a>(run: &'a Run, quantity: &str) -> Option<&'a Published> {
     let mut figures = run.published.iter();
     figures.find(|figure| figure.quantity == quantity)
 }
 
-/// Quantity that a group of bars stands for; the other one has panels of its own for each.
+/// Grouping of bars. Each value of the other quantity gets a pair of panels of its own.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Groups {
-    /// Viewports.
+    /// A group of bars for each viewport, a pair of panels for each map size.
     Viewports,
-    /// Sizes of maps.
+    /// A group of bars for each map size, a pair of panels for each viewport.
     Maps,
 }
 
 impl Groups {
-    /// Their name.
+    /// Returns the plural noun for the groups: `viewports` or `map sizes`.
     pub fn plural(self) -> &'static str {
         match self {
             Self::Viewports => "viewports",
@@ -63,7 +63,7 @@ impl Groups {
         }
     }
 
-    /// Name of the axis along which they stand.
+    /// Returns the name of the axis along which the groups stand: `viewport` or `map`.
     pub fn axis(self) -> &'static str {
         match self {
             Self::Viewports => "viewport",
@@ -79,21 +79,21 @@ impl Groups {
     }
 }
 
-/// A figure on both sides.
+/// A published and a measured figure of the same quantity.
 pub struct Bar<'a> {
-    /// The series that it belongs to.
+    /// Name of the series that the bar belongs to.
     pub series: String,
-    /// Theirs, as it was published.
+    /// The published figure as printed.
     pub figure: &'a Published,
-    /// Theirs, as it is drawn.
+    /// The published figure as drawn: divided by its whole.
     pub theirs: f64,
-    /// Ours.
+    /// The measured figure as drawn: divided by its whole.
     pub ours: f64,
 }
 
 impl<'a> Bar<'a> {
-    /// The bar that a figure of theirs and one of ours make, if there are both, each divided by a
-    /// whole.
+    /// Returns the bar of a quantity for a cell, with each figure divided by its whole. `None` if
+    /// the figure is not both published and measured, or a quotient is not finite.
     pub fn new(
         cell: &Cell<'a>,
         quantity: &str,
@@ -111,18 +111,19 @@ impl<'a> Bar<'a> {
     }
 }
 
-/// Content of one pair of panels.
+/// Content of one pair of panels: one scene, view, and map size or viewport.
 pub struct PanelRow<'a> {
     /// Name of the scene.
     pub scene: &'a str,
     /// Name of the view.
     pub view: &'a str,
-    /// The viewport, or the map where groups are viewports.
+    /// The viewport, or the map size if groups are viewports, as text for the title.
     place: String,
     bars: Vec<([u32; 2], Bar<'a>)>,
 }
 
-/// Pairs of panels of at least two groups. `bar` may be none of a cell.
+/// Returns the pairs of panels that have at least two groups of bars. `bar` returns the bar of a
+/// cell; `None` leaves the cell out.
 pub fn rows<'a>(
     cells: &'a [Cell<'a>],
     groups: Groups,
@@ -159,12 +160,13 @@ pub fn rows<'a>(
 }
 
 impl PanelRow<'_> {
-    /// The published figures that are drawn.
+    /// Returns the published figures of the bars.
     pub fn figures(&self) -> impl Iterator<Item = &Published> {
         self.bars.iter().map(|(_, bar)| bar.figure)
     }
 
-    /// Theirs and ours as bars, `y` upwards.
+    /// Returns two panels of bars: the published figures, titled with `label`, and the measured
+    /// ones. `y` is the label of the vertical axis.
     pub fn bars(&self, label: &str, groups: Groups, y: &str) -> [Panel; 2] {
         let known = self.groups();
         let names: Vec<String> = known.iter().map(|group| groups.name(*group)).collect();
@@ -185,7 +187,9 @@ impl PanelRow<'_> {
         })
     }
 
-    /// Theirs and ours against the pixels of viewports, as multiples of the smallest one's.
+    /// Returns two panels of lines over the pixels of the viewports: the published figures, titled
+    /// with `label`, and the measured ones. Values are multiples of the smallest viewport's. `y` is
+    /// the label of the vertical axis.
     pub fn growth(&self, label: &str, y: &str) -> [Panel; 2] {
         let mut sides: [Vec<Series>; 2] = Default::default();
         let mut first: Option<&Bar> = None;

@@ -1,13 +1,13 @@
-//! Charts as pictures of pixels.
+//! Renders charts as PNG pictures.
 
 use resvg::{tiny_skia, usvg};
 use skiagraph_compare::error::CompareError;
 
-/// A chart in two pixels per unit of its own, as papers and slides want it. Its font comes with the
-/// program, so that every machine draws the same.
+/// Renders an SVG chart as a PNG picture with two pixels per SVG unit, on white. The font comes
+/// with the program, so every machine renders the same picture.
 ///
 /// # Errors
-/// An SVG that is none, or of no size.
+/// If the text is not valid SVG, or the picture has no size or is too large.
 pub fn png(svg: &str) -> Result<Vec<u8>, CompareError> {
     const SCALE: f32 = 2.0;
     let failed = |what: &dyn std::fmt::Display| {

@@ -1,4 +1,4 @@
-//! Results with every field in use: those that the schemas of `records` are pinned by.
+//! Sample results with every field in use: the ones that pin the schemas of `records`.
 
 use serde::de::DeserializeOwned;
 use skiagraph_compare::records::{profile::Profile, results::Results, stress::Report};
@@ -19,21 +19,21 @@ fn read<T: DeserializeOwned>(snapshot: &str) -> T {
     serde_json::from_str(json).unwrap()
 }
 
-/// Results of `compare`.
+/// Returns sample results of `compare`.
 pub fn results() -> Results {
     read(pinned!(
         "results__tests__the_schema_is_pinned_and_reads_back"
     ))
 }
 
-/// Results of `profile`.
+/// Returns a sample profile.
 pub fn profile() -> Profile {
     read(pinned!(
         "profile__tests__the_schema_is_pinned_and_reads_back"
     ))
 }
 
-/// Results of `stress`.
+/// Returns a sample report of `stress`.
 pub fn stress() -> Report {
     read(pinned!("stress__tests__the_schema_is_pinned"))
 }

@@ -1,4 +1,5 @@
-//! The matrix for a terminal: a row per case, a column per method, and below it what failed.
+//! The matrix of `stress` for a terminal: a row for each case, a column for each method, then
+//! failures.
 
 use crate::notes::wrong_surface;
 use crate::table::terminal;
@@ -9,10 +10,11 @@ use skiagraph_compare::records::stress::{
 use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::{percent, size, thousands};
 
-/// The command that shows the pictures of a method on a case, and what to set for it besides.
+/// Function that returns the command which shows a method's pictures of a case. Its arguments are
+/// the method's column, the case's name, and the additional setting of the cell, if any.
 pub type CommandFor<'a> = &'a dyn Fn(&Column, &str, Option<&str>) -> String;
 
-/// A heading, the matrix, and what there is to say of it.
+/// Returns the heading, the matrix, the remarks and the failures as text for a terminal.
 pub fn render(report: &Report, command_for: CommandFor) -> String {
     let table = terminal(&matrix(report).0);
     let (heading, remarks) = (heading(report), remarks(report));
@@ -24,7 +26,7 @@ pub fn render(report: &Report, command_for: CommandFor) -> String {
     text
 }
 
-/// Adapter and viewport, a line each, and the meaning of the cells.
+/// Returns lines with the adapter, the viewport and the meaning of the cells.
 pub fn heading(report: &Report) -> String {
     format!(
         "{}\n{}{} · pixels outside the band: wrongly lit + wrongly in shadow · ✗ \
@@ -35,7 +37,7 @@ pub fn heading(report: &Report) -> String {
     )
 }
 
-/// Methods that could not run, warnings, and the outcome of all cells, a line each.
+/// Returns the methods that could not run, warnings, and the outcome of all cells, a line each.
 pub fn remarks(report: &Report) -> String {
     let mut text = String::new();
     for column in &report.methods {
@@ -71,10 +73,12 @@ fn named(report: &Report, column: &Column) -> String {
     }
 }
 
-/// A case with the cells of a row, one per method that ran.
+/// A row of the matrix: its case, and its cell for each method that could run. `None` stands for a
+/// method without a result in this row.
 pub type MatrixRow<'a> = (&'a Case, Vec<Option<&'a Cell>>);
 
-/// The matrix, and what its rows are of: three columns of the case, then one of each method.
+/// Returns the matrix as a table, with the case and the cells of each row. The table's first three
+/// columns describe the case; the others belong to the methods in the order of the cells.
 pub fn matrix(report: &Report) -> (Table, Vec<MatrixRow<'_>>) {
     let can_run = report.methods.iter();
     let columns: Vec<&Column> = can_run
@@ -181,7 +185,7 @@ fn summary(report: &Report) -> String {
     text
 }
 
-/// All that failed, case by case, with the commands that show it.
+/// Lists what failed, case by case, with the commands that show it. It is empty if nothing failed.
 pub fn failures(report: &Report, command_for: CommandFor) -> String {
     let mut text = String::new();
     for case in &report.cases {

@@ -1,5 +1,5 @@
-//! Runs folded to a row per method and setting, over all views of a viewport: the figures by which
-//! to pick a method.
+//! Combines runs into rows: one row for each method and setting, over all views of a viewport. The
+//! band of a picture is the set of pixels at which rounding decides the right answer.
 
 use skiagraph_compare::lists::entry;
 use skiagraph_compare::records::results::{Measured, Part, Run, step};
@@ -9,39 +9,40 @@ use skiagraph_compare::records::steady::Cycle;
 use skiagraph_compare::records::turns::{PairedRatio, Turns};
 use skiagraph_reference::Shimmer;
 
-/// One method in one setting, over the views that it was measured on.
+/// Figures of one method in one setting, combined over the views of one viewport.
 #[derive(Debug)]
 pub struct Row<'a> {
-    /// Method, variant and map size.
+    /// Name of the method with its variant and map size.
     pub label: String,
-    /// Method and variant.
+    /// Name of the method with its variant.
     pub method: String,
-    /// Its runs, one per view, those that measured something.
+    /// The method's runs with measurements, one for each view.
     runs: Vec<Measurement<'a>>,
-    /// Why it could not run, where it could not at all.
+    /// Reason why the method ran on none of the views; `None` if it ran on any.
     pub unavailable: Option<&'a str>,
-    /// True if its times are the GPU's own, not the wall clock's.
+    /// True if every run has GPU times.
     pub has_gpu_times: bool,
 }
 
-/// A run, and its measurements.
+/// A run and its measurements.
 type Measurement<'a> = (&'a Run, &'a Measured);
 
-/// Wrong pixels over all views.
+/// Number of wrong pixels of a method over all views.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Wrong {
-    /// Outside the band: what counts.
+    /// Wrong pixels outside the band. These count against the method.
     pub outside_band: u64,
-    /// In the band, where the answer hangs on rounding.
+    /// Wrong pixels in the band, where rounding decides which answer is right.
     pub in_band: u64,
-    /// Number of pixels that face the light, of which these are.
+    /// All pixels that face the light, wrong or not.
     pub facing_light: u64,
-    /// Number of these in the band: which answer is right there hangs on rounding.
+    /// All pixels in the band, wrong or not.
     pub band: u64,
 }
 
 impl Wrong {
-    /// Those outside the band as a share of what faces the light.
+    /// Returns the wrong pixels outside the band as a share of the pixels that face the light, from
+    /// 0 to 1.
     pub fn share(self) -> f64 {
         self.outside_band as f64 / self.facing_light.max(1) as f64
     }
@@ -66,18 +67,18 @@ impl<'a> Row<'a> {
         }
     }
 
-    /// Its runs that measured something, one per view.
+    /// Returns the runs with measurements, one for each view.
     pub fn runs(&self) -> impl Iterator<Item = (&'a Run, &'a Measured)> {
         self.runs.iter().copied()
     }
 
-    /// On how many views it was measured.
+    /// Returns the number of views on which the method was measured; 0 if it could not run.
     pub fn views(&self) -> usize {
         self.runs.len()
     }
 
-    /// Pixels that are wrong if shares are cut at one half; of a method that remembers the mean of
-    /// its steady state, rounded up.
+    /// Returns the wrong pixels of all views; shares of light count as lit from one half on. For a
+    /// method that reuses earlier frames it is the mean of the steady state, rounded up.
     pub fn wrong(&self) -> Wrong {
         self.runs.iter().fold(Wrong::default(), |sum, (run, of)| {
             let (outside, in_band) = match cycle(of) {
@@ -99,18 +100,19 @@ impl<'a> Row<'a> {
         })
     }
 
-    /// When the newest comparison began that measured it.
+    /// Returns the begin of the newest comparison among the runs, as text that sorts by time. It is
+    /// empty without runs.
     pub fn session(&self) -> &'a str {
         let sessions = self.runs.iter().map(|(run, _)| run.session.as_str());
         sessions.max().unwrap_or_default()
     }
 
-    /// True unless an early end left one of its runs with a single frame.
+    /// True unless a run was cut short after a single frame.
     pub fn is_whole(&self) -> bool {
         self.runs.iter().all(|(run, _)| run.is_whole())
     }
 
-    /// True if no answer outside the band differs from the reference's, in any share.
+    /// True if no answer outside the band differs from the reference, in any share of light.
     pub fn is_exact(&self) -> bool {
         let is_exact = |(_, of): &(&Run, &Measured)| {
             of.wrong_outside_band() == 0 && of.graded.rmse_outside_band == 0.0
@@ -118,8 +120,8 @@ impl<'a> Row<'a> {
         self.runs.iter().all(is_exact)
     }
 
-    /// Wrong pixels of the worst picture as a share of those facing the light, of a method that
-    /// remembers and whose pictures differ in its steady state.
+    /// Returns the wrong pixels of the worst picture in a steady state of several pictures, as a
+    /// part of the pixels that face the light. `None` for methods whose picture stays the same.
     pub fn worst_of_cycle(&self) -> Option<Part> {
         let pictures = |of: &Measured| cycle(of).map_or(1, |cycle| cycle.pictures);
         let worst = self.runs.iter().filter(|(_, of)| pictures(of) > 1);
@@ -132,13 +134,13 @@ impl<'a> Row<'a> {
             .max_by(|one, other| (one.count * other.of.max(1)).cmp(&(other.count * one.of.max(1))))
     }
 
-    /// The size of its map, where it has one.
+    /// Returns the edge of the shadow map in texels; `None` if the method has none.
     pub fn map_size(&self) -> Option<u32> {
         self.runs.first().and_then(|(run, _)| run.map_size)
     }
 
-    /// Its steps in their order, each with the sum of its passes' medians in GPU ms, means of the
-    /// views; those without GPU times are left out.
+    /// Returns the method's steps in order, each with its GPU milliseconds: the sum of the medians
+    /// of its passes, as the mean of the views. Passes without GPU times are left out.
     pub fn steps(&self) -> Vec<(&'a str, f64)> {
         let mut steps: Vec<(&str, f64)> = Vec::new();
         let passes = self.runs.iter().flat_map(|(_, of)| &of.passes);
@@ -149,52 +151,58 @@ impl<'a> Row<'a> {
         steps
     }
 
-    /// Root mean square error of the shares of light, over all views; of a method that remembers in
-    /// the mean of its steady state.
+    /// Returns the root mean square error of the shares of light over all views; `None` without
+    /// runs. For a method that reuses earlier frames it is the mean of the steady state.
     pub fn rmse(&self) -> Option<f64> {
         let rmse = |of: &Measured| cycle(of).map_or(of.graded.rmse, |cycle| cycle.rmse_mean);
         self.mean(|_, of| Some(rmse(of).powi(2))).map(f64::sqrt)
     }
 
-    /// FLIP of the shaded pictures, the mean of the views.
+    /// Returns the FLIP error of the shaded pictures, the mean of the views; `None` without runs.
     pub fn flip(&self) -> Option<f64> {
         self.mean(|_, of| Some(cycle(of).map_or(of.graded.flip, |cycle| cycle.flip_mean)))
     }
 
-    /// True if the light has an extent: then shares are what is judged.
+    /// True if the light has an extent. Then methods are judged by their shares of light.
     pub fn is_soft(&self) -> bool {
         self.runs.iter().any(|(run, _)| run.area.is_some())
     }
 
-    /// Milliseconds of a frame in which light or meshes have moved: every pass runs. The mean of
-    /// the views' medians; of the wall clock if `by_wall`.
+    /// Returns the milliseconds of a frame in which every pass runs, as it does when light or
+    /// meshes have moved: the mean of the views' medians. `None` if a view has no such time.
+    /// `by_wall` selects wall time instead of GPU time.
     pub fn frame_ms(&self, by_wall: bool) -> Option<f64> {
         self.mean(|_, of| median(full(of), by_wall))
     }
 
-    /// The same of a frame in which only the camera has moved; `None` where nothing is kept.
+    /// Returns the milliseconds of a frame in which only the camera has moved, so that passes keep
+    /// results: the mean of the views' medians. `None` if the method keeps nothing. `by_wall`
+    /// selects wall time instead of GPU time.
     pub fn kept_ms(&self, by_wall: bool) -> Option<f64> {
         let keeps = |(_, of): &(&Run, &Measured)| kept(of) != full(of);
         let any = self.runs.iter().any(keeps);
         self.mean(|_, of| median(kept(of), by_wall)).filter(|_| any)
     }
 
-    /// First and third quartile of the same times as [`frame_ms`](Self::frame_ms), or with `kept`
-    /// as [`kept_ms`](Self::kept_ms): means of the views'.
+    /// Returns the first and third quartile of the times of [`frame_ms`](Self::frame_ms), or of
+    /// [`kept_ms`](Self::kept_ms) if `is_kept`, in milliseconds: the means of the views. `None` if
+    /// a view has no such times.
     pub fn quartiles(&self, by_wall: bool, is_kept: bool) -> Option<[f64; 2]> {
         let times = if is_kept { kept } else { full };
         let q1 = self.mean(|_, of| Some(times(of).spread(by_wall)?.q1))?;
         Some([q1, self.mean(|_, of| Some(times(of).spread(by_wall)?.q3))?])
     }
 
-    /// Milliseconds of a frame less its G-buffer, which all methods have alike, by the GPU's clock.
+    /// Returns the GPU milliseconds of a frame without its G-buffer, which all methods share: the
+    /// mean of the views. `None` if a view has no GPU times.
     pub fn own_ms(&self) -> Option<f64> {
         self.mean(|_, of| of.ms_without_gbuffer())
     }
 
-    /// True if its frames were faster or slower than those of another row on the same views, with
-    /// every pass run or with what is kept. Frames that took turns are compared turn by turn;
-    /// those that did not are told apart if their quartiles do not overlap.
+    /// True if the frames of two rows on the same views differ in speed beyond the noise. `is_kept`
+    /// compares frames in which only the camera moved, otherwise frames in which every pass ran;
+    /// `by_wall` selects wall time. Frames in which every pass ran are compared turn by turn if the
+    /// methods took turns; otherwise times differ if their quartiles do not overlap.
     pub fn is_told_apart(&self, other: &Self, by_wall: bool, is_kept: bool) -> bool {
         let pair = || self.runs.iter().zip(&other.runs);
         let is_pair = |((one, of), (other, of_other)): (&Measurement, &Measurement)| {
@@ -232,13 +240,14 @@ impl<'a> Row<'a> {
         }
     }
 
-    /// Rays of a frame, if the method counts them.
+    /// Returns the number of rays per frame, the mean of the views; `None` if the method does not
+    /// count them.
     pub fn rays(&self) -> Option<f64> {
         self.mean(|_, of| of.rays.map(|rays| rays as f64 / frames(of)))
     }
 
-    /// Counts, of camera paths, answers that changed though the right ones did not, of those
-    /// compared.
+    /// Returns the answers on camera paths that changed although the right answers did not, as a
+    /// part of those compared. `None` if a run is not of a path.
     pub fn shimmer(&self) -> Option<Part> {
         let mut all = Shimmer::default();
         for (_, of) in &self.runs {
@@ -250,21 +259,23 @@ impl<'a> Row<'a> {
         })
     }
 
-    /// Worst frame of all camera paths, by its error.
+    /// Returns the frame with the greatest error on all camera paths; `None` without paths.
     pub fn worst_frame(&self) -> Option<&'a SequenceFrame> {
         let paths = self.runs.iter();
         let worst = paths.filter_map(|(_, of)| Some(of.sequence.as_ref()?.worst()?.1));
         worst.max_by(|one, other| one.error().total_cmp(&other.error()))
     }
 
-    /// Bytes of its own materials and of what it reads of the scene, the most on any view.
+    /// Returns the bytes of the method's own materials and of the scene buffers that it reads: the
+    /// most on any view.
     pub fn bytes(&self) -> u64 {
         let bytes = self.runs.iter();
         let bytes = bytes.map(|(_, of)| of.memory_bytes + of.scene_bytes);
         bytes.max().unwrap_or_default()
     }
 
-    /// The reference's own error, under a light that has an extent: the worst of the views.
+    /// Returns the standard error of the reference under a light with an extent: the greatest of
+    /// the views. `None` under other lights.
     pub fn reference_error(&self) -> Option<f64> {
         let errors = self.runs.iter().filter_map(|(run, _)| run.area);
         errors.map(|area| area.standard_error_rms).reduce(f64::max)
@@ -322,7 +333,8 @@ fn median(times: &FrameTimes, by_wall: bool) -> Option<f64> {
     Some(times.spread(by_wall)?.median)
 }
 
-/// The rows of one viewport, the fastest first, those that could not run last.
+/// Combines the runs of one viewport (pixels) into rows, the fastest first. Rows that could not run
+/// come last.
 pub fn rows<'a>(runs: impl IntoIterator<Item = &'a Run>, viewport: [u32; 2]) -> Vec<Row<'a>> {
     let mut cells: Vec<(String, Vec<&Run>)> = Vec::new();
     for run in runs.into_iter().filter(|run| run.viewport == viewport) {
@@ -338,7 +350,7 @@ pub fn rows<'a>(runs: impl IntoIterator<Item = &'a Run>, viewport: [u32; 2]) -> 
     rows
 }
 
-/// True if rows can only be compared by the wall clock: some have no GPU times.
+/// True if some rows have no GPU times, so that rows can be compared by wall time only.
 pub fn by_wall(rows: &[Row]) -> bool {
     rows.iter().any(|row| !row.has_gpu_times)
 }

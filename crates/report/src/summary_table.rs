@@ -1,5 +1,5 @@
-//! The answer to "which one shall I take", as a table with its verdict: a row per method and
-//! setting over all views, the fastest first.
+//! The summary of a comparison: a table with a row for each method and setting over all views, the
+//! fastest first, and a verdict.
 
 use crate::notes::{
     band_warning, blocked_by, load_warning, path_costs, remembering, surface_warning, times_missing,
@@ -17,19 +17,19 @@ use skiagraph_compare::wording::{bytes, ms, percent, plural, size, thousands};
 use skiagraph_reference::BlockerCounts;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// All that was measured in one viewport.
+/// Results of one viewport under one light.
 pub struct Summary<'a> {
     results: &'a Results,
-    /// Its size in pixels.
+    /// Width and height of the viewport in pixels.
     pub viewport: [u32; 2],
-    /// The light, where views were compared under several: nothing is averaged over lights.
+    /// The light, if the comparison has several; results of different lights are never averaged.
     light: Option<&'a str>,
     runs: Vec<&'a Run>,
-    /// A row per method and setting, the fastest first.
+    /// A row for each method and setting, the fastest first.
     pub rows: Vec<Row<'a>>,
 }
 
-/// One summary per viewport and light, in the order of the results.
+/// Returns a summary for each viewport and light, in the order of the results.
 pub fn summaries(results: &Results) -> Vec<Summary<'_>> {
     let place = |run: &'_ Run| (run.viewport, run.light.clone());
     let all = unique(results.runs.iter().map(place)).into_iter();
@@ -41,8 +41,9 @@ pub fn summaries(results: &Results) -> Vec<Summary<'_>> {
     all.map(summary).collect()
 }
 
-/// Each method under each light, of the viewports with several: wrong pixels outside the band in
-/// percent, milliseconds of a frame and memory. Each comes with its viewport.
+/// Returns, for each viewport with several lights, its size in pixels and a table with a row for
+/// each method and a column for each light. Cells show the percentage of wrong pixels outside the
+/// band, the milliseconds of a frame, and the memory.
 pub fn by_light(results: &Results) -> Vec<([u32; 2], Table)> {
     let summaries = summaries(results);
     let mut tables = Vec::new();
@@ -84,10 +85,11 @@ pub fn by_light(results: &Results) -> Vec<([u32; 2], Table)> {
 /// Beginning of lines that warn; the page makes them stand out by it.
 const WARNING: &str = "warning: ";
 
-/// Head of the column of wrong pixels outside the band, of shares cut at one half.
+/// Head of the column of wrong pixels outside the band. Shares of light count as lit from one half
+/// on.
 pub const WRONG: &str = "wrong outside band";
 
-/// Cell of a row that could not run.
+/// Text in the cell of a row that could not run.
 pub const NOT_THERE: &str = "n/a";
 
 impl<'a> Summary<'a> {
@@ -103,18 +105,19 @@ impl<'a> Summary<'a> {
         }
     }
 
-    /// Which of its rows to take.
+    /// Returns the verdict on the rows: which method to take.
     pub fn verdict(&self) -> Verdict {
         verdict(&self.rows, &self.results.budgets)
     }
 
-    /// True if a row was measured in another hour than the newest: it takes no part in the verdict.
+    /// True if a row was measured in another hour than the newest one. Such a row takes no part in
+    /// the verdict.
     pub fn is_old(&self, row: &Row) -> bool {
         let sessions = self.rows.iter().map(Row::session);
         is_another_hour(row.session(), sessions.max().unwrap_or_default())
     }
 
-    /// True if the light has an extent, so that shares are what is judged.
+    /// True if the light has an extent, so that methods are judged by their shares of light.
     pub fn is_soft(&self) -> bool {
         self.rows.iter().any(Row::is_soft)
     }
@@ -124,12 +127,12 @@ impl<'a> Summary<'a> {
         are_paths(self.runs.iter().copied())
     }
 
-    /// Names of the views or paths.
+    /// Returns the names of the views or camera paths.
     pub fn views(&self) -> BTreeSet<&str> {
         self.runs.iter().map(|run| run.view.as_str()).collect()
     }
 
-    /// `view main`, `path walk, 25 frames`, `9 views`.
+    /// Names the views or paths for a title: `view main`, `9 views` or `path walk, 25 frames`.
     pub fn what(&self) -> String {
         let views = self.views();
         let paths = self.are_paths();
@@ -149,7 +152,7 @@ impl<'a> Summary<'a> {
         }
     }
 
-    /// For a terminal.
+    /// Returns the summary as text for a terminal: conditions, table, verdict and notes.
     pub fn text(&self) -> String {
         let mut lines = vec![format!(
             "{} · {} · {}",
@@ -164,7 +167,7 @@ impl<'a> Summary<'a> {
         lines.join("\n") + "\n"
     }
 
-    /// For a document.
+    /// Returns the summary as a section in Markdown: table and verdict.
     pub fn markdown(&self) -> String {
         let mut text = format!("\n## In short: {}, {}\n", self.what(), size(self.viewport));
         text += &format!("\n{}", self.table().markdown());
@@ -175,7 +178,7 @@ impl<'a> Summary<'a> {
         text
     }
 
-    /// Under which conditions all this was measured, a line each.
+    /// Returns the conditions of the measurements, a line each.
     pub fn conditions(&self) -> Vec<String> {
         let views = self.views();
         let each = self.of_each_view();
@@ -212,7 +215,7 @@ impl<'a> Summary<'a> {
         lines
     }
 
-    /// A row per method and setting, the fastest exact one with a star.
+    /// Returns the table: a row for each method and setting. A star marks the fastest exact method.
     pub fn table(&self) -> Table {
         let are_paths = self.are_paths();
         let by_wall = by_wall(&self.rows);
@@ -284,7 +287,7 @@ impl<'a> Summary<'a> {
         Table::new(heads, 1, rows)
     }
 
-    /// Lists all further remarks, a line each.
+    /// Returns remarks on the table, a line each.
     pub fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
         if self.verdict().fastest_exact.is_some() {
@@ -417,8 +420,9 @@ fn or_dash<T>(value: Option<T>, text: impl Fn(T) -> String) -> String {
     value.map_or("–".into(), text)
 }
 
-/// The time of each pass in each viewport and map, a table per method: medians of the GPU's ms,
-/// means where there are several views.
+/// Returns the GPU time of each pass as text: a table for each method, with a row for each pass and
+/// a column for each viewport and map size. Cells are medians in milliseconds; several views are
+/// averaged.
 pub fn passes(results: &Results) -> String {
     let measured = results.runs.iter().filter(|run| run.measured.is_some());
     let methods = unique(measured.map(|run| &run.preset));

@@ -1,10 +1,10 @@
-//! Tables for a terminal and for a page.
+//! Draws tables for a terminal and for HTML.
 
 use comfy_table::{Cell, CellAlignment, presets};
 use skiagraph_chart::xml;
 use skiagraph_compare::records::table::Table;
 
-/// The table in lines of box-drawing characters, numbers to the right.
+/// Returns a table drawn with box characters for a terminal; numbers are aligned right.
 pub fn terminal(table: &Table) -> String {
     let mut drawn = comfy_table::Table::new();
     drawn.load_style(presets::UTF8_FULL_CONDENSED);
@@ -16,8 +16,9 @@ pub fn terminal(table: &Table) -> String {
     drawn.to_string()
 }
 
-/// The table for a page. Cells with words are heads of their row; `row` gives the attributes of a
-/// row by its index, `cell` those of a cell with a number by the indices of row and column.
+/// Returns a table as HTML. Cells in the word columns become row headers. `row` returns the
+/// attributes of the row with this index, `cell` those of the number cell at these indices of row
+/// and column.
 pub fn html(
     table: &Table,
     row: impl Fn(usize) -> String,

@@ -15,9 +15,9 @@ const ENCODING: u32 = 2;
 /// The first GPU track; further ones hold passes that overlap in time.
 const GPU: u32 = 3;
 
-/// The contents of the file. Times are microseconds from the begin of the first timed frame's
-/// encoding; the GPU's clock and the CPU's have no common zero, so each frame's GPU work is drawn
-/// from the end of its encoding on, and distances within it are true.
+/// Returns the content of the trace file. Times are microseconds from the begin of the first timed
+/// frame's encoding. The clocks of GPU and CPU share no zero, so the GPU work of a frame is placed
+/// at the end of its encoding, or after earlier GPU work; times within a frame are true.
 pub fn trace(conditions: &Conditions, frames: &[TimedFrame]) -> String {
     let mut events = Vec::new();
     let is_trusted = conditions.adapter.gpu_unavailable.is_none();

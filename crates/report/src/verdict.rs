@@ -1,4 +1,4 @@
-//! Which method to take, in a sentence or two.
+//! The verdict of a comparison: which method to take, in one or two sentences.
 
 use crate::summary::{Row, Wrong, by_wall};
 use skiagraph_compare::measuring::date::is_another_hour;
@@ -9,20 +9,20 @@ use skiagraph_compare::wording::{bytes, ms, percent, plural};
 /// answer of more than one pixel in a hundred hangs on rounding.
 const MAX_BAND: f64 = 0.01;
 
-/// Verdict of a table: which rows are the best, and that in words.
+/// Verdict on the rows of a summary.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Verdict {
-    /// Index of the fastest row that is right wherever that can be judged, while light or meshes
-    /// move.
+    /// Index of the fastest row without errors where the right answer is certain, for frames in
+    /// which light or meshes move. `None` if no row qualifies, or shares of light are compared.
     pub fastest_exact: Option<usize>,
-    /// One sentence each.
+    /// The verdict in words, a sentence for each entry. It is empty if nothing can be judged.
     pub sentences: Vec<String>,
 }
 
-/// Judges rows that were measured on the same views, the fastest first; those on fewer views, those
-/// of another hour, whose machine may have been another one by its load, those that an early end
-/// left without their frames and those that could not run take no part.
-/// Those beyond a budget are not taken.
+/// Judges rows that were measured on the same views; `rows` must be sorted with the fastest first.
+/// A row takes no part if it has fewer views than others, is of another hour (the machine may have
+/// been loaded differently), was cut short, or could not run. Rows beyond a budget are not
+/// recommended.
 pub fn verdict(rows: &[Row], budgets: &Budgets) -> Verdict {
     let most = rows.iter().map(Row::views).max().unwrap_or_default();
     let by_wall = by_wall(rows);

@@ -1,20 +1,21 @@
-//! Which triangle lies across each edge.
+//! Edge adjacency: finds the triangle on the other side of each edge.
 
 use crate::mesh::Mesh;
 use std::collections::HashMap;
 
-/// Value of [`Adjacency::opposite`] for an edge that has not exactly two triangles.
+/// Entry of [`Adjacency::opposite`] for an edge without exactly one neighbouring triangle.
 pub const NO_NEIGHBOUR: u32 = u32::MAX;
 
 /// Edge adjacency of a mesh over its welded positions: the *corner table* of Rossignac, Safonova
 /// and Szymczak ("3D Compression Made Simple", SMI 2001).
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Adjacency {
-    /// Three entries per triangle. Entry `3 * p + i` belongs to the edge of triangle p from corner
-    /// i to the next one, and names the corner `3 * q + k` of the triangle q across it that does
-    /// not lie on the edge: q is the entry divided by 3, and its edge is the one after k.
-    /// [`NO_NEIGHBOUR`] for an edge with one triangle, or with more than two. Windings play no
-    /// part. [`NO_NEIGHBOUR`] also where one of both is masked: its surface may end anywhere.
+    /// Corner opposite each triangle edge, three entries per triangle. Entry `3 * p + i` belongs to
+    /// the edge of triangle `p` from corner `i` to its next corner. Its value is `3 * q + k`: `q`
+    /// is the triangle on the other side of the edge, and `k` (0 to 2) is the corner of `q` that is
+    /// not on the edge. The value is [`NO_NEIGHBOUR`] for an edge of one triangle or of more than
+    /// two, and for an edge beside a masked triangle, whose surface may end anywhere. Winding plays
+    /// no part.
     pub opposite: Vec<u32>,
 }
 
@@ -27,9 +28,9 @@ enum Edge {
 }
 
 impl Adjacency {
-    /// Finds the neighbours in a mesh, in time linear in its triangles. Triangles that name a
-    /// position twice have no area whatever their place, and no neighbours: what lies on both sides
-    /// of one is adjacent.
+    /// Finds the neighbours across all edges of a mesh, in time linear in its triangles. A triangle
+    /// that names a position twice has no area and gets no neighbours. The triangles on its two
+    /// sides become neighbours of each other.
     pub fn new(mesh: &Mesh) -> Self {
         let mut opposite = vec![NO_NEIGHBOUR; 3 * mesh.triangles.len()];
         let mut edges = HashMap::with_capacity(3 * mesh.triangles.len() / 2);

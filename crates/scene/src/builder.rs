@@ -29,7 +29,7 @@ pub(crate) struct MeshBuilder {
 }
 
 impl MeshBuilder {
-    /// Adds a triangle; `normal` stands in where it has none of its own.
+    /// Adds a triangle; `normal` is asked where the triangle has no geometric normal.
     pub fn add(
         &mut self,
         corners: [Corner; 3],
@@ -74,12 +74,13 @@ impl MeshBuilder {
         }
     }
 
-    /// A welded position.
+    /// Returns the welded position with this index.
     pub fn point(&self, index: u32) -> DVec3 {
         self.positions.values[index as usize].as_dvec3()
     }
 
-    /// The mesh, and what was done to it. Materials only if every triangle was given one.
+    /// Returns the mesh and the report of its import. `materials` are given only if every triangle
+    /// has one.
     pub fn finish(mut self, materials: Vec<Material>) -> (Mesh, ImportReport) {
         self.mesh.positions = self.positions.values;
         self.mesh.normals = self.normals.values;

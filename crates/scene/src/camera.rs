@@ -41,10 +41,10 @@ pub(crate) fn y_axis() -> DVec3 {
     DVec3::Y
 }
 
-/// The least share of the far plane's distance that the near plane's may be.
+/// Smallest allowed ratio of a view's near plane distance to its far plane distance.
 pub const LEAST_DEPTH: f64 = 1e-30;
 
-/// A view on a viewport: orthonormal frame and extents, in f64.
+/// Perspective camera of a view on a viewport: orthonormal frame and extents, in f64.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// Eye position, world space.
@@ -65,13 +65,13 @@ pub struct Camera {
     pub far: f64,
     /// Viewport width and height in pixels.
     pub viewport: [u32; 2],
-    /// Where the ray of a pixel goes through it: from its centre, in pixels, y down; 0 but for a
+    /// Offset of each pixel's ray from the pixel's centre, in pixels, y down. It is 0 except in a
     /// picture that is one of several to be blended.
     pub jitter: DVec2,
 }
 
 impl View {
-    /// The camera of this view on a viewport of `[width, height]` pixels.
+    /// Returns the camera of this view on a viewport of `[width, height]` pixels.
     pub fn camera(&self, viewport: [u32; 2]) -> Camera {
         let forward = self.direction.normalize();
         let right = forward.cross(self.up).normalize();
@@ -95,7 +95,7 @@ impl View {
     /// Checks that a camera can be made of this view, and that its light has a direction.
     ///
     /// # Errors
-    /// The first mistake, naming the view.
+    /// Sentence with the first mistake, which names the view.
     pub fn check(&self) -> Result<(), String> {
         let named = |reason| format!("view {:?}: {reason}", self.name);
         self.check_parts().map_err(named)
@@ -157,9 +157,9 @@ impl View {
 }
 
 impl Camera {
-    /// The same camera with the [`jitter`](Self::jitter) of a frame of which `count` are blended:
-    /// points of the Halton sequence of bases 2 and 3 (Halton 1964), in 256ths of a pixel, so that
-    /// f32 holds them exactly.
+    /// Returns this camera with the [`jitter`](Self::jitter) of one frame out of `count` frames to
+    /// be blended; `frame` is its number. Offsets are points of the Halton sequence of bases 2 and
+    /// 3 (Halton 1964), in 256ths of a pixel, so that f32 holds them exactly.
     pub fn jittered(self, frame: u32, count: u32) -> Self {
         let point = frame % count.max(1) + 1;
         let place = |base| ((radical_inverse(point, base) - 0.5) * 256.0).round() / 256.0;
@@ -169,14 +169,14 @@ impl Camera {
         }
     }
 
-    /// [`jitter`](Self::jitter) in clip space, y up.
+    /// Returns the [`jitter`](Self::jitter) in clip space, y up.
     pub fn jitter_clip(&self) -> DVec2 {
         let [width, height] = self.viewport.map(f64::from);
         self.jitter * DVec2::new(2.0 / width, -2.0 / height)
     }
 
-    /// Direction from the eye through the centre of pixel (`x`, `y`), y down, or what the jitter
-    /// makes of it; its component along `forward` is 1.
+    /// Returns the direction from the eye through the centre of pixel (`x`, `y`), y down, moved by
+    /// the jitter. Its component along `forward` is 1; it is not a unit vector.
     pub fn pixel_direction(&self, x: u32, y: u32) -> DVec3 {
         let across = (f64::from(x) + 0.5 + self.jitter.x) / f64::from(self.viewport[0]);
         let down = (f64::from(y) + 0.5 + self.jitter.y) / f64::from(self.viewport[1]);
@@ -184,7 +184,8 @@ impl Camera {
         self.forward + self.right * (ndc_x * self.half_width) + self.up * (ndc_y * self.half_height)
     }
 
-    /// The pixel into which a point falls, `None` for one outside the image or not before the eye.
+    /// Finds the pixel `[x, y]` into which a world position falls. Returns `None` for a position
+    /// outside the image or not in front of the eye.
     pub fn pixel_of(&self, point: DVec3) -> Option<[u32; 2]> {
         let relative = point - self.eye;
         let distance = self.forward.dot(relative);
@@ -199,8 +200,9 @@ impl Camera {
         inside.then_some([x as u32, y as u32])
     }
 
-    /// World to wgpu clip space (x right, y up, z from 1 at the near plane to 0 at the far plane:
-    /// reversed, so that f32 tells far surfaces apart however near the near plane is).
+    /// Returns the matrix from world space to wgpu clip space: x right, y up, z from 1 at the near
+    /// plane to 0 at the far plane. Depth is reversed so that f32 tells far surfaces apart however
+    /// near the near plane is.
     pub fn view_projection(&self) -> DMat4 {
         let rotation = onto_axes([self.right, self.up, -self.forward]);
         let range = self.near / (self.far - self.near);

@@ -1,25 +1,25 @@
-//! Everything that can go wrong between a scene's name and its triangles.
+//! Errors of loading a scene, from its name to its triangles.
 
 use std::{borrow::Cow, io, path::PathBuf};
 use thiserror::Error;
 
-/// How many faces an error or a warning spells out before it only counts.
+/// Number of faces that an error or a warning lists before it only counts the rest.
 pub const FACES_SHOWN: usize = 5;
 
 /// Extents and coordinates of a mesh, in scene units, of which all products that shaders take stay
 /// within f32 (docs/precision.md).
 pub(crate) const EXTENTS: std::ops::RangeInclusive<f64> = 1e-12..=1e12;
 
-/// Why a scene could not be loaded. Every message names the file and what to do about it.
+/// Reason why a scene could not be loaded. Its message names the file or scene, and the way out.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum SceneError {
-    /// A file that exists could not be read.
+    /// A file could not be read.
     #[error("cannot read {}: {reason}", path.display())]
     Read {
         /// The file.
         path: PathBuf,
-        /// Error of the operating system, or the bound that is exceeded.
+        /// Error of the operating system, or the size limit that the file exceeds.
         reason: io::Error,
     },
     /// A line of an OBJ file could not be understood.
@@ -27,29 +27,29 @@ pub enum SceneError {
     ObjLine {
         /// The OBJ file.
         path: PathBuf,
-        /// Line, from 1.
+        /// Number of the line, from 1.
         line: u32,
-        /// Found and expected text.
+        /// Text that was found, and text that was expected.
         reason: String,
     },
-    /// Faces of an OBJ file that name vertices which do not exist or are not finite.
+    /// Faces of an OBJ file name vertices that do not exist or are not finite.
     #[error("{}: {}", path.display(), list_faults(faults, *total))]
     ObjFaces {
         /// The OBJ file.
         path: PathBuf,
-        /// The first faults, in file order.
+        /// First faulty faces, in file order: at most [`FACES_SHOWN`].
         faults: Vec<FaceFault>,
         /// Number of faulty faces.
         total: usize,
     },
-    /// A part of a mesh file, or a file that it names, that cannot be used.
+    /// A part of a mesh file, or a file that the mesh file names, cannot be used.
     #[error("{}: {place}: {reason}", path.display())]
     Part {
         /// The mesh file.
         path: PathBuf,
-        /// Where in it, or the file that it names.
+        /// Place in the mesh file, or the file that the mesh file names.
         place: String,
-        /// Reason, and the way out.
+        /// Reason why the part cannot be used, and the way out.
         reason: String,
     },
     /// A group to be left out is not in the OBJ file.
@@ -57,12 +57,12 @@ pub enum SceneError {
     NoSuchGroup {
         /// The OBJ file.
         path: PathBuf,
-        /// The name asked for.
+        /// Name of the group as requested.
         name: String,
-        /// The names there are.
+        /// Names of the groups in the file.
         groups: Vec<String>,
     },
-    /// An OBJ file without a single face.
+    /// A mesh file has no triangles.
     #[error(
         "{}: no triangles: the file holds {}, {} and {}",
         path.display(),
@@ -71,41 +71,42 @@ pub enum SceneError {
         plural(*points, "point", "points")
     )]
     NoTriangles {
-        /// The OBJ file.
+        /// The mesh file.
         path: PathBuf,
-        /// Faces read, those left out not counted.
+        /// Number of faces read, without faces of groups left out.
         faces: usize,
-        /// `l` records.
+        /// Number of `l` records (lines).
         lines: usize,
-        /// `p` records.
+        /// Number of `p` records (points).
         points: usize,
     },
-    /// A mesh too large for 32-bit indices.
+    /// A mesh is too large for 32-bit indices.
     #[error("{}: more than {} triangles or vertices", path.display(), u32::MAX)]
     TooLarge {
         /// The OBJ file.
         path: PathBuf,
     },
-    /// A mesh whose lengths, multiplied as geometry must, leave the range of f32.
+    /// A mesh is so small, so large or so far from the origin that products of its lengths leave
+    /// f32.
     #[error(
         "{}: the model is {across:.1e} units across and reaches {farthest:.1e} from the origin, \
          but f32 can only tell right from wrong between {:.0e} and {:.0e}: scale it",
         path.display(), EXTENTS.start(), EXTENTS.end()
     )]
     Extent {
-        /// The OBJ file.
+        /// The mesh file.
         path: PathBuf,
-        /// Diagonal of its box.
+        /// Diagonal of the mesh's box, in scene units.
         across: f64,
-        /// Largest coordinate.
+        /// Largest coordinate of the mesh, as a distance from 0.
         farthest: f64,
     },
-    /// A scene file is not valid RON, or its content makes no scene: all that is wrong with it,
-    /// with places; one mistake at least.
+    /// A scene file is not valid RON, or its content makes no scene. Holds all mistakes with their
+    /// places, at least one.
     #[cfg(feature = "files")]
     #[error(transparent)]
     SceneFile(skiagraph_located_ron::diagnostics::Diagnostics),
-    /// The mesh of a scene file is in none of the places searched.
+    /// The mesh of a scene file was not found in any of the searched places.
     #[error(
         "the mesh {file:?} of scene {scene:?} was not found; searched\n{}{}put it at {file:?} \
          below a folder that the environment variable SKIAGRAPH_ASSETS names",
@@ -117,12 +118,13 @@ pub enum SceneError {
         scene: String,
         /// The file as the scene names it.
         file: String,
-        /// Every path tried, in order.
+        /// Every path that was tried, in order.
         searched: Vec<PathBuf>,
-        /// Where the scene file says it can be had.
+        /// Text of the scene file that says where the mesh can be downloaded; `None` if it has
+        /// none.
         source_text: Option<String>,
     },
-    /// A mesh's name leads to a folder.
+    /// The path of a scene's mesh leads to a folder.
     #[error("the mesh of scene {scene:?}: {} is a folder, expected an .obj file", path.display())]
     MeshIsFolder {
         /// The scene's name.
@@ -130,65 +132,64 @@ pub enum SceneError {
         /// The folder.
         path: PathBuf,
     },
-    /// No scene of that name, and no file of that path.
+    /// The requested text is neither the name of a scene nor the path of a file.
     #[error(
         "no scene {argument:?}: it is neither the path of a .ron, .obj, .gltf or .glb file, nor \
          the name of a .ron file in {}, nor one of the built-in scenes {}",
         folder.display(), builtin.join(", ")
     )]
     UnknownScene {
-        /// Requested argument.
+        /// Name or path as requested.
         argument: String,
         /// The folder of scene files that was searched.
         folder: PathBuf,
         /// Names of the built-in scenes.
         builtin: Vec<&'static str>,
     },
-    /// A number of triangles was given for a scene that cannot have it.
+    /// A number of triangles was requested for a scene that cannot have it.
     #[error("{argument:?}: {reason}")]
     Size {
-        /// Requested argument.
+        /// Scene and number as requested.
         argument: String,
-        /// Why it cannot be had.
+        /// Reason why the scene cannot have that number.
         reason: String,
     },
-    /// A mesh file without cameras or without lights came without the view and the light that a
-    /// scene file would hold.
+    /// A mesh file lacks a camera or a light, and the request gives no view and light instead.
     #[error("{}: it holds no camera or no light: give --eye x,y,z --look x,y,z \
         (direction) and --light x,y,z (the direction in which the light travels); --fov DEGREES, \
         --near and --far if the defaults do not suit it", path.display())]
     ObjNeedsView {
-        /// The file.
+        /// The mesh file.
         path: PathBuf,
     },
-    /// A view was given for a scene that brings its own views.
+    /// A view was requested for a scene that brings its own views.
     #[error(
         "scene {argument:?} has its own views and light: a view and a light (--eye, --look, \
          --light …) can only be given with a mesh file"
     )]
     ViewNotWanted {
-        /// Requested argument.
+        /// Name or path as requested.
         argument: String,
     },
-    /// A view or a light given by the caller makes no camera or no light.
+    /// A requested view makes no camera, or a requested light makes no light.
     #[error("{}: {reason}", path.display())]
     BadView {
-        /// The OBJ file it was given for.
+        /// The mesh file that the view or light was given for.
         path: PathBuf,
-        /// Reason.
+        /// Reason why the view or light cannot be used.
         reason: String,
     },
 }
 
-/// Where a face stands in an OBJ file.
+/// Place of a face in a mesh file.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("face {number} of group {:?}{}", beginning(group), in_line(*line))]
 pub struct FaceRef {
-    /// Name of its group.
+    /// Name of the face's group.
     pub group: String,
-    /// Number of the face within that run of the group, in file order, from 1.
+    /// Number of the face within its run of the group, in file order, from 1.
     pub number: u32,
-    /// Line in the file, from 1; 0 in a file that has no lines of faces.
+    /// Line of the face in the file, from 1; 0 in a format without lines of faces.
     pub line: u32,
 }
 
@@ -200,60 +201,62 @@ fn in_line(line: u32) -> String {
     }
 }
 
-/// A face that cannot be used, and why.
+/// Face that cannot be used, with the reason.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FaceFault {
     /// The face.
     pub face: FaceRef,
-    /// Problem of the face.
+    /// Reason why the face cannot be used.
     pub problem: FaceProblem,
 }
 
-/// Problems of a face.
+/// Reason why a face cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum FaceProblem {
-    /// A vertex number that names nothing.
+    /// The face names a vertex that does not exist.
     #[error(
         "names vertex {}, but {}",
         beginning(written), counted(written, *available, ["vertex", "vertices"])
     )]
     NoSuchVertex {
-        /// The number as written.
+        /// Number of the vertex as written.
         written: String,
-        /// Vertices of the file; those above the face where the number counts back.
+        /// Number of vertices in the file; for a number that counts back, of vertices above the
+        /// face.
         available: usize,
     },
-    /// A number of texture coordinates that names nothing, at a face whose material has a mask.
+    /// The face names texture coordinates that do not exist, and its material has a mask.
     #[error(
         "names texture coordinates {}, but {}",
         beginning(written), counted(written, *available, ["pair", "pairs"])
     )]
     NoSuchUv {
-        /// The number as written.
+        /// Number of the texture coordinates as written.
         written: String,
-        /// Texture coordinates, as of `NoSuchVertex`.
+        /// Number of texture coordinate pairs in the file; for a number that counts back, of pairs
+        /// above the face.
         available: usize,
     },
-    /// A polygon that intersects itself, or a concave one of too many corners.
+    /// The polygon intersects itself, or is concave and has too many corners.
     #[error(
         "cannot be cut into triangles, for its outline crosses itself or has more than 10,000 \
          corners: triangulate it where it was made, give --concave fan, or have a scene file say \
          `concave: Fan`"
     )]
     CannotBeCut,
-    /// A corner that is not `v`, `v/vt`, `v//vn` or `v/vt/vn`.
+    /// A corner is not written as `v`, `v/vt`, `v//vn` or `v/vt/vn`.
     #[error("has the corner {:?}; expected v, v/vt, v//vn or v/vt/vn", beginning(.0))]
     NotACorner(
         /// The corner as written.
         String,
     ),
-    /// A corner at NaN or infinity.
+    /// A corner lies at NaN or infinity.
     #[error("has its corner {corner} at {position}, which is not finite")]
     NotFinite {
-        /// Corner within the face, from 1.
+        /// Number of the corner within the face, from 1.
         corner: usize,
-        /// The coordinates read, as text (NaN equals nothing, not even itself).
+        /// Coordinates of the corner, as text (NaN equals nothing, not even itself).
         position: String,
     },
 }

@@ -1,9 +1,9 @@
-//! A ground below a mesh that stands on nothing.
+//! Adds a ground below a mesh that has no floor of its own.
 
 use crate::mesh::{Group, Mesh};
 use glam::{DVec3, Vec3};
 
-/// Name of the group that a ground is.
+/// Name of the group of triangles that [`add_ground`] adds to a mesh.
 pub const GROUND: &str = "ground (added)";
 
 /// Edge of the ground, in diagonals of the mesh's box.
@@ -21,12 +21,12 @@ const LOWEST: f64 = 0.05;
 /// Share of the mesh's outline from above that such a floor covers.
 const COVERED: f64 = 0.5;
 
-/// Where a ground is.
+/// Height and size of an added ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ground {
-    /// Height of its upper side, along the direction up.
+    /// Height of the ground's upper side along the up direction, in scene units.
     pub height: f64,
-    /// Length of its edges.
+    /// Length of the square ground's edges, in scene units.
     pub edge: f64,
 }
 
@@ -56,8 +56,9 @@ impl Extent {
     }
 }
 
-/// True if a mesh has a floor of its own: triangles that face up in the lowest twentieth of its
-/// height, as large as half of its outline from above.
+/// Returns true if a mesh has a floor of its own: triangles that face `up`, lie in the lowest
+/// twentieth of the mesh's height, and cover half of its box as seen from above. Returns false for
+/// an empty mesh or an `up` without a direction.
 pub fn has_ground(mesh: &Mesh, up: DVec3) -> bool {
     let Some(Extent { axes, min, max }) = Extent::new(mesh, up) else {
         return false;
@@ -73,9 +74,10 @@ pub fn has_ground(mesh: &Mesh, up: DVec3) -> bool {
     covered.sum::<f64>() >= COVERED * size.x * size.z
 }
 
-/// Adds a square slab below the middle of a mesh, as a group of its own; `None` of an empty mesh.
-/// Its upper side is just below the lowest point, its edge three times the diagonal of the mesh's
-/// box.
+/// Adds a square slab below the middle of a mesh, as a group of its own. The upper side of the slab
+/// lies just below the mesh's lowest point; its edge is three times the diagonal of the mesh's box.
+/// Returns the height and size of the slab, or `None` for an empty mesh or an `up` without a
+/// direction.
 pub fn add_ground(mesh: &mut Mesh, up: DVec3) -> Option<Ground> {
     let extent = Extent::new(mesh, up)?;
     let diagonal = (extent.max - extent.min).length().max(f64::MIN_POSITIVE);

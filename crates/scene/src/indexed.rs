@@ -1,4 +1,4 @@
-//! Meshes that a program has in memory.
+//! Triangle meshes in a program's memory, to be welded into a [`Mesh`].
 
 use crate::{
     mesh::{Group, Mesh, names_one_twice},
@@ -6,28 +6,28 @@ use crate::{
 };
 use glam::{DVec3, Vec3};
 
-/// A triangle mesh as programs have them: not welded, one normal for each position.
+/// Triangle mesh as programs hold it in memory: not welded, with one normal for each position.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Indexed<'a> {
-    /// World space, or that of an instance.
+    /// Positions in world space, or in the space of an instance.
     pub positions: &'a [[f32; 3]],
-    /// One for each position, of any length but 0; none at all for faces that are flat.
+    /// Normals of any length but 0, one for each position. An empty list makes all faces flat.
     pub normals: &'a [[f32; 3]],
-    /// Three for each triangle, counter-clockwise seen from outside.
+    /// Indices into `positions`, three for each triangle, counter-clockwise seen from outside.
     pub indices: &'a [u32],
 }
 
-/// Why an [`Indexed`] mesh is none.
+/// Reason why an [`Indexed`] mesh cannot be welded.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum IndexedError {
-    /// The last triangle lacks corners.
+    /// The number of indices is not divisible by 3.
     #[error("{0} indices do not form triangles: they are not divisible by 3")]
     Corners(
         /// Number of indices.
         usize,
     ),
-    /// Positions and normals do not go together.
+    /// The number of normals is neither 0 nor the number of positions.
     #[error("there are {normals} normals for {positions} positions: give one each, or none")]
     Normals {
         /// Number of normals.
@@ -35,34 +35,35 @@ pub enum IndexedError {
         /// Number of positions.
         positions: usize,
     },
-    /// An index beyond the positions.
+    /// An index is beyond the list of positions.
     #[error("index {at} is {index}, but there are only {positions} positions")]
     Index {
-        /// Which of the indices.
+        /// Place of the index in `indices`, from 0.
         at: usize,
-        /// Index found.
+        /// Index that was found there.
         index: u32,
         /// Number of positions.
         positions: usize,
     },
-    /// A coordinate that is infinite or not a number.
+    /// A coordinate is infinite or NaN.
     #[error("{what} {at} is not finite: {value:?}")]
     NotFinite {
         /// `position` or `normal`.
         what: &'static str,
-        /// Which one.
+        /// Place of the position or normal in its list, from 0.
         at: usize,
-        /// Value found.
+        /// Position or normal that was found there.
         value: [f32; 3],
     },
 }
 
 impl Indexed<'_> {
-    /// Welds the mesh. Triangles keep their order; those that have a corner twice are
-    /// left out, and a normal without length is that of the triangle.
+    /// Welds equal positions and returns the mesh. Triangles keep their order. A triangle with the
+    /// same position at two corners is left out. A normal without length is replaced by that of its
+    /// triangle.
     ///
     /// # Errors
-    /// Indices and coordinates that are none.
+    /// An index or a coordinate that cannot be used.
     pub fn mesh(&self) -> Result<Mesh, IndexedError> {
         check(self)?;
         let (mut positions, mut normals) = <(Welder, Welder)>::default();

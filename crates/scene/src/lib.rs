@@ -1,7 +1,7 @@
-//! Scenes for Skiagraph: a triangle [`Mesh`], named [`View`]s, its [`Light`]s, and the
-//! [`Bvh`] over them.
+//! Scenes for Skiagraph: a triangle [`Mesh`] with its hierarchy ([`Bvh`]), named [`View`]s, and
+//! [`Light`]s.
 //!
-//! Meshes and scenes of files (`.obj`, `.gltf`, `.ron`) need the feature `files`.
+//! Meshes and scenes from files (`.obj`, `.gltf`, `.ron`) need the feature `files`.
 //!
 //! The crate knows no GPU. World space is right-handed, units are the scene's own; positions are
 //! `f32` (what a file holds and a GPU reads), cameras and lights are `f64` so that an exact

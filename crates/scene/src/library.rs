@@ -44,62 +44,62 @@ const BUILT_IN: [(&str, &str); 9] = [
     ("sponza_masked", include_str!("../scenes/sponza_masked.ron")),
 ];
 
-/// Request of a user.
+/// Scene to be loaded, as a user names it.
 #[derive(Clone, Debug, Default)]
 pub struct SceneRequest {
-    /// A built-in name, a name in `scenes/`, the path of a `.ron` file, or the path of an `.obj`,
-    /// `.gltf` or `.glb` file. Behind a scene whose mesh is generated in any size may stand another
-    /// one: `city:1000000`.
+    /// Name or path of the scene: a built-in name, a name in `scenes/`, or the path of a `.ron`,
+    /// `.obj`, `.gltf` or `.glb` file. If the scene's mesh is generated in any size, a number of
+    /// triangles may follow: `city:1000000`.
     pub argument: String,
-    /// View and light of a bare mesh file, instead of those of its cameras and lights, without
-    /// which it needs them; must be absent for any other scene, which brings its own.
+    /// View and light for a bare mesh file, in the place of its own cameras and lights. Required if
+    /// the file lacks either. Must be `None` for any other scene, which brings its own.
     pub obj: Option<ObjSetup>,
 }
 
-/// Settings that a bare mesh file lacks to be a scene.
+/// Settings that turn a bare mesh file into a scene.
 #[derive(Clone, Debug)]
 pub struct ObjSetup {
-    /// The only view.
+    /// The only view of the scene.
     pub view: View,
-    /// The light.
+    /// The only light of the scene.
     pub light: Light,
-    /// How polygons are split.
+    /// Diagonal that splits a quad of an OBJ file.
     pub quads: QuadDiagonal,
-    /// How concave ones become triangles.
+    /// Treatment of concave polygons of an OBJ file.
     pub concave: Concave,
-    /// Materials of it that are read.
+    /// Extent to which the file's materials are read.
     pub materials: MaterialUse,
 }
 
-/// One row of `skiagraph scenes`.
+/// One row of the list that `skiagraph scenes` prints.
 #[derive(Clone, Debug, Default)]
 pub struct SceneListing {
-    /// Name on the command line.
+    /// Name of the scene on the command line.
     pub name: String,
-    /// One line, or why the scene file cannot be read.
+    /// Description in one line, or the reason why the scene file cannot be read.
     pub description: String,
-    /// Names of its views; none if the scene file cannot be read.
+    /// Names of the scene's views; empty if the scene file cannot be read.
     pub views: Vec<String>,
-    /// Names of its camera paths.
+    /// Names of the scene's camera paths; empty if the scene file cannot be read.
     pub paths: Vec<String>,
-    /// True if its mesh is at hand: generated, or found on disk.
+    /// True if the scene's mesh is generated, or its file was found on disk.
     pub mesh_found: bool,
-    /// The scene file, or `None` for a built-in scene.
+    /// Path of the scene file; `None` for a built-in scene.
     pub file: Option<PathBuf>,
 }
 
-/// Where scenes and meshes are looked for.
+/// Folders in which scenes and meshes are searched.
 #[derive(Clone, Debug, Default)]
 pub struct SceneLibrary {
-    /// Folder of scene files that win over the built-in ones.
+    /// Folder of scene files. They take precedence over built-in scenes of the same name.
     pub scenes: PathBuf,
-    /// Folders of meshes, searched in order after the scene file's own.
+    /// Folders of meshes, searched in order after the folder of the scene file.
     pub assets: Vec<PathBuf>,
 }
 
 impl SceneLibrary {
-    /// `scenes/` below the working directory; the folders of `SKIAGRAPH_ASSETS`, then the user's
-    /// cache folder.
+    /// Returns the default folders. Scenes are in `scenes/` below the working directory. Meshes are
+    /// in the folders of `SKIAGRAPH_ASSETS`, then in the user's cache folder.
     pub fn from_environment() -> Self {
         let variable = std::env::var_os(ASSETS_VARIABLE).unwrap_or_default();
         let mut assets: Vec<PathBuf> = std::env::split_paths(&variable)
@@ -118,8 +118,8 @@ impl SceneLibrary {
     /// Loads a scene with its mesh.
     ///
     /// # Errors
-    /// [`SceneError`]: no such scene, a broken scene file or mesh, a mesh that is nowhere to be
-    /// found (with every place searched), a bare `.obj` without view and light.
+    /// [`SceneError`]: an unknown scene, a broken scene file or mesh, a mesh that was not found
+    /// (with every place searched), a bare mesh file without view and light.
     pub fn load(&self, request: &SceneRequest) -> Result<(Scene, ImportReport), SceneError> {
         let path = Path::new(&request.argument);
         if MeshFile::is_one(path) {
@@ -134,11 +134,11 @@ impl SceneLibrary {
         self.assemble(scene, file.as_deref())
     }
 
-    /// The content of the file of a scene, whose mesh has the path at which it was found, to be
-    /// changed and written.
+    /// Reads the scene file of a scene, to be changed and written. The mesh file in it is replaced
+    /// by the path at which it was found.
     ///
     /// # Errors
-    /// As of [`load`](Self::load), but for the content of the mesh.
+    /// Those of [`load`](Self::load), except for the content of the mesh.
     pub fn scene_file(&self, argument: &str) -> Result<SceneFile, SceneError> {
         let (file, mut scene) = self.parse_sized(argument)?;
         let found = match &scene.mesh {
@@ -171,11 +171,11 @@ impl SceneLibrary {
         Ok((file, scene))
     }
 
-    /// The camera paths of a scene's file, without loading its mesh; none of a mesh file, whose
-    /// animations come with its mesh ([`MeshFile::clips`]).
+    /// Reads the camera paths of a scene without loading its mesh. Returns an empty list for a mesh
+    /// file, whose animations come with its mesh ([`MeshFile::clips`]).
     ///
     /// # Errors
-    /// [`SceneError`]: no such scene, a broken scene file.
+    /// [`SceneError`]: an unknown scene, a broken scene file.
     pub fn paths(&self, argument: &str) -> Result<Vec<CameraPath>, SceneError> {
         if MeshFile::is_one(Path::new(argument)) {
             return Ok(Vec::new());
@@ -193,7 +193,8 @@ impl SceneLibrary {
         Ok((file, SceneFile::parse(&text, &name)?))
     }
 
-    /// Every scene that can be named: files of the scenes folder and built-in ones, by name.
+    /// Lists every scene that can be named, sorted by name: files of the scenes folder and built-in
+    /// scenes.
     pub fn list(&self) -> Vec<SceneListing> {
         let mut names: Vec<String> = BUILT_IN
             .iter()
@@ -248,10 +249,11 @@ impl SceneLibrary {
         listing
     }
 
-    /// The scene file of that name or path (`None` if built in) and its text.
+    /// Finds a scene file by its name or path. Returns its path (`None` for a built-in scene) and
+    /// its text.
     ///
     /// # Errors
-    /// [`SceneError`]: no such scene, a file that cannot be read.
+    /// [`SceneError`]: an unknown scene, a file that cannot be read.
     pub fn locate(&self, argument: &str) -> Result<(Option<PathBuf>, String), SceneError> {
         let path = Path::new(argument);
         let by_name = self.scenes.join(format!("{argument}.ron"));
@@ -281,16 +283,16 @@ impl SceneLibrary {
         }
     }
 
-    /// The text of a scene file, by the path or name that `--scene` takes.
+    /// Returns the text of a scene file. `argument` is a name or path as `--scene` takes it.
     ///
     /// # Errors
-    /// If there is none, or it cannot be read.
+    /// [`SceneError`]: an unknown scene, a file that cannot be read.
     pub fn text(&self, argument: &str) -> Result<String, SceneError> {
         self.locate(argument).map(|(_, text)| text)
     }
 
-    /// The file in the scenes folder that is read instead of a built-in scene of that name, if it
-    /// says anything else.
+    /// Finds the file in the scenes folder that is read instead of the built-in scene `argument`.
+    /// Returns `None` if there is no such file, or if its text is that of the built-in scene.
     pub fn stand_in(&self, argument: &str) -> Option<PathBuf> {
         let name = sized(argument).0;
         let (_, text) = BUILT_IN.iter().find(|(built_in, _)| *built_in == name)?;

@@ -18,11 +18,11 @@ pub struct DirectionalLight {
     pub angle_degrees: f64,
 }
 
-/// Light space: an orthographic box that maps to wgpu clip space; depth z in 0..1 grows away from
-/// the light.
+/// Light space of a directional light: an orthographic box that maps to wgpu clip space. Depth z in
+/// 0..1 grows away from the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightFit {
-    /// World to clip space of the light (affine: w stays 1).
+    /// Matrix from world space to the light's clip space (affine: w stays 1).
     pub view_projection: DMat4,
     /// World units per unit of light-space clip x, y and z (half the box's width, half its height,
     /// its whole depth).
@@ -30,7 +30,7 @@ pub struct LightFit {
 }
 
 impl DirectionalLight {
-    /// One without extent.
+    /// Creates a light without extent, whose shadows are hard.
     pub const fn new(direction: DVec3) -> Self {
         Self {
             direction,
@@ -38,20 +38,21 @@ impl DirectionalLight {
         }
     }
 
-    /// Returns true if it is an area, whose shadows have a penumbra.
+    /// Returns true if the light has an extent, so that its shadows have a penumbra.
     pub fn has_extent(&self) -> bool {
         self.angle_degrees > 0.0
     }
 
-    /// From the light's centre to its rim along two axes, as seen from distance 1: its points lie
-    /// at `to_light() + across()[0] · x + across()[1] · y` of the unit disk's points.
+    /// Returns two vectors from the light's centre to its rim, for a light disk at distance 1. The
+    /// directions to the disk's points are `to_light() + across()[0] · x + across()[1] · y`, with
+    /// (x, y) in the unit disk.
     pub fn across(&self) -> [DVec3; 2] {
         let (right, up) = self.to_light().any_orthonormal_pair();
         let radius = (self.angle_degrees.to_radians() * 0.5).tan();
         [right, up].map(|axis| axis * radius)
     }
 
-    /// Unit vector from any point to the light, l = −direction.
+    /// Returns the unit vector from any point to the light, the reverse of `direction`.
     pub fn to_light(&self) -> DVec3 {
         -self.direction.normalize()
     }
@@ -59,7 +60,7 @@ impl DirectionalLight {
     /// Checks that the light has a direction, and an angle below a half turn.
     ///
     /// # Errors
-    /// The first mistake.
+    /// Sentence with the first mistake.
     pub fn check(&self) -> Result<(), String> {
         if self.direction.try_normalize().is_none() {
             return Err(format!(
@@ -77,9 +78,9 @@ impl DirectionalLight {
         Ok(())
     }
 
-    /// The smallest light-space box around some points whose third axis is the light's direction:
-    /// one side of the rectangle of least area around a convex polygon lies on an edge of it
-    /// (Freeman and Shapira, CACM 18(7), 1975). No points count as one at the origin.
+    /// Returns the smallest light-space box around some points, with the light's direction as its
+    /// third axis. One side of the rectangle of least area around a convex polygon lies on an edge
+    /// of it (Freeman and Shapira, CACM 18(7), 1975). No points count as one point at the origin.
     pub fn fit(&self, points: impl IntoIterator<Item = Vec3>) -> LightFit {
         let forward = self.direction.normalize();
         let (right, up) = across(forward);
@@ -118,7 +119,8 @@ impl DirectionalLight {
     }
 }
 
-/// Two axes across a unit vector, to its right and upwards.
+/// Returns two unit vectors at right angles to the unit vector `forward` and to each other: right
+/// and up.
 pub fn across(forward: DVec3) -> (DVec3, DVec3) {
     let helper = if forward.y.abs() < 0.9 {
         DVec3::Y

@@ -9,63 +9,63 @@ use serde::{Deserialize, Deserializer};
 #[cfg_attr(feature = "files", derive(Deserialize))]
 #[cfg_attr(feature = "files", serde(from = "crate::scene_file::NamedLightText"))]
 pub struct Light {
-    /// Small letters, digits and `_`; no two of a scene are alike.
+    /// Name of small letters, digits and `_`, unique within its scene.
     pub name: String,
     /// Kind of the light.
     pub kind: LightKind,
 }
 
-/// Kinds of lights.
+/// Kind of a light, with its parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LightKind {
-    /// Infinitely far away.
+    /// Light that is infinitely far away.
     Directional(DirectionalLight),
-    /// A lamp that lights a cone.
+    /// Lamp at a position that lights a cone.
     Spot(SpotLight),
-    /// A bulb that lights every direction.
+    /// Bulb at a position that lights every direction.
     Point(PointLight),
 }
 
-/// A light at a place that lights a cone.
+/// Light at a position that lights a cone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpotLight {
     /// Apex of the cone, world space.
     pub position: DVec3,
-    /// Axis of the cone, away from the light, any length but zero.
+    /// Axis of the cone, pointing away from the light, of any length but zero.
     pub direction: DVec3,
-    /// The whole angle at the apex, more than 0 and less than 180.
+    /// Whole angle of the cone at its apex, in degrees: more than 0 and less than 180.
     pub cone_degrees: f64,
-    /// Radius of the emitting disk, which faces along the axis; 0 for hard shadows.
+    /// Radius of the emitting disk, which faces along the axis, in scene units; 0 for hard shadows.
     pub radius: f64,
 }
 
-/// A light at a place that lights every direction.
+/// Light at a position that lights every direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointLight {
-    /// World space.
+    /// Position of the light, world space.
     pub position: DVec3,
-    /// Radius of the emitting sphere; 0 for hard shadows.
+    /// Radius of the emitting sphere, in scene units; 0 for hard shadows.
     pub radius: f64,
 }
 
-/// Where a light is, seen from a point.
+/// Direction and distance from a point to a light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Towards {
-    /// Unit vector to the light; zero at the light itself.
+    /// Unit vector to the light; zero for a point at the light's position.
     pub direction: DVec3,
-    /// How far away it is; infinite for a directional light.
+    /// Distance to the light, in scene units; infinite for a directional light.
     pub distance: f64,
 }
 
-/// Name of the light of a scene file that has one `light`.
+/// Name of the light in a scene file that has one `light` instead of a list.
 pub const ONLY_LIGHT: &str = "light";
 
 /// A positional light farther from the origin is as good as directional, and f32 cannot square the
 /// distance.
 const FARTHEST: f64 = 1e18;
 
-/// The share of a shadow ray's way that it stays short of a positional light. So a surface on which
-/// the light lies casts no shadow, instead of being decided by rounding.
+/// Share of its length by which a shadow ray ends short of a positional light. A surface on which
+/// the light lies thus casts no shadow, instead of being decided by rounding.
 pub const LIGHT_GAP: f64 = 1.0 / 65536.0;
 
 /// The light of a view, which checks it and says whose it is.
@@ -74,7 +74,7 @@ pub(crate) fn own_light<'de, D: Deserializer<'de>>(of: D) -> Result<Option<Light
 }
 
 impl Light {
-    /// A light of the name that the only one of a scene file has.
+    /// Creates the only light of a scene, with the name [`ONLY_LIGHT`].
     pub fn only(kind: impl Into<LightKind>) -> Self {
         Self {
             name: ONLY_LIGHT.to_owned(),
@@ -82,10 +82,10 @@ impl Light {
         }
     }
 
-    /// Checks that the name and the light can be used.
+    /// Checks that the light's name and parameters can be used.
     ///
     /// # Errors
-    /// The first mistake.
+    /// Sentence with the first mistake.
     pub fn check(&self) -> Result<(), String> {
         let starts = |c: char| c.is_ascii_lowercase();
         let goes_on = |c: char| starts(c) || c.is_ascii_digit() || c == '_';
@@ -107,7 +107,7 @@ impl Light {
 }
 
 impl LightKind {
-    /// The word for it in documents, messages and results.
+    /// Returns the word for this kind in documents, messages and results.
     pub fn word(&self) -> &'static str {
         match self {
             Self::Directional(_) => "directional",
@@ -116,7 +116,7 @@ impl LightKind {
         }
     }
 
-    /// The directional light that it is.
+    /// Returns the directional light, or `None` for a spot or point light.
     pub fn directional(&self) -> Option<&DirectionalLight> {
         match self {
             Self::Directional(light) => Some(light),
@@ -124,7 +124,7 @@ impl LightKind {
         }
     }
 
-    /// Returns true if it is an area, whose shadows have a penumbra.
+    /// Returns true if the light has an extent, so that its shadows have a penumbra.
     pub fn has_extent(&self) -> bool {
         match self {
             Self::Directional(light) => light.has_extent(),
@@ -134,7 +134,7 @@ impl LightKind {
         }
     }
 
-    /// Where it is, unless it is infinitely far away.
+    /// Returns the position of a spot or point light, or `None` for a directional light.
     pub fn position(&self) -> Option<DVec3> {
         match self {
             Self::Directional(_) => None,
@@ -144,7 +144,7 @@ impl LightKind {
         }
     }
 
-    /// The way from a point to the light.
+    /// Returns the direction and distance from a point to the light.
     pub fn towards(&self, point: DVec3) -> Towards {
         match (self, self.position()) {
             (Self::Directional(light), _) => Towards {
@@ -161,10 +161,10 @@ impl LightKind {
         }
     }
 
-    /// Checks that the light can exist.
+    /// Checks that the light's parameters are within their ranges.
     ///
     /// # Errors
-    /// The first mistake.
+    /// Sentence with the first mistake.
     pub fn check(&self) -> Result<(), String> {
         if let Some(position) = self.position()
             && (position.is_nan() || position.abs().max_element() > FARTHEST)
@@ -204,13 +204,14 @@ fn check_radius(radius: f64) -> Result<(), String> {
 }
 
 impl SpotLight {
-    /// Cosine of the angle between axis and edge of the cone.
+    /// Returns the cosine of the angle between the axis and the edge of the cone.
     pub fn edge_cosine(&self) -> f64 {
         (self.cone_degrees * 0.5).to_radians().cos()
     }
 
-    /// Cosine of the angle between the axis and the way to the light, seen from the light. At least
-    /// [`edge_cosine`](Self::edge_cosine) within the cone.
+    /// Returns the cosine of the angle between the cone's axis and the way from the light to a
+    /// receiver. `to_light` is the unit vector from the receiver to the light. Within the cone, the
+    /// result is at least [`edge_cosine`](Self::edge_cosine).
     pub fn axis_cosine(&self, to_light: DVec3) -> f64 {
         -self.direction.normalize().dot(to_light)
     }

@@ -12,20 +12,20 @@ const MIB: u64 = 1 << 20;
 /// Limit on the size of a kind of file.
 #[derive(Clone, Copy, Debug)]
 pub struct Limit {
-    /// The kind, with its article: "an .obj file".
+    /// Kind of file, with its article: "an .obj file".
     pub of: &'static str,
-    /// Most MiB that are read.
+    /// Size of the largest file that is read, in MiB.
     pub mib: u64,
-    /// Way out for a longer one.
+    /// Advice to the user for a larger file.
     pub way_out: &'static str,
 }
 
 impl Limit {
-    /// The bytes of the file at `path`.
+    /// Reads all bytes of the file at `path`.
     ///
     /// # Errors
-    /// An error of the system; a folder, a device or a pipe, none of which is opened (that alone
-    /// can block); a file beyond the limit. The message does not name the file.
+    /// An error of the operating system; a folder, a device or a pipe, which is not opened because
+    /// that alone can block; a file beyond the limit. The message does not name the file.
     pub fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
         let found = std::fs::metadata(path)?;
         if found.is_dir() {
@@ -51,10 +51,10 @@ impl Limit {
         Ok(bytes)
     }
 
-    /// The text of the file at `path`, without a byte order mark.
+    /// Reads the text of the file at `path`, without its byte order mark.
     ///
     /// # Errors
-    /// As [`Self::read`]; and bytes that are no UTF-8.
+    /// Those of [`Self::read`]; bytes that are not UTF-8.
     pub fn read_text(&self, path: &Path) -> io::Result<String> {
         String::from_utf8(without_mark(&self.read(path)?).into_owned())
             .map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "it is not UTF-8 text"))

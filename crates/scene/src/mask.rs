@@ -1,30 +1,33 @@
-//! Where a masked surface is there.
+//! Masks, which say where a surface is opaque and where it has holes.
 //!
-//! The rule, for all who ask: the texture coordinates at the weights of a triangle's corners are
-//! `uv_a + weight_b (uv_b - uv_a) + weight_c (uv_c - uv_a)`, each is wrapped into 0…1, multiplied
-//! by the mask's edge in texels and rounded down, at most to the last texel. The surface is there
-//! if that texel of mip 0 is opaque. Shaders compute in f32, the oracle in f64.
+//! Shaders and the oracle look up a mask by the same rule. The texture coordinates at the weights
+//! of a triangle's corners are `uv_a + weight_b (uv_b - uv_a) + weight_c (uv_c - uv_a)`. Each
+//! coordinate is wrapped into 0…1, multiplied by the mask's edge in texels and rounded down, at
+//! most to the last texel. The surface exists where that texel of mip 0 is opaque. Shaders compute
+//! in f32, the oracle in f64.
 
 use crate::texture::Wrap;
 use glam::DVec2;
 
-/// A bit per texel.
+/// Mask of a surface: one bit per texel, set where the surface is opaque.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mask {
     /// Width and height in texels, neither 0.
     pub size: [u32; 2],
-    /// Wrapping beyond its edges, for u and v.
+    /// Wrapping of u and v beyond the mask's edges.
     pub wrap: [Wrap; 2],
-    /// Opaque texels as bits, row by row from the top left, the lowest bit first.
+    /// Bits of all texels, 1 for opaque: row by row from the top left, 32 to a word, lowest bit
+    /// first.
     pub opaque: Vec<u32>,
 }
 
-/// Answer of a mask within some distance of a place.
+/// Result of [`Mask::ask`]: a texel, and whether texels near it differ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Asked {
-    /// True if the place's own texel is opaque.
+    /// True if the texel at the place itself is opaque.
     pub opaque: bool,
-    /// True if another texel within the distance differs from the place's own.
+    /// True if another texel within the distance differs from the texel at the place, or if there
+    /// are too many texels to look at.
     pub flips: bool,
 }
 
@@ -32,7 +35,7 @@ pub struct Asked {
 const MOST_LOOKED_AT: f64 = 4096.0;
 
 impl Mask {
-    /// Creates a mask from the answer of `is_opaque` for each texel.
+    /// Creates a mask. `is_opaque` gets the column and row of a texel, from the top left.
     ///
     /// # Panics
     /// If an edge is 0.
@@ -63,7 +66,7 @@ impl Mask {
         })
     }
 
-    /// Returns true if all of it is opaque.
+    /// Returns true if all texels of the mask are opaque.
     pub fn is_solid(&self) -> bool {
         let texels = self.size[0] as usize * self.size[1] as usize;
         let opaque: u32 = self.opaque.iter().map(|word| word.count_ones()).sum();
@@ -75,7 +78,8 @@ impl Mask {
         self.opaque[texel / 32] >> (texel % 32) & 1 == 1
     }
 
-    /// Asks it at texture coordinates that may be off by `error`, each on its own.
+    /// Looks up the mask at texture coordinates, each of which may be off by its component of
+    /// `error`.
     pub fn ask(&self, uv: DVec2, error: DVec2) -> Asked {
         let (uv, error) = (uv.to_array(), error.to_array());
         // Texels of each axis from low to high, before they are wrapped.

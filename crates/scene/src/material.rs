@@ -4,18 +4,18 @@ use crate::{mask::Mask, texture::Texture};
 use glam::{DVec2, Vec2};
 use std::sync::Arc;
 
-/// A material.
+/// Material of a surface.
 #[derive(Clone, Debug)]
 pub struct Material {
-    /// Name in the file.
+    /// Name of the material in its file.
     pub name: String,
-    /// Linear red, green, blue, times the texture's.
+    /// Linear red, green and blue; multiplied by the texture, if there is one.
     pub base_color: [f32; 3],
-    /// The texture of the base colour.
+    /// Texture of the base colour, or `None`.
     pub texture: Option<Texture>,
-    /// Where it is there at all; everywhere without it.
+    /// Mask that cuts out the surface; `None` for a surface without holes.
     pub mask: Option<Arc<Mask>>,
-    /// True if its back faces are seen, too.
+    /// True if the surface's back faces are visible, too.
     pub double_sided: bool,
 }
 
@@ -31,16 +31,17 @@ impl Default for Material {
     }
 }
 
-/// The materials of a mesh and where they lie. A mesh without materials has none of it.
+/// Materials of a mesh, and the material of each triangle. All lists are empty for a mesh without
+/// materials.
 #[derive(Clone, Debug, Default)]
 pub struct Surfaces {
     /// Texture coordinates, v down: (0, 0) is the corner of the texture's first texel.
     pub uvs: Vec<Vec2>,
-    /// Three indices into `uvs` per triangle, or nothing.
+    /// Three indices into `uvs` per triangle; empty for a mesh without texture coordinates.
     pub uv_indices: Vec<[u32; 3]>,
-    /// Materials.
+    /// Materials that `of` refers to.
     pub materials: Vec<Material>,
-    /// The material of each triangle, or nothing.
+    /// Index into `materials` for each triangle; empty for a mesh without materials.
     pub of: Vec<u32>,
 }
 
@@ -63,13 +64,14 @@ impl Surfaces {
         self.of.extend(other.of.iter().map(|of| material + of));
     }
 
-    /// The material of a triangle.
+    /// Returns the material of triangle `primitive`, or `None` if it has none.
     pub fn material(&self, primitive: u32) -> Option<&Material> {
         let material = *self.of.get(primitive as usize)?;
         self.materials.get(material as usize)
     }
 
-    /// Texture coordinates of a triangle's corners; all zero where the mesh has none.
+    /// Returns the texture coordinates of the corners of triangle `primitive`; all zero if it has
+    /// none.
     pub fn corner_uvs(&self, primitive: u32) -> [Vec2; 3] {
         let indices = self.uv_indices.get(primitive as usize);
         indices.map_or([Vec2::ZERO; 3], |indices| {
@@ -77,12 +79,12 @@ impl Surfaces {
         })
     }
 
-    /// The mask of a triangle that has one.
+    /// Returns the mask of triangle `primitive`, or `None` if it is not masked.
     pub fn mask(&self, primitive: u32) -> Option<&Mask> {
         self.material(primitive)?.mask.as_deref()
     }
 
-    /// Returns true if a triangle's back face is seen, too.
+    /// Returns true if the back face of triangle `primitive` is visible, too.
     pub fn is_double_sided(&self, primitive: u32) -> bool {
         self.material(primitive)
             .is_some_and(|material| material.double_sided)
@@ -96,8 +98,9 @@ impl Surfaces {
             && used.any(|of| self.materials.get(*of as usize).is_some_and(cared))
     }
 
-    /// Linear base colour of a triangle at the weights of its corners, texture included; white
-    /// where the mesh has no materials. A texture that cannot be read counts as white.
+    /// Returns the linear base colour of triangle `primitive`, texture included, at a point given
+    /// by the weights of its corners. A triangle without a material, and a texture that cannot be
+    /// read, count as white.
     pub fn base_color(&self, primitive: u32, weights: [f64; 3]) -> [f32; 3] {
         let Some(material) = self.material(primitive) else {
             return [1.0; 3];

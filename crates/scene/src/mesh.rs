@@ -18,23 +18,23 @@ pub struct Mesh {
     pub normals: Vec<Vec3>,
     /// Three normal indices per triangle, parallel to `triangles`.
     pub normal_indices: Vec<[u32; 3]>,
-    /// Consecutive runs of triangles with the name they had in the file or generator.
+    /// Consecutive runs of triangles, with their names in the file or generator.
     pub groups: Vec<Group>,
-    /// Materials and texture coordinates.
+    /// Materials of the triangles, and texture coordinates of their corners.
     pub surfaces: Surfaces,
 }
 
-/// A named run of triangles.
+/// Named run of consecutive triangles.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Group {
-    /// Name in the file.
+    /// Name of the group in the file or generator.
     pub name: String,
     /// Primitive ids of the group.
     pub triangles: Range<u32>,
 }
 
 impl Mesh {
-    /// Corners of triangle `primitive`, in f64 (exact).
+    /// Returns the corners of triangle `primitive`, in f64 (exact).
     ///
     /// # Panics
     /// If `primitive` is not below `triangles.len()`.
@@ -42,7 +42,7 @@ impl Mesh {
         self.triangles[primitive as usize].map(|index| self.positions[index as usize].as_dvec3())
     }
 
-    /// Vertex normals of triangle `primitive`, in f64, corner by corner.
+    /// Returns the vertex normals of triangle `primitive`, in f64, corner by corner.
     ///
     /// # Panics
     /// If `primitive` is not below `triangles.len()`.
@@ -63,13 +63,13 @@ impl Mesh {
         }
     }
 
-    /// The position of each corner of each triangle.
+    /// Iterates over the positions of all triangles' corners, three for each triangle.
     pub fn corner_positions(&self) -> impl Iterator<Item = Vec3> {
         let corners = self.triangles.iter().flatten();
         corners.map(|&index| self.positions[index as usize])
     }
 
-    /// Each position that a triangle uses, once.
+    /// Iterates over the positions that triangles use, each once.
     pub fn used_positions(&self) -> impl Iterator<Item = Vec3> {
         let mut is_used = vec![false; self.positions.len()];
         for &index in self.triangles.iter().flatten() {
@@ -79,7 +79,8 @@ impl Mesh {
         all.filter(|(_, is_used)| *is_used).map(|(place, _)| *place)
     }
 
-    /// Smallest box around all positions that a triangle uses, or `None` for an empty mesh.
+    /// Returns the smallest box around all positions that triangles use, as its low and high
+    /// corner. Returns `None` for a mesh without triangles.
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
         bounds(self.corner_positions())
     }

@@ -1,4 +1,4 @@
-//! Mesh files by themselves, without a scene file.
+//! Mesh files that are loaded without a scene file.
 
 use crate::{
     camera::View,
@@ -15,31 +15,31 @@ use crate::{
 };
 use std::path::Path;
 
-/// A mesh file with what else of a scene it holds.
+/// Content of a mesh file: mesh, cameras, lights and animations.
 #[derive(Clone, Debug)]
 pub struct MeshFile {
     /// The file's name without its extension.
     pub name: String,
-    /// Its triangles.
+    /// Triangles and materials of the file.
     pub mesh: Mesh,
-    /// Those of its cameras; none of an OBJ file.
+    /// One view for each camera of the file; empty for an OBJ file.
     pub views: Vec<View>,
-    /// Its lights; none of an OBJ file.
+    /// Lights of the file; empty for an OBJ file.
     pub lights: Vec<Light>,
-    /// Its animations; none of an OBJ file.
+    /// Animations of the file; empty for an OBJ file.
     pub clips: Vec<Clip>,
-    /// Changes by the import, and parts left out.
+    /// Report of changes that the import made, and of parts that it left out.
     pub report: ImportReport,
 }
 
-/// How a mesh file is read.
+/// Options for reading a mesh file.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct MeshFileOptions {
-    /// How polygons are split.
+    /// Diagonal that splits a quad of an OBJ file.
     pub quads: QuadDiagonal,
-    /// How concave ones become triangles.
+    /// Treatment of concave polygons of an OBJ file.
     pub concave: Concave,
-    /// Materials of it that are read.
+    /// Extent to which the file's materials are read.
     pub materials: MaterialUse,
 }
 
@@ -82,7 +82,7 @@ impl MeshFile {
         })
     }
 
-    /// Returns true for the path of a mesh file, by its extension.
+    /// Returns true if a path ends in `.obj`, `.gltf` or `.glb`.
     pub fn is_one(path: &Path) -> bool {
         let mut extensions = ["obj", "gltf", "glb"].iter();
         extensions.any(|extension| has_extension(path, extension))

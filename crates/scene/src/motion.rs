@@ -1,4 +1,4 @@
-//! How a part of a mesh moves on a path: rigidly from keyframe to keyframe, or swaying.
+//! Motions of parts of a mesh on a camera path: rigid, from pose to pose, or swaying.
 
 use crate::{
     keys::{not_later, spline},
@@ -10,42 +10,46 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 use serde::Deserialize;
 use std::f64::consts::TAU;
 
-/// A part, by the name of its groups, with its motion.
+/// Motion of one part of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PartMotion {
-    /// OBJ groups and objects, glTF nodes, parts of a generated mesh.
+    /// Name of the part: an OBJ group or object, a glTF node, a part of a generated mesh.
     pub part: String,
-    /// Its motion.
+    /// Motion of the part.
     pub motion: Motion,
 }
 
-/// A motion over a path's seconds.
+/// Motion of a part over the seconds of a path.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Motion {
-    /// Turned about an axis and shifted, by the same splines that the camera follows.
+    /// The part is turned about an axis and shifted. The splines between keys are those that the
+    /// camera follows.
     Rigid {
-        /// Stays where it is while the part turns, world space.
+        /// Point on the axis, which stays where it is while the part turns; world space.
         pivot: DVec3,
-        /// Axis of the turn, of any length but zero.
+        /// Axis about which the part turns, of any length but zero.
         axis: DVec3,
-        /// At least one, in the order of times. Before the first and behind the last it stands.
+        /// Keys in the order of their times, at least one. Before the first and after the last key
+        /// the part stands still.
         keys: Vec<RigidKey>,
     },
-    /// Turned and shifted from pose to pose: in a straight line, and by the shortest turn.
+    /// The part is turned and shifted from pose to pose, along straight lines and by the shortest
+    /// turns.
     Posed {
-        /// At least one, in the order of times. Before the first and behind the last it stands.
+        /// Keys in the order of their times, at least one. Before the first and after the last key
+        /// the part stands still.
         keys: Vec<PoseKey>,
     },
-    /// Bent as by wind: what is at height h of a part as high as H is shifted by
-    /// `H (h / H)² tan(a)`, where the angle a swings as a sine. The foot stands.
+    /// The part is bent as by wind: a point at height h of a part of height H is shifted by
+    /// `H (h / H)² tan(a)`, where the angle a swings as a sine. The foot of the part stands still.
     Sway {
-        /// The direction in which it leans, any length but zero.
+        /// Direction in which the part leans, of any length but zero.
         axis: DVec3,
-        /// The direction in which it grows: the path's own `up`.
+        /// Direction in which the part grows: the path's own `up`.
         up: DVec3,
-        /// The greatest angle, below 90.
+        /// Greatest angle of the swing in degrees, below 90.
         degrees: f64,
-        /// From one lean to the same again.
+        /// Period of the swing in seconds.
         seconds: f64,
     },
 }
@@ -99,10 +103,11 @@ fn posed(keys: &[PoseKey], at: f64) -> DAffine3 {
 }
 
 impl PartMotion {
-    /// Checks that it is a motion.
+    /// Checks that the motion is valid: it has keys in the order of their times, and finite
+    /// numbers.
     ///
     /// # Errors
-    /// The first mistake, naming the part.
+    /// Sentence with the first mistake, which names the part.
     pub fn check(&self) -> Result<(), String> {
         let wrong = |what: String| Err(format!("moves: {:?}: {what}", self.part));
         let is_axis = |axis: DVec3| axis.is_finite() && axis.length_squared() > 0.0;
@@ -225,10 +230,10 @@ fn folds(axis: DVec3, up: DVec3, degrees: f64) -> bool {
     2.0 * degrees.abs().to_radians().tan() * along >= 1.0
 }
 
-/// A mesh whose parts are those of the motions, in their order, at a time.
-///
+/// Returns the mesh of `movable` with its parts moved. Part number n follows `motions[n]`; `at` is
+/// the time in seconds.
 /// # Errors
-/// A part that f32 cannot hold there.
+/// [`MoveError`]: a part that cannot be moved to where it is at that time.
 pub fn moved(movable: &Movable, motions: &[PartMotion], at: f64) -> Result<Mesh, MoveError> {
     let parts = motions.iter().enumerate();
     let maps = parts.map(|(part, motion)| motion.map(movable.span(part, motion.up()), at));

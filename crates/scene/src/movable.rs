@@ -1,14 +1,15 @@
-//! Parts of a mesh that move by themselves: by an affine map, or bent.
+//! Meshes with parts that move by themselves, by affine maps or by bends.
 
 use crate::mesh::{Group, Mesh};
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 use std::collections::{BTreeMap, HashSet};
 
-/// A mesh some parts of which move.
+/// Mesh with parts that move by themselves.
 #[derive(Clone, Debug)]
 pub struct Movable {
-    /// At rest. Its moving parts have normals of their own, one per corner's position. The parts of
-    /// [`joined`](Self::joined) lie on each other here, each in a space of its own.
+    /// Mesh at rest, before its parts are moved. Each moving part has normals of its own, one per
+    /// position of a corner. Parts from [`joined`](Self::joined) overlap here, because each is in a
+    /// space of its own.
     pub rest: Mesh,
     parts: Vec<Part>,
     is_joined: bool,
@@ -24,29 +25,29 @@ struct Part {
     normals: Vec<(u32, u32)>,
 }
 
-/// One part of a [`Movable`] after it was moved.
+/// Part of a [`Movable`] after it was moved, to be written into a mesh by [`Movable::put`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct MovedPart {
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
-    /// True if it was mirrored, so that its triangles are wound the other way than at rest.
+    /// True if the part was mirrored, so that its triangles are wound the other way than at rest.
     pub is_mirrored: bool,
 }
 
 /// Changes that [`Movable::put`] made to a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PartChange {
-    /// True if a position or normal is another one.
+    /// True if a position or normal differs from before.
     pub is_elsewhere: bool,
-    /// True if triangles are wound the other way.
+    /// True if triangles are wound the other way than before.
     pub is_turned: bool,
 }
 
-/// Why parts cannot be moved so. Parts are counted from 0.
+/// Reason why parts cannot be moved. Parts are numbered from 0.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MoveError {
-    /// Not as many maps as parts.
+    /// The number of maps is not the number of parts.
     #[error(
         "each part needs one map, in the order of the parts; there are {parts} parts, but {maps} \
          maps"
@@ -57,12 +58,12 @@ pub enum MoveError {
         /// Number of maps that were given.
         maps: usize,
     },
-    /// A map has entries that are infinite or no numbers.
+    /// A map has entries that are infinite or NaN.
     #[error("the map of part {part} has entries that are not finite: {map}")]
     NotFinite {
-        /// Which part.
+        /// Number of the part, from 0.
         part: usize,
-        /// Its map: three columns and the translation.
+        /// Map of the part: three columns and the translation.
         map: DAffine3,
     },
     /// A map cannot be inverted.
@@ -72,17 +73,17 @@ pub enum MoveError {
          sees it"
     )]
     Singular {
-        /// Which part.
+        /// Number of the part, from 0.
         part: usize,
     },
-    /// A position is moved beyond what f32 holds.
+    /// A map moves a position beyond what f32 holds.
     #[error("the map of part {part} moves {from} to {to}, which f32 cannot hold")]
     OutOfRange {
-        /// Which part.
+        /// Number of the part, from 0.
         part: usize,
         /// The position at rest.
         from: Vec3,
-        /// Where it would be.
+        /// Position to which the map moves it.
         to: DVec3,
     },
     /// A bend mirrors one place of a part and not another.
@@ -91,15 +92,16 @@ pub enum MoveError {
          elsewhere: bend it less"
     )]
     Folded {
-        /// Which part.
+        /// Number of the part, from 0.
         part: usize,
-        /// A place at which it is mirrored, at rest.
+        /// Position at rest at which the part is mirrored.
         at: Vec3,
     },
 }
 
 impl Movable {
-    /// The parts are groups of the mesh by name; groups of the same name are one.
+    /// Cuts a mesh into parts to be moved. Part number n consists of all groups with the name
+    /// `parts[n]`.
     ///
     /// # Errors
     /// A name that no group has, or a part that is welded to another, so that moving it would tear
@@ -115,9 +117,9 @@ impl Movable {
         })
     }
 
-    /// Several meshes as one, each a part in a space of its own, such as the instances of one mesh:
-    /// the n-th is moved by the n-th map. A mesh without materials gets a plain one if another has
-    /// one.
+    /// Joins several meshes into one, in which each mesh is a part in a space of its own, such as
+    /// an instance. Part number n is moved by the n-th map. If only some of the meshes have
+    /// materials, the others get a plain one.
     pub fn joined(meshes: &[&Mesh]) -> Self {
         let mut rest = Mesh::default();
         let has_materials = meshes.iter().any(|mesh| !mesh.surfaces.of.is_empty());
@@ -135,33 +137,33 @@ impl Movable {
         }
     }
 
-    /// Number of parts.
+    /// Returns the number of parts.
     pub fn parts(&self) -> usize {
         self.parts.len()
     }
 
-    /// True if the parts are in spaces of their own, so that [`rest`](Self::rest) is no scene
-    /// before each has its map.
+    /// Returns true if the parts come from [`joined`](Self::joined), each in a space of its own.
+    /// [`rest`](Self::rest) is then not a scene before each part was moved by its map.
     pub fn is_joined(&self) -> bool {
         self.is_joined
     }
 
-    /// The mesh after each part was moved by the map of its index. The triangles of a part that its
-    /// map mirrors are wound the other way.
+    /// Returns the mesh with each part moved by the map of the part's number. Triangles of a part
+    /// that its map mirrors are wound the other way.
     ///
     /// # Errors
-    /// Other than one map for each part, or a map by which a part cannot be moved.
+    /// The number of maps is not the number of parts, or a part cannot be moved by its map.
     pub fn moved(&self, maps: &[DAffine3]) -> Result<Mesh, MoveError> {
         self.check_count(maps.len())?;
         self.all(|part| self.moved_part(part, &maps[part]))
     }
 
-    /// The mesh after each part was moved by a map that need not be affine. `map` gets the part's
-    /// index and a place on it at rest, and returns the place where that is now and the map's
-    /// derivative there.
+    /// Returns the mesh with each part moved by a map that need not be affine. `map` gets the
+    /// number of a part and a position on it at rest. It returns the moved position, and the
+    /// derivative of the map at the position at rest.
     ///
     /// # Errors
-    /// A map by which a part cannot be moved, or that mirrors only some of it.
+    /// A map by which a part cannot be moved, or that mirrors only some of the part.
     pub fn bent(&self, map: impl Fn(usize, DVec3) -> (DVec3, DMat3)) -> Result<Mesh, MoveError> {
         self.all(|part| self.bent_part(part, |place| map(part, place)))
     }
@@ -175,10 +177,10 @@ impl Movable {
         Ok(mesh)
     }
 
-    /// That there is a map for each part.
+    /// Checks that the number of maps is the number of parts.
     ///
     /// # Errors
-    /// If there is not.
+    /// [`MoveError::Count`] if it is not.
     pub fn check_count(&self, maps: usize) -> Result<(), MoveError> {
         let parts = self.parts.len();
         if maps == parts {
@@ -188,13 +190,13 @@ impl Movable {
         }
     }
 
-    /// One part moved by a map.
+    /// Returns part number `part` moved by an affine map. The mesh itself stays at rest.
     ///
     /// # Errors
     /// A map that is not finite, singular, or that moves a corner beyond what f32 holds.
     ///
     /// # Panics
-    /// If there is no such part.
+    /// If there is no part of that number.
     pub fn moved_part(&self, part: usize, map: &DAffine3) -> Result<MovedPart, MoveError> {
         if !map.is_finite() {
             return Err(MoveError::NotFinite { part, map: *map });
@@ -249,12 +251,12 @@ impl Movable {
         })
     }
 
-    /// Puts a moved part into the mesh, which is [`rest`](Self::rest) with parts moved. If the part
-    /// was mirrored there (`was_mirrored`) and is not now, or the other way round, the corners of
-    /// its triangles change their order.
+    /// Writes a moved part into `mesh`, which is [`rest`](Self::rest) with parts moved.
+    /// `was_mirrored` says if the part is mirrored in `mesh` so far. If the moved part differs from
+    /// that, the corners of its triangles change their order.
     ///
     /// # Panics
-    /// If there is no such part, or the mesh is another one.
+    /// If there is no part of that number, or if `mesh` is another mesh.
     pub fn put(
         &self,
         part: usize,
@@ -285,7 +287,8 @@ impl Movable {
         change
     }
 
-    /// The lowest and highest place of a part at rest along an axis; 0 of a part without corners.
+    /// Returns the lowest and highest coordinate of a part at rest along `axis` (dot products with
+    /// it); `[0, 0]` for a part without corners.
     pub fn span(&self, part: usize, axis: DVec3) -> [f64; 2] {
         let places = self.parts[part].positions.iter();
         let along = places.map(|&p| self.rest.positions[p as usize].as_dvec3().dot(axis));

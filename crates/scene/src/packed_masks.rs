@@ -1,4 +1,4 @@
-//! The masks of a mesh as shaders read them.
+//! Packs the masks of a mesh into one buffer for shaders.
 
 use crate::{mask::Mask, material::Surfaces, mesh::Mesh};
 use std::collections::HashMap;
@@ -6,13 +6,15 @@ use std::collections::HashMap;
 /// Words of a triangle's record in [`mask_words`]: six texture coordinates and the mask's place.
 const RECORD: usize = 7;
 
-/// In the table of [`mask_words`]: the back face is seen, too.
+/// Flag in a triangle's word of [`mask_words`]: the triangle's back face is visible, too.
 pub const DOUBLE_SIDED: u32 = 0x8000_0000;
 
-/// Masks as shaders read them (`shared/masks.wgsl`): a word per triangle, [`DOUBLE_SIDED`] and the
-/// place of its record, 0 where it has no mask; behind them the records, then the masks: width,
-/// height, how u and v are wrapped (two bits each), bits. Empty if no triangle is masked or
-/// double-sided.
+/// Packs masks as shaders read them (`shared/masks.wgsl`). The list begins with one word per
+/// triangle: the flag [`DOUBLE_SIDED`], and the index of the triangle's record in the list, or 0
+/// for a triangle without a mask. Records of seven words follow: three pairs of texture coordinates
+/// as f32 bits, and the index of the mask in the list. Masks come last: width, height, the wrapping
+/// of u and v (two bits each, in one word), and the bits of the texels. The list is empty if no
+/// triangle is masked or double-sided.
 pub fn mask_words(mesh: &Mesh) -> Vec<u32> {
     let surfaces = &mesh.surfaces;
     if !surfaces.need_care() {

@@ -1,10 +1,10 @@
-//! Which triangles hang together, and whether they close.
+//! Connected parts of a mesh, and whether they are closed.
 
 use crate::mesh::{Mesh, names_one_twice};
 use petgraph::unionfind::UnionFind;
 use std::collections::HashMap;
 
-/// The parts of a mesh: triangles that share edges over its welded positions.
+/// Connected parts of a mesh: triangles that share edges over its welded positions.
 ///
 /// A part is *closed* if its triangles pass each edge as often in one direction as in the other:
 /// between two points outside the part a ray then meets as many of its back faces as of its front
@@ -13,9 +13,10 @@ use std::collections::HashMap;
 /// that touch along an edge, leave it closed.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Parts {
-    /// The part of each triangle, numbered from 0 in the order of their first triangles.
+    /// Number of the part of each triangle. Parts are numbered from 0 in the order of their first
+    /// triangles.
     pub of: Vec<u32>,
-    /// True for each part that is open.
+    /// True for each part that is open, by the part's number.
     pub open: Vec<bool>,
 }
 
@@ -24,8 +25,8 @@ pub struct Parts {
 type Side = ([u32; 2], bool, u32);
 
 impl Parts {
-    /// Finds the parts of a mesh. A triangle that names a position twice has no area: it closes
-    /// nothing, and is an open part of its own.
+    /// Finds the parts of a mesh. A triangle that names a position twice has no area: it closes no
+    /// edge, and is an open part of its own.
     pub fn new(mesh: &Mesh) -> Self {
         let mut sides = sides(mesh);
         sides.sort_unstable();
@@ -55,7 +56,7 @@ impl Parts {
     /// Returns true if a triangle belongs to an open part.
     ///
     /// # Panics
-    /// If the mesh has no triangle of that id.
+    /// If the mesh has no triangle `primitive`.
     pub fn is_open(&self, primitive: u32) -> bool {
         self.open[self.of[primitive as usize] as usize]
     }

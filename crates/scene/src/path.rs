@@ -17,23 +17,24 @@ use serde::Deserialize;
 /// The most frames that a path may have: five and a half minutes at thirty per second.
 const MOST_FRAMES: f64 = 10_000.0;
 
-/// A camera that moves. Between keyframes eye and direction follow Catmull-Rom splines (Catmull,
-/// Rom 1974, over uneven times); two keyframes make a straight line, two equal ones a camera that
-/// stands. Its light may move likewise.
+/// Path of a moving camera. Between keyframes, eye and direction follow Catmull-Rom splines
+/// (Catmull, Rom 1974, over uneven times). Two keyframes make a straight line, two equal keyframes
+/// a camera that stands still. The light and parts of the mesh may move as well.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(Deserialize))]
 #[cfg_attr(feature = "files", serde(from = "crate::scene_file::PathText"))]
 pub struct CameraPath {
-    /// Constants along the path, and the name; eye and direction are those of the first keyframe.
+    /// View with the path's name and all that stays constant. Its eye and direction are those of
+    /// the first keyframe.
     pub view: View,
     /// Frames per second of the path's own time.
     pub frames_per_second: f64,
-    /// At least two, in the order of their times.
+    /// Keyframes of the camera in the order of their times, at least two.
     pub keys: Vec<CameraKey>,
-    /// Where the view's own light is, in the order of times; none of a light that stays. Before the
-    /// first and behind the last it stands.
+    /// Keyframes of the view's own light in the order of their times; empty for a light that stays
+    /// where it is. Before the first and after the last key the light stands still.
     pub light_keys: Vec<LightKey>,
-    /// Parts of the mesh that move, no part twice.
+    /// Motions of parts of the mesh, at most one for each part.
     pub moves: Vec<PartMotion>,
 }
 
@@ -70,8 +71,8 @@ pub struct LightKey {
 }
 
 impl CameraPath {
-    /// How many frames it has: the first at the first keyframe, the last at the last one or just
-    /// before.
+    /// Returns the number of frames. The first frame is at the first keyframe, the last frame at
+    /// the last keyframe or just before.
     pub fn frames(&self) -> u32 {
         // A time that is a whole number of frames but for its rounding has its last frame.
         (self.seconds() * self.frames_per_second + 1e-6) as u32 + 1
@@ -89,11 +90,11 @@ impl CameraPath {
         self.keys.first().map_or(0.0, |key| key.at) + f64::from(frame) / self.frames_per_second
     }
 
-    /// The mesh cut into what moves, its parts in the order of [`moves`](Self::moves); `None` of a
-    /// path on which nothing does.
+    /// Cuts a mesh into the parts that move on this path, in the order of [`moves`](Self::moves).
+    /// Returns `None` if no part moves.
     ///
     /// # Errors
-    /// No such part, or one that is welded to others; both name the path.
+    /// A part that the mesh does not have, or that is welded to others. The message names the path.
     pub fn movable(&self, mesh: &Mesh) -> Result<Option<Movable>, String> {
         if self.moves.is_empty() {
             return Ok(None);
@@ -105,17 +106,18 @@ impl CameraPath {
         Ok(Some(movable))
     }
 
-    /// The mesh in a frame, of what [`movable`](Self::movable) gave. Its triangles are those at
-    /// rest: no motion mirrors a part.
+    /// Returns the mesh in a frame. `movable` is the result of [`movable`](Self::movable). The
+    /// triangles are those at rest, because no motion mirrors a part.
     ///
     /// # Errors
-    /// A part that f32 cannot hold where it is then; names the path, the part and the frame.
+    /// A part that f32 cannot hold at its place in that frame. The message names path, part and
+    /// frame.
     pub fn shape(&self, movable: &Movable, frame: u32) -> Result<Mesh, String> {
         moved(movable, &self.moves, self.at(frame))
             .map_err(|reason| format!("path {:?}: moves: frame {frame}: {reason}", self.view.name))
     }
 
-    /// The view of a frame, with the path's own name.
+    /// Returns the view of a frame, with the path's own name.
     pub fn view(&self, frame: u32) -> View {
         let at = self.at(frame);
         let times = |key: &CameraKey| key.at;
@@ -191,7 +193,7 @@ impl CameraPath {
         Ok(())
     }
 
-    /// The views of all frames.
+    /// Iterates over the views of all frames, in order.
     pub fn views(&self) -> impl Iterator<Item = View> + '_ {
         (0..self.frames()).map(|frame| self.view(frame))
     }
@@ -199,7 +201,7 @@ impl CameraPath {
     /// Checks that every frame makes a camera.
     ///
     /// # Errors
-    /// The first mistake, naming the path.
+    /// Sentence with the first mistake, which names the path.
     pub fn check(&self) -> Result<(), String> {
         let name = &self.view.name;
         if self.keys.len() < 2 {

@@ -17,7 +17,7 @@ pub enum Pattern {
 const SIZE: u32 = 128;
 
 impl Pattern {
-    /// The mask.
+    /// Creates a mask with this pattern.
     pub fn mask(self) -> Mask {
         Mask::new([SIZE; 2], [Wrap::Repeat; 2], |x, y| {
             let at = |texel: u32| (f64::from(texel) + 0.5) / f64::from(SIZE);

@@ -6,41 +6,41 @@ use std::{fmt, path::PathBuf};
 /// Counts and warnings of an import. A generated mesh has an empty report.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ImportReport {
-    /// The mesh file, if there was one.
+    /// Path of the mesh file; `None` for a mesh that is not from a file.
     pub file: Option<PathBuf>,
-    /// Faces (triangles and larger polygons) read, those of groups left out not counted.
+    /// Number of faces (triangles and larger polygons) read, without those of groups left out.
     pub faces: usize,
-    /// Faces of groups left out by name.
+    /// Number of faces in groups that were left out by name.
     pub faces_left_out: usize,
-    /// `p` records and faces of one corner: not part of the mesh.
+    /// Number of `p` records and faces of one corner. They are not part of the mesh.
     pub points: usize,
-    /// `l` records and faces of two corners: not part of the mesh.
+    /// Number of `l` records and faces of two corners. They are not part of the mesh.
     pub lines: usize,
-    /// Vertices that became another's after welding.
+    /// Number of vertices that welding merged with another one.
     pub vertices_welded: usize,
-    /// Faces without a normal at every corner: they got the geometric normal of each of their
-    /// triangles.
+    /// Number of faces without a normal at every corner. Their triangles got their geometric
+    /// normals.
     pub faces_without_normals: usize,
-    /// Corners whose normal had no direction (zero or not finite) and was replaced by the geometric
-    /// one.
+    /// Number of corners whose normal had no direction (zero or not finite). It was replaced by the
+    /// geometric normal.
     pub normals_replaced: usize,
     /// Triangles dropped because two of their corners are the same point.
     pub dropped: Degenerate,
     /// Triangles kept although their area is zero (three different points on a line).
     pub zero_area: Degenerate,
-    /// Colours that could not be read.
+    /// One text for each colour that could not be read.
     pub colours_missing: Vec<String>,
-    /// Parts that were passed over, or read in a way that a user may not expect: one sentence each,
-    /// none of them twice.
+    /// One sentence for each part that was left out, or read in a way that a user may not expect;
+    /// no two alike.
     pub remarks: Vec<String>,
 }
 
-/// Degenerate triangles: how many, and the faces they came from.
+/// Degenerate triangles: their number, and the faces that they come from.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Degenerate {
     /// Number of triangles.
     pub triangles: usize,
-    /// The first faces that had one, in file order.
+    /// First faces with such a triangle, in file order: at most [`FACES_SHOWN`].
     pub first: Vec<FaceRef>,
 }
 

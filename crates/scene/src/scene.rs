@@ -8,41 +8,42 @@ use crate::{
 };
 use glam::DVec3;
 
-/// A mesh with the views and the light under which it is drawn.
+/// Scene to be drawn: a mesh with its views and lights.
 #[derive(Clone, Debug)]
 pub struct Scene {
     /// Name shown in tables and results.
     pub name: String,
-    /// Every triangle, receivers and casters alike.
+    /// Mesh of all receivers and casters.
     pub mesh: Mesh,
-    /// At least one view; the first is the default.
+    /// Views, at least one; the first is the default.
     pub views: Vec<View>,
-    /// The lights of all views that have none of their own: at least one; the first is the default.
+    /// Lights for views without a light of their own, at least one; the first is the default.
     pub lights: Vec<Light>,
 }
 
 impl Scene {
-    /// The view of that name, if the scene has one.
+    /// Finds the view with this name. Returns `None` if the scene has none.
     pub fn view(&self, name: &str) -> Option<&View> {
         self.views.iter().find(|view| view.name == name)
     }
 
-    /// The default light of the scene.
+    /// Returns the default light of the scene.
     pub fn light(&self) -> LightKind {
         first(&self.lights)
     }
 
-    /// The default light where that is directional.
+    /// Returns the default light of the scene if it is directional, or else `None`.
     pub fn sun(&self) -> Option<DirectionalLight> {
         self.light().directional().copied()
     }
 
-    /// The default light of a view.
+    /// Returns the default light of a view: its own, or else that of the scene.
     pub fn light_of(&self, view: &View) -> LightKind {
         first(&self.lights_of(view))
     }
 
-    /// The lights under which a view is drawn: its own, or all of the scene's.
+    /// Returns the lights under which a view is drawn: its own light alone, or else all lights of
+    /// the scene.
     pub fn lights_of(&self, view: &View) -> Vec<Light> {
         match &view.light {
             Some(own) => vec![own.clone()],

@@ -11,10 +11,10 @@ use crate::{
 };
 use glam::DVec3;
 
-/// The text of a scene file that says all of this, one view and one key in a line.
+/// Writes a scene as the text of a scene file, with one view or key in a line.
 ///
 /// # Errors
-/// A view or path with a lamp of its own, which scene files do not have.
+/// A view or path has a spot or point light of its own, which scene files cannot express.
 pub fn scene_text(scene: &SceneFile) -> Result<String, String> {
     let mut text = format!("(\n    format: 1,\n    name: {:?},\n", scene.name);
     if !scene.description.is_empty() {

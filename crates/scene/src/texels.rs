@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-/// Decoded texels.
+/// Decoded texels of a texture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Texels {
-    /// Width and height.
+    /// Width and height in texels.
     pub size: [u32; 2],
     /// Red, green, blue, alpha, row by row from the top left; the colours are sRGB.
     pub rgba: Vec<[u8; 4]>,
-    /// True if alpha means anything.
+    /// True if the alpha channel carries information.
     pub has_alpha: bool,
 }
 

@@ -8,12 +8,12 @@ use std::sync::{Arc, OnceLock};
 /// Wrapping of a texture beyond its edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Wrap {
-    /// It begins anew.
+    /// The texture repeats.
     #[default]
     Repeat,
-    /// It is mirrored.
+    /// The texture is mirrored at each edge.
     Mirror,
-    /// Its outermost texels go on.
+    /// The outermost texels of the texture go on.
     Clamp,
 }
 
@@ -37,31 +37,31 @@ impl Wrap {
     }
 }
 
-/// Where the texels of a texture are.
+/// Source of a texture's texels.
 #[derive(Clone, Debug)]
 pub enum Source {
-    /// The host has them.
+    /// Texels in the program's memory.
     Texels(Arc<Texels>),
-    /// A file.
+    /// Path of a PNG, JPEG or TGA file.
     #[cfg(feature = "files")]
     File(std::path::PathBuf),
-    /// The content of a file, as a `.glb` holds it.
+    /// Bytes of an encoded picture, such as a `.glb` file holds.
     #[cfg(feature = "files")]
     Bytes(Arc<[u8]>),
 }
 
-/// Tells texels apart without a look at them: equal where two textures have the same source.
+/// Key to compare the sources of textures without looking at texels: equal for the same source.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum SourceKey {
-    /// An address.
+    /// Address of the texels or bytes in memory.
     Memory(usize),
-    /// A file.
+    /// Path of the file.
     #[cfg(feature = "files")]
     File(std::path::PathBuf),
 }
 
 impl Source {
-    /// Which source it is, as long as it lives.
+    /// Returns the key of this source. It is valid as long as the source lives.
     pub fn key(&self) -> SourceKey {
         match self {
             Self::Texels(texels) => SourceKey::Memory(Arc::as_ptr(texels).addr()),
@@ -73,20 +73,20 @@ impl Source {
     }
 }
 
-/// A colour texture.
+/// Colour texture, whose texels are decoded when first asked for.
 #[derive(Clone, Debug)]
 pub struct Texture {
-    /// Its name in messages.
+    /// Name of the texture in messages.
     pub name: String,
-    /// Where it is.
+    /// Source of the texels.
     pub source: Source,
-    /// Wrapping beyond its edges, for u and v.
+    /// Wrapping of u and v beyond the texture's edges.
     pub wrap: [Wrap; 2],
     texels: Arc<OnceLock<Result<Arc<Texels>, String>>>,
 }
 
 impl Texture {
-    /// A texture that is not read yet.
+    /// Creates a texture without reading its texels.
     pub fn new(name: String, source: Source, wrap: [Wrap; 2]) -> Self {
         let texels = Arc::default();
         Self {
@@ -97,10 +97,10 @@ impl Texture {
         }
     }
 
-    /// Its texels; those of a PNG, JPEG or TGA are decoded when first asked for.
+    /// Returns the texels. Those of a PNG, JPEG or TGA are decoded when first asked for.
     ///
     /// # Errors
-    /// Which texture cannot be read, and why.
+    /// Text that names the texture and says why it cannot be read.
     pub fn texels(&self) -> Result<&Texels, &str> {
         let decoded = self.texels.get_or_init(|| {
             let texels = match &self.source {

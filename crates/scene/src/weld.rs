@@ -1,17 +1,17 @@
-//! Gives bit-equal vectors one index.
+//! Gives bit-equal vectors the same index.
 
 use glam::{Vec2, Vec3};
 use std::collections::HashMap;
 
-/// Vectors met so far, each once, in the order of their first appearance.
+/// Distinct vectors with their indices: bit-equal vectors get the same index, new ones the next.
 #[derive(Clone, Debug, Default)]
 pub struct Welder<V = Vec3, const N: usize = 3> {
-    /// The vectors.
+    /// Distinct vectors, in the order of their first appearance.
     pub values: Vec<V>,
     by_bits: HashMap<[u32; N], u32>,
 }
 
-/// Vectors to which others are welded.
+/// Vectors and their indices, as [`Welder::weld_to`] takes and returns them.
 #[derive(Clone, Debug, Default)]
 pub struct Known(HashMap<[u32; 3], u32>);
 
@@ -28,23 +28,24 @@ impl<V: Copy + Into<[f32; N]>, const N: usize> Welder<V, N> {
 }
 
 impl Welder {
-    /// Welds to other vectors from now on, and returns those that were known before: a part that
-    /// moves by itself shares none with others.
+    /// Welds to the vectors of `known` from now on, and returns those that were known before. Parts
+    /// that move by themselves are welded like this, so that they share no vectors with others.
     pub fn weld_to(&mut self, known: Known) -> Known {
         Known(std::mem::replace(&mut self.by_bits, known.0))
     }
 
-    /// Index of a vector; −0 counts (and is stored) as 0.
+    /// Returns the index of a vector, which is added if it is new. −0 counts (and is stored) as 0.
     pub fn index(&mut self, value: Vec3) -> u32 {
         self.place(value + Vec3::ZERO) // −0 + 0 = 0
     }
 }
 
-/// The same of texture coordinates.
+/// Welder for pairs of texture coordinates.
 pub type UvWelder = Welder<Vec2, 2>;
 
 impl UvWelder {
-    /// Index of a pair; one that is not finite counts as (0, 0).
+    /// Returns the index of a pair, which is added if it is new. A pair that is not finite counts
+    /// as (0, 0).
     pub fn index(&mut self, value: Vec2) -> u32 {
         self.place(if value.is_finite() { value } else { Vec2::ZERO })
     }

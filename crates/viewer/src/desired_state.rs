@@ -1,5 +1,5 @@
-//! The desired state and the frames that come of it: the messages between the window and the thread
-//! of the graphs.
+//! Messages between the window and the thread that runs the graphs: the desired state, and the
+//! frames that show it.
 
 use crate::ground_truth::Question;
 use skiagraph_compare::graphs::method::ParamValues;
@@ -11,109 +11,110 @@ use skiagraph_reference::GroundTruthPixels;
 use skiagraph_scene::{Scene, View};
 use std::{collections::BTreeMap, sync::Arc};
 
-/// The state that the window asks for.
+/// State that the window asks the thread to show.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DesiredState {
-    /// The scene, as on the command line.
+    /// Name of the scene, as on the command line.
     pub scene: String,
-    /// From where, and under which light; `None`: the scene's first view.
+    /// Camera and light to show the scene with; `None` for the scene's first view.
     pub view: Option<View>,
-    /// In how many pixels the methods run.
+    /// Width and height of the methods' pictures in pixels.
     pub size: [u32; 2],
-    /// One, or two side by side.
+    /// Methods to run: one, or two side by side.
     pub methods: Vec<DesiredMethod>,
-    /// Run passes that have no reason to run, too.
+    /// Run every pass, even if its inputs have not changed.
     pub all_passes: bool,
-    /// Counts up to ask for another frame of the same.
+    /// Counter that the window increases to get another frame of the same state.
     pub frame: u64,
 }
 
-/// A method of the desired state.
+/// A method of the desired state, with its settings.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DesiredMethod {
-    /// Preset or path.
+    /// Name of a preset, or path of a graph.
     pub name: String,
-    /// Params that are not at their defaults.
+    /// Values of the params that were set; all others have their defaults.
     pub params: ParamValues,
-    /// A material besides the outputs.
+    /// A material to read back besides the outputs; `None` for outputs only.
     pub material: Option<Capture>,
 }
 
-/// Messages of the thread of the graphs.
+/// Messages from the thread that runs the graphs to the window.
 pub enum Event {
-    /// A scene was loaded, or could not be.
+    /// The scene of this name was loaded, or could not be; the error is text for the user.
     Scene(String, Result<Loaded, String>),
-    /// A frame.
+    /// A frame of each method.
     Frame(Box<FrameSnapshot>),
-    /// Nothing more can be drawn.
+    /// The thread can draw nothing more; the text says why.
     Broken(String),
 }
 
-/// A scene that is there.
+/// A loaded scene with its views.
 #[derive(Clone)]
 pub struct Loaded {
     /// The scene.
     pub scene: Arc<Scene>,
-    /// Its views.
+    /// Views to choose from; the first one is shown first.
     pub views: Vec<View>,
 }
 
-/// A frame of each method.
+/// A frame of each method for one desired state.
 pub struct FrameSnapshot {
-    /// The state that it shows.
+    /// The desired state that the frame shows.
     pub desired: DesiredState,
-    /// The question to the oracle about it: of this scene, camera, light and these primitives.
+    /// Question to the oracle about this frame: its scene, camera, light and visible primitives.
     pub question: Question,
-    /// Which of the view's lights it is under.
+    /// Index of the frame's light among the lights of the view.
     pub light_number: usize,
-    /// Pixels that face the light, as if nothing stood in its way.
+    /// Classes of the pixels without shadows: lit wherever the surface faces the light.
     pub facing: Arc<GroundTruthPixels>,
-    /// One for each method.
+    /// A frame of each method, in the order of the desired state.
     pub methods: Vec<MethodSnapshot>,
 }
 
-/// A frame of one method.
+/// A frame of one method, with its passes and read-back contents.
 #[derive(Clone, Default)]
 pub struct MethodSnapshot {
-    /// The name in the desired state.
+    /// Name of the method in the desired state.
     pub name: String,
-    /// The document's description of itself.
+    /// The method's description in its document.
     pub description: String,
-    /// The params that its document declares.
+    /// Params that the method's document declares.
     pub params: Vec<Param>,
-    /// The value of each.
+    /// Value of each param, by name.
     pub values: BTreeMap<String, ParamValue>,
-    /// The live passes in their order.
+    /// The live passes in schedule order.
     pub passes: Vec<PassSnapshot>,
-    /// Bytes of the graph's own memory, and what sharing saved.
+    /// Bytes of the graph's own memory, and bytes that sharing saved.
     pub memory: [u64; 2],
-    /// GPU time of the frame, milliseconds.
+    /// GPU time of the frame in milliseconds; `None` without timestamps.
     pub gpu_ms: Option<f64>,
-    /// Time from the begin of encoding to the end of the frame, milliseconds.
+    /// Time from the begin of encoding to the end of the frame in milliseconds.
     pub wall_ms: f64,
-    /// Contents that were read back.
+    /// Contents of the outputs and materials that were read back, by name.
     pub contents: Arc<Contents>,
-    /// How depths and buffers among it are to be read.
+    /// Decoding of each content, by name: how depths and buffer items become numbers.
     pub readings: BTreeMap<String, Decoding>,
-    /// Why it is not as desired: what is shown is the last that ran.
+    /// Reason why the desired state could not be reached; the frame then shows the last one that
+    /// ran. `None` if the frame is as desired.
     pub error: Option<String>,
-    /// How often it was read from its files.
+    /// Number of times that the method was read from its files.
     pub reads: u64,
 }
 
-/// A pass of a frame.
+/// A pass of a method's frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PassSnapshot {
-    /// Its name.
+    /// Full name of the pass.
     pub name: String,
-    /// Its kind, as documents write it.
+    /// Kind of the pass, as documents write it.
     pub kind: String,
-    /// The materials that it writes.
+    /// Names of the materials that the pass writes.
     pub writes: Vec<String>,
-    /// True if it had no reason to run.
+    /// True if the pass did not run because its inputs had not changed.
     pub skipped: bool,
-    /// GPU time, milliseconds.
+    /// GPU time of the pass in milliseconds; `None` if it was not timed.
     pub gpu_ms: Option<f64>,
-    /// How often its shaders ran, where the adapter counts.
+    /// Number of its shader runs; `None` if the adapter does not count them.
     pub statistics: Option<PassStatistics>,
 }

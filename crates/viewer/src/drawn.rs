@@ -1,4 +1,4 @@
-//! From a frame to what a pane of the window shows of it: a picture, its legend, and its numbers.
+//! Turns a frame into the content of a pane: a picture, its legend, and its numbers.
 
 use crate::desired_state::{FrameSnapshot, MethodSnapshot};
 use crate::ground_truth::{Answer, thin, thinned_size};
@@ -14,49 +14,49 @@ use skiagraph_graph::{Capture, PartSummary};
 use skiagraph_reference::{GroundTruthPixels, Image, statistics::UNANSWERED};
 use std::collections::BTreeMap;
 
-/// Kinds of pictures of a pane.
+/// Kinds of pictures that a pane can show.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Show {
-    /// The scene in the method's light.
+    /// The scene, shaded with the method's visibility.
     #[default]
     Shaded,
-    /// The output `visibility`, with the status' background and what faces away.
+    /// The output `visibility`, with colours for the background and for surfaces that face away.
     Visibility,
-    /// The scene with uncertain pixels in purple.
+    /// The shaded scene with the pixels marked uncertain in purple.
     Uncertain,
-    /// Where the method is wrong by the reference.
+    /// The errors of the method against the reference.
     Difference,
-    /// A material after a pass.
+    /// Content of a material after a pass.
     Material(Capture),
 }
 
-/// How a material is shown.
+/// How a pane shows a material.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reading {
-    /// Which of its mips and layers, in their order.
+    /// Index of the shown part: the layers of the first mip, then those of the next.
     pub part: usize,
-    /// One channel as a heat map instead of the colours that files have.
+    /// Channel to show as a heat map; `None` for the colours that saved pictures have.
     pub heat: Option<usize>,
-    /// The channel of the histogram.
+    /// Index of the channel in the histogram.
     pub channel: usize,
 }
 
-/// A picture, its legend, or why there is none.
+/// Content of a pane.
 #[derive(Default)]
 pub struct Drawn {
-    /// The picture.
+    /// The picture; `None` if there is none, and the legend says why.
     pub image: Option<Image>,
-    /// How values became colours; or why there is no picture.
+    /// Meaning of the colours, or the reason why the picture is missing.
     pub legend: String,
     /// The numbers behind the picture.
     pub texels: Option<Texels>,
-    /// How often they occur.
+    /// Histogram of one channel of a material.
     pub histogram: Option<Histogram>,
-    /// Between which values the heat map lies.
+    /// Values at the ends of the heat map's colours; `None` without a heat map.
     pub heat: Option<[f64; 2]>,
-    /// Names of mips and layers, where there are several.
+    /// Names of the mips and layers to choose from; empty if there is only one.
     pub parts: Vec<String>,
-    /// The items of a buffer, a line each.
+    /// The items of a buffer as text, a line each.
     pub table: Option<String>,
 }
 
@@ -72,7 +72,8 @@ impl Drawn {
     }
 }
 
-/// Draws what a pane shows of the method `index`; `answer` is the reference's to this frame.
+/// Draws the content of a pane for the method with this index in the snapshot. `answer` is the
+/// reference's answer to this frame, if there is one.
 pub fn draw(
     snapshot: &FrameSnapshot,
     index: usize,
@@ -169,7 +170,7 @@ fn difference(
     })
 }
 
-/// Words for a legend: the pixels of which there is a reference yet, at this stride.
+/// Says for a legend which pixels have a reference when every `stride`-th of a row and column has.
 pub fn of_pixels(stride: u32) -> &'static str {
     match stride {
         1 => "of all pixels",

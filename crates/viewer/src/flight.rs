@@ -1,4 +1,4 @@
-//! How the camera and the light move: a view in, a view out.
+//! Moves the camera and the light of a view.
 
 use glam::{DQuat, DVec3};
 use skiagraph_scene::{LightKind, View};
@@ -28,12 +28,13 @@ fn turned(direction: DVec3, up: DVec3, yaw: f64, pitch: f64) -> DVec3 {
     DQuat::from_axis_angle(right, pitch) * direction
 }
 
-/// Looks elsewhere from the same place.
+/// Turns the camera in place: by `yaw` about the view's up direction, and up by `pitch`. Angles are
+/// radians.
 pub fn look(view: &mut View, yaw: f64, pitch: f64) {
     view.direction = turned(view.direction, view.up, yaw, pitch);
 }
 
-/// Goes around what lies `distance` before the eye.
+/// Moves the camera around the point that lies `distance` before the eye. Angles are radians.
 pub fn orbit(view: &mut View, yaw: f64, pitch: f64, distance: f64) {
     let [_, _, forward] = frame(view);
     let centre = view.eye + forward * distance;
@@ -42,13 +43,14 @@ pub fn orbit(view: &mut View, yaw: f64, pitch: f64, distance: f64) {
     view.eye = centre - forward * distance;
 }
 
-/// Moves the eye along its own right, up and forward.
+/// Moves the eye by `by` along its right, up and forward directions, in scene units.
 pub fn fly(view: &mut View, by: DVec3) {
     let [right, up, forward] = frame(view);
     view.eye += right * by.x + up * by.y + forward * by.z;
 }
 
-/// Turns a directional light, or the axis of a spot light; a point light goes around `centre`.
+/// Turns the direction of a directional or spot light, or moves a point light around `centre`.
+/// Angles are radians.
 pub fn turn_light(light: &mut LightKind, view: &View, yaw: f64, pitch: f64, centre: DVec3) {
     let turn = |direction| turned(direction, view.up, yaw, pitch);
     match light {

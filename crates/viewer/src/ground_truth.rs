@@ -1,5 +1,5 @@
-//! The thread of the reference: the oracle's answer to what is shown, of every ninth pixel of each
-//! row and column first, then of every third, then of all. What is traced is exact for its pixels.
+//! Thread that traces the reference for the shown frame: first every ninth pixel of each row and
+//! column, then every third, then all. Each traced pixel is exact.
 
 use glam::DVec2;
 use skiagraph_reference::{Error, GroundTruth, Oracle, OracleMode, Progress, ground_truth};
@@ -13,30 +13,30 @@ use std::{
     thread,
 };
 
-/// Steps from pixel to pixel, one answer after the other. They are odd, so that the middle of a
-/// large pixel is that of a small one.
+/// Distances between traced pixels in rows and columns, for one answer after another. They are odd,
+/// so that the centre of a large pixel is the centre of a small one.
 pub const STRIDES: [u32; 3] = [9, 3, 1];
 
-/// Shadow rays per pixel to a light that has an extent: a live picture has no time for more.
+/// Shadow rays per pixel for a light with an extent; more would be too slow for a live picture.
 pub const SAMPLES: u32 = 64;
 
-/// Question to the oracle.
+/// Question to the oracle: which pixels of this picture see the light?
 #[derive(Clone)]
 pub struct Question {
-    /// The scene whose mesh is seen.
+    /// The scene that the picture shows.
     pub scene: Arc<Scene>,
-    /// From where.
+    /// The camera of the picture, with its viewport.
     pub camera: Camera,
-    /// Under which light.
+    /// The light to judge.
     pub light: LightKind,
-    /// The primitive of each pixel.
+    /// Index of the visible primitive of each pixel, row by row.
     pub primitives: Arc<Vec<u32>>,
-    /// Raised when the answer is not wanted any more.
+    /// Flag that is set once the answer is not needed any more.
     pub outdated: Arc<AtomicBool>,
 }
 
 impl Question {
-    /// True if both ask for the same.
+    /// True if two questions have the same scene, camera, light and primitives.
     pub fn is_like(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.scene, &other.scene)
             && (self.camera, self.light) == (other.camera, other.light)
@@ -44,27 +44,27 @@ impl Question {
     }
 }
 
-/// An answer.
+/// Answer of the reference for some or all pixels of a picture.
 pub struct Answer {
-    /// To what.
+    /// The question that this answers.
     pub question: Question,
-    /// It holds for one pixel of so many in each row and column.
+    /// Distance of the answered pixels in rows and columns; 1 for all pixels.
     pub stride: u32,
-    /// Ground truth of those pixels.
+    /// Ground truth of the answered pixels, or the reason why there is none.
     pub ground_truth: Result<GroundTruth, String>,
 }
 
-/// Asks the thread.
+/// Handle of the thread that traces the reference.
 pub struct GroundTruthThread {
     questions: mpsc::Sender<Question>,
     last: Option<Question>,
 }
 
 impl GroundTruthThread {
-    /// Starts the thread; it ends with this.
+    /// Starts the thread, which calls `tell` with each answer. It ends when the handle is dropped.
     ///
     /// # Errors
-    /// The system gives no thread.
+    /// If the system cannot create a thread.
     pub fn start(tell: impl Fn(Answer) + Send + 'static) -> std::io::Result<Self> {
         let (questions, asked) = mpsc::channel();
         thread::Builder::new()
@@ -76,7 +76,8 @@ impl GroundTruthThread {
         })
     }
 
-    /// Asks about a frame, if that was not the last question; what was asked before is given up.
+    /// Asks about a frame and cancels the question before. Does nothing if the last question was
+    /// alike.
     pub fn ask(&mut self, question: &Question) {
         let mut last = self.last.iter();
         if last.any(|last| last.is_like(question)) {
@@ -87,7 +88,7 @@ impl GroundTruthThread {
         self.last = Some(question.clone());
     }
 
-    /// Gives up what was asked last.
+    /// Cancels the last question.
     pub fn forget(&mut self) {
         if let Some(last) = self.last.take() {
             last.outdated.store(true, Ordering::Relaxed);
@@ -147,12 +148,14 @@ fn answer(oracle: &Oracle, question: &Question, tell: &impl Fn(Answer)) {
     }
 }
 
-/// How many pixels of a row or column are left; the middle one of each `stride` is.
+/// Returns how many pixels of each row and column are left if the middle one of every `stride` is
+/// kept.
 pub fn thinned_size(size: [u32; 2], stride: u32) -> [u32; 2] {
     size.map(|edge| edge / stride)
 }
 
-/// Keeps the middle one of every `stride` values in each row and column, row by row.
+/// Keeps the middle one of every `stride` values in each row and column. `values` are row by row,
+/// of a picture of `size`; so is the result.
 pub fn thin<T: Copy>(values: &[T], size: [u32; 2], stride: u32) -> Vec<T> {
     let [width, height] = thinned_size(size, stride).map(|edge| edge as usize);
     let place = |at: usize| at * stride as usize + stride as usize / 2;

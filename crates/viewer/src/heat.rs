@@ -1,4 +1,5 @@
-//! A heat map: from dark blue over green to yellow, evenly in what the eye calls brightness.
+//! Colours of a heat map: from dark blue over green to yellow, in even steps of perceived
+//! brightness.
 
 /// Nine colours of viridis (Smith, van der Walt 2015), evenly spaced.
 const VIRIDIS: [[u8; 3]; 9] = [
@@ -13,7 +14,7 @@ const VIRIDIS: [[u8; 3]; 9] = [
     [253, 231, 37],
 ];
 
-/// The colour of a share from 0 to 1.
+/// Returns the RGB colour of a value from 0 to 1; values outside are clamped.
 pub fn colour(share: f64) -> [u8; 3] {
     let place = share.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
     let from = (place as usize).min(VIRIDIS.len() - 2);

@@ -1,6 +1,6 @@
-//! Shadow methods in a window, beside each other and beside the ground truth. One thread runs them,
-//! one traces the reference, and the window shows what comes; what is decided is in `state.rs`,
-//! without a toolkit.
+//! Shows shadow methods in a window, side by side and beside the ground truth. One thread runs the
+//! methods, another traces the reference, and the window shows their results. The logic is in
+//! `state.rs`, which uses no window toolkit.
 
 mod desired_state;
 mod drawn;

@@ -1,4 +1,4 @@
-//! The current picture as a view of a scene file: text to paste, or a scene file of its own.
+//! Saves the current view: as text to paste into a scene file, or as a new scene file.
 
 use glam::DVec3;
 use skiagraph_compare::error::CompareError;
@@ -9,7 +9,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The entry of `views`. Only a sun can be a view's own light.
+/// Returns the view as an entry of a scene file's `views`. A light of its own is written only if it
+/// is directional; views cannot have others.
 pub fn entry(view: &View) -> String {
     let three = |v: DVec3| format!("({}, {}, {})", v.x, v.y, v.z);
     let mut text = format!(
@@ -33,12 +34,12 @@ pub fn entry(view: &View) -> String {
     text + ")"
 }
 
-/// Writes the scene's file once more, with the view in it, beside the original or, of a built-in
-/// scene, into the working directory. No file is overwritten. Returns the file and the view's name
-/// in it.
+/// Writes a copy of the scene's file with the view added. It stands beside the original, or in the
+/// working directory for a built-in scene; existing files are kept. Returns the new file and the
+/// view's name in it.
 ///
 /// # Errors
-/// A scene without a file, a file that has no place for it, one that cannot be written.
+/// If the scene has no file, its file has no list of views, or the copy cannot be written.
 pub fn save(
     library: &SceneLibrary,
     scene: &str,

@@ -1,4 +1,4 @@
-//! One method as it runs: the last good graph of its files, and why the newest is not it.
+//! Runs one method, with the last good graph of its files, and keeps the errors of newer ones.
 
 use crate::desired_state::{DesiredMethod, MethodSnapshot, PassSnapshot};
 use skiagraph_compare::error::{explain, is_fatal};
@@ -13,10 +13,10 @@ use skiagraph_graph::{Graph, LinkedPass, Origin, Plan, ResourceKind, Sources};
 use skiagraph_passes::SceneProvider;
 use std::{sync::Arc, time::Duration};
 
-/// The device is of no more use.
+/// Error: the device is lost and must be opened again.
 pub struct Lost;
 
-/// The state that a plan was made for.
+/// The state that a plan is made for.
 #[derive(Clone, PartialEq)]
 struct PlannedFor {
     desired: DesiredMethod,
@@ -25,10 +25,10 @@ struct PlannedFor {
     reads: u64,
 }
 
-/// One method.
+/// A method that runs, with its graph, its executor and its errors.
 #[derive(Default)]
 pub struct Slot {
-    /// The preset or path.
+    /// Name of a preset, or path of a graph.
     pub name: String,
     preset: Option<Preset>,
     executor: Option<Executor>,
@@ -46,7 +46,7 @@ pub struct Slot {
 }
 
 impl Slot {
-    /// Creates the slot of a preset or path.
+    /// Creates the slot of a preset, or of the graph at a path.
     pub fn new(name: &str) -> Self {
         Self {
             name: name.to_owned(),
@@ -54,12 +54,12 @@ impl Slot {
         }
     }
 
-    /// The graph that runs.
+    /// Returns the last good graph; `None` if none was read.
     pub fn graph(&self) -> Option<&Graph> {
         self.preset.as_ref().map(|preset| &preset.graph)
     }
 
-    /// Reads the files; says whether anything in them has changed.
+    /// Reads the method's files. Returns true if their content or their errors have changed.
     pub fn read(&mut self, sources: &dyn Sources) -> bool {
         let recorded = RecordedSources::new(sources);
         let read = preset::load(&self.name, &recorded)
@@ -82,16 +82,17 @@ impl Slot {
         true
     }
 
-    /// Gives up what belongs to a device or a scene that is gone.
+    /// Drops the executor and plan, after a change of the device or the scene.
     pub fn forget_device(&mut self) {
         self.executor = None;
         self.planned = None;
     }
 
-    /// Runs a frame, of the graph as it is desired if that can be, else of the last one that ran.
+    /// Runs a frame in the desired state. If that is not possible, runs the last plan that did; the
+    /// snapshot then carries the error.
     ///
     /// # Errors
-    /// The device is lost.
+    /// If the device is lost.
     pub fn take_snapshot(
         &mut self,
         session: Session,
@@ -202,21 +203,21 @@ impl Slot {
     }
 }
 
-/// How a frame is to be run.
+/// Settings of a frame that all methods share.
 pub struct How {
-    /// In how many pixels.
+    /// Width and height of the picture in pixels.
     pub size: [u32; 2],
     /// Take GPU timestamps.
     pub timing: bool,
-    /// Run passes that have no reason to run, too.
+    /// Run every pass, even if its inputs have not changed.
     pub all_passes: bool,
-    /// The time of what is shown.
+    /// Time of the shown moment in seconds.
     pub seconds: f32,
-    /// The camera's.
+    /// Near and far plane of the camera, to turn depths into distances.
     pub planes: ClipPlanes,
 }
 
-/// Why the desired state cannot be reached.
+/// Reason why the desired state cannot be reached.
 struct Refusal {
     text: String,
     is_fatal: bool,

@@ -1,4 +1,4 @@
-//! From what is asked for to running threads and the state that shows what they do.
+//! Starts the viewer's threads and creates the state that shows their results.
 
 use crate::desired_state::{DesiredMethod, DesiredState};
 use crate::ground_truth::GroundTruthThread;
@@ -18,32 +18,32 @@ use std::{
     thread,
 };
 
-/// Wakes the window when something has happened.
+/// Callback that makes the window update after news from a thread.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
-/// The methods and the scene that the window shows at first.
+/// Content that the viewer opens with.
 pub struct Opening {
-    /// One or two methods as `compare` names them.
+    /// One or two methods, named as in `compare`.
     pub methods: Vec<String>,
-    /// Params that are set of both.
+    /// Params that are set in every method.
     pub params: Vec<Assignment>,
-    /// Size of their shadow maps, texels.
+    /// Size of the methods' shadow maps in texels; `None` for their defaults.
     pub map_size: Option<u32>,
-    /// Pixels that they run in.
+    /// Width and height of the methods' pictures in pixels.
     pub size: [u32; 2],
-    /// The scene, as [`load_scene`](Self::load_scene) knows it.
+    /// Name of the scene for [`load_scene`](Self::load_scene).
     pub scene: String,
-    /// Loads this scene, and others that are chosen in the window.
+    /// Loads this scene, and scenes chosen later in the window.
     pub load_scene: LoadScene,
-    /// The GPU to open.
+    /// Choice of the GPU that runs the methods.
     pub gpu: GpuRequest,
 }
 
-/// Starts the threads, and makes the state that shows what they do. The methods that are asked for
-/// need not be faultless: what is wrong with them is shown.
+/// Starts the threads and creates the state that shows their results. Methods may contain errors;
+/// the window shows them. The watcher of the methods' files is `None` if it could not be started.
 ///
 /// # Errors
-/// No GPU, a method that there is not, a param that it has not.
+/// If no GPU can be opened, a method is unknown, or a method lacks a given param.
 pub fn start(
     opening: Opening,
     sink: &dyn Sink,

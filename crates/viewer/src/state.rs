@@ -1,5 +1,5 @@
-//! The window's state: the pictures, and the choices made in it. It knows no toolkit: tests drive
-//! it as the window does.
+//! State of the window: its pictures, and the user's choices. It uses no window toolkit, so tests
+//! drive it as the window does.
 
 use crate::desired_state::{
     DesiredMethod, DesiredState, Event, FrameSnapshot, Loaded, MethodSnapshot,
@@ -13,89 +13,90 @@ use skiagraph_graph::{Capture, ParamValue};
 use skiagraph_scene::{Light, LightKind, View};
 use std::{collections::VecDeque, sync::mpsc};
 
-/// Frames whose times are kept.
+/// Number of frames whose times are kept.
 pub const HISTORY: usize = 120;
 
-/// Meaning of a press and a move of the pointer in a picture.
+/// Effect of dragging the pointer in a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Drag {
-    /// Look around.
+    /// Turn the camera in place.
     Look,
-    /// Go around the middle of the scene.
+    /// Move the camera around the middle of the scene.
     Orbit,
-    /// Shift the eye.
+    /// Move the camera sideways, up and down.
     Pan,
-    /// Turn the light.
+    /// Turn the light, or move a point light.
     Light,
 }
 
-/// One of the pictures.
+/// One of the two pictures side by side.
 #[derive(Default)]
 pub struct Pane {
-    /// Kind of picture that it shows.
+    /// Kind of picture to show.
     pub show: Show,
     /// How a material is shown.
     pub reading: Reading,
-    /// The picture.
+    /// Picture, legend and numbers as drawn last.
     pub drawn: Drawn,
-    /// Counts up with each new picture.
+    /// Counter that increases with each new picture.
     pub version: u64,
-    /// GPU times of the last frames, or wall times where there are none, milliseconds.
+    /// GPU times of the last frames in milliseconds, the newest last; wall times of frames without
+    /// GPU times.
     pub history: VecDeque<f64>,
     is_stale: bool,
 }
 
-/// Channels to and from the other threads.
+/// Channels between the window and the other threads.
 pub struct Channels {
-    /// To that of the graphs.
+    /// Commands to the thread that runs the graphs.
     pub commands: mpsc::Sender<Command>,
-    /// From it.
+    /// Events of the thread that runs the graphs.
     pub events: mpsc::Receiver<Event>,
-    /// To that of the reference.
+    /// Handle of the thread that traces the reference.
     pub ground_truth: GroundTruthThread,
-    /// From it.
+    /// Answers of the thread that traces the reference.
     pub answers: mpsc::Receiver<Answer>,
 }
 
-/// Scenes and methods to choose from.
+/// Scenes and methods that the user can choose, and the name of the GPU.
 #[derive(Clone, Default)]
 pub struct Choices {
-    /// Scenes by name.
+    /// Names of the scenes.
     pub scenes: Vec<String>,
-    /// Presets by name, and the paths of the command line.
+    /// Names of the presets, and paths given on the command line.
     pub methods: Vec<String>,
-    /// The GPU, and why there are no GPU times, if there are none.
+    /// Name of the GPU. If there are no GPU times, the reason follows.
     pub adapter: String,
 }
 
-/// The state of the window.
+/// State of the window.
 pub struct Viewer {
     channels: Channels,
-    /// Scenes and methods to choose from.
+    /// Scenes and methods that the user can choose.
     pub choices: Choices,
-    /// The state that the window asks for.
+    /// State that the window asks the thread to show.
     pub desired: DesiredState,
     sent: Option<DesiredState>,
-    /// The scene that is there.
+    /// The loaded scene; `None` until it is loaded.
     pub loaded: Option<Loaded>,
-    /// The newest frame.
+    /// The newest frame; `None` before the first.
     pub snapshot: Option<FrameSnapshot>,
-    /// The newest answer, if it is to the newest frame.
+    /// The newest answer of the reference; `None` if there is none for the newest frame.
     pub answer: Option<Answer>,
-    /// The pictures; as many are shown as there are methods.
+    /// The two pictures. As many are shown as there are methods.
     pub panes: [Pane; 2],
-    /// Meaning of a drag.
+    /// Effect of dragging the pointer in a picture.
     pub drag: Drag,
-    /// Run a frame after the other, though nothing changes.
+    /// Run frame after frame, even if nothing changes.
     pub keep_running: bool,
-    /// Trace the reference of what is shown.
+    /// Trace the reference for every shown frame.
     pub is_judged: bool,
-    /// The last notice, and whether it is an error.
+    /// The last message to the user; true if it is an error.
     pub notice: Option<(String, bool)>,
 }
 
 impl Viewer {
-    /// Shows nothing yet.
+    /// Creates the state of a window that shows nothing yet.
     pub fn new(channels: Channels, choices: Choices, desired: DesiredState) -> Self {
         Self {
             channels,
@@ -113,8 +114,8 @@ impl Viewer {
         }
     }
 
-    /// Takes in the events and answers of the threads, and sends them a changed desired state.
-    /// Returns whether there is something new to see.
+    /// Takes in events and answers of the threads, and sends them the desired state if it has
+    /// changed. Returns true if there is something new to see.
     pub fn update(&mut self) -> bool {
         let mut is_new = false;
         while let Ok(event) = self.channels.events.try_recv() {
@@ -181,7 +182,7 @@ impl Viewer {
         }
     }
 
-    /// Shows what went wrong.
+    /// Shows an error message to the user.
     pub fn notify_error(&mut self, what: &str) {
         self.notice = Some((what.to_owned(), true));
     }
@@ -198,7 +199,7 @@ impl Viewer {
         }
     }
 
-    /// True if the picture is of the desired state.
+    /// True if the newest frame shows the desired state.
     pub fn is_current(&self) -> bool {
         let shown = self.snapshot.as_ref().map(|snapshot| &snapshot.desired);
         shown == Some(&self.desired) && self.sent.as_ref() == Some(&self.desired)
@@ -219,7 +220,7 @@ impl Viewer {
         pane.is_stale = false;
     }
 
-    /// Sets the kind of picture that the pane shows from now on.
+    /// Sets the kind of picture that the pane with this index shows.
     pub fn show(&mut self, index: usize, show: Show) {
         let pane = &mut self.panes[index];
         if pane.show != show {
@@ -235,7 +236,7 @@ impl Viewer {
         }
     }
 
-    /// How the pane shows a material from now on.
+    /// Sets how the pane with this index shows a material.
     pub fn read(&mut self, index: usize, reading: Reading) {
         let pane = &mut self.panes[index];
         if pane.reading != reading {
@@ -244,14 +245,15 @@ impl Viewer {
         }
     }
 
-    /// The newest frame of a method, if it is of that method.
+    /// Returns the newest frame of the method with this index; `None` if that frame is of another
+    /// method.
     pub fn method(&self, index: usize) -> Option<&MethodSnapshot> {
         let method = self.snapshot.as_ref()?.methods.get(index)?;
         let desired = self.desired.methods.get(index)?;
         (method.name == desired.name).then_some(method)
     }
 
-    /// Another method in a pane, with its defaults.
+    /// Replaces the method in the pane with this index, with default params.
     pub fn choose_method(&mut self, index: usize, name: &str) {
         let name = name.to_owned();
         let method = DesiredMethod {
@@ -269,14 +271,15 @@ impl Viewer {
         self.panes[index].history.clear();
     }
 
-    /// Sets a param; one at its default stays named, so that only its value changes.
+    /// Sets a param of the method with this index. A value equal to the default stays listed, so
+    /// that the method need not be planned again.
     pub fn set_param(&mut self, index: usize, name: &str, value: ParamValue) {
         if let Some(method) = self.desired.methods.get_mut(index) {
             method.params.insert(name.to_owned(), value);
         }
     }
 
-    /// Another scene, from its first view.
+    /// Changes the scene and starts from its first view.
     pub fn choose_scene(&mut self, name: &str) {
         if self.desired.scene != name {
             self.desired.scene = name.to_owned();
@@ -285,7 +288,7 @@ impl Viewer {
         }
     }
 
-    /// Another view of the scene.
+    /// Changes to the view of this name, if the scene has one.
     pub fn choose_view(&mut self, name: &str) {
         let mut views = self.loaded.iter().flat_map(|loaded| &loaded.views);
         if let Some(view) = views.find(|view| view.name == name) {
@@ -293,7 +296,7 @@ impl Viewer {
         }
     }
 
-    /// Lists what each pass writes, in the order of the passes.
+    /// Lists the materials that each pass of a method writes, in the order of the passes.
     pub fn steps(&self, index: usize) -> Vec<Capture> {
         let passes = self.method(index).into_iter().flat_map(|it| &it.passes);
         let captures = passes.flat_map(|pass| {
@@ -305,7 +308,8 @@ impl Viewer {
         captures.collect()
     }
 
-    /// Shows what the next or the previous pass writes.
+    /// Shows the next material in the order of [`steps`](Self::steps), or the previous one if
+    /// `forward` is false.
     pub fn step(&mut self, index: usize, forward: bool) {
         let steps = self.steps(index);
         let at = match &self.panes[index].show {
@@ -324,7 +328,7 @@ impl Viewer {
         }
     }
 
-    /// Middle and radius of the scene.
+    /// Returns the centre and the radius of the scene, in scene units.
     pub fn extent(&self) -> (DVec3, f64) {
         let bounds = self
             .loaded
@@ -339,7 +343,8 @@ impl Viewer {
         })
     }
 
-    /// Turns camera or light by so many radians, or shifts the eye by these shares of the scene.
+    /// Applies a drag by `by`, right and down. Camera and light turn by these angles in radians;
+    /// the eye moves by these multiples of half the scene's radius.
     pub fn dragged(&mut self, drag: Drag, by: [f64; 2]) {
         let (centre, radius) = self.extent();
         let Some(view) = &mut self.desired.view else {
@@ -367,7 +372,8 @@ impl Viewer {
         self.look_from(moved);
     }
 
-    /// Moves the eye along its own right, up and forward, by shares of the scene.
+    /// Moves the eye along its right, up and forward directions, in multiples of the scene's
+    /// radius.
     pub fn fly(&mut self, by: DVec3) {
         let (_, radius) = self.extent();
         if let Some(mut view) = self.desired.view.clone() {
@@ -376,14 +382,15 @@ impl Viewer {
         }
     }
 
-    /// Takes a view that can be one.
+    /// Sets the desired view, unless it is invalid.
     pub fn look_from(&mut self, view: View) {
         if view.check().is_ok() {
             self.desired.view = Some(view);
         }
     }
 
-    /// The light of the desired state, with its name.
+    /// Returns the name and kind of the first light of the desired view; `None` without a view or
+    /// scene.
     pub fn light(&self) -> Option<(String, LightKind)> {
         let view = self.desired.view.as_ref()?;
         let lights = self.loaded.as_ref()?.scene.lights_of(view);

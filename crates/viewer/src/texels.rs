@@ -1,18 +1,18 @@
-//! The numbers of a material: under the cursor, as a histogram, as a heat map.
+//! Numbers of a material: the value under the pointer, a histogram, a heat map.
 
 use crate::heat;
 use skiagraph_compare::pictures::colours::{ClipPlanes, EMPTY, INVALID, cleared};
 use skiagraph_gpu::Content;
 use skiagraph_reference::Image;
 
-/// Bars of a histogram.
+/// Number of bars of a histogram.
 pub const BINS: usize = 64;
 
-/// The texels of one mip of one layer, as numbers.
+/// Texels of one mip of one layer, as numbers.
 pub struct Texels {
-    /// Width and height.
+    /// Width and height in texels.
     pub size: [u32; 2],
-    /// Values of a texel.
+    /// Number of values of each texel.
     pub channels: usize,
     values: Vec<f64>,
     is_whole: bool,
@@ -24,21 +24,22 @@ fn wide<N: Into<f64>>(numbers: Vec<N>) -> Vec<f64> {
     numbers.into_iter().map(Into::into).collect()
 }
 
-/// How often values occur.
+/// Distribution of the values of a channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Histogram {
-    /// Least and greatest finite value.
+    /// Least and greatest finite value; the first exceeds the second if there are none.
     pub range: [f64; 2],
-    /// Values in equal parts of the range.
+    /// Number of values in each of `BINS` equal parts of the range.
     pub bins: [u64; BINS],
-    /// How many values are finite.
+    /// Number of finite values.
     pub finite: u64,
-    /// NaN and infinities.
+    /// Number of NaN and infinite values.
     pub others: u64,
 }
 
 impl Texels {
-    /// Reads one part of a texture; `None` of a buffer, or a format that is not read as numbers.
+    /// Reads one part of a texture. `planes` turn a camera's depths into distances. `None` for a
+    /// buffer and for formats that are not read as numbers.
     pub fn new(part: &Content, planes: Option<ClipPlanes>) -> Option<Self> {
         let Content::Texture { format, parts, .. } = part else {
             return None;
@@ -59,7 +60,8 @@ impl Texels {
         })
     }
 
-    /// Returns the value of a texel as it is stored; `None` outside of the picture.
+    /// Returns the stored value of a texel as text; a depth is followed by its distance. `None`
+    /// outside the picture.
     pub fn text(&self, [x, y]: [u32; 2]) -> Option<String> {
         if x >= self.size[0] || y >= self.size[1] {
             return None;
@@ -99,7 +101,8 @@ impl Texels {
         })
     }
 
-    /// How often the values of a channel occur.
+    /// Returns the histogram of a channel. Depths of a camera count as distances; depths that
+    /// nothing has written are left out.
     pub fn histogram(&self, channel: usize) -> Histogram {
         let finite = |number: &f64| number.is_finite();
         let numbers = || self.numbers(channel).flatten();
@@ -125,8 +128,8 @@ impl Texels {
         histogram
     }
 
-    /// A channel in the colours of heat between two values; magenta: not finite, grey: a depth that
-    /// nothing has written.
+    /// Draws a channel as a heat map between two values. Magenta marks values that are not finite,
+    /// grey marks depths that nothing has written.
     pub fn heat(&self, channel: usize, range: [f64; 2]) -> Image {
         let colour = |number: Option<f64>| match number {
             None => EMPTY,

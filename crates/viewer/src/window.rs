@@ -1,4 +1,4 @@
-//! The window itself: winit's events in, egui's shapes out.
+//! The window: passes winit's events to egui, and egui's shapes to the painter.
 
 use crate::state::Viewer;
 use crate::{
@@ -29,10 +29,10 @@ use winit::{
 #[derive(Debug)]
 struct Wake(Duration);
 
-/// Opens the window, and returns when it is closed.
+/// Opens the window and blocks until it is closed.
 ///
 /// # Errors
-/// No display, no GPU for it, a method or param that is not there.
+/// If a display or a GPU for it is missing, or a method or param is unknown.
 pub fn open(opening: Opening, sink: &dyn Sink) -> Result<(), CompareError> {
     let events = event_loop()?;
     let proxy = events.create_proxy();

@@ -1,4 +1,4 @@
-//! The thread of the graphs: it loads scenes and methods, and runs a frame whenever the desired
+//! Thread that runs the graphs: it loads scenes and methods, and runs a frame whenever the desired
 //! state changes. It has a device of its own, so that the window never waits for a method.
 
 use crate::desired_state::{DesiredState, Event, FrameSnapshot, Loaded};
@@ -23,19 +23,20 @@ use std::{
     time::Instant,
 };
 
-/// Requests of the window to the thread.
+/// Commands of the window to the thread that runs the graphs.
 pub enum Command {
-    /// Show this.
+    /// Show this state.
     Show(Box<DesiredState>),
-    /// Files may have changed.
+    /// Read the methods' files again; they may have changed.
     Reload,
 }
 
-/// Loads a scene by its name, with the views of it that are shown first.
+/// Function that loads a scene by name. It returns the scene and the views to list before the
+/// scene's own.
 pub type LoadScene =
     Box<dyn Fn(&str) -> Result<(Scene, Vec<View>), Box<dyn Error + Send + Sync>> + Send>;
 
-/// How the thread tells the window something.
+/// Function that sends an event to the window.
 pub type Tell = Box<dyn Fn(Event) + Send>;
 
 /// The scene that is there, and what stands on it.
@@ -47,7 +48,7 @@ struct Stage {
     primitives: Option<(Executor, [u32; 2])>,
 }
 
-/// The thread's own.
+/// State of the thread that runs the graphs.
 pub struct Worker {
     request: GpuRequest,
     load_scene: LoadScene,
@@ -63,7 +64,7 @@ pub struct Worker {
 }
 
 impl Worker {
-    /// On a GPU, which was opened as `request` says.
+    /// Creates the worker for a GPU, which was opened as `request` says.
     pub fn new(
         gpu: Gpu,
         (request, load_scene): (GpuRequest, LoadScene),
@@ -84,7 +85,7 @@ impl Worker {
         }
     }
 
-    /// Works until the channel of commands closes.
+    /// Runs commands until their channel closes.
     pub fn work(mut self, commands: &mpsc::Receiver<Command>) {
         let mut desired: Option<DesiredState> = None;
         while let Ok(first) = commands.recv() {

@@ -1,4 +1,4 @@
-//! `skiagraph chart`: what `compare` kept, as a picture.
+//! `skiagraph chart`: draws kept results of `compare`.
 
 use crate::args::commands::{ChartArgs, ChartKind};
 use crate::error::CliError;
@@ -12,11 +12,11 @@ use skiagraph_report::charts::{self, Kept};
 use skiagraph_report::{published_charts, raster};
 use std::path::Path;
 
-/// Reads the results, draws them, and says what could not be drawn.
+/// Reads results, draws a chart of them, and prints what could not be drawn.
 ///
 /// # Errors
-/// A folder without results, results that cannot be read or have nothing to draw, a file that
-/// cannot be written.
+/// If a folder has no results, results cannot be read or have nothing to draw, or a file cannot be
+/// written.
 pub fn chart(args: &ChartArgs) -> Result<(), CliError> {
     if let (Some(published), Some(folder)) = (&args.beside, &args.out) {
         return beside(args, published, folder);

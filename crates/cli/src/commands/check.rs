@@ -1,4 +1,4 @@
-//! `skiagraph check`: every diagnostic of some graphs, without a GPU.
+//! `skiagraph check`: prints every diagnostic of graphs, without a GPU.
 
 use crate::args::commands::{CheckArgs, CheckFormat};
 use crate::args::shared::GpuArgs;
@@ -18,15 +18,16 @@ use skiagraph_graph::{Diagnostics, Graph, Plan, Sources};
 use skiagraph_passes::{names::LIGHT, registry};
 use std::{sync::mpsc, time::Duration};
 
-/// How soon Ctrl-C is heard.
+/// Time until Ctrl-C is noticed at the latest.
 const LISTENING: Duration = Duration::from_millis(100);
 
-/// Loads and plans each graph and says what is wrong with it: on whatever adapter, or on the one
-/// that the arguments name; with `--watch` again after every change, until Ctrl-C.
+/// Loads and plans each graph and prints its diagnostics. Graphs must run on the adapter that the
+/// arguments name; without one, needs beyond the baseline are only warnings. With `--watch` it
+/// checks again after every change, until Ctrl-C.
 ///
 /// # Errors
-/// Every fault of every graph together; warnings are printed and are no error. No adapter of that
-/// name. While it watches: only that it cannot.
+/// If a graph has errors (all are reported together; warnings are only printed) or the named
+/// adapter is missing. With `--watch`, only if files cannot be watched.
 pub fn check(args: &CheckArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     if !args.watch {
         return check_once(args, gpu);

@@ -1,4 +1,4 @@
-//! `skiagraph compare`: every method on every view, viewport and map size, speed beside error.
+//! `skiagraph compare`: measures speed and error of methods on every view, viewport and map size.
 
 use crate::args::commands::{CompareArgs, Format, Images};
 use crate::args::shared::GpuArgs;
@@ -41,11 +41,12 @@ use skiagraph_report::{
 use skiagraph_scene::Scene;
 use std::sync::Arc;
 
-/// Checks everything, then runs the comparison.
+/// Checks all arguments, then measures the methods and prints and saves the results.
 ///
 /// # Errors
-/// Faulty graphs, a scene that cannot be loaded, no GPU, earlier results that cannot be resumed,
-/// Ctrl-C, no method that runs on this adapter.
+/// If a graph has errors, a scene cannot be loaded, no GPU can be opened, earlier results cannot be
+/// continued, Ctrl-C stops the command, no method runs on this adapter, or a limit of `--fail-if`
+/// is exceeded.
 pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let published = published::read(&args.published)?;
     let sources = preset::sources(&Terminal);
@@ -137,7 +138,7 @@ fn check_gates(gates: &[Gate], methods: &[Method]) -> Result<(), CliError> {
     )))
 }
 
-/// Says on which methods `--map-size` has no effect.
+/// Prints the methods on which `--map-size` has no effect.
 pub fn note_without_map(methods: &[Method], map_sizes: &[u32]) {
     let without = methods.iter().filter(|method| method.map_size.is_none());
     let without: Vec<&str> = without.map(|method| method.name.as_str()).collect();

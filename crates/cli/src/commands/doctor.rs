@@ -1,4 +1,4 @@
-//! `skiagraph doctor`: what this machine can do, and why not where it cannot.
+//! `skiagraph doctor`: prints the abilities of this machine, and reasons for those that it lacks.
 
 use crate::args::shared::GpuArgs;
 use crate::error::CliError;
@@ -12,10 +12,11 @@ use skiagraph_gpu::{
 use skiagraph_scene::{SceneLibrary, library::ASSETS_VARIABLE};
 use wgpu::Features as F;
 
-/// Prints adapters, limits, features, whether timestamps are true, and where meshes are searched.
+/// Prints the adapters, their limits and features, the check of timestamps, and the folders that
+/// are searched for meshes.
 ///
 /// # Errors
-/// No usable adapter, after all that can be said without one.
+/// If no usable adapter was found; the rest is printed first.
 pub fn doctor(args: &GpuArgs) -> Result<(), CliError> {
     let mut text = String::from("Adapters\n");
     let adapters = device::adapters();

@@ -1,4 +1,4 @@
-//! `skiagraph graph`: what became of a graph, as a picture or as data, without a GPU.
+//! `skiagraph graph`: draws the plan of a graph, or writes it as JSON, without a GPU.
 
 use crate::args::commands::{DrawingFormat, GraphArgs};
 use crate::error::CliError;
@@ -9,10 +9,10 @@ use skiagraph_compare::graphs::preset;
 use skiagraph_draw::{Drawing, from_plan, to_dot, to_svg};
 use std::{ffi::OsStr, path::Path};
 
-/// Plans the graph for the most able adapters and draws the plan.
+/// Plans a graph for the most capable adapter and draws the plan.
 ///
 /// # Errors
-/// A faulty graph, a param or output that it does not have, a file that cannot be written.
+/// If the graph has errors, lacks a named param or output, or the file cannot be written.
 pub fn graph(args: &GraphArgs) -> Result<(), CliError> {
     let (preset, params) = args.method.load(&preset::sources(&Terminal))?;
     let viewport = args.method.size.0;

@@ -1,4 +1,4 @@
-//! One file per command: arguments in, calls, an exit code out.
+//! The commands, one in each file. Each takes its arguments and returns an error or nothing.
 
 pub mod chart;
 pub mod check;

@@ -1,4 +1,4 @@
-//! `skiagraph new`: a small method to start from, or a variant of a preset.
+//! `skiagraph new`: writes a small method to start from, or a variant of a preset.
 
 use crate::args::commands::NewArgs;
 use crate::error::CliError;
@@ -12,10 +12,11 @@ const DOCUMENT: &str = include_str!("../../templates/method.ron");
 const SHADER: &str = include_str!("../../templates/method.wgsl");
 const VARIANT: &str = include_str!("../../templates/variant.ron");
 
-/// Writes `NAME.ron` into the working directory, and `NAME.wgsl` unless it is a preset's variant.
+/// Writes `NAME.ron` into the working directory, and `NAME.wgsl` as well unless the method is a
+/// variant of a preset.
 ///
 /// # Errors
-/// A name that no document can have or that is taken, a preset that there is not, the disk.
+/// If the name is invalid or taken, the preset is unknown, or a file cannot be written.
 pub fn new(args: &NewArgs) -> Result<(), CliError> {
     let name = &args.name;
     check_name(name)?;

@@ -1,4 +1,4 @@
-//! `skiagraph presets`: the methods that `compare` and `run` know by name.
+//! `skiagraph presets`: lists the methods that `compare` and `run` know by name.
 
 use crate::args::commands::{PresetsArgs, PresetsFormat};
 use crate::error::CliError;
@@ -12,10 +12,10 @@ use skiagraph_compare::records::table::Table;
 use skiagraph_graph::{Graph, Param};
 use std::sync::Arc;
 
-/// Lists the presets with their params, or as a table.
+/// Prints the presets with their params, or as a Markdown table.
 ///
 /// # Errors
-/// A preset on disk that cannot be loaded or planned, standard output.
+/// If a preset cannot be loaded or planned, or standard output cannot be written.
 pub fn presets(args: &PresetsArgs) -> Result<(), CliError> {
     let sources = preset::sources(&Terminal);
     let loaded = preset::load_all(&preset::names(&sources), &sources)?;

@@ -1,4 +1,4 @@
-//! `skiagraph profile`: graphs over many frames.
+//! `skiagraph profile`: times the passes of graphs over many frames.
 
 use crate::args::commands::ProfileArgs;
 use crate::args::shared::GpuArgs;
@@ -24,11 +24,11 @@ use skiagraph_report::profile_text::{matrices, report};
 use skiagraph_report::trace::trace;
 use std::{path::Path, sync::Arc};
 
-/// Times graphs, prints what it measured, and writes what was asked for.
+/// Times graphs, prints the profiles, and writes the files that the arguments name.
 ///
 /// # Errors
-/// A faulty graph or baseline, a scene that cannot be loaded, no GPU, Ctrl-C, a file that cannot be
-/// written.
+/// If a graph or a baseline is faulty, a scene cannot be loaded, no GPU can be opened, Ctrl-C stops
+/// the command, or a file cannot be written.
 pub fn profile(args: &ProfileArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     check_writable(&files(args))?;
     let old = match &args.baseline {

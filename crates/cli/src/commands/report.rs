@@ -1,4 +1,4 @@
-//! `skiagraph report`: what `compare` and `stress` kept, as one page.
+//! `skiagraph report`: shows kept results of `compare` and `stress` on one page.
 
 use crate::args::commands::ReportArgs;
 use crate::error::CliError;
@@ -7,10 +7,10 @@ use crate::terminal::console::note;
 use skiagraph_compare::files::write::check_writable;
 use skiagraph_report::page::{self, FILE};
 
-/// Reads what was kept and writes the page.
+/// Reads kept results and writes the page.
 ///
 /// # Errors
-/// A folder without results, results that cannot be read, a file that cannot be written.
+/// If a folder has no results, results cannot be read, or the file cannot be written.
 pub fn report(args: &ReportArgs) -> Result<(), CliError> {
     let first = args.folders.first().map(|folder| folder.join(FILE));
     let file = args.out.clone().or(first).unwrap_or_else(|| FILE.into());

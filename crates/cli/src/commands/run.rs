@@ -1,4 +1,4 @@
-//! `skiagraph run`: one frame of one graph, or several, and any of its materials as files.
+//! `skiagraph run`: renders a frame of a graph, or several, and saves materials to files.
 
 use crate::args::commands::RunArgs;
 use crate::args::shared::GpuArgs;
@@ -21,10 +21,12 @@ use skiagraph_graph::Plan;
 use skiagraph_passes::SceneProvider;
 use std::sync::Arc;
 
-/// Plans, renders a frame, or those of a sequence, says what ran, and saves what was asked for.
+/// Renders one frame of a graph, or a sequence, prints which passes ran, and saves the materials
+/// that the arguments name.
 ///
 /// # Errors
-/// A faulty graph, a scene that cannot be loaded, no GPU, a file that cannot be written.
+/// If the graph has errors, a scene cannot be loaded, no GPU can be opened, or a file cannot be
+/// written.
 pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let (method, saves) = (&args.method, &args.save);
     let (preset, params) = &method.load(&preset::sources(&Terminal))?;

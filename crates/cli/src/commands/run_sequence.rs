@@ -1,4 +1,4 @@
-//! `skiagraph run --frames`: a numbered sequence of pictures.
+//! `skiagraph run --frames`: renders a sequence of frames to numbered files.
 
 use crate::args::commands::RunArgs;
 use crate::error::CliError;
@@ -19,7 +19,7 @@ use skiagraph_graph::Plan;
 use skiagraph_passes::SceneProvider;
 use skiagraph_scene::{CameraPath, Scene, View};
 
-/// The file in which a frame is saved.
+/// Returns the save request with the file name of the frame with this index.
 pub fn of_frame(save: &Save, index: usize) -> Save {
     Save {
         file: numbered(&save.file, index),
@@ -27,11 +27,12 @@ pub fn of_frame(save: &Save, index: usize) -> Save {
     }
 }
 
-/// Collects the frames of each path that is asked for, or of each view; none without `--frames`
-/// and `--path`.
+/// Returns the frames of the path that the arguments name, or of the only view. `None` without
+/// `--frames` and `--path`. `own` holds the paths of a mesh file.
 ///
 /// # Errors
-/// No such path, or one that has fewer frames.
+/// If the path does not exist or has too few frames, or the arguments select several views or
+/// paths.
 pub fn sequence(
     args: &RunArgs,
     scene: &Scene,
@@ -80,11 +81,11 @@ fn path(
     }
 }
 
-/// Renders the frames one after the other, the first with an empty memory, and saves what is
-/// asked for of each: every file whole, those of the frames before an interrupt stay.
+/// Renders the frames one after another, starting without earlier frames, and saves the requested
+/// materials of each. Files are written whole; Ctrl-C keeps those of finished frames.
 ///
 /// # Errors
-/// Ctrl-C, those of the executor, a file that cannot be written.
+/// If Ctrl-C stops the command, the executor fails, or a file cannot be written.
 pub fn record(
     sequence: &FrameSequence,
     session: Session,

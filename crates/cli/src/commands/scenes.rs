@@ -1,4 +1,4 @@
-//! `skiagraph scenes`: what `--scene` can name.
+//! `skiagraph scenes`: lists the scenes that `--scene` can name.
 
 use crate::error::CliError;
 use crate::terminal::console::print;
@@ -6,10 +6,10 @@ use skiagraph_compare::records::table::Table;
 use skiagraph_report::table::terminal;
 use skiagraph_scene::{SceneLibrary, SceneListing};
 
-/// Lists the scenes with their views, camera paths and whether their meshes are at hand.
+/// Prints the scenes with their views and camera paths, and which of their meshes are missing.
 ///
 /// # Errors
-/// Standard output.
+/// If standard output cannot be written.
 pub fn scenes() -> Result<(), CliError> {
     let listings = SceneLibrary::from_environment().list();
     let missing = listings.iter().any(|listing| !listing.mesh_found);

@@ -1,14 +1,15 @@
-//! `skiagraph schema`: what documents and scene files may be, for editors and for readers.
+//! `skiagraph schema`: prints the schema of graph documents and scene files, for editors and
+//! readers.
 
 use crate::args::commands::{SchemaArgs, SchemaFormat, SchemaOf};
 use crate::error::CliError;
 use crate::terminal::console::print;
 use skiagraph_report::language;
 
-/// Prints a JSON Schema, or the reference of the language.
+/// Prints the JSON Schema of documents or scene files, or the same as a reference in Markdown.
 ///
 /// # Errors
-/// Standard output.
+/// If standard output cannot be written.
 pub fn schema(args: &SchemaArgs) -> Result<(), CliError> {
     let schema = match args.of {
         SchemaOf::Documents => skiagraph_graph::schema(&skiagraph_passes::registry()),

@@ -1,5 +1,5 @@
-//! `skiagraph show`: a document, shader or scene file as it is written; of a document all that it
-//! extends, and what its passes read and write.
+//! `skiagraph show`: prints a document, shader or scene file as written. A document is followed by
+//! what its passes read and write, or printed with all that it extends.
 
 use crate::args::commands::ShowArgs;
 use crate::error::CliError;
@@ -13,11 +13,11 @@ use skiagraph_passes::registry;
 use skiagraph_scene::SceneLibrary;
 use std::collections::BTreeSet;
 
-/// Prints a file of the working directory, else one that is built in; behind a document, as a
-/// comment, what its passes read and write; or a scene file.
+/// Prints a file of the working directory, or a built-in one. Behind a document it prints, as
+/// comments, what each pass reads and writes.
 ///
 /// # Errors
-/// A file that there is not, a document that cannot be read, standard output.
+/// If the file does not exist, a document cannot be read, or standard output cannot be written.
 pub fn show(args: &ShowArgs) -> Result<(), CliError> {
     let sources = preset::sources(&Terminal);
     let (path, text) = match find(&args.file, &sources)? {

@@ -1,4 +1,4 @@
-//! `skiagraph stress`: the hard cases with every method, and whether each keeps what it guarantees.
+//! `skiagraph stress`: runs methods on hard cases and checks that each keeps its guarantee.
 
 use crate::args::commands::{StressArgs, StressFormat};
 use crate::args::shared::GpuArgs;
@@ -31,11 +31,11 @@ use skiagraph_report::stress_matrix;
 use skiagraph_report::table::terminal;
 use std::{path::Path, sync::Arc};
 
-/// Checks everything, then runs the matrix.
+/// Checks all arguments, then runs the methods on the cases and prints and saves the results.
 ///
 /// # Errors
-/// Faulty graphs, an unknown case, no GPU, Ctrl-C, files that cannot be written, a guarantee that
-/// is broken, a band above its cap.
+/// If a graph has errors, a case is unknown, no GPU can be opened, Ctrl-C stops the command, a file
+/// cannot be written, a guarantee is broken, or a case has too many pixels in the band.
 pub fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     if args.list {
         return list();

@@ -1,4 +1,4 @@
-//! `skiagraph view`: methods in a window.
+//! `skiagraph view`: shows methods in a window.
 
 use crate::args::commands::ViewArgs;
 use crate::args::shared::GpuArgs;
@@ -8,10 +8,10 @@ use crate::{args::shared::SceneArgs, scene_selection::SceneSelection, terminal::
 #[cfg(feature = "window")]
 use skiagraph_viewer::Opening;
 
-/// Opens the window.
+/// Opens the window and blocks until it is closed.
 ///
 /// # Errors
-/// No display, no GPU, a method or a param that there is not.
+/// If a display or a GPU is missing, or a method or param is unknown.
 #[cfg(feature = "window")]
 pub fn view(args: &ViewArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let named = args.scene.clone();
@@ -39,7 +39,7 @@ pub fn view(args: &ViewArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     Ok(skiagraph_viewer::open(opening, &Terminal)?)
 }
 
-/// Says why there is no window.
+/// Returns an error: this build of the program has no window.
 ///
 /// # Errors
 /// Always.

@@ -1,4 +1,4 @@
-//! Standard output, standard error and its colours.
+//! Writes to standard output and standard error, with colours.
 
 use crate::error::CliError;
 use skiagraph_compare::error::{CompareError, advice, io_advice, rendered};
@@ -10,7 +10,8 @@ use std::{
     process::ExitCode,
 };
 
-/// True if standard error takes colour: a terminal, and <https://no-color.org> not asked for.
+/// True if standard error takes colours: it is a terminal, and `NO_COLOR` (<https://no-color.org>)
+/// is not set.
 pub fn colour() -> bool {
     io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
 }
@@ -24,12 +25,12 @@ fn style(text: &str, code: &str) -> String {
     }
 }
 
-/// A line on standard error that is not an error.
+/// Prints a message that is not an error on standard error.
 pub fn note(text: &str) {
     let _ = writeln!(io::stderr(), "{text}");
 }
 
-/// Prints on standard output.
+/// Prints text on standard output.
 pub fn print(text: &str) -> Result<(), CliError> {
     let mut stdout = io::stdout().lock();
     stdout
@@ -38,7 +39,7 @@ pub fn print(text: &str) -> Result<(), CliError> {
         .map_err(CliError::Stdout)
 }
 
-/// Prints an error and its chain of causes on standard error and returns the exit code.
+/// Prints an error with its causes on standard error, and returns the exit code of the process.
 pub fn report(error: &CliError) -> ExitCode {
     let code = error.exit_code();
     if code != 0 {

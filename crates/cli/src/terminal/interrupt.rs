@@ -1,4 +1,4 @@
-//! Ctrl-C: the first one asks for a clean stop, the second one stops at once.
+//! Ctrl-C: the first one requests a clean stop, the second one ends the process at once.
 
 use crate::error::CliError;
 use crate::terminal::console::note;
@@ -9,10 +9,10 @@ use std::{
 
 static RAISED: AtomicBool = AtomicBool::new(false);
 
-/// From here on Ctrl-C raises [`flag`].
+/// Installs the handler of Ctrl-C, which raises [`flag`].
 ///
 /// # Errors
-/// The operating system refused the handler.
+/// If the operating system refuses the handler.
 pub fn install() -> Result<(), CliError> {
     ctrlc::set_handler(|| {
         if RAISED.swap(true, Ordering::Relaxed) {
@@ -28,7 +28,7 @@ pub fn flag() -> &'static AtomicBool {
     &RAISED
 }
 
-/// True if Ctrl-C has asked the program to stop.
+/// True if Ctrl-C has requested a stop.
 pub fn raised() -> bool {
     RAISED.load(Ordering::Relaxed)
 }

@@ -1,4 +1,4 @@
-//! Talk with the user: standard output and error, progress, Ctrl-C.
+//! Communication with the user: standard output and error, progress, Ctrl-C.
 
 pub mod console;
 pub mod interrupt;

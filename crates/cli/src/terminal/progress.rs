@@ -1,6 +1,6 @@
-//! Progress on standard error: a bar for the step under way on a terminal, a line every few seconds
-//! in a pipe. `SKIAGRAPH_PROGRESS=lines` writes a line at the begin and the end of each step
-//! instead, for logs.
+//! Progress on standard error. On a terminal it is a bar for the current step, in a pipe a line
+//! every few seconds. With `SKIAGRAPH_PROGRESS=lines` it is, in a pipe, a line at the begin and the
+//! end of each step instead.
 
 use crate::terminal::console::{self, note};
 use crate::terminal::interrupt;
@@ -136,7 +136,7 @@ impl Now {
     }
 }
 
-/// Standard error, which hears of the work, and Ctrl-C, which ends it.
+/// Sink that shows messages and progress on standard error, and stops the work on Ctrl-C.
 pub struct Terminal;
 
 impl Sink for Terminal {
@@ -193,7 +193,7 @@ impl Sink for Terminal {
     }
 }
 
-/// Begins a step without a line of its own in a log of steps.
+/// Begins a step, without the line that `SKIAGRAPH_PROGRESS=lines` would print.
 pub fn begin_quietly(name: &str, total: u64, unit: &'static str) {
     let mut now = now();
     let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr());
@@ -221,7 +221,7 @@ pub fn begin_quietly(name: &str, total: u64, unit: &'static str) {
     }
 }
 
-/// Says which part is under way.
+/// Sets the name of the part of the step that is being worked on.
 pub fn set_part(part: &str) {
     if let Some(step) = &mut now().step {
         step.bar.set_message(part.to_owned());

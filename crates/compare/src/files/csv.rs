@@ -2,7 +2,7 @@
 
 use csv::{Error, Writer};
 
-/// The contents of a file.
+/// Returns the text of a CSV file: the header, then a line per record.
 ///
 /// # Errors
 /// A record that is not as long as the header.

@@ -1,5 +1,5 @@
-//! A hash of everything that a run depends on: `compare --resume` keeps a run only if nothing of it
-//! has changed.
+//! Hashes of what a run depends on. `compare --resume` measures a run again if its hash has
+//! changed.
 //!
 //! ```
 //! use skiagraph_compare::files::fingerprint::{Fingerprint, RecordedSources};
@@ -30,7 +30,7 @@ use std::{
 pub struct Fingerprint(u64);
 
 impl Fingerprint {
-    /// The fingerprint of nothing.
+    /// The hash of an empty input, to which the `with_…` functions add.
     pub const EMPTY: Self = Self(0xcbf2_9ce4_8422_2325);
 
     /// With more bytes.
@@ -42,18 +42,19 @@ impl Fingerprint {
         Self(hash)
     }
 
-    /// With a text behind its length, so that a word cannot move from one text to the next unseen.
+    /// Returns the hash extended by a text and, before it, its length, so that a word moved from
+    /// one text to the next changes the hash.
     pub fn with_text(self, text: &str) -> Self {
         let length = (text.len() as u64).to_le_bytes();
         self.with(length).with(text.bytes())
     }
 
-    /// With what another one is of.
+    /// Returns the hash extended by another hash.
     pub fn with_all(self, other: Self) -> Self {
         self.with(other.0.to_le_bytes())
     }
 
-    /// With a mesh and its lights.
+    /// Returns the hash extended by a mesh (positions, triangles, normals, masks) and its lights.
     pub fn with_scene(self, mesh: &Mesh, lights: &[Light]) -> Self {
         let floats = |list: &[glam::Vec3]| -> Self {
             let numbers = list.iter().flat_map(|v| v.to_array());
@@ -75,7 +76,7 @@ impl Fingerprint {
             .with_text(&format!("{lights:?}"))
     }
 
-    /// With a view.
+    /// Returns the hash extended by all fields of a view.
     pub fn with_view(self, view: &View) -> Self {
         self.with_text(&format!("{view:?}"))
     }
@@ -87,8 +88,8 @@ impl fmt::Display for Fingerprint {
     }
 }
 
-/// Sources that remember what was read of them: a document, those that it includes, and the shaders
-/// of all of them.
+/// Sources that read from other sources and record a hash of every text and picture that is read. A
+/// graph that is loaded through them is recorded with its includes and shaders.
 pub struct RecordedSources<'a> {
     sources: &'a dyn Sources,
     /// Texts and pictures by path.
@@ -96,7 +97,7 @@ pub struct RecordedSources<'a> {
 }
 
 impl<'a> RecordedSources<'a> {
-    /// Nothing was read yet.
+    /// Creates sources that read from `sources`, with nothing recorded yet.
     pub fn new(sources: &'a dyn Sources) -> Self {
         Self {
             sources,
@@ -104,7 +105,7 @@ impl<'a> RecordedSources<'a> {
         }
     }
 
-    /// Returns the fingerprint of every path and text that was read.
+    /// Returns one hash of the paths and contents of everything that was read.
     pub fn fingerprint(&self) -> Fingerprint {
         let texts = self.texts.lock().unwrap_or_else(PoisonError::into_inner);
         let with = |all: Fingerprint, (path, text): (&String, &Fingerprint)| {

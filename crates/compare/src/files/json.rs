@@ -1,4 +1,4 @@
-//! JSON files of ours: writing them, and the place of a mistake in one that is read back.
+//! Writes JSON files, and shows the place of a mistake in a JSON file that is read back.
 //!
 //! ```
 //! use skiagraph_compare::files::json::{Mistake, to_text};
@@ -19,7 +19,7 @@ use serde::Serialize;
 use serde_json::Value;
 use skiagraph_graph::{Code, Diagnostic, SourceFile};
 
-/// The contents of a file, or what is printed.
+/// Returns a value as indented JSON text with a newline at its end.
 pub fn to_text(value: &impl Serialize) -> String {
     let mut text = serde_json::to_string_pretty(value)
         .expect("plain structs with string keys always serialise");
@@ -27,7 +27,7 @@ pub fn to_text(value: &impl Serialize) -> String {
     text
 }
 
-/// A mistake at a byte of the text.
+/// A mistake in a JSON text: a message, and the byte of the text that it is about.
 #[derive(Debug)]
 pub struct Mistake {
     at: usize,
@@ -35,7 +35,7 @@ pub struct Mistake {
 }
 
 impl Mistake {
-    /// Takes over the message and the place of an error of serde.
+    /// Creates a mistake from an error that serde found in `text`, with its message and place.
     pub fn from_serde(text: &str, error: &serde_json::Error) -> Self {
         // serde_json counts lines and, in bytes, columns from 1; an empty text has column 0.
         let lines = text.split_inclusive('\n').map(str::len);
@@ -48,14 +48,15 @@ impl Mistake {
         }
     }
 
-    /// At the first place where `field` is written, or at the begin of the file.
+    /// Creates a mistake with the message `what` at the first occurrence of `field` in `text`, or
+    /// at the beginning of `text` if it does not occur.
     pub fn at_field(text: &str, field: &str, what: String) -> Self {
         let at = text.find(field).unwrap_or(0);
         Self { at, what }
     }
 
-    /// Shows the mistake in its file: `what_for` goes on "`FILE` is not a …", `help` is the way
-    /// out, `summary` the last line.
+    /// Returns the error that shows the mistake in its line of `file`. The message begins with
+    /// "`FILE` is not a `what_for`", `help` says what to do, and `summary` is the last line.
     pub fn in_file(
         self,
         file: &SourceFile,
@@ -77,10 +78,10 @@ impl Mistake {
     }
 }
 
-/// Refuses every version of a schema but the first.
+/// Checks that `version`, the field `schema` of the JSON file with this `text`, is 1.
 ///
 /// # Errors
-/// At the version.
+/// A mistake at the field `schema` if the version is missing or not 1.
 pub fn check_schema(text: &str, version: Option<Value>) -> Result<(), Mistake> {
     if version == Some(1.into()) {
         return Ok(());

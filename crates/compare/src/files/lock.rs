@@ -1,4 +1,4 @@
-//! One process at a time where several may write the same files of a folder.
+//! Locks on files of a folder, so that one process at a time writes them.
 //!
 //! ```
 //! use skiagraph_compare::{files::lock::{RESULTS, claim, wait_for}, sink::Silent};
@@ -22,15 +22,17 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Locks results.json, what is written beside it (results.csv, report.html) and the pictures of its
-/// runs. It is held for as long as that takes, not while runs are measured. The file that is locked
-/// stays there, as taking it away would let two processes lock two files of that name.
+/// Name of the lock file for results.json, the files beside it (results.csv, report.html) and the
+/// pictures of its runs. The lock is held while these are written, not while runs are measured. The
+/// lock file is never deleted, as that would let two processes lock two files of this name.
 pub const RESULTS: &str = ".skiagraph-results.lock";
 
-/// Locks stress.json, which holds one command's matrix: it is held to the command's end.
+/// Name of the lock file for stress.json, which holds one command's matrix. The lock is held to the
+/// end of the command.
 pub const STRESS: &str = ".skiagraph-stress.lock";
 
-/// No other process has the files until this is dropped, or the process ends in whatever way.
+/// A lock that this process holds until the value is dropped or the process ends. It locks nothing
+/// on a file system without locks.
 #[derive(Debug)]
 pub struct Locked {
     /// Where the file system has no locks: nothing.
@@ -42,10 +44,12 @@ const RETRY: Duration = Duration::from_millis(20);
 /// After so long it is said that something is waited for.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// Waits until no other process has the files of the folder.
+/// Locks the lock file `files` in `folder`, and waits while another process holds it. Tells the
+/// sink after two seconds of waiting.
 ///
 /// # Errors
-/// An early end, a folder that takes no file.
+/// [`CompareError::Interrupted`] if the sink asks for an early end and the wait takes more than two
+/// seconds; a lock file that cannot be created.
 pub fn wait_for(folder: &Path, files: &str, sink: &dyn Sink) -> Result<Locked, CompareError> {
     let began = Instant::now();
     let mut is_told = false;
@@ -68,10 +72,11 @@ pub fn wait_for(folder: &Path, files: &str, sink: &dyn Sink) -> Result<Locked, C
     }
 }
 
-/// The same without waiting: `None` if another process has them.
+/// Locks the lock file `files` in `folder` without waiting; `None` if another process holds it.
+/// Tells the sink if the file system has no locks.
 ///
 /// # Errors
-/// A folder that takes no file.
+/// The lock file cannot be created or locked.
 pub fn claim(folder: &Path, files: &str, sink: &dyn Sink) -> Result<Option<Locked>, CompareError> {
     let path = folder.join(files);
     let opened = File::options()

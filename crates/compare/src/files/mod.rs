@@ -1,5 +1,5 @@
-//! Files as such, whatever they hold: writing them whole, CSV and JSON with the place of its
-//! mistakes, fingerprints of what was read, locks.
+//! Works with files whatever they hold: writes them whole, locks, watches and hashes them, and
+//! shows mistakes in JSON and CSV.
 //!
 //! ```
 //! use skiagraph_compare::{files::{lock::{RESULTS, wait_for}, write::write_whole}, sink::Silent};

@@ -1,4 +1,4 @@
-//! Hears of changed documents, shaders and pictures.
+//! Calls a function when documents, shaders or pictures change on disk.
 //!
 //! ```no_run
 //! use skiagraph_compare::files::watch::{Watch, folders};
@@ -22,17 +22,18 @@ use std::{
 /// Editors write a file in several steps; after the first one it is waited so long for the rest.
 const SETTLING: Duration = Duration::from_millis(60);
 
-/// Watches until it is dropped.
+/// A watch on folders; it ends when this value is dropped.
 pub struct Watch {
     _watcher: notify::RecommendedWatcher,
 }
 
 impl Watch {
-    /// Calls `changed` whenever a document, shader or picture in one of the folders, or below
-    /// `pipelines` and `shaders` in the working directory, has changed.
+    /// Starts a thread that calls `changed` whenever a `.ron`, `.wgsl` or `.png` file has changed
+    /// directly in one of `folders`, or anywhere below `pipelines` and `shaders` in the working
+    /// directory.
     ///
     /// # Errors
-    /// The system watches no files.
+    /// A folder that cannot be watched.
     pub fn start(
         folders: &BTreeSet<PathBuf>,
         changed: impl Fn() + Send + 'static,
@@ -62,8 +63,9 @@ impl Watch {
     }
 }
 
-/// The folders that the documents of these arguments stand in, and those below that hold what they
-/// may name.
+/// Returns the folders to watch for the graphs that `arguments` name: the working directory, the
+/// folder of each `.ron` file, and those of its direct subfolders that hold `.ron`, `.wgsl` or
+/// `.png` files.
 pub fn folders<'a>(arguments: impl Iterator<Item = &'a str>) -> BTreeSet<PathBuf> {
     let mut folders = BTreeSet::from([PathBuf::from(".")]);
     for argument in arguments.filter(|argument| argument.ends_with(".ron")) {

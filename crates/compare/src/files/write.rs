@@ -1,4 +1,4 @@
-//! Files that are there whole or not at all.
+//! Writes files whole or not at all, and checks in advance that they can be written.
 //!
 //! ```
 //! use skiagraph_compare::files::write::{check_writable, write_new, write_whole};
@@ -19,11 +19,12 @@ use std::{
     path::{Component, Path, PathBuf},
 };
 
-/// Refuses files that would overwrite each other or have no folder, before anything runs for them.
-/// Each comes with what writes it, as the command line says it.
+/// Checks, before anything runs, that files can be written: their folders exist and take files, and
+/// no two files are the same. Each file comes with the name of its writer for messages, such as
+/// `--csv`.
 ///
 /// # Errors
-/// Names both writers, or the folder.
+/// Names the two writers of one file, or the file that cannot be written and the reason.
 pub fn check_writable(files: &[(String, &Path)]) -> Result<(), CompareError> {
     let place = |file: &Path| -> PathBuf {
         let parts = file.components();
@@ -57,11 +58,10 @@ pub fn check_writable(files: &[(String, &Path)]) -> Result<(), CompareError> {
     Ok(())
 }
 
-/// Makes a folder if it is not there, and refuses one that takes no files, before anything runs for
-/// them.
+/// Creates a folder if it is missing, and checks with a temporary file that it takes files.
 ///
 /// # Errors
-/// Names the folder.
+/// The folder cannot be created, or takes no files.
 pub fn check_folder(folder: &Path) -> Result<(), CompareError> {
     let made = fs::create_dir_all(folder).and_then(|()| try_out(folder));
     made.map_err(|error| CompareError::write(folder, error))
@@ -99,8 +99,11 @@ fn beside(path: &Path) -> io::Result<tempfile::NamedTempFile> {
     builder.prefix(".skiagraph-").tempfile_in(folder_of(path))
 }
 
-/// Writes a file whole or not at all: beside it first, then renamed over it, so that an interrupt
-/// keeps the old one.
+/// Writes a file whole or not at all: writes a temporary file beside it and renames that over it,
+/// so that an interrupted write keeps the old file. Devices and pipes are written directly.
+///
+/// # Errors
+/// The file cannot be written.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), CompareError> {
     let write = || -> io::Result<()> {
         if !is_replaced(path) {
@@ -116,11 +119,11 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), CompareError> {
     write().map_err(|error| CompareError::write(path, error))
 }
 
-/// Writes a file that is not there yet, whole or not at all; false if something of that name is
-/// there.
+/// Writes a file, whole or not at all, unless something of that name exists. Returns true if the
+/// file was written, false if the name was taken.
 ///
 /// # Errors
-/// It cannot be written.
+/// The file cannot be written.
 pub fn write_new(path: &Path, bytes: &[u8]) -> Result<bool, CompareError> {
     let write = || -> io::Result<bool> {
         let mut file = beside(path)?;

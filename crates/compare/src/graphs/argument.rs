@@ -1,4 +1,4 @@
-//! A method as the command line names it.
+//! Parses methods as the command line names them: `PRESET[@PARAM=VALUE,…]`.
 //!
 //! ```
 //! use skiagraph_compare::graphs::argument::{Assignment, MethodArgument};
@@ -11,12 +11,13 @@
 
 use std::{path::Path, str::FromStr};
 
-/// A param that is set, `NAME=VALUE`; the value is read by the graph that has the param.
+/// An assignment of a value to a param, `NAME=VALUE`. The value is parsed by the graph that has the
+/// param.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Assignment {
-    /// The param.
+    /// Name of the param.
     pub name: String,
-    /// Its value as written.
+    /// The value as written.
     pub value: String,
 }
 
@@ -34,18 +35,19 @@ impl FromStr for Assignment {
     }
 }
 
-/// `PRESET[@PARAM=VALUE,…]`: a method as it is named on the command line.
+/// A method as the command line names it: `PRESET[@PARAM=VALUE,…]`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MethodArgument {
-    /// The preset's name, or the graph's path.
+    /// Name of the preset, or path of the graph.
     pub preset: String,
-    /// Params set for this method alone.
+    /// Assignments of params for this method alone.
     pub own: Vec<Assignment>,
 }
 
 impl MethodArgument {
-    /// Splits a word of the command line. A comma also stands in the values of vectors, so that a
-    /// part without `=` belongs to the value before it.
+    /// Splits a word of the command line into a preset and its assignments. A part without `=`
+    /// belongs to the value before it, as vectors contain commas. A word that is the path of a file
+    /// is not split.
     pub fn new(word: &str) -> Self {
         // Folders have any name.
         let split = word.split_once('@').filter(|_| !Path::new(word).is_file());

@@ -1,4 +1,4 @@
-//! Mistakes of graphs, as they are shown.
+//! Collects the faults of graphs, and turns them into errors, notes and warnings.
 //!
 //! ```
 //! use skiagraph_compare::graphs::faults::GraphFaults;
@@ -21,7 +21,7 @@ use crate::wording::plural;
 use skiagraph_graph::{Diagnostic, Diagnostics, Graph, Severity};
 use std::collections::BTreeSet;
 
-/// Faults of several graphs, gathered so that all are shown, each once.
+/// Faults of several graphs, collected to be shown together, equal ones once.
 #[derive(Default)]
 pub struct GraphFaults {
     rendered: Vec<String>,
@@ -31,7 +31,8 @@ pub struct GraphFaults {
 }
 
 impl GraphFaults {
-    /// Adds the faults of one graph, which may be the same as under another viewport before.
+    /// Adds the faults of the graph named `graph`. Faults that were added before, for example under
+    /// another viewport, are not repeated.
     pub fn add(&mut self, graph: &str, diagnostics: &Diagnostics) {
         let rendered = diagnostics.render(false);
         self.graphs.insert(graph.into());
@@ -42,14 +43,14 @@ impl GraphFaults {
         }
     }
 
-    /// The faults of one graph alone, as an error.
+    /// Returns the error that shows the faults of one graph named `graph`.
     pub fn one(graph: &str, diagnostics: &Diagnostics) -> CompareError {
         let mut faults = Self::default();
         faults.add(graph, diagnostics);
         faults.into_error()
     }
 
-    /// An error if there are any.
+    /// Returns an error with all faults that were added; `Ok` if no graph was added.
     ///
     /// # Errors
     /// [`CompareError::Diagnostics`].
@@ -79,7 +80,8 @@ fn errors(diagnostics: &Diagnostics) -> impl Iterator<Item = &Diagnostic> {
     diagnostics.iter().filter(is_error)
 }
 
-/// The errors in one line each, for a table's footnote; of a help only its first line.
+/// Returns the errors, without warnings, in one line for a table's footnote. Only the first line of
+/// each help text is included.
 pub fn reasons(diagnostics: &Diagnostics) -> String {
     let line = |Diagnostic { message, help, .. }: &Diagnostic| match help {
         Some(help) => format!("{message} ({})", help.lines().next().unwrap_or_default()),
@@ -88,7 +90,7 @@ pub fn reasons(diagnostics: &Diagnostics) -> String {
     errors(diagnostics).map(line).collect::<Vec<_>>().join("; ")
 }
 
-/// Tells a sink the warnings of a graph and of its plan.
+/// Passes the warnings of a graph and of its plan to a sink, if there are any.
 pub fn warn(sink: &dyn Sink, graph: &Graph, plan: &[Diagnostic]) {
     let warnings: Vec<Diagnostic> = graph.warnings().iter().chain(plan).cloned().collect();
     if !warnings.is_empty() {

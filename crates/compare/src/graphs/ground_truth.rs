@@ -1,4 +1,4 @@
-//! How a frame of a shadow method compares with the ground truth.
+//! Compares a frame of a shadow method with the ground truth.
 //!
 //! ```no_run
 //! use skiagraph_compare::graphs::{ground_truth::Judgement, shadow_method::Outputs};
@@ -22,13 +22,13 @@ use crate::graphs::preset::Preset;
 use crate::graphs::shadow_method::Outputs;
 use skiagraph_reference::{Graded, GroundTruth, Statistics};
 
-/// How a frame compares with the ground truth.
+/// Result of comparing one frame of a method with the ground truth.
 pub struct Judgement {
-    /// Its pixels counted; of shares as if they were cut at one half.
+    /// Counts of the frame's pixels. A share of light counts as lit from one half on.
     pub counts: Statistics,
-    /// How far the shares of light that it shows are off.
+    /// Errors of the shares of light that the frame shows.
     pub graded: Graded,
-    /// True if answer and light are hard, so that pixels are right or wrong.
+    /// True if method and light are hard: each pixel is then lit or in shadow, and right or wrong.
     pub is_hard: bool,
 }
 
@@ -36,7 +36,7 @@ impl Judgement {
     /// Compares a frame's outputs with the ground truth.
     ///
     /// # Errors
-    /// Outputs of another size than the reference, or with values that are none.
+    /// Outputs that differ in size from the reference, or hold values that are not allowed.
     pub fn new(
         outputs: &Outputs,
         ground_truth: &GroundTruth,
@@ -50,7 +50,8 @@ impl Judgement {
         })
     }
 
-    /// Compares two pictures of a still view: of hard answers by wrong pixels, else by grades.
+    /// True if this frame is worse than another frame of the same view: by the number of wrong
+    /// pixels if the answers are hard, otherwise by the root mean square error.
     pub fn is_worse_than(&self, other: &Self) -> bool {
         if self.is_hard {
             self.counts.wrong.total > other.counts.wrong.total
@@ -60,10 +61,12 @@ impl Judgement {
     }
 }
 
-/// A frame's outputs beside the ground truth.
+/// Compares a preset's decoded outputs with the ground truth, and returns both outputs and
+/// judgement.
 ///
 /// # Errors
-/// [`CompareError::InvalidOutputs`] where they are not what a shadow method's must be.
+/// [`CompareError::InvalidOutputs`] if the outputs could not be decoded, or break the contract of a
+/// shadow method's outputs.
 pub fn judged(
     preset: &Preset,
     outputs: Result<Outputs, String>,

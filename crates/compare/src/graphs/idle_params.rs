@@ -1,4 +1,4 @@
-//! Params that are set and change nothing, most of all under a light that has no use for them.
+//! Finds params that are set but have no effect, mostly because the light has no use for them.
 //!
 //! ```
 //! use skiagraph_compare::graphs::{idle_params::under_other_lights, preset};
@@ -18,15 +18,15 @@ use skiagraph_passes::SceneProvider;
 use skiagraph_scene::LightKind;
 use std::collections::BTreeSet;
 
-/// Says of params that change nothing in some plans, of each once.
+/// Notes on params without effect; remembers them, so that each is told once.
 #[derive(Default)]
 pub struct IdleParams {
     told: BTreeSet<String>,
 }
 
 impl IdleParams {
-    /// A note for each param that was asked for and changes nothing in this plan of a method under
-    /// a light, unless it was told before.
+    /// Tells the sink which params are set but change nothing in `plan`, the plan of the method
+    /// `name` under `light`. A note that was told before is not repeated.
     pub fn note_of(&mut self, sink: &dyn Sink, name: &str, plan: &Plan, light: LightKind) {
         for param in plan.idle_params() {
             let value = plan.param(param).map(ParamValue::to_string);
@@ -38,7 +38,8 @@ impl IdleParams {
         }
     }
 
-    /// The same of methods on an adapter; what it cannot run is told elsewhere.
+    /// Plans methods for an adapter, and tells the sink which params are set but change nothing.
+    /// Methods that the adapter cannot run are skipped.
     pub fn note(
         &mut self,
         sink: &dyn Sink,
@@ -54,8 +55,9 @@ impl IdleParams {
     }
 }
 
-/// The params of words that choose something under the first kind of light that the graph takes and
-/// nothing under another: ` fit` under a spot light, whose map lies over its cone.
+/// Returns text on the params with words as values that have an effect under the first kind of
+/// light that a graph takes, but not under another: `; under a spot light fit has no effect`. The
+/// text is empty if there are none.
 pub fn under_other_lights(graph: &Graph) -> String {
     let viewport = [64, 64];
     let mut provider = placeholder(viewport, graph);

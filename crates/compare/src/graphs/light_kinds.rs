@@ -1,4 +1,4 @@
-//! Which kinds of light a method takes.
+//! Finds the kinds of light that a graph takes.
 //!
 //! ```
 //! use skiagraph_compare::graphs::{light_kinds, preset};
@@ -16,8 +16,8 @@ use crate::wording::did_you_mean;
 use skiagraph_graph::Graph;
 use skiagraph_passes::uniforms::LIGHT_KINDS;
 
-/// The kinds of light that a graph takes and those that it does not, both as words: directional
-/// alone, unless its document says otherwise.
+/// Returns two lists of words for kinds of light, such as `directional`: those that a graph takes,
+/// and those that it does not. A document that lists no kinds takes directional lights alone.
 pub fn split(graph: &Graph) -> [Vec<&'static str>; 2] {
     let says: Vec<&str> = graph.lights().map(|word| word.as_str()).collect();
     let takes = |word: &&'static str| match says[..] {
@@ -28,15 +28,16 @@ pub fn split(graph: &Graph) -> [Vec<&'static str>; 2] {
     [takes, others]
 }
 
-/// True if a method takes lights of this kind.
+/// True if a graph takes lights of the kind `kind`, such as `point`.
 pub fn takes(graph: &Graph, kind: &str) -> bool {
     split(graph)[0].contains(&kind)
 }
 
-/// Refuses words that are no kind of light.
+/// Checks that all kinds of light that a graph lists exist. `name` is the graph's name for the
+/// message.
 ///
 /// # Errors
-/// The first such word.
+/// Names the first unknown kind.
 pub fn check(name: &str, graph: &Graph) -> Result<(), CompareError> {
     let unknown = |word: &&str| !LIGHT_KINDS.contains(word);
     let mut words = graph.lights().map(|word| word.as_str());

@@ -1,4 +1,4 @@
-//! A preset with the params that it runs with.
+//! Methods: presets with the values of their params.
 //!
 //! ```
 //! use skiagraph_compare::graphs::method::{Method, load_one};
@@ -26,37 +26,37 @@ use skiagraph_gpu::Provider;
 use skiagraph_graph::{Diagnostics, ParamValue, Plan, Sources};
 use std::{collections::BTreeMap, slice, sync::Arc};
 
-/// Values of params, by their names.
+/// Values of params, by the names of the params.
 pub type ParamValues = BTreeMap<String, ParamValue>;
 
-/// A preset with the params that it runs with.
+/// A method: a preset with the params, viewport and adapter features that it runs with.
 #[derive(Clone)]
 pub struct Method {
-    /// The preset's name, with what tells this setting from its others: `crsm@n=1`.
+    /// Name of the preset, with the assignments that tell this setting from its others: `crsm@n=1`.
     pub name: String,
-    /// The preset.
+    /// The preset, with its graph.
     pub preset: Arc<Preset>,
-    /// Its params that are not at their defaults.
+    /// Values of the params that are set; all others have their defaults.
     pub params: ParamValues,
-    /// In how many pixels it runs.
+    /// Width and height of the viewport in pixels.
     pub viewport: [u32; 2],
-    /// Features of the adapter.
+    /// Features of the adapter, on which the defaults of params may depend.
     pub features: wgpu::Features,
     /// All params; a default may depend on the viewport, and on what the adapter can do.
     values: ParamValues,
-    /// The size of its shadow map, if it has that param.
+    /// Size of the shadow map, the param `map_size`; `None` if the graph has no such param.
     pub map_size: Option<u32>,
 }
 
 impl Method {
-    /// Creates a method of a preset and the params set for it, in 1024×1024 pixels on the most able
-    /// adapter.
+    /// Creates a method of a preset with `params`, in 1024×1024 pixels on an adapter with all
+    /// features.
     pub fn new(preset: Arc<Preset>, params: ParamValues) -> Self {
         Self::on(preset, params, [1024, 1024], wgpu::Features::all())
     }
 
-    /// Creates a method of a preset with these params, for a viewport in pixels on an adapter with
-    /// these features. Params are checked when it is planned.
+    /// Creates a method of a preset with `params`, for a viewport in pixels on an adapter with
+    /// `features`. Params are checked when the method is planned.
     pub fn on(
         preset: Arc<Preset>,
         params: ParamValues,
@@ -81,7 +81,7 @@ impl Method {
         }
     }
 
-    /// The same under another name.
+    /// Returns the method under another name.
     pub fn named(self, name: &str) -> Self {
         Self {
             name: name.to_owned(),
@@ -89,22 +89,22 @@ impl Method {
         }
     }
 
-    /// The same on an adapter with these features.
+    /// Returns the method as it runs on an adapter with these features.
     pub fn settled(self, features: wgpu::Features) -> Self {
         Self::on(self.preset, self.params, self.viewport, features).named(&self.name)
     }
 
-    /// The same in so many pixels.
+    /// Returns the method as it runs in another viewport, in pixels.
     pub fn at(&self, viewport: [u32; 2]) -> Self {
         let params = self.params.clone();
         Self::on(self.preset.clone(), params, viewport, self.features).named(&self.name)
     }
 
-    /// The plan on a viewport for such an adapter, of the outputs that are judged: what else the
-    /// graph shows would only cost time.
+    /// Plans the method for a viewport in pixels, an adapter and a scene, with only the outputs by
+    /// which methods are judged. Other outputs would only cost time.
     ///
     /// # Errors
-    /// Everything that is wrong with it.
+    /// All faults of the graph and its params under these conditions.
     pub fn plan(
         &self,
         viewport: [u32; 2],
@@ -114,10 +114,11 @@ impl Method {
         self.plan_of(&self.preset.judged(), viewport, capabilities, provider)
     }
 
-    /// The plan of some outputs alone.
+    /// Plans the method for a viewport in pixels, an adapter and a scene, with only the named
+    /// outputs.
     ///
     /// # Errors
-    /// Everything that is wrong with it.
+    /// All faults of the graph and its params under these conditions.
     pub fn plan_of(
         &self,
         outputs: &[&str],
@@ -131,12 +132,13 @@ impl Method {
         self.preset.graph.plan(&request)
     }
 
-    /// Hashes everything that a run on a scene and view depends on, but the params.
+    /// Returns a hash, as text, of everything but the params that a run depends on: `scene`, the
+    /// hash of scene and view, and the files of the preset.
     pub fn fingerprint(&self, scene: Fingerprint) -> String {
         scene.with_all(self.preset.fingerprint).to_string()
     }
 
-    /// All params with the values that it runs with.
+    /// Returns all params with the values that the method runs with, as JSON values.
     pub fn all_params(&self) -> BTreeMap<String, serde_json::Value> {
         let entry = |(name, value): (&String, &ParamValue)| (name.clone(), json(value));
         self.values.iter().map(entry).collect()
@@ -157,11 +159,12 @@ fn json(value: &ParamValue) -> serde_json::Value {
     }
 }
 
-/// Loads presets by their names, or refuses them.
+/// A function that loads presets by names or paths, such as [`preset::load_all`].
 pub type Load = fn(&[String], &dyn Sources) -> Result<Vec<Arc<Preset>>, CompareError>;
 
-/// Loads the methods that words name (`crsm@n=1,depth=plane`, `my.ron@over=pcf`) with `load`, each
-/// in each setting of `params` and with each map size; a preset without that param once.
+/// Loads the methods that `words` name (`crsm@n=1,depth=plane`, `my.ron@over=pcf`) with the
+/// function `load`. Returns each method in each setting that `params` list and with each map size;
+/// a preset without the param `map_size` appears once per setting.
 ///
 /// # Errors
 /// Graphs with faults or that do not exist; a value that a param cannot take, a param that no graph
@@ -221,11 +224,12 @@ fn is_over_another(name: &str) -> bool {
     !MethodArgument::new(name).own.is_empty()
 }
 
-/// Loads the one graph that a word names, with the params that it and `params` set.
+/// Loads the one graph that `word` names. Returns the preset, and the values of the params that
+/// `word`, `params` and `map_size` set.
 ///
 /// # Errors
-/// Its faults, a param that it does not have, a value that a param cannot take, several documents
-/// for an open include.
+/// Faults of the graph; a param that it does not have; a value that a param cannot take; several
+/// documents for an open include.
 pub fn load_one(
     word: &str,
     params: &[Assignment],
@@ -249,10 +253,11 @@ pub fn load_one(
     Ok((preset, params))
 }
 
-/// The params of a preset, as they are set, with its map size.
+/// Returns the values that `assignments` and `map_size` set for the params of a preset. Assignments
+/// to params that the preset does not have are ignored.
 ///
 /// # Errors
-/// A value that a param cannot take, and a map size where there is no such param.
+/// A value that a param cannot take; a map size for a preset without the param `map_size`.
 pub fn param_values(
     preset: &Preset,
     assignments: &[Assignment],

@@ -1,5 +1,5 @@
-//! From an argument to a graph that can run: presets and params, planning, what a shadow method
-//! must hand out. Nothing here runs on a GPU.
+//! Turns arguments into graphs that can run: presets, params, plans, and the outputs that a shadow
+//! method must have. Nothing here runs on a GPU.
 //!
 //! ```
 //! use skiagraph_compare::graphs::{planning::{Capabilities, placeholder}, shadow_method};

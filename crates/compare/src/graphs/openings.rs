@@ -1,4 +1,4 @@
-//! Open includes: with another document in one a graph is a method of its own,
+//! Resolves open includes. A graph with another document in an open include is a method of its own:
 //! `contact.ron@over=msm`.
 //!
 //! ```
@@ -28,11 +28,11 @@ use itertools::Itertools;
 use skiagraph_graph::Sources;
 use std::collections::BTreeSet;
 
-/// Parses the methods of a command line. An assignment whose name is an open include of the
-/// method's graph chooses the document that stands there, and becomes part of the graph's name; a
-/// list of documents gives an argument for each. This holds of a method's own assignments and of
-/// `params`, which apply to all methods. Returns the arguments, and those of `params` that chose no
-/// document.
+/// Parses methods of a command line and resolves their open includes. An assignment whose name is
+/// an open include of the method's graph chooses the document to include, and becomes part of the
+/// graph's name; a list of documents gives a method for each. Assignments of `params` apply to all
+/// methods, unless a method has its own. Returns the methods, and the assignments of `params` that
+/// choose no document.
 ///
 /// # Errors
 /// A graph that does not exist.

@@ -1,4 +1,4 @@
-//! Planning a graph: for which adapter, and with what scene.
+//! Plans graphs for an adapter, with a scene or with a placeholder for one.
 //!
 //! ```
 //! use skiagraph_compare::graphs::planning;
@@ -25,21 +25,21 @@ use skiagraph_scene::{
 };
 use std::sync::Arc;
 
-/// Abilities of an adapter, as far as a plan depends on them.
+/// Capabilities of an adapter that a plan depends on.
 #[derive(Clone, Debug)]
 pub struct Capabilities {
-    /// Limits of a device.
+    /// Limits of the device.
     pub limits: wgpu::Limits,
-    /// Its features.
+    /// Features of the device.
     pub features: wgpu::Features,
-    /// Its backend, if that gives less than WebGPU.
+    /// The backend, if it offers less than WebGPU; `None` otherwise.
     pub partial_backend: Option<PartialBackend>,
-    /// Bytes of memory for the graph, where that is known.
+    /// Bytes of memory that the graph may take; `None` if unknown.
     pub memory: Option<u64>,
 }
 
 impl Capabilities {
-    /// Reads the abilities of the opened device.
+    /// Returns the capabilities of an opened device.
     pub fn new(gpu: &Gpu) -> Self {
         Self {
             limits: gpu.device.limits(),
@@ -49,8 +49,8 @@ impl Capabilities {
         }
     }
 
-    /// Returns the abilities of the greatest adapters of today: a graph that cannot be planned for
-    /// them is at fault itself.
+    /// Returns the capabilities of the largest adapters of today. A graph that cannot be planned
+    /// for them is itself at fault.
     pub fn greatest() -> Self {
         let limits = wgpu::Limits {
             max_texture_dimension_2d: 32768,
@@ -66,7 +66,8 @@ impl Capabilities {
         }
     }
 
-    /// A request for a plan on such an adapter.
+    /// Creates the request for a plan on this adapter, for a viewport in pixels and a provider of
+    /// the scene.
     pub fn request(self, viewport: [u32; 2], provider: &dyn Provider) -> PlanRequest<'_> {
         let mut request = PlanRequest::new(viewport, provider);
         request.limits = self.limits;
@@ -79,8 +80,12 @@ impl Capabilities {
 
 const VIEWPORT: [u32; 2] = [64, 64];
 
-/// Everything that is wrong with a graph, as far as it can be said without a scene; on an adapter,
-/// or on any: then what is beyond the baseline is a warning.
+/// Checks a graph without a scene, under each kind of light that it takes. Returns the graph, and
+/// its plan under the first of them. With `None` as `adapter`, needs beyond the baseline are
+/// warnings; otherwise the graph must run on `adapter`.
+///
+/// # Errors
+/// All faults that were found.
 pub fn check(
     path: &str,
     registry: &Registry,
@@ -148,8 +153,7 @@ fn of_each_kind() -> [LightKind; 3] {
     ]
 }
 
-/// A light of each kind that a graph takes, at least one: all of them, if it takes none that there
-/// is.
+/// Returns a light of each kind that a graph takes; one of every kind if it takes no known kind.
 pub fn stand_ins(graph: &Graph) -> Vec<LightKind> {
     let all = of_each_kind();
     let taken = all.iter().filter(|it| light_kinds::takes(graph, it.word()));
@@ -161,7 +165,8 @@ pub fn stand_ins(graph: &Graph) -> Vec<LightKind> {
     }
 }
 
-/// Describes all that a scene can give, under the first kind of light that the graph takes.
+/// Returns a provider for planning without a scene, for a viewport in pixels. It describes every
+/// resource that a scene can have, under the first kind of light that the graph takes.
 pub fn placeholder(viewport: [u32; 2], graph: &Graph) -> SceneProvider {
     let mut provider = described(viewport);
     if let Some(light) = stand_ins(graph).first() {

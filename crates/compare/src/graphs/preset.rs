@@ -1,4 +1,4 @@
-//! From the arguments `nsm` or `my/method.ron` to loaded graphs.
+//! Loads graphs by arguments such as `nsm` or `my/method.ron`.
 //!
 //! ```
 //! use skiagraph_compare::graphs::preset;
@@ -31,22 +31,22 @@ use std::{
     sync::{Arc, Once},
 };
 
-/// The output from 0 in shadow to 1 in light.
+/// Name of the output with the light that reaches each pixel, from 0 in shadow to 1 in light.
 pub const VISIBILITY: &str = "visibility";
-/// The optional output with 0 background, 1 facing away, 2 certain light, 3 certain shadow, 4
-/// uncertain.
+/// Name of the optional output with the status of each pixel: 0 background, 1 facing away, 2
+/// certain light, 3 certain shadow, 4 uncertain.
 pub const STATUS: &str = "status";
-/// The optional output with the number of rays traced in the frame.
+/// Name of the optional output with the number of rays traced in the frame.
 pub const RAY_COUNT: &str = "ray_count";
-/// The optional output with the density of the shadow map at each pixel's receiver: texels on a
-/// unit of area across the light's ray, 0 outside the map.
+/// Name of the optional output with the density of the shadow map at each pixel's receiver: texels
+/// per unit of area across the light's ray, 0 outside the map.
 pub const TEXEL_DENSITY: &str = "texel_density";
-/// The optional output with the layer of the shadow map that each pixel asks.
+/// Name of the optional output with the layer of the shadow map that each pixel reads.
 pub const MAP_LAYER: &str = "map_layer";
 
-/// Where graphs and shaders are read from: the working directory, then what is built in. Tells the
-/// sink, once in a process, which files of the working directory stand in for others that are built
-/// in.
+/// Returns the sources of graphs and shaders: first the working directory, then the built-in files.
+/// Tells the sink, once in a process, which files of the working directory replace built-in files
+/// that differ.
 pub fn sources(sink: &dyn Sink) -> LayeredSources {
     static SAID: Once = Once::new();
     let folder = FolderSources { root: ".".into() };
@@ -61,7 +61,7 @@ pub fn sources(sink: &dyn Sink) -> LayeredSources {
     ])
 }
 
-/// Folders of presets and of what they are made of.
+/// Folders of presets, shaders and the parts that they share.
 pub const FOLDERS: [&str; 4] = ["pipelines", "pipelines/shared", "shaders", "shaders/shared"];
 
 /// Which files of a folder stand in for built-in ones that differ: a line for the presets, one for
@@ -92,15 +92,15 @@ fn stand_ins(folder: &dyn Sources) -> Option<String> {
         .reduce(|text, line| text + "\n" + &line)
 }
 
-/// Names of the presets: `pipelines/*.ron` on disk and built in, sorted.
+/// Returns the names of all presets, `pipelines/*.ron` on disk and built in, sorted.
 pub fn names(sources: &dyn Sources) -> Vec<String> {
     let files = sources.list("pipelines");
     let names = files.iter().filter_map(|file| file.strip_suffix(".ron"));
     names.sorted().dedup().map(Into::into).collect()
 }
 
-/// The built-in presets that one would ship: those that a comparison takes unless it is told
-/// others.
+/// Names of the built-in presets that a comparison takes by default, as methods that are fit to
+/// ship.
 pub const SHIPPED: [&str; 8] = [
     "rt",
     "light_buffer",
@@ -112,8 +112,8 @@ pub const SHIPPED: [&str; 8] = [
     "crsm",
 ];
 
-/// Names of the presets that a comparison takes by itself: those that one would ship, and one's own
-/// in `./pipelines`.
+/// Returns the names of the presets that a comparison takes by default: [`SHIPPED`], then the
+/// user's own in `./pipelines`.
 pub fn shipped_and_own(sources: &dyn Sources) -> Vec<String> {
     let built_in = names(&EmbeddedSources);
     let own = names(sources).into_iter();
@@ -121,7 +121,8 @@ pub fn shipped_and_own(sources: &dyn Sources) -> Vec<String> {
     SHIPPED.map(str::to_owned).into_iter().chain(own).collect()
 }
 
-/// The presets that a command is to take: those that its arguments name, else all.
+/// Returns the names of the presets that `arguments` name; of all presets if there are no
+/// arguments.
 pub fn named_or_all(arguments: &[String], sources: &dyn Sources) -> Vec<String> {
     match arguments {
         [] => names(sources),
@@ -129,24 +130,25 @@ pub fn named_or_all(arguments: &[String], sources: &dyn Sources) -> Vec<String> 
     }
 }
 
-/// A graph under the name that tables and file names give it.
+/// A graph with the name that tables and file names show.
 pub struct Preset {
     /// The preset's name, or the graph's path as given.
     pub name: String,
     /// The graph.
     pub graph: Graph,
-    /// Hash of the texts that it was read from.
+    /// Hash of the files from which the graph was read.
     pub fingerprint: Fingerprint,
 }
 
 impl Preset {
-    /// Names of the outputs by which a shadow method is judged, as far as the graph has them.
+    /// Returns the names of the outputs by which a shadow method is judged, those that the graph
+    /// has of `visibility`, `status` and `ray_count`.
     pub fn judged(&self) -> Vec<&'static str> {
         self.outputs_of(&[VISIBILITY, STATUS, RAY_COUNT])
     }
 
-    /// Names of the outputs that tell of its shadow map, as far as the graph has them: nothing of a
-    /// timed frame.
+    /// Returns the names of the outputs that describe the shadow map, those that the graph has of
+    /// `texel_density` and `map_layer`. They are not drawn in timed frames.
     pub fn diagnostics(&self) -> Vec<&'static str> {
         self.outputs_of(&[TEXEL_DENSITY, MAP_LAYER])
     }
@@ -157,7 +159,7 @@ impl Preset {
         names.filter(|name| outputs.contains(name)).collect()
     }
 
-    /// The param that the graph declares under this name.
+    /// Returns the graph's param of this name; `None` if it has no such param.
     pub fn param(&self, name: &str) -> Option<&Param> {
         self.graph
             .params()
@@ -165,16 +167,16 @@ impl Preset {
             .find(|param| param.name.as_str() == name)
     }
 
-    /// The names that can be set: those of its params and of its open includes.
+    /// Returns the names that assignments can set: the graph's params and open includes.
     pub fn settable(&self) -> impl Iterator<Item = &str> {
         let params = self.graph.params().iter().map(|param| param.name.as_str());
         params.chain(self.graph.openings().map(|(name, _)| name))
     }
 
-    /// Plans the graph, and tells the sink its warnings.
+    /// Plans the graph, and tells the sink the warnings of graph and plan.
     ///
     /// # Errors
-    /// Its faults.
+    /// The faults of the graph under this request.
     pub fn plan(&self, request: &PlanRequest, sink: &dyn Sink) -> Result<Plan, CompareError> {
         let plan = self.graph.plan(request);
         let plan = plan.map_err(|diagnostics| GraphFaults::one(&self.name, &diagnostics))?;
@@ -183,12 +185,12 @@ impl Preset {
     }
 }
 
-/// The graphs of some presets.
+/// Returns the graph of each preset.
 pub fn graphs(presets: &[Arc<Preset>]) -> impl Iterator<Item = &Graph> {
     presets.iter().map(|preset| &preset.graph)
 }
 
-/// Loads all arguments, each once.
+/// Loads the graphs that `arguments` name, each once.
 ///
 /// # Errors
 /// Every fault of every graph together.
@@ -219,11 +221,11 @@ pub fn load_all(
     faults.none_or_error().map(|()| presets)
 }
 
-/// Loads the graph that an argument names, `contact.ron@over=msm` with another document in an open
-/// include. Returns its path, too.
+/// Loads the graph that an argument names. Returns the graph or its faults, and the path of the
+/// graph. `contact.ron@over=msm` puts the document `msm` into the open include `over`.
 ///
 /// # Errors
-/// A file that does not exist; faults of the graph are in the result.
+/// A file that does not exist or cannot be read.
 pub fn load(
     argument: &str,
     sources: &dyn Sources,
@@ -238,10 +240,12 @@ pub fn load(
     Ok((graph, path))
 }
 
-/// The path of the graph that an argument names.
+/// Returns the path of the graph that an argument names: the argument itself if it ends in `.ron`,
+/// otherwise `pipelines/ARGUMENT.ron`.
 ///
 /// # Errors
-/// Names what is there instead.
+/// A file that does not exist or cannot be read. For an unknown preset, the message lists the known
+/// ones.
 pub fn locate(argument: &str, sources: &dyn Sources) -> Result<String, CompareError> {
     let is_path = Path::new(argument)
         .extension()

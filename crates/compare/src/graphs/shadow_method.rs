@@ -1,4 +1,4 @@
-//! The outputs that a graph must have to stand in `compare`, and how they are read.
+//! Loads and checks shadow methods, the graphs that `compare` can judge, and decodes their outputs.
 //!
 //! ```
 //! use skiagraph_compare::graphs::shadow_method::{load_all, load_methods};
@@ -31,7 +31,8 @@ use std::{
     sync::Arc,
 };
 
-/// Loads graphs and refuses those that are no shadow methods.
+/// Loads graphs by names or paths, and refuses those that are not shadow methods: the output
+/// `visibility` is missing, or a kind of light is unknown.
 ///
 /// # Errors
 /// Every fault of every graph together.
@@ -46,10 +47,11 @@ pub fn load_all(names: &[String], sources: &dyn Sources) -> Result<Vec<Arc<Prese
     none_or_error(incomplete).map(|()| presets)
 }
 
-/// Loads the shadow methods that words name, as [`method::load`] does.
+/// Loads the shadow methods that `words` name, in the settings of `params` and with each of
+/// `map_sizes`, as [`method::load`] does.
 ///
 /// # Errors
-/// Those of [`method::load`], and graphs that are no shadow methods.
+/// The errors of [`method::load`]; graphs that are not shadow methods.
 pub fn load_methods(
     words: &[impl AsRef<str>],
     params: &[Assignment],
@@ -66,12 +68,13 @@ fn none_or_error(errors: Vec<String>) -> Result<(), CompareError> {
     }
 }
 
-/// Plans all methods on all viewports for the most able adapter there is: a graph that only this
-/// one cannot run is no mistake, unless there is no other; nor is one that does not take the light.
+/// Checks that methods can be planned in all viewports on [`Capabilities::greatest`], with the
+/// outputs of a shadow method. A method that `device` cannot run, or that does not take the light,
+/// is an error only if `device` can run none of the methods; `None` skips that check.
 ///
 /// # Errors
-/// Every fault of every graph together, outputs that are not a shadow method's; why the
-/// device, if there is one yet, can run none.
+/// Every fault of every graph together; outputs whose size or format is not that of a shadow
+/// method's; the reasons why `device` can run none of the methods.
 pub fn check_plans(
     methods: &[Method],
     viewports: &[[u32; 2]],
@@ -118,7 +121,7 @@ pub fn check_plans(
     none_or_error(mismatches.into_iter().collect())
 }
 
-/// True if a method answers for every light at once, in a layer for each.
+/// True if a method answers for all lights at once: its output `visibility` has several layers.
 pub fn is_layered(method: &Method, device: &Capabilities, provider: &SceneProvider) -> bool {
     let plan = method.plan(method.viewport, device.clone(), provider);
     plan.is_ok_and(|plan| {
@@ -188,23 +191,27 @@ fn mismatch(preset: &Preset, plan: &Plan, viewport: [u32; 2], lights: usize) -> 
     })
 }
 
-/// One frame's outputs.
+/// Decoded outputs of one frame under one light.
 pub struct Outputs {
-    /// Per pixel 0 or 1; of shares, whether they are one half or more.
+    /// Hard visibility of each pixel: 0 in shadow, 1 lit. A share of light counts as lit from one
+    /// half on.
     pub visibility: Vec<u32>,
-    /// Per pixel the share of light, 0 to 1 if the method is right, where it answers in shares.
+    /// Share of the light that reaches each pixel, 0 to 1 if the method is right; `None` if it
+    /// answers in 0 and 1.
     pub shares: Option<Vec<f32>>,
-    /// Per pixel 0 to 4.
+    /// Status of each pixel: 0 background, 1 facing away, 2 certain light, 3 certain shadow, 4
+    /// uncertain.
     pub status: Vec<u32>,
-    /// Rays traced, where the graph counts them.
+    /// Number of rays traced; `None` if the graph does not count them.
     pub rays: Option<u64>,
 }
 
 impl Outputs {
-    /// Those of one light, of outputs that have a layer for each.
+    /// Decodes the outputs that were read from a frame, for the light with the index `light`. An
+    /// output without a layer for each light holds for every light.
     ///
     /// # Errors
-    /// Those of [`decode`](Self::decode).
+    /// The errors of [`decode`](Self::decode).
     pub fn from_contents(
         contents: BTreeMap<String, Content>,
         light: usize,
@@ -214,8 +221,9 @@ impl Outputs {
         Self::decode(&contents.into_iter().map(of).collect(), truth)
     }
 
-    /// Decodes what was read. Without a status the reference says what faces the light, and the
-    /// method is certain of it.
+    /// Decodes the outputs that were read from a frame of one light. If the graph has no output
+    /// `status`, the reference `truth` says which pixels face the light, and the method counts as
+    /// certain of its answers there.
     ///
     /// # Errors
     /// An output that is not there or not in one of the allowed formats.
@@ -248,7 +256,8 @@ impl Outputs {
         })
     }
 
-    /// Share of the light that each pixel shows, of hard answers 0 or 1.
+    /// Returns the share of light that each pixel shows: 0 to 1, or exactly 0 or 1 for hard
+    /// answers.
     pub fn shown(&self) -> Cow<'_, [f32]> {
         match &self.shares {
             Some(shares) => Cow::Borrowed(shares),

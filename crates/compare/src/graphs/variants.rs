@@ -1,5 +1,5 @@
-//! One method in several settings: `crsm@n=1,depth=plane` beside `crsm`, `--set radius=1,2,4`,
-//! `--set bias=0..0.01/5`.
+//! Expands one method into several settings: `crsm@n=1,depth=plane` beside `crsm`,
+//! `--set radius=1,2,4`, `--set bias=0..0.01/5`.
 //!
 //! ```
 //! use skiagraph_compare::graphs::{argument::MethodArgument, preset, variants::settings};
@@ -21,32 +21,33 @@ use crate::wording::unknown;
 use itertools::Itertools;
 use skiagraph_graph::ParamType;
 
-/// The param that `--map-size` sets.
+/// Name of the param with the size of the shadow map, which `--map-size` sets.
 pub const MAP_SIZE: &str = "map_size";
 
 /// Most values of one param; who asks for more has written something else than was meant.
 const MOST: usize = 1000;
 
-/// Presets that arguments name, each once.
+/// Returns the presets that arguments name, each once.
 pub fn presets(arguments: &[MethodArgument]) -> Vec<String> {
     unique(arguments.iter().map(|argument| argument.preset.clone()))
 }
 
-/// A setting of a preset: what tells it from the preset's others, `n=1,depth=plane`, and all that
-/// is set.
+/// One setting of a preset: the assignments to its params, and a label.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Setting {
-    /// Empty where there is only one.
+    /// Assignments that tell this setting from others of the preset, `n=1,depth=plane`; may be
+    /// empty.
     pub label: String,
-    /// Set params.
+    /// All assignments of the setting, one value each.
     pub set: Vec<Assignment>,
 }
 
-/// The settings of a preset. Values of the argument itself win over those of `all`. Lists of values
-/// are combined: one setting for each combination.
+/// Returns the settings of a preset: one for each combination of the values that `argument` and
+/// `all` list. An assignment of `argument` wins over one of `all`. Assignments of `all` to params
+/// that the preset does not have are ignored.
 ///
 /// # Errors
-/// A param that the preset does not have, a range that is none.
+/// A param of `argument` that the preset does not have; a malformed range; more than 1000 settings.
 pub fn settings(
     preset: &Preset,
     argument: &MethodArgument,

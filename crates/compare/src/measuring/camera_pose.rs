@@ -1,4 +1,4 @@
-//! From where a frame is seen.
+//! Cameras of frames: the view of each, and its jitter within the pixels.
 //!
 //! ```
 //! use skiagraph_compare::measuring::camera_pose::CameraPose;
@@ -17,17 +17,18 @@
 use skiagraph_passes::SceneProvider;
 use skiagraph_scene::{Camera, View};
 
-/// One frame: from where, and with which jitter.
+/// The camera pose of one frame: its view and jitter.
 #[derive(Clone, Debug)]
 pub struct CameraPose {
-    /// The view.
+    /// The view of the frame.
     pub view: View,
     /// Number of the frame, and how many have a jitter of their own.
     jitter: Option<(u32, u32)>,
 }
 
 impl CameraPose {
-    /// Frames one after the other.
+    /// Creates a pose for each view, in the order of the frames. `jitter` is the number of sample
+    /// positions within a pixel that the frames take in turns; `None` for pixel centres.
     pub fn numbered(views: Vec<View>, jitter: Option<u32>) -> Vec<Self> {
         let pose = |(view, frame)| Self {
             view,
@@ -36,7 +37,7 @@ impl CameraPose {
         views.into_iter().zip(0..).map(pose).collect()
     }
 
-    /// Its camera.
+    /// Returns the frame's camera for a viewport in pixels.
     pub fn camera(&self, viewport: [u32; 2]) -> Camera {
         let camera = self.view.camera(viewport);
         match self.jitter {
@@ -45,7 +46,7 @@ impl CameraPose {
         }
     }
 
-    /// Hands its camera and light to a provider.
+    /// Gives the frame's view, with its light and camera, to a provider, for a viewport in pixels.
     pub fn show(&self, provider: &mut SceneProvider, viewport: [u32; 2]) {
         provider.set_view(&self.view, viewport);
         if self.jitter.is_some() {

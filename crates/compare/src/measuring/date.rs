@@ -1,4 +1,4 @@
-//! The date of a measurement (UTC).
+//! Dates of measurements, in UTC.
 //!
 //! ```
 //! use skiagraph_compare::measuring::date;
@@ -9,13 +9,13 @@
 
 use jiff::Timestamp;
 
-/// `2026-11-21T04:30:12Z`, now, as RFC 3339 has it.
+/// Returns the current time in UTC as RFC 3339 text: `2026-11-21T04:30:12Z`.
 pub fn now() -> String {
     format!("{:.0}", Timestamp::now())
 }
 
-/// True if two moments, as [`now`] writes them, lie an hour apart or more; moments that cannot be
-/// read do not.
+/// True if two times, as [`now`] writes them, are an hour or more apart; false if one cannot be
+/// parsed.
 pub fn is_another_hour(one: &str, other: &str) -> bool {
     let seconds = |text: &str| Some(text.parse::<Timestamp>().ok()?.as_second());
     match (seconds(one), seconds(other)) {
@@ -24,7 +24,7 @@ pub fn is_another_hour(one: &str, other: &str) -> bool {
     }
 }
 
-/// `2026-11-21`, today.
+/// Returns the current date in UTC: `2026-11-21`.
 pub fn today() -> String {
     Timestamp::now().strftime("%F").to_string()
 }

@@ -1,4 +1,4 @@
-//! Opening a GPU, and what is to be known of it before anything is measured.
+//! Opens a GPU, describes it and its machine, and checks its timestamps.
 //!
 //! ```no_run
 //! use skiagraph_compare::{
@@ -29,24 +29,24 @@ use skiagraph_graph::Graph;
 use std::time::Duration;
 use sysinfo::{CpuRefreshKind, System};
 
-/// The GPU to open, and how much of it and of our time a graph may take.
+/// The GPU to open, and limits on the memory and time that a graph may take on it.
 #[derive(Clone, Debug, Default)]
 pub struct GpuRequest {
-    /// Part of its name, in any case; `None` for the best one.
+    /// Part of the adapter's name, in upper or lower case; `None` for the best adapter.
     pub adapter: Option<String>,
-    /// The interfaces through which it may be used; `None` for those of the platform.
+    /// Graphics APIs through which the GPU may be used; `None` for those of the platform.
     pub backends: Option<wgpu::Backends>,
-    /// Bytes for the textures and buffers of a graph; `None` for what the machine has free on a
-    /// software adapter, and all elsewhere.
+    /// Most bytes that textures and buffers of a graph may take. `None`: on a software adapter the
+    /// machine's free memory, on others no limit.
     pub memory_limit: Option<u64>,
-    /// Time after which a frame is given up, and with it the device; `None` for none.
+    /// Time after which a frame, and the device with it, is given up; `None` to wait without limit.
     pub timeout: Option<Duration>,
 }
 
-/// Opens the adapter asked for, or the best one, with those features of the graphs that it has.
+/// Opens the requested adapter, or the best one, with those features of `graphs` that it has.
 ///
 /// # Errors
-/// [`CompareError::NoGpu`] with the way out.
+/// [`CompareError::NoGpu`] if no adapter can be used; the message says what to do.
 pub fn open<'a>(
     request: &GpuRequest,
     graphs: impl IntoIterator<Item = &'a Graph>,
@@ -84,7 +84,7 @@ fn free_memory() -> Option<u64> {
     Some(system.available_memory().min(of_group))
 }
 
-/// The machine as it is now.
+/// Describes this machine for results: host, processor and current load.
 pub fn machine() -> Machine {
     let mut system = System::new();
     system.refresh_cpu_list(CpuRefreshKind::nothing());
@@ -101,7 +101,7 @@ pub fn machine() -> Machine {
     }
 }
 
-/// How results name the adapter; `trust` says whether its timestamps are true.
+/// Describes a GPU's adapter for results. `trust` says if its timestamps can be trusted.
 pub fn describe(gpu: &Gpu, trust: Trust) -> Adapter {
     let info = gpu.adapter.get_info();
     Adapter {
@@ -116,14 +116,14 @@ pub fn describe(gpu: &Gpu, trust: Trust) -> Adapter {
     }
 }
 
-/// Driver and version in one string.
+/// Returns the name and version of a driver as one text.
 pub fn driver(info: &wgpu::AdapterInfo) -> String {
     format!("{} {}", info.driver, info.driver_info)
         .trim()
         .into()
 }
 
-/// Tells whether this device's timestamps are true.
+/// Checks if a GPU's timestamps can be trusted.
 pub fn timestamp_trust(gpu: &Gpu) -> Trust {
     timing::check(&gpu.device, &gpu.queue).unwrap_or_else(|error| Trust::Untrusted {
         reason: format!(

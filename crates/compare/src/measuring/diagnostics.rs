@@ -1,5 +1,5 @@
-//! Outputs on request that tell of a method's shadow map, for figures and a picture: drawn after it
-//! was timed and judged, by a plan of their own.
+//! Evaluates outputs that describe a method's shadow map, for figures and a picture. They are drawn
+//! after the method was timed and judged, by a plan of their own.
 
 use crate::error::{explain, is_fatal};
 use crate::graphs::method::Method;
@@ -14,22 +14,23 @@ use skiagraph_gpu::{Content, ExecuteError, Provider};
 use skiagraph_graph::Plan;
 use skiagraph_reference::{Footprint, LayerJump, TexelsPerPixel};
 
-/// Findings, as far as the document gives the outputs for them.
+/// Findings about a method's shadow map; each is `None` if the graph lacks the output for it.
 #[derive(Default)]
 pub struct Diagnostics {
-    /// Each pixel's part of the map.
+    /// Footprint of each pixel in the shadow map; `None` for pixels without one.
     pub footprints: Option<Vec<Option<Footprint>>>,
-    /// The same in figures.
+    /// Statistics of the shadow map's texels per pixel.
     pub texels: Option<TexelsPerPixel>,
-    /// How errors jump between layers of the map.
+    /// Jumps of the errors between layers of the shadow map.
     pub layer_jump: Option<LayerJump>,
 }
 
-/// Draws a method's diagnostics of a view, whose judged `outputs` under one of its lights are
-/// known. Whatever this adapter cannot draw is told to the sink and left out.
+/// Draws a method's diagnostic outputs of a view, and evaluates them. `outputs` are its judged
+/// outputs, under the light with the index `light`. Findings that this adapter cannot draw are
+/// `None`.
 ///
 /// # Errors
-/// Ctrl-C, a lost device, outputs that do not fit the reference.
+/// An early end, a lost device, outputs that do not fit the reference.
 pub fn diagnose(
     session: Session,
     method: &Method,

@@ -1,4 +1,4 @@
-//! One frame of a graph on a GPU.
+//! Runs one frame of a graph on a GPU, and reads its outputs back.
 //!
 //! ```no_run
 //! use skiagraph_compare::{measuring::frame, sink::Session};
@@ -27,13 +27,13 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Contents that were read back from a frame, by their names.
+/// Contents that were read back from a frame, by the names of the outputs and captures.
 pub type Contents = BTreeMap<String, Content>;
 
-/// Makes what a plan needs on a GPU.
+/// Creates the executor of a plan on the session's GPU.
 ///
 /// # Errors
-/// Those of the executor.
+/// The errors of the executor.
 pub fn executor(
     session: Session,
     plan: Plan,
@@ -42,12 +42,12 @@ pub fn executor(
     Executor::new(&session.gpu.device, &session.gpu.queue, plan, provider)
 }
 
-/// The same with room in the buffers that grow for all that a frame needs: which items would have
-/// none is chance, and with it what such a frame shows. Frames find out how much that is, but what
-/// a method remembers is empty again: the next frame is its first.
+/// Creates the executor of a plan, with its growing buffers as large as a frame needs; in smaller
+/// ones, chance decides which items find room. Runs frames to find these sizes, and returns how
+/// many. If the method remembers earlier frames, its memory is emptied afterwards.
 ///
 /// # Errors
-/// Those of the executor.
+/// The errors of the executor.
 pub fn settled(
     session: Session,
     plan: Plan,
@@ -63,10 +63,11 @@ pub fn settled(
     Ok((executor(session, plan, provider)?, growth))
 }
 
-/// Runs one frame of `graph` as [`settled`] has it, and reads outputs and captures by name.
+/// Runs one frame of a plan as [`settled`] prepares it, and returns the contents of the outputs and
+/// captures `names`. `graph` is the graph's name for messages.
 ///
 /// # Errors
-/// Why it cannot run.
+/// [`CompareError::Gpu`] if the graph cannot run; an early end.
 pub fn render(
     session: Session,
     graph: &str,
@@ -80,11 +81,11 @@ pub fn render(
         .map_err(|error| failed(session, graph, error))
 }
 
-/// Runs one frame to its end; returns what it reports and the time from the start of encoding until
-/// the GPU was done.
+/// Runs one frame to its end. Returns its report, and the time from the start of encoding until the
+/// GPU was done.
 ///
 /// # Errors
-/// Those of the executor.
+/// The errors of the executor; a frame that was given up after the GPU's timeout or an early end.
 pub fn run(
     session: Session,
     executor: &mut Executor,
@@ -103,19 +104,19 @@ pub fn run(
 /// Frames after which buffers are as large as they get: each brings the count of the one before.
 const GROWING: u32 = 8;
 
-/// Frames that it took to give buffers room for all that a frame needs.
+/// Frames that were run until growing buffers had room for all that a frame needs.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Growth {
-    /// Frames that were run for it; 0 where nothing grows.
+    /// Number of frames that were run; 0 if the graph has no growing buffers.
     pub frames: u32,
-    /// The buffers and textures that may grow, by their full names.
+    /// Full names of the buffers and textures that may grow.
     pub buffers: Vec<String>,
-    /// True if the last of the frames asked for no more.
+    /// True if the last of these frames needed no more room.
     pub is_settled: bool,
 }
 
 impl Growth {
-    /// A line of what `run` says; nothing where nothing grows.
+    /// Returns a line of text for the command `run`; empty if no frame was run.
     pub fn text(&self) -> String {
         let (frames, buffers) = (frames(self.frames), self.buffers.join(", "));
         match (self.frames, self.is_settled) {
@@ -132,10 +133,11 @@ impl Growth {
     }
 }
 
-/// Runs frames until what grows has room for all that a frame needs.
+/// Runs up to eight frames, until the executor's growing buffers have room for all that a frame
+/// needs.
 ///
 /// # Errors
-/// Those of the executor.
+/// The errors of the executor.
 pub fn grow(
     session: Session,
     executor: &mut Executor,
@@ -179,7 +181,8 @@ fn wait(session: Session, executor: &mut Executor) -> Result<FrameReport, Execut
     }
 }
 
-/// Why a command ends that was about to run `graph`.
+/// Converts an executor's error into the error that ends a command about to run `graph`: an early
+/// end if it was asked for, otherwise [`CompareError::Gpu`].
 pub fn failed(session: Session, graph: &str, error: ExecuteError) -> CompareError {
     match error {
         ExecuteError::Unfinished { .. } if session.is_stopped() => CompareError::interrupted(),
@@ -190,10 +193,10 @@ pub fn failed(session: Session, graph: &str, error: ExecuteError) -> CompareErro
     }
 }
 
-/// Runs one frame and reads outputs and captures by name.
+/// Runs one frame, and returns the contents of the outputs and captures `names`.
 ///
 /// # Errors
-/// Those of the executor.
+/// The errors of the executor.
 pub fn read(
     session: Session,
     executor: &mut Executor,
@@ -207,7 +210,7 @@ pub fn read(
     Ok(contents(report.readbacks))
 }
 
-/// Readbacks by their names.
+/// Returns the contents of readbacks by their names.
 pub fn contents(readbacks: Vec<Readback>) -> Contents {
     let readbacks = readbacks.into_iter();
     readbacks

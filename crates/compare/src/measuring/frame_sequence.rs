@@ -1,4 +1,4 @@
-//! The frames of a view or a path: from where each is seen, and its mesh where parts of it move.
+//! Frames of a view or camera path: the camera of each, and its mesh if parts of it move.
 //!
 //! ```
 //! use skiagraph_compare::measuring::{frame_sequence::FrameSequence, view_or_path::ViewOrPath};
@@ -25,21 +25,22 @@ use skiagraph_scene::{CameraPath, Mesh, Scene};
 
 /// The frames of a view or path in order: the camera of each, and its mesh where parts move.
 pub struct FrameSequence {
-    /// From where each is seen.
+    /// Camera pose of each frame.
     pub poses: Vec<CameraPose>,
-    /// The mesh of each, all with the same triangles; `None` where nothing moves.
+    /// Mesh of each frame, all with the same triangles; `None` if nothing moves.
     pub meshes: Option<Vec<Mesh>>,
     /// Frames per second of the path's clock, which says when each is; not how fast they are drawn.
     frames_per_second: f64,
 }
 
 impl FrameSequence {
-    /// The first `count` frames of a view or path, by default one of a view and all of a path.
-    /// `jitter`: how many frames are blended; each then looks through another point of its pixels.
+    /// Creates the first `count` frames of a view or path; `None` for one frame of a view, all of a
+    /// path. `jitter` is the number of sample positions within a pixel that the frames take in
+    /// turns; `None` for pixel centres.
     ///
     /// # Errors
-    /// A part that the mesh has not, that is welded to others, or that f32 cannot hold where it is
-    /// moved to.
+    /// A moving part that the mesh does not have, that is welded to others, or whose positions f32
+    /// cannot hold.
     pub fn new(
         of: &ViewOrPath,
         scene: &Scene,
@@ -64,19 +65,20 @@ impl FrameSequence {
         })
     }
 
-    /// Gives the provider the mesh of the first frame, whose triangles and normals may be others
-    /// than those that it has.
+    /// Gives the mesh of the first frame to the provider, with triangles and normals that may
+    /// differ from those of the provider's mesh. Does nothing if nothing moves.
     pub fn begin(&self, provider: &mut SceneProvider) {
         if let Some(first) = self.meshes.iter().flatten().next() {
             provider.set_mesh(first.clone());
         }
     }
 
-    /// Gives the provider a frame's camera, light and mesh, this as the host of a moving mesh does;
-    /// what stands is not given again.
+    /// Gives the camera, light and mesh of the frame with the index `frame` to the provider, for a
+    /// viewport in pixels. The mesh is updated as the host of a moving mesh does; an unchanged one
+    /// is not given again.
     ///
     /// # Errors
-    /// Places that are no longer finite.
+    /// Positions that are not finite.
     pub fn show(
         &self,
         frame: usize,
@@ -98,7 +100,7 @@ impl FrameSequence {
         deformed.map_err(|error| CompareError::Input(format!("frame {frame}: {error}")))
     }
 
-    /// When a frame is.
+    /// Returns the time of the frame with the index `frame` on the path's clock, in seconds.
     pub fn seconds(&self, frame: usize) -> f32 {
         (frame as f64 / self.frames_per_second) as f32
     }

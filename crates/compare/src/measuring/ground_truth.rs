@@ -1,4 +1,5 @@
-//! The ground truth of one view and viewport: the GPU's primitive ids, judged by the oracle.
+//! Computes the ground truth of a view in a viewport: the GPU finds the visible primitive of each
+//! pixel, and the oracle judges its light.
 //!
 //! ```
 //! use skiagraph_compare::{measuring::ground_truth::GroundTruthView, sink::Silent};
@@ -39,19 +40,19 @@ use std::rc::Rc;
 /// does each pixel show?
 const GBUFFER: &str = "pipelines/shared/gbuffer.ron";
 
-/// Renders primitive ids as every method's G-buffer does, so that all are judged on the surface
-/// that they saw.
+/// The graph that renders the id of each pixel's visible primitive, as every method's G-buffer
+/// does, so that all methods are judged on the surfaces that they show.
 pub struct PrimaryVisibility {
     graph: Graph,
-    /// Hash of the texts that it was read from.
+    /// Hash of the files from which the graph was read.
     pub fingerprint: Fingerprint,
 }
 
 impl PrimaryVisibility {
-    /// Loads the graph.
+    /// Loads the G-buffer's graph from `sources`.
     ///
     /// # Errors
-    /// It is faulty: it may be one on disk.
+    /// The graph has faults, for example if a file on disk replaces the built-in one.
     pub fn load(sources: &dyn Sources) -> Result<Self, CompareError> {
         let recorded = RecordedSources::new(sources);
         let graph = Graph::load(GBUFFER, &registry(), &recorded)
@@ -62,7 +63,7 @@ impl PrimaryVisibility {
         })
     }
 
-    /// The plan on a viewport.
+    /// Plans the graph for a viewport in pixels on the session's GPU.
     ///
     /// # Errors
     /// The viewport is too large for this adapter.
@@ -79,10 +80,11 @@ impl PrimaryVisibility {
             .map_err(|diagnostics| GraphFaults::one(GBUFFER, &diagnostics))
     }
 
-    /// The primitive that each pixel shows.
+    /// Renders and returns the id of the primitive that each pixel shows,
+    /// [`BACKGROUND`](skiagraph_reference::BACKGROUND) for none.
     ///
     /// # Errors
-    /// The graph cannot run, or has no such output.
+    /// The graph cannot run, or has no output `primitive`.
     pub fn ids(
         &self,
         session: Session,
@@ -100,32 +102,34 @@ impl PrimaryVisibility {
     }
 }
 
-/// The reference's pixels, counted as a method's are.
+/// Counts the reference's own pixels, in the way that [`Statistics::judged`] counts a method's.
 pub fn own_counts(truth: &GroundTruthPixels) -> Statistics {
     let (visibility, status) = (truth.visibility(), truth.status());
     // Its own buffers are as large as it is and hold values that are allowed.
     Statistics::judged(&visibility, &status, truth).unwrap_or_default()
 }
 
-/// Rays to a light that has an extent, unless said otherwise.
+/// Default number of reference rays from a pixel to a light with an extent.
 pub const REFERENCE_SAMPLES: u32 = 512;
 
-/// The ground truth of one view and viewport, and what it was traced from.
+/// The ground truth of one view in one viewport, with the scene data that it was traced from.
 pub struct GroundTruthView<'a> {
     oracle: Rc<Oracle<'a>>,
     camera: Camera,
     light: LightKind,
     primitives: Vec<u32>,
     mode: OracleMode,
-    /// The oracle's answer.
+    /// The oracle's answer for each pixel.
     pub ground_truth: GroundTruth,
-    /// Pixels that show a surface which is not seen there: on it, methods are judged all the same.
+    /// Number of pixels whose rasterised surface is hidden behind another one by more than
+    /// rounding. Methods are judged on the rasterised surface all the same.
     pub wrong_surfaces: u64,
 }
 
 impl<'a> GroundTruthView<'a> {
-    /// Runs the oracle in a mode, with this many rays to a light that has an extent; the sink hears
-    /// how far it is.
+    /// Runs the oracle for a camera and light on `primitives`, the visible primitive of each pixel.
+    /// `how` is the oracle's mode, and the number of rays from a pixel to a light with an extent.
+    /// The sink is told the progress, under the name `what`.
     ///
     /// # Errors
     /// An early end, ids of another mesh, an impossible light.
@@ -168,7 +172,7 @@ impl<'a> GroundTruthView<'a> {
         })
     }
 
-    /// Returns mesh, camera and primitives that it looks at.
+    /// Returns the mesh, camera and primitives that the view shows.
     pub fn seen(&self) -> Seen<'_> {
         Seen {
             mesh: self.oracle.mesh(),
@@ -177,8 +181,8 @@ impl<'a> GroundTruthView<'a> {
         }
     }
 
-    /// Counts what blocks the pixels that a method is certain and wrong of, under a light without
-    /// extent.
+    /// Counts what blocks the light at the pixels that a method is certain of but gets wrong, under
+    /// a light without an extent.
     ///
     /// # Errors
     /// Outputs that do not fit the reference.
@@ -205,7 +209,8 @@ impl<'a> GroundTruthView<'a> {
         edges.map_err(|error| CompareError::Input(format!("no distances from edges: {error}")))
     }
 
-    /// Finds what each pixel covers of a shadow map with this density.
+    /// Returns each pixel's footprint in a shadow map, from `density`, the map's texels per unit of
+    /// area at each pixel; `None` for a pixel without a footprint.
     ///
     /// # Errors
     /// A density that does not fit the reference.
@@ -215,8 +220,9 @@ impl<'a> GroundTruthView<'a> {
         footprints.map_err(|error| CompareError::Input(format!("no texels per pixel: {error}")))
     }
 
-    /// Measures how a method's errors jump where pixels beside each other ask different layers of
-    /// its map.
+    /// Measures how a method's errors jump between neighbouring pixels that read different layers
+    /// of its shadow map. `layers` is the layer that each pixel reads. Returns `None` if no two
+    /// layers meet.
     ///
     /// # Errors
     /// Outputs or layers that do not fit the reference.
@@ -234,12 +240,13 @@ impl<'a> GroundTruthView<'a> {
 
 /// The frames of a view or path with their ground truth.
 pub struct GroundTruthFrames<'a> {
-    /// From where each is seen, and its mesh.
+    /// Camera pose and mesh of each frame.
     pub frames: &'a FrameSequence,
-    /// The ground truth of each.
+    /// Ground truth of each frame.
     pub truth_views: Vec<GroundTruthView<'a>>,
-    /// `same[i]` belongs to frame `i + 1`: for each of its pixels the number of the pixel of frame
-    /// `i` that shows the same receiver, or [`BACKGROUND`](skiagraph_reference::BACKGROUND).
+    /// `same[i]` matches frame `i + 1` with frame `i`: for each pixel of frame `i + 1`, the index
+    /// of the pixel of frame `i` that shows the same receiver, or
+    /// [`BACKGROUND`](skiagraph_reference::BACKGROUND).
     pub same: Vec<Vec<u32>>,
 }
 
@@ -247,7 +254,7 @@ impl<'a> GroundTruthFrames<'a> {
     /// Matches the receivers of each frame with those of the frame before.
     ///
     /// # Errors
-    /// Ctrl-C.
+    /// [`CompareError::Interrupted`].
     pub fn new(
         frames: &'a FrameSequence,
         truth_views: Vec<GroundTruthView<'a>>,
@@ -265,7 +272,8 @@ impl<'a> GroundTruthFrames<'a> {
         })
     }
 
-    /// Pixels of all frames that show a surface which is not seen there.
+    /// Returns the number of pixels, over all frames, whose rasterised surface is hidden behind
+    /// another one by more than rounding.
     pub fn wrong_surfaces(&self) -> u64 {
         self.truth_views
             .iter()
@@ -273,7 +281,7 @@ impl<'a> GroundTruthFrames<'a> {
             .sum()
     }
 
-    /// The reference's pixels of all frames together.
+    /// Counts the reference's own pixels over all frames.
     pub fn own_counts(&self) -> Statistics {
         let mut all = Statistics::default();
         for truth_view in &self.truth_views {
@@ -283,7 +291,8 @@ impl<'a> GroundTruthFrames<'a> {
     }
 }
 
-/// The progress of an oracle that `rows_done` hears and a sink may stop.
+/// Creates the progress of an oracle, which calls `rows_done` with the number of finished rows and
+/// stops when the sink asks for an early end.
 pub fn heard<'a>(sink: &'a dyn Sink, rows_done: &'a (dyn Fn(u64) + Sync)) -> Progress<'a> {
     Progress {
         rows_done,

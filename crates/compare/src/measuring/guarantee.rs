@@ -1,4 +1,4 @@
-//! Guarantees of methods, and the casters on which they hold.
+//! Finds the guarantees of methods, and the casters for which they hold.
 //!
 //! ```
 //! use skiagraph_compare::{
@@ -27,8 +27,8 @@ use crate::wording::did_you_mean;
 /// the meaning of the words is said here, and judged by `stress`.
 const CLAIMS: [Guarantee; 2] = [Guarantee::Exact, Guarantee::Certain];
 
-/// Finds what a method guarantees with its params, and why; `exact` are the names of those that the
-/// user wants judged.
+/// Finds the guarantee of a method with its params, and the reason for it; `None` if nothing is
+/// guaranteed. `exact` lists methods or presets, by name, that the user wants judged as exact.
 ///
 /// # Errors
 /// An unknown claim, or a condition without a value.
@@ -69,12 +69,12 @@ pub fn find(
 const CULL: &str = "cull";
 /// Its value with which all do.
 const NONE: &str = "none";
-/// Both, as a setting is written.
+/// Assignment with which all faces cast shadows.
 pub const WITHOUT_CULLING: &str = "cull=none";
 
-/// The same method with all faces as casters; `None` where it is that one already. A method that
-/// culls guarantees nothing of open casters: a sheet whose front faces the light would cast no
-/// shadow.
+/// Returns the method with all faces as casters; `None` if all are casters already, or if it has no
+/// param `cull`. A method that culls guarantees nothing for open casters: a sheet whose front faces
+/// the light would cast no shadow.
 pub fn without_culling(method: &Method) -> Option<Method> {
     let none = method.preset.graph.parse_param(CULL, NONE).ok()?;
     if method.all_params().get(CULL)? == NONE {
@@ -85,7 +85,8 @@ pub fn without_culling(method: &Method) -> Option<Method> {
     Some(Method::new(method.preset.clone(), params).named(&method.name))
 }
 
-/// Returns the document's promise, for the record; an unknown claim is no promise.
+/// Returns the promise of a method's document, for results; `None` if the document makes no
+/// promise, or one that is unknown.
 pub fn promise(method: &Method) -> Option<Promise> {
     let (guarantee, _) = find(method, &[]).ok()??;
     Some(Promise {

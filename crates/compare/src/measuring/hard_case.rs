@@ -1,4 +1,4 @@
-//! One case with every method.
+//! Runs every method on a case of the stress catalogue, and judges the results.
 //!
 //! ```no_run
 //! use skiagraph_compare::{
@@ -55,22 +55,22 @@ use std::{
     sync::{Arc, atomic::AtomicBool},
 };
 
-/// A method and what is guaranteed of it.
+/// A method to run on hard cases, with its guarantee.
 pub struct MethodRun {
-    /// As the user wants it.
+    /// The method as the user wants it.
     pub method: Method,
-    /// The same with all faces as casters, if it is not that one already.
+    /// The method with all faces as casters; `None` if all are casters already.
     pub without_culling: Option<Method>,
-    /// Its column of the report: what is guaranteed of it, and why it cannot run here.
+    /// The method's column of the report, with its guarantee, or the reason why it cannot run here.
     pub column: Column,
 }
 
 impl MethodRun {
-    /// Creates the run of a method that can run; `exact` are the names of those that the user wants
-    /// judged.
+    /// Creates the run of a method that can run here. `exact` lists methods or presets, by name,
+    /// that the user wants judged as exact.
     ///
     /// # Errors
-    /// Those of [`guarantee::find`].
+    /// The errors of [`guarantee::find`].
     pub fn new(method: Method, exact: &[String]) -> Result<Self, CompareError> {
         let (guarantee, because) = guarantee::find(&method, exact)?.unzip();
         Ok(Self {
@@ -104,7 +104,9 @@ impl MethodRun {
         [as_it_is].into_iter().chain(judged).collect()
     }
 
-    /// Returns the beginnings of the names of its pictures of a case, and whose they are.
+    /// Returns the beginning of the file names of the method's pictures of a case, each with the
+    /// owner of these pictures for messages; one pair for each way in which the method runs on the
+    /// case.
     pub fn stems(&self, case: &HardCase, viewport: [u32; 2]) -> Vec<(String, String)> {
         let variants = self.variants(case.casters).into_iter();
         let owner = format!("`{}` on `{}`", self.method.name, case.name);
@@ -145,25 +147,26 @@ impl Sink for WithoutSteps<'_> {
     }
 }
 
-/// Context shared by all cases.
+/// Settings that all cases share.
 pub struct HardCaseContext<'a> {
-    /// Where they run.
+    /// The GPU, and the sink for progress.
     pub session: Session<'a>,
-    /// Finds the visible triangles.
+    /// Graph that finds the visible triangle of each pixel for the reference.
     pub primary: &'a PrimaryVisibility,
-    /// The methods.
+    /// The methods to run on each case.
     pub methods: &'a [MethodRun],
-    /// Width and height in pixels.
+    /// Width and height of the viewport in pixels.
     pub viewport: [u32; 2],
-    /// Folder for pictures, if there are to be any.
+    /// Folder for pictures; `None` to draw no pictures.
     pub pictures: Option<&'a Path>,
 }
 
 impl HardCaseContext<'_> {
-    /// Runs every method on a case.
+    /// Runs every method on a case. Returns the case with the counts and verdict of each method.
     ///
     /// # Errors
-    /// Ctrl-C, a lost device, a picture that cannot be written. All else is part of the result.
+    /// An early end, a lost device, a picture that cannot be written. All other errors are part of
+    /// the result.
     pub fn run(&self, hard: &HardCase) -> Result<Case, CompareError> {
         let scene = Arc::new(hard.scene());
         let mut provider = SceneProvider::new(scene.clone());

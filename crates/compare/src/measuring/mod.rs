@@ -1,5 +1,5 @@
-//! Runs graphs on a GPU, times them, and judges them against the reference. What comes out is
-//! plain data, in `records`.
+//! Runs graphs on a GPU, times them, and judges them against the reference. The results are plain
+//! data of the types in `records`.
 //!
 //! ```no_run
 //! use skiagraph_compare::{

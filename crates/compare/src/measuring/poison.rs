@@ -1,4 +1,4 @@
-//! `run --poison`: whether a graph reads memory that no pass has written.
+//! `run --poison`: finds graphs that read memory which no pass has written.
 //!
 //! ```no_run
 //! use skiagraph_compare::{
@@ -36,12 +36,13 @@ const PATTERNS: [u8; 2] = [0x11, 0xee];
 /// Frames more of each pattern in which an output may show that it differs without another one.
 const AGAIN: usize = 4;
 
-/// Renders with two patterns in all memory that a frame has not written yet: outputs that differ
-/// depend on memory that no pass wrote. An output that differs between frames of the same pattern,
-/// too, depends on the order of threads; that is no fault, and such an output is not judged.
+/// Checks that no output of a plan depends on memory that no pass has written, and returns a report
+/// for the terminal. Renders frames with two byte patterns in all unwritten memory, and compares
+/// their outputs. An output that differs between frames of the same pattern depends on the order of
+/// threads and is not judged.
 ///
 /// # Errors
-/// Names the outputs at fault.
+/// Names the outputs that depend on unwritten memory; a graph that cannot run.
 pub fn check(
     session: Session,
     plan: &Plan,

@@ -1,4 +1,4 @@
-//! One method on one view, over many frames.
+//! Times one method on one view over many frames.
 //!
 //! ```no_run
 //! use skiagraph_compare::{graphs::method::Method, measuring::profiling::profile, sink::Session};
@@ -30,11 +30,11 @@ use skiagraph_passes::SceneProvider;
 use skiagraph_scene::{Scene, View};
 use std::sync::Arc;
 
-/// Times a method: so many frames after so many of warm-up. From the first frame on a stop ends it
-/// early, with what was timed until then.
+/// Times a method on a view: runs `warmup` frames, then `frames` timed ones. Returns the profile,
+/// and the times of each frame. An early end keeps the frames that were timed until then.
 ///
 /// # Errors
-/// The graph cannot be planned or run here; Ctrl-C before any frame was timed.
+/// The graph cannot be planned or run here; an early end before any frame was timed.
 pub fn profile(
     session: Session,
     [warmup, frames]: [u32; 2],

@@ -1,5 +1,5 @@
-//! The results of a folder that other processes may write at the same time: what they have written
-//! meanwhile stays.
+//! Keeps results in a folder that other processes may write at the same time, without losing the
+//! runs of these processes.
 
 use crate::error::CompareError;
 use crate::files::lock;
@@ -11,26 +11,26 @@ use crate::records::results_csv::save;
 use crate::sink::Sink;
 use std::path::{Path, PathBuf};
 
-/// `results.json` of a folder, with what is written beside it.
+/// The `results.json` of a folder, and the files beside it.
 #[derive(Debug, Default)]
 pub struct ResultsFolder {
     folder: PathBuf,
-    /// Runs that were in it at the begin and do not stay.
+    /// Runs that were in the folder at the beginning, and are not kept.
     pub dropped: Vec<Run>,
     /// The file as this process has read or written it last; none if there was none, or one that
     /// cannot be read.
     known: Option<String>,
     /// There is one that cannot be read, and is overwritten.
     is_unreadable: bool,
-    /// Runs of others that stay.
+    /// Runs in the folder that are kept and were not measured by this process.
     pub others: Vec<Run>,
-    /// The commands that measured them.
+    /// Commands that measured `others`.
     pub commands: Vec<String>,
 }
 
 impl ResultsFolder {
-    /// A folder as it stands, of which nothing stays yet. A file that cannot be read is
-    /// overwritten: where it must not be, that is refused besides.
+    /// Opens a folder without keeping any of its runs yet. A `results.json` that cannot be read
+    /// will be overwritten; a caller that must not do so refuses it first.
     pub fn new(folder: &Path) -> Self {
         let file = read_back::results_file(&folder.join("results.json"));
         Self {
@@ -41,7 +41,7 @@ impl ResultsFolder {
         }
     }
 
-    /// These runs with those of others.
+    /// Returns the runs of `own` together with the kept runs of others.
     pub fn whole(&self, own: &Results) -> Results {
         let commands = [&self.commands[..], &own.commands].concat();
         Results {
@@ -51,11 +51,11 @@ impl ResultsFolder {
         }
     }
 
-    /// Writes these runs and those of others, also those that other processes have written since,
-    /// with the pictures of a run: all that belongs together while no other process writes.
+    /// Writes the runs of `own`, the kept runs of others, those that other processes have written
+    /// meanwhile, and `pictures`, all under one lock.
     ///
     /// # Errors
-    /// Ctrl-C, a file that cannot be written, or that another process has written under other
+    /// An early end; a file that cannot be written, or that another process has written under other
     /// conditions.
     pub fn save(
         &mut self,

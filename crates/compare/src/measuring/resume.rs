@@ -1,5 +1,5 @@
-//! The parts of an earlier comparison that stay: the runs of others, and with `--resume` those that
-//! need not be measured again.
+//! Decides which runs of an earlier comparison are kept: those of other methods, views and sizes,
+//! and with `--resume` those that need not be measured again.
 //!
 //! ```no_run
 //! use skiagraph_compare::{
@@ -26,23 +26,25 @@ use crate::sink::Sink;
 use crate::wording::plural;
 use std::path::Path;
 
-/// The results in a folder that stay.
+/// The earlier results in a folder that a comparison keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kept {
-    /// Nothing.
+    /// No runs are kept.
     Nothing,
-    /// Runs of other methods, views and sizes.
+    /// Runs that this comparison does not measure are kept: other methods, views and sizes.
     Others,
-    /// These, and runs of which nothing has changed since.
+    /// Runs that this comparison does not measure are kept, and runs of its own of which nothing
+    /// has changed.
     All,
 }
 
-/// Opens a folder, and returns for each planned run the earlier one in it that is as this
-/// comparison would have it; only with [`Kept::All`] there are any.
+/// Opens a folder of results, and finds in it, for each run of `planned`, the earlier run to keep
+/// instead; `None` if the run must be measured. Only [`Kept::All`] keeps any of them. Tells the
+/// sink which runs are kept.
 ///
 /// # Errors
-/// A file that cannot be read, is no results.json, or was measured under other conditions than
-/// `now`; with [`Kept::Nothing`] none of these.
+/// A file that cannot be read, is not a results.json, or was measured under other conditions than
+/// `now`. With [`Kept::Nothing`], such a file is not an error.
 pub fn earlier(
     folder: &Path,
     keep: Kept,

@@ -31,29 +31,29 @@ use std::cell::RefCell;
 
 /// Context shared by all methods on one view and viewport.
 pub struct MeasureContext<'a> {
-    /// The GPU, and who hears of the work.
+    /// The GPU, and the sink for progress.
     pub session: Session<'a>,
-    /// True if its timestamps are true.
+    /// True if the GPU's timestamps can be trusted.
     pub timestamps: bool,
-    /// View or path on which it is measured.
+    /// View or path on which methods are measured.
     pub view: &'a ViewOrPath,
-    /// Its frames with their ground truth.
+    /// Frames of the view or path, with their ground truth.
     pub path: &'a GroundTruthFrames<'a>,
     /// The ground truth of the first frame.
     pub truth_view: &'a GroundTruthView<'a>,
-    /// Which of the view's lights it is under.
+    /// Index of the light under which the view is judged.
     pub light: usize,
-    /// The reference's own pixels, of all frames.
+    /// Counts of the reference's own pixels, over all frames.
     pub own: Statistics,
-    /// How long it is measured.
+    /// Settings of how methods are run and timed.
     pub protocol: Protocol,
-    /// The pictures of the last run, if there are to be any.
+    /// Pictures of the last run; `None` to draw no pictures.
     pub pictures: Option<RefCell<Vec<PictureFile>>>,
 }
 
 /// A method that was judged on a view, and not timed yet.
 pub struct Judged {
-    /// The method.
+    /// The method, with its params.
     pub method: Method,
     planned: Run,
     prepared: Prepared,
@@ -65,22 +65,23 @@ pub struct Judged {
     texels: Option<TexelsPerPixel>,
     layer_jump: Option<LayerJump>,
     images: Option<Images>,
-    /// Its pictures, to be written with its run.
+    /// Pictures of the method, to be written with its run.
     pub pictures: Vec<PictureFile>,
 }
 
 impl Judged {
-    /// Bytes of its own materials.
+    /// Returns the bytes of the graph's own materials.
     pub fn bytes(&self) -> u64 {
         self.prepared.memory[0]
     }
 }
 
-/// A method whose buffers have grown, in its steady state where it remembers.
+/// A method that is ready to run: its buffers have grown, and it is in its steady state if it
+/// remembers earlier frames.
 pub struct Prepared {
-    /// Runs it.
+    /// Executor of the method's plan.
     pub executor: Executor,
-    /// Where it remembers.
+    /// Steady state of a method that remembers earlier frames; `None` for others.
     pub steady: Option<Steady>,
     memory: [u64; 2],
     scene_bytes: u64,
@@ -142,7 +143,8 @@ impl MeasureContext<'_> {
         })
     }
 
-    /// The run of a judged method with a single timed frame: what is kept of it if nothing follows.
+    /// Times a single frame of a judged method and returns its run, which is kept if the work ends
+    /// early.
     ///
     /// # Errors
     /// Ctrl-C, a lost device.
@@ -253,7 +255,7 @@ impl MeasureContext<'_> {
         })
     }
 
-    /// The part of the measurements that a view and a path have alike.
+    /// Creates the measurements that still views and paths have in common.
     pub fn measured(
         &self,
         prepared: &Prepared,
@@ -296,14 +298,14 @@ impl MeasureContext<'_> {
         }
     }
 
-    /// Leaves out the GPU's time of a frame if timestamps are not true.
+    /// Removes GPU times of a frame if timestamps cannot be trusted.
     pub fn distrust(&self, frame: &mut FrameTimes) {
         if !self.timestamps {
             frame.without_gpu();
         }
     }
 
-    /// The run of a method with its measurements.
+    /// Creates the run of a method with its measurements.
     pub fn run(&self, method: &Method, planned: &Run, measured: Measured) -> Run {
         Run {
             measured: Some(measured),
@@ -311,7 +313,7 @@ impl MeasureContext<'_> {
         }
     }
 
-    /// A run that says why there are no measurements.
+    /// Creates the run of a method with the reason why there are no measurements.
     pub fn unavailable(&self, method: &Method, planned: &Run, reason: String) -> Run {
         Run {
             unavailable: Some(reason),
@@ -319,7 +321,7 @@ impl MeasureContext<'_> {
         }
     }
 
-    /// Decodes the outputs that were read, of the light that is judged.
+    /// Decodes the outputs that were read from a frame, under the light that is judged.
     pub fn decode(
         &self,
         contents: Contents,

@@ -1,4 +1,4 @@
-//! The runs of a comparison, one after the other; whatever is measured is on disk at once.
+//! Measures the runs of a comparison one after the other, and writes each to disk at once.
 //!
 //! ```no_run
 //! use skiagraph_compare::{
@@ -54,7 +54,7 @@ use std::{
     rc::Rc,
 };
 
-/// A comparison under way: its runs, one after the other.
+/// A comparison under way: its planned runs, and the results so far.
 pub struct Series<'a> {
     comparison: &'a Comparison,
     session: Session<'a>,
@@ -70,20 +70,21 @@ pub struct Series<'a> {
     planned: Vec<Run>,
     /// Which of them are done.
     is_done: Vec<bool>,
-    /// Holds the runs that are done, in the order in which they were planned.
+    /// Results so far: the finished runs, in the order in which they were planned.
     pub results: Results,
     /// Where they are kept, with what is in the folder besides; `None` to keep them in memory.
     folder: Option<ResultsFolder>,
-    /// Why graphs' outputs are not what a shadow method's must be.
+    /// Messages on graphs whose outputs break the contract of a shadow method's outputs.
     pub broken: Vec<String>,
     /// Counts the runs that are measured now.
     progress: Runs<'a>,
 }
 
-/// Checks, runs, times and judges a comparison, and keeps the results in memory.
+/// Checks a comparison, measures all its runs and returns the results, without writing files.
 ///
 /// # Errors
-/// Those of [`Comparison::check`] and [`Series::measure`]; outputs that are not a shadow method's.
+/// The errors of [`Comparison::check`] and [`Series::measure`]; outputs that are not a shadow
+/// method's.
 pub fn run(comparison: &Comparison, session: Session) -> Result<Results, CompareError> {
     comparison.check(session)?;
     let mut series = Series::new(comparison, session, None)?;
@@ -102,10 +103,11 @@ pub fn run(comparison: &Comparison, session: Session) -> Result<Results, Compare
 const ROOM: u64 = 1 << 30;
 
 impl<'a> Series<'a> {
-    /// Begins with nothing yet, or with what an earlier one left in a folder.
+    /// Begins a comparison. `kept_in` is the folder to write results to, and which of the earlier
+    /// results in it are kept; `None` to keep results in memory only.
     ///
     /// # Errors
-    /// Those of [`earlier`].
+    /// The errors of [`earlier`].
     pub fn new(
         comparison: &'a Comparison,
         session: Session<'a>,
@@ -161,12 +163,13 @@ impl<'a> Series<'a> {
         Ok(series)
     }
 
-    /// How many runs there are to be.
+    /// Returns the number of all planned runs, finished or not.
     pub fn planned(&self) -> usize {
         self.planned.len()
     }
 
-    /// The runs that are done of a view and viewport, both by their index.
+    /// Returns the finished runs of a view and viewport, which are indices into the lists of the
+    /// comparison.
     pub fn runs(&self, view: usize, viewport: usize) -> &[Run] {
         let places = self.places(view, viewport);
         &self.results.runs[self.done_before(places.start)..self.done_before(places.end)]
@@ -179,10 +182,12 @@ impl<'a> Series<'a> {
         first..first + methods
     }
 
-    /// Measures what is missing on a view and viewport, both by their index.
+    /// Measures the missing runs of a view and viewport, which are indices into the lists of the
+    /// comparison, and writes the results.
     ///
     /// # Errors
-    /// Ctrl-C, a lost device, files that cannot be written, a reference that cannot be had.
+    /// An early end, a lost device, a file that cannot be written, a reference that cannot be
+    /// computed.
     pub fn measure(&mut self, view: usize, viewport: usize) -> Result<(), CompareError> {
         let places = self.places(view, viewport);
         let (view, viewport) = (
@@ -380,7 +385,7 @@ impl<'a> Series<'a> {
         self.save(pictures)
     }
 
-    /// The runs that are done, with those in the folder that stay.
+    /// Returns the finished runs, together with the kept runs of others in the folder.
     pub fn whole(&self) -> Results {
         match &self.folder {
             Some(folder) => folder.whole(&self.results),
@@ -388,7 +393,8 @@ impl<'a> Series<'a> {
         }
     }
 
-    /// Writes what is done into the folder, with the pictures of the last run.
+    /// Writes the finished runs into the folder, with `pictures` of the last run. Does nothing if
+    /// results are kept in memory only.
     ///
     /// # Errors
     /// An early end; a file that cannot be written, or that another process has written under other

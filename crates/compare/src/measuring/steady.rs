@@ -139,10 +139,11 @@ impl Pictures {
     }
 }
 
-/// Judges the pictures of one period; returns the worst one.
+/// Judges the pictures of one period of a steady state, and returns the worst of them. Writes the
+/// means of all pictures into `steady`.
 ///
 /// # Errors
-/// Ctrl-C, those of the executor and of `judge`.
+/// An early end; the errors of the executor and of `judge`.
 pub fn judge(
     session: Session,
     executor: &mut Executor,

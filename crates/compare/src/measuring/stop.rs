@@ -8,14 +8,14 @@ use skiagraph_gpu::ExecuteError;
 
 /// Why a method's frames ended early.
 pub enum Stop {
-    /// The device refuses it, or is lost.
+    /// The device refuses the method, or is lost.
     Refused(Box<ExecuteError>),
-    /// All else.
+    /// Any other error.
     Failed(CompareError),
 }
 
 impl Stop {
-    /// As an error that ends what was to come of `graph`.
+    /// Converts the reason into the error that ends all further work on `graph`.
     pub fn into_error(self, session: Session, graph: &str) -> CompareError {
         match self {
             Self::Refused(error) => frame::failed(session, graph, *error),
@@ -36,10 +36,11 @@ impl From<CompareError> for Stop {
     }
 }
 
-/// Tells a method that the device refuses, with its reason, from a device that is of no more use.
+/// Turns the result of running a method into one whose inner error is the reason why the device
+/// refuses this method, and whose outer error ends other methods, too.
 ///
 /// # Errors
-/// Ctrl-C, a lost device, and what else ends more than this method.
+/// An early end, a lost device, and all errors that end more than this method.
 pub fn attempt<T>(
     session: Session,
     method: &Method,

@@ -111,7 +111,8 @@ pub fn in_turns(
     Ok(all)
 }
 
-/// The times of a frame that was run with timing.
+/// Returns the times of a frame that was run with timing. `began` is the time since the first timed
+/// frame, `wall` that until the GPU was done.
 ///
 /// # Errors
 /// The report has no times, as the frame was run without timing.
@@ -133,19 +134,19 @@ pub fn timed_frame(
 
 /// Times of some frames, per pass and whole.
 pub struct Times {
-    /// Per pass.
+    /// Times of each pass.
     pub passes: Vec<Pass>,
-    /// Whole frames.
+    /// Times of whole frames.
     pub frame: FrameTimes,
     /// The passes that did not run in the first frame.
     pub skipped: Vec<String>,
 }
 
 impl Times {
-    /// The times of some frames in short.
+    /// Summarises the times of some frames.
     ///
     /// # Errors
-    /// Ctrl-C came before there were any.
+    /// [`CompareError::Interrupted`] if there are no frames.
     pub fn new(timed: Vec<TimedFrame>) -> Result<Self, CompareError> {
         let samples = Samples::new(&timed);
         let pass = |PassSamples { name, gpu, cpu }| Pass {

@@ -1,4 +1,4 @@
-//! The camera's view: a still one, or every frame of a camera path.
+//! Views of a comparison: still views and camera paths.
 //!
 //! ```
 //! use skiagraph_compare::measuring::view_or_path::{ViewOrPath, under_lights};
@@ -25,14 +25,14 @@ use skiagraph_scene::{CameraPath, LightKind, Scene, View};
 /// One still view or camera path of a comparison.
 #[derive(Clone, Debug)]
 pub enum ViewOrPath {
-    /// One picture.
+    /// A still view.
     Still(View),
-    /// A picture for each frame.
+    /// A camera path, of which every frame is judged.
     Path(CameraPath),
 }
 
 impl ViewOrPath {
-    /// Its name in results.
+    /// Returns the name of the view or path in results.
     pub fn name(&self) -> &str {
         &self.view().name
     }
@@ -42,12 +42,13 @@ impl ViewOrPath {
         view
     }
 
-    /// Its light.
+    /// Returns the light of the view or path in a scene.
     pub fn light(&self, scene: &Scene) -> LightKind {
         scene.light_of(self.view())
     }
 
-    /// The name of its light, where it is one of several views that differ in it.
+    /// Returns the name of the light of a view that was split by lights, `VIEW@LIGHT`; `None` for
+    /// other views.
     pub fn one_of_lights(&self) -> Option<&str> {
         let view = self.view();
         let light = &view.light.as_ref()?.name;
@@ -55,7 +56,7 @@ impl ViewOrPath {
         view.ends_with('@').then_some(light)
     }
 
-    /// With what it depends on.
+    /// Returns the hash `of` extended by the view or path.
     pub fn fingerprint(&self, of: Fingerprint) -> Fingerprint {
         match self {
             Self::Still(view) => of.with_view(view),
@@ -63,8 +64,9 @@ impl ViewOrPath {
         }
     }
 
-    /// A scene's path of that name, or all of them, under the light of that name, or under all of
-    /// theirs.
+    /// Returns the path named `name` of a scene, or all of `paths` if the name is `all`. With
+    /// `light`, each path is put under the light of that name; `all` gives a path for each of its
+    /// lights.
     ///
     /// # Errors
     /// The scene has no such path or light, or no path at all.
@@ -113,8 +115,8 @@ fn lit(scene: &Scene, path: &CameraPath, mut view: View) -> Result<CameraPath, C
     Ok(path)
 }
 
-/// The views under the light of that name, or under all of theirs: `VIEW@LIGHT` where that makes
-/// several of one view; without a name under their first.
+/// Returns the views under the light named `name`; `all` gives a view for each of its lights, which
+/// are named `VIEW@LIGHT` if there are several. With `None` the views stay as they are.
 ///
 /// # Errors
 /// The scene has no such light.

@@ -1,4 +1,4 @@
-//! From values to colours, each with a legend that says which is which.
+//! Turns values into RGB colours, each with a legend.
 //!
 //! ```
 //! use skiagraph_compare::pictures::colours::{STATUS, floats, integers};
@@ -15,7 +15,7 @@ use skiagraph_reference::BACKGROUND;
 use skiagraph_scene::View;
 use std::collections::BTreeSet;
 
-/// Colours of the `status` values 0 to 4, with their meaning.
+/// RGB colour and meaning of each `status` value; the index is the value, 0 to 4.
 pub const STATUS: [([u8; 3], &str); 5] = [
     ([96, 112, 128], "grey background"),
     ([0, 128, 0], "green facing away"),
@@ -23,39 +23,41 @@ pub const STATUS: [([u8; 3], &str); 5] = [
     ([0, 0, 0], "black certain shadow"),
     ([160, 32, 240], "purple uncertain"),
 ];
-/// Where there is no primitive, and depths that nothing has written since they were cleared.
+/// RGB colour of pixels without a primitive, and of depths that still have the cleared value.
 pub const EMPTY: [u8; 3] = STATUS[0].0;
-/// NaN, and integers that have no business being there.
+/// RGB colour of NaN, and of integers that are not allowed.
 pub const INVALID: [u8; 3] = [255, 0, 255];
-/// Colour of positive infinity.
+/// RGB colour of positive infinity.
 pub const POSITIVE_INFINITY: [u8; 3] = [255, 128, 0];
-/// Colour of negative infinity.
+/// RGB colour of negative infinity.
 pub const NEGATIVE_INFINITY: [u8; 3] = [0, 192, 255];
 
 /// Near and far plane of the perspective camera whose depths a texture holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClipPlanes {
-    /// Distance of the near plane, depth 1.
+    /// Distance of the near plane, which has depth 1.
     pub near: f64,
-    /// Distance of the far plane, depth 0: what is cleared to.
+    /// Distance of the far plane, which has depth 0, the cleared value.
     pub far: f64,
 }
 
 impl ClipPlanes {
-    /// Reads the planes of a view.
+    /// Returns the near and far plane of a view.
     pub fn new(view: &View) -> Self {
         let View { near, far, .. } = *view;
         Self { near, far }
     }
 
-    /// The distance along the viewing direction that a depth stands for.
+    /// Returns the distance along the viewing direction that a reversed depth, 1 near to 0 far,
+    /// stands for.
     pub fn distance(self, depth: f32) -> f32 {
         let Self { near, far } = self;
         (near * far / (near + f64::from(depth) * (far - near))) as f32
     }
 }
 
-/// Integers by what they mean: `status` values, 0 and 1, or numbers such as ids.
+/// Colours integers by their meaning: values of a material `status`, 0 and 1 as black and white, or
+/// ids with a colour each. Returns three bytes (RGB) per value, and the legend.
 pub fn integers(name: &str, values: &[u32]) -> (Vec<u8>, String) {
     let (colour, legend): (fn(u32) -> [u8; 3], _) = match () {
         // An include puts its instance's name before that of the material.
@@ -115,8 +117,8 @@ fn mark(meaning: &str, count: usize) -> Option<String> {
     (count > 0).then(|| counted(meaning, count))
 }
 
-/// Neighbouring ids must look different: a multiplicative hash (Knuth's 2³²/φ), its high bits as a
-/// bright colour.
+/// Returns the RGB colour of an id, by a multiplicative hash (Knuth's 2³²/φ), so that neighbouring
+/// ids look different.
 pub fn id_colour(id: u32) -> [u8; 3] {
     if id == BACKGROUND {
         return EMPTY;
@@ -129,7 +131,8 @@ pub fn id_colour(id: u32) -> [u8; 3] {
         .map(|channel| 48 + (channel * 207 / 255) as u8)
 }
 
-/// Depth that means nothing was drawn: 0 of a camera, whose depths are reversed, 1 of a light.
+/// Returns the depth that means nothing was drawn: 0 for a camera, whose depths are reversed
+/// (`Some`), 1 for a light (`None`).
 pub fn cleared(planes: Option<ClipPlanes>) -> f32 {
     match planes {
         Some(_) => 0.0,
@@ -137,8 +140,9 @@ pub fn cleared(planes: Option<ClipPlanes>) -> f32 {
     }
 }
 
-/// Depths from the nearest to the farthest, those apart that nothing has written. A camera's are
-/// shown as distances, which its depths would squeeze into a hair above 0.
+/// Colours depths from black for the nearest to white for the farthest; cleared depths have the
+/// colour [`EMPTY`]. With `planes`, the depths are those of a camera and shown as distances, since
+/// they crowd just above 0. Returns three bytes (RGB) per depth, and the legend.
 pub fn depths(values: &[f32], planes: Option<ClipPlanes>) -> (Vec<u8>, String) {
     let is_cleared = |depth: f32| depth == cleared(planes);
     let distance = |depth| planes.map_or(depth, |planes| planes.distance(depth));
@@ -167,7 +171,8 @@ pub fn depths(values: &[f32], planes: Option<ClipPlanes>) -> (Vec<u8>, String) {
     (values.iter().flat_map(colour).collect(), legend.join(", "))
 }
 
-/// Channels that reach from 0 to 1, as they are.
+/// Colours texels of `channels` values each, where 0 to 1 is shown as it is. Returns three bytes
+/// (RGB) per texel, and the legend.
 pub fn fractions(values: &[f32], channels: usize) -> (Vec<u8>, String) {
     let whole = [(0.0, 1.0); 4];
     let rgb = coloured(values, channels, &whole[..channels.min(3)]);
@@ -175,8 +180,9 @@ pub fn fractions(values: &[f32], channels: usize) -> (Vec<u8>, String) {
     (rgb, legend)
 }
 
-/// Each channel between its own least and greatest finite value; one channel is grey, two leave
-/// blue black, a fourth is not shown.
+/// Colours texels of `channels` values each; each channel is scaled between its own least and
+/// greatest finite value. One channel is grey, two leave blue at 0, a fourth is not shown. Returns
+/// three bytes (RGB) per texel, and the legend.
 pub fn floats(values: &[f32], channels: usize) -> (Vec<u8>, String) {
     let shown: Vec<(f32, f32)> = (0..channels.min(3))
         .map(|index| range(channel(values, channels, index)))

@@ -1,4 +1,4 @@
-//! Pictures of any material of a graph.
+//! Draws pictures of a graph's materials.
 //!
 //! ```
 //! use skiagraph_compare::pictures::material::Picture;
@@ -19,20 +19,20 @@ use crate::pictures::colours::{ClipPlanes, EMPTY, depths, floats, fractions, int
 use skiagraph_gpu::Content;
 use skiagraph_reference::Image;
 
-/// A material as a picture.
+/// The picture of a material, with its legend.
 pub struct Picture {
-    /// The picture.
+    /// The picture in RGB; mips and layers stand one below the other.
     pub image: Image,
-    /// How values became colours, one sentence part.
+    /// Legend on how values became colours, as a part of a sentence.
     pub legend: String,
 }
 
 impl Picture {
-    /// Shows what was read of the material `name`; the name tells `status` from other integers,
-    /// `planes` a camera's depths from others.
+    /// Draws the content of a texture. `name` is the material's name, which tells `status` from
+    /// other integers. `planes` are the clip planes if the content is a camera's depths.
     ///
     /// # Errors
-    /// Why it has no picture.
+    /// The reason why the content has no picture.
     pub fn new(name: &str, content: &Content, planes: Option<ClipPlanes>) -> Result<Self, String> {
         let Content::Texture { format, parts, .. } = content else {
             return Err("is a buffer and has no picture; save it as .csv or .bin".into());

@@ -1,4 +1,4 @@
-//! Texels and items as files: the pictures of a run, and what `run --save` writes of any material.
+//! Writes texels and items as files: the pictures of a run, and any material for `run --save`.
 //!
 //! ```
 //! use skiagraph_compare::pictures::save::{Encoding, Save};

@@ -7,7 +7,7 @@ use image::{ExtendedColorType, ImageEncoder};
 use skiagraph_reference::Image;
 use std::path::Path;
 
-/// The contents of the file `path`.
+/// Returns a picture as the bytes of a PNG file; `path` names the file in errors.
 ///
 /// # Errors
 /// The picture cannot be encoded.

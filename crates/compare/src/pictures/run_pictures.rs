@@ -1,4 +1,4 @@
-//! The pictures of a run and of the reference, and their file names.
+//! Draws the pictures of a run and of the reference, and names their files.
 //!
 //! ```
 //! use skiagraph_compare::pictures::run_pictures::{graph_name, numbered, reference_name};
@@ -22,31 +22,31 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// A picture that is drawn and not yet written: it is written together with the figures that it
-/// belongs to.
+/// A picture that is drawn and not yet written, as it is written together with the figures of its
+/// run.
 pub struct PictureFile {
-    /// Its name in the folder.
+    /// File name in the folder of the results.
     pub name: String,
-    /// Its contents.
+    /// Bytes of the PNG file.
     pub png: Vec<u8>,
 }
 
 /// Writes pictures into a folder, each whole or not at all.
 ///
 /// # Errors
-/// One cannot be written.
+/// A picture that cannot be written.
 pub fn write_pictures(folder: &Path, files: &[PictureFile]) -> Result<(), CompareError> {
     let mut files = files.iter();
     files.try_for_each(|file| write_whole(&folder.join(&file.name), &file.png))
 }
 
-/// Subject of pictures: a run on a view or case, or a frame of a camera path.
+/// Names for the pictures of one frame of a method.
 pub struct PicturePlace<'a> {
-    /// Beginning of the names of the method's pictures.
+    /// Beginning of the file names of the method's pictures.
     pub stem: String,
-    /// The view, path or case.
+    /// Name of the view, path or case.
     pub view: &'a str,
-    /// The frame of a path, counted from 0.
+    /// Index of the frame of a path, from 0; `None` for a still view or case.
     pub frame: Option<usize>,
 }
 
@@ -59,8 +59,8 @@ impl PicturePlace<'_> {
     }
 }
 
-/// Draws the pictures of a frame, and that of the reference beside it; with `footprints` in a
-/// shadow map one of its texels, too.
+/// Draws the pictures of a method's frame and of the reference; with `footprints` of the pixels in
+/// a shadow map, also the texels per pixel. Returns the file names, and the pictures to write.
 ///
 /// # Errors
 /// Outputs that do not fit the reference.
@@ -120,7 +120,7 @@ pub fn draw_pictures(
     Ok((images, files))
 }
 
-/// The file of a frame: `visibility.0003.png` of `visibility.png`.
+/// Returns the file name of a frame, by its index: `visibility.0003.png` for `visibility.png`.
 pub fn numbered(file: &Path, frame: usize) -> PathBuf {
     let mut name = file.file_stem().unwrap_or_default().to_owned();
     name.push(format!(".{frame:04}"));
@@ -131,11 +131,11 @@ pub fn numbered(file: &Path, frame: usize) -> PathBuf {
     file.with_file_name(name)
 }
 
-/// Refuses pictures that would overwrite each other, before anything runs: what the name of each
-/// begins with, and whose they are.
+/// Checks, before anything runs, that pictures do not overwrite each other. Each item is the
+/// beginning of a picture's file name, and the owner of the picture for messages.
 ///
 /// # Errors
-/// Names both owners; `option` is what says where pictures go.
+/// Names two owners whose pictures would overwrite each other.
 pub fn check_stems(stems: impl IntoIterator<Item = (String, String)>) -> Result<(), CompareError> {
     let mut owners: BTreeMap<String, String> = BTreeMap::new();
     for (stem, owner) in stems {
@@ -151,7 +151,7 @@ pub fn check_stems(stems: impl IntoIterator<Item = (String, String)>) -> Result<
     Ok(())
 }
 
-/// View, viewport and map size of a run, as progress lines have them.
+/// Returns the view, viewport and map size of a run as text for progress: `main 512x512 map1024`.
 pub fn conditions(method: &Method, view: &str, viewport: [u32; 2]) -> String {
     let map = method
         .map_size
@@ -159,7 +159,7 @@ pub fn conditions(method: &Method, view: &str, viewport: [u32; 2]) -> String {
     format!("{} {}{map}", slug(view), size(viewport))
 }
 
-/// Returns the beginning of the names of a run's pictures.
+/// Returns the beginning of the file names of a run's pictures.
 pub fn stem(method: &Method, view: &str, viewport: [u32; 2]) -> String {
     format!(
         "{}-{}",
@@ -168,17 +168,17 @@ pub fn stem(method: &Method, view: &str, viewport: [u32; 2]) -> String {
     )
 }
 
-/// Returns the beginning of the name of the reference's picture.
+/// Returns the beginning of the file name of the reference's picture.
 pub fn reference_stem(view: &str, viewport: [u32; 2]) -> String {
     format!("reference-{}-{}", slug(view), size(viewport))
 }
 
-/// The name of the chart of a method's graph.
+/// Returns the file name of the chart of a method's graph.
 pub fn graph_name(method: &str) -> String {
     format!("graph-{}.svg", slug(method))
 }
 
-/// The name of the reference's picture of a still view.
+/// Returns the file name of the reference's picture of a still view.
 pub fn reference_name(view: &str, viewport: [u32; 2]) -> String {
     format!("{}-visibility.png", reference_stem(view, viewport))
 }

@@ -1,4 +1,4 @@
-//! `run --save`: what of a graph is read back, and how it is written.
+//! `run --save`: chooses which materials of a graph are read back, and writes them as files.
 //!
 //! ```no_run
 //! use skiagraph_compare::pictures::{colours::ClipPlanes, save::{Decoding, Save, write}};
@@ -27,25 +27,25 @@ use skiagraph_graph::{Capture, Item, PartSummary, Plan};
 use skiagraph_passes::names::{CAMERA, LIGHT};
 use std::{collections::BTreeMap, path::PathBuf, str::FromStr};
 
-/// Encodings of a saved file.
+/// Encodings of a saved material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Encoding {
-    /// A picture fit for looking at.
+    /// A picture for viewing, `.png`.
     Png,
-    /// The texels or items as they are in memory, rows tightly packed.
+    /// Texels or items as they are in memory, rows tightly packed, `.bin`.
     Raw,
-    /// A line per item of a buffer.
+    /// A table with a line per item of a buffer, `.csv`.
     Csv,
 }
 
-/// `--save MATERIAL[@PASS]=FILE.png|.bin|.csv`.
+/// A material to save and its file, `MATERIAL[@PASS]=FILE.png|.bin|.csv`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Save {
-    /// An output or a material of the graph, and the pass after which it is read.
+    /// Output or other material of the graph, and the pass after which it is read.
     pub capture: Capture,
-    /// Where to.
+    /// Path of the file to write.
     pub file: PathBuf,
-    /// From the file's extension.
+    /// Encoding, from the file's extension.
     pub encoding: Encoding,
 }
 
@@ -86,7 +86,8 @@ impl FromStr for Save {
     }
 }
 
-/// Returns captures of those saves that are not `outputs`, which the graph gives anyway.
+/// Returns the captures that `saves` need besides `outputs`, which are read back anyway; each once,
+/// sorted by name.
 pub fn captures(outputs: &[&str], saves: &[Save]) -> Vec<Capture> {
     let wanted = saves.iter().map(|save| &save.capture);
     let wanted = wanted.filter(|capture| !outputs.contains(&&*capture.name()));
@@ -94,10 +95,10 @@ pub fn captures(outputs: &[&str], saves: &[Save]) -> Vec<Capture> {
     wanted.cloned().collect()
 }
 
-/// Refuses the picture of a buffer and the items of a texture before anything is rendered.
+/// Refuses, before anything is rendered, to save a buffer as a picture or a texture as a table.
 ///
 /// # Errors
-/// Names what it can be saved as.
+/// Names the encodings in which the output can be saved.
 pub fn check_encodings(plan: &Plan, saves: &[Save]) -> Result<(), CompareError> {
     let outputs = plan.outputs();
     for save in saves {
@@ -115,19 +116,19 @@ pub fn check_encodings(plan: &Plan, saves: &[Save]) -> Result<(), CompareError> 
     Ok(())
 }
 
-/// How the contents of a material are to be read.
+/// Describes how the contents of a material are to be read.
 #[derive(Clone, Default)]
 pub struct Decoding {
-    /// The camera whose depths they are, if they are depths.
+    /// Clip planes of the camera, if the material may hold its depths; `None` otherwise.
     pub planes: Option<ClipPlanes>,
-    /// The items of a buffer.
+    /// Layout of a buffer's items; `None` if no shader declares it.
     pub item: Option<Item>,
-    /// Which of its mips, layers or items they are, if not all.
+    /// The mips, layers or items that are read; `None` for all of them.
     pub part: Option<PartSummary>,
 }
 
 impl Decoding {
-    /// Describes what this plan writes into the output or capture, seen between these planes.
+    /// Describes the output or capture `name` of a plan. `planes` are the camera's clip planes.
     pub fn new(plan: &Plan, name: &str, planes: ClipPlanes) -> Self {
         let behind = plan.provided_behind(name);
         // A pass that also knows the light may well draw from there.
@@ -139,7 +140,8 @@ impl Decoding {
         }
     }
 
-    /// `layer 0 of 3, `: which part of a texture or buffer it is; nothing of a whole one.
+    /// Returns text on the part of a texture or buffer that is read, such as `layer 0 of 3, `;
+    /// empty if all of it is read.
     pub fn part_text(&self, content: &Content) -> String {
         let Some(PartSummary { mips, layers, of }) = &self.part else {
             return String::new();
@@ -157,26 +159,28 @@ impl Decoding {
         text.collect()
     }
 
-    /// The number of the first item of a buffer.
+    /// Returns the index of the first item of a buffer that is read.
     pub fn first_item(&self) -> usize {
         let part = self.part.as_ref();
         part.map_or(0, |part| part.layers.start as usize)
     }
 }
 
-/// Names of the materials that are saved, each once.
+/// Returns the names of the materials that are saved, each once, sorted.
 pub fn names(saves: &[Save]) -> Vec<String> {
     let names = saves.iter().map(|save| save.capture.name());
     names.sorted().dedup().collect()
 }
 
-/// How to decode each of the materials that are saved.
+/// Returns the decoding of each save, in their order. `planes` are the camera's clip planes.
 pub fn decodings(plan: &Plan, saves: &[Save], planes: ClipPlanes) -> Vec<Decoding> {
     let decoding = |save: &Save| Decoding::new(plan, &save.capture.name(), planes);
     saves.iter().map(decoding).collect()
 }
 
-/// Writes what was read of a graph, each as [`write`](fn@write) does.
+/// Writes the saved materials of the graph named `graph`, each when the iterator reaches it, and
+/// yields the text of [`write`](fn@write). `decodings` are in the order of `saves`; `contents` are
+/// by name.
 pub fn write_all<'a>(
     graph: &'a str,
     saves: &'a [Save],
@@ -190,10 +194,10 @@ pub fn write_all<'a>(
     })
 }
 
-/// Writes the file; returns what to say about it.
+/// Writes a material's content into the file of a save. Returns a line of text about the file.
 ///
 /// # Errors
-/// There is no such picture, or the file cannot be written.
+/// The content cannot be encoded in this way, or the file cannot be written.
 pub fn write(save: &Save, content: &Content, reading: &Decoding) -> Result<String, CompareError> {
     let part = reading.part_text(content);
     let said = match save.encoding {

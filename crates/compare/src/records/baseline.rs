@@ -1,4 +1,4 @@
-//! `profile --baseline`: an older profile beside the new one.
+//! `profile --baseline`: compares a profile with an older one.
 //!
 //! A ratio is new median by old median. Its spread goes from Q1(new) / Q3(old) to Q3(new) /
 //! Q1(old), Q1 and Q3 being the quartiles of the samples: 1 lies outside it exactly if the middle
@@ -18,18 +18,19 @@
 use crate::records::statistics::Series;
 use serde::Serialize;
 
-/// How a profile stands to an older one.
+/// Comparison of a profile with an older one.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Comparison {
-    /// The older profile's file.
+    /// Path of the older profile's file.
     pub file: String,
-    /// When it was measured.
+    /// Date of the older profile, ISO 8601 in UTC.
     pub date: String,
-    /// Conditions in which both differ; where there are any, a ratio says little about the code.
+    /// Conditions that differ between the two profiles; if there are any, a ratio says little about
+    /// the code.
     pub differences: Vec<Difference>,
-    /// Passes that both have, in the new order.
+    /// Ratios of the passes that both profiles have, in the order of the new one.
     pub passes: Vec<PassRatio>,
-    /// Whole frames.
+    /// Ratios of whole frames.
     pub frame: FrameRatio,
     /// Passes that only the older profile has.
     pub only_old: Vec<String>,
@@ -37,21 +38,21 @@ pub struct Comparison {
     pub only_new: Vec<String>,
 }
 
-/// A condition under which two profiles were not alike.
+/// A condition that differs between two profiles.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Difference {
-    /// The condition.
+    /// Name of the condition.
     pub what: String,
-    /// In the older profile.
+    /// Value in the older profile.
     pub old: String,
-    /// In the new one.
+    /// Value in the new profile.
     pub new: String,
 }
 
-/// One pass.
+/// Ratios of the times of one pass.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PassRatio {
-    /// Its name.
+    /// Name of the pass.
     pub name: String,
     /// Ratio of GPU times; null unless both profiles have them.
     pub gpu: Option<Ratio>,
@@ -59,35 +60,35 @@ pub struct PassRatio {
     pub cpu: Ratio,
 }
 
-/// Whole frames.
+/// Ratios of the times of whole frames.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FrameRatio {
     /// Ratio of GPU times; null unless both profiles have them.
     pub gpu: Option<Ratio>,
     /// Ratio of encoding times on the CPU.
     pub cpu: Ratio,
-    /// From the start of encoding until the GPU was done.
+    /// Ratio of the times from the start of encoding until the GPU was done.
     pub wall: Ratio,
 }
 
-/// New by old.
+/// Ratio of a new time to an old one, with its spread and a verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Ratio {
     /// Old median, milliseconds.
     pub old_ms: f64,
     /// New median, milliseconds.
     pub new_ms: f64,
-    /// New by old median.
+    /// New median divided by old median.
     pub ratio: f64,
-    /// Q1(new) / Q3(old).
+    /// Lower end of the ratio's spread: Q1(new) / Q3(old).
     pub low: f64,
-    /// Q3(new) / Q1(old).
+    /// Upper end of the ratio's spread: Q3(new) / Q1(old).
     pub high: f64,
-    /// The ratio in a word: a difference, or none.
+    /// Verdict on the ratio: a difference, or no difference.
     pub verdict: Verdict,
 }
 
-/// Judgement whether times differ.
+/// Verdict on a ratio of times.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
@@ -101,14 +102,15 @@ pub enum Verdict {
     TooFewFrames,
 }
 
-/// With fewer samples a quartile is hardly more than one of them.
+/// Least number of samples whose quartiles are compared: of fewer, a quartile is hardly more than
+/// one sample.
 pub const MIN_FRAMES: usize = 5;
 
 /// One nanosecond: what samples are stored in, so that nothing is divided by zero.
 const RESOLUTION_MS: f64 = 1e-6;
 
 impl Ratio {
-    /// Compares an old and a new series.
+    /// Compares a new series of times with an old one.
     pub fn new(old: &Series, new: &Series) -> Self {
         let ratio = |new: f64, old: f64| new.max(RESOLUTION_MS) / old.max(RESOLUTION_MS);
         let [old_q1, old_q3] = old.quartiles();
@@ -130,7 +132,7 @@ impl Ratio {
         }
     }
 
-    /// The same, where both are there.
+    /// Compares a new series of times with an old one; `None` unless both are given.
     pub fn from_both(old: Option<&Series>, new: Option<&Series>) -> Option<Self> {
         Some(Self::new(old?, new?))
     }

@@ -1,4 +1,4 @@
-//! Limits on methods that are to be taken.
+//! Limits on frame time, wrong pixels and memory that an acceptable method keeps.
 //!
 //! ```
 //! use skiagraph_compare::records::budgets::Budgets;
@@ -15,23 +15,24 @@ use crate::wording::bytes;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Limits on methods that are to be taken, each where there is one.
+/// Limits that an acceptable method keeps; `None` for no limit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Budgets {
-    /// Milliseconds of a frame in which every pass runs, at most.
+    /// Most milliseconds that a frame may take in which every pass runs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frame_ms: Option<f64>,
-    /// Wrong pixels outside the band in percent of those facing the light: less than this.
+    /// Wrong pixels outside the band, in percent of the pixels facing the light; a method must stay
+    /// below this.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub wrong_percent: Option<f64>,
-    /// Bytes of the method's own materials and of what it reads of the scene, at most.
+    /// Most bytes that the method's own materials and the scene data that it reads may take.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub memory_bytes: Option<u64>,
 }
 
 impl Budgets {
-    /// True without any.
+    /// True if there are no limits.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }

@@ -18,7 +18,7 @@
 use serde::Serialize;
 use skiagraph_graph::{Code, Diagnostic, Label, Severity};
 
-/// Findings of `check`.
+/// The report of `check --format json`.
 #[derive(Debug, Serialize)]
 pub struct CheckReport {
     /// Version of this schema: 1.
@@ -27,7 +27,7 @@ pub struct CheckReport {
     files: Vec<FileReport>,
 }
 
-/// One graph.
+/// Report on one graph.
 #[derive(Debug, Serialize)]
 pub struct FileReport {
     /// The argument: a path, or a preset's name.
@@ -61,7 +61,8 @@ struct LabelReport {
 }
 
 impl FileReport {
-    /// Reports on a graph: how many passes run, if it can be planned, and what is wrong with it.
+    /// Creates the report on the argument `file`: the number of passes that run, `None` if there
+    /// are errors, and all diagnostics, errors first.
     pub fn new<'a>(
         file: &str,
         passes: Option<usize>,
@@ -74,14 +75,14 @@ impl FileReport {
         }
     }
 
-    /// Reports on an argument that names no graph.
+    /// Creates the report on an argument that names no graph. `message` is its only error.
     pub fn missing(file: &str, message: String) -> Self {
         Self::new(file, None, &[Diagnostic::error(Code::MissingFile, message)])
     }
 }
 
 impl CheckReport {
-    /// Puts together the reports of all arguments.
+    /// Creates the report of all arguments, in their order.
     pub fn new(files: Vec<FileReport>) -> Self {
         Self { schema: 1, files }
     }

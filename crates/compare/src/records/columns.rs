@@ -1,5 +1,6 @@
-//! The columns of a comparison: for the terminal, for documents and for results.csv. Each figure
-//! is defined once; a table says in which order it shows which figures, and under which heads.
+//! Columns of a comparison's tables, for the terminal, for documents and for results.csv. Each
+//! figure is defined once; a table says in which order it shows which figures, and under which
+//! heads.
 //!
 //! ```
 //! use skiagraph_compare::{records::{columns, read_back}, wording};
@@ -273,7 +274,8 @@ const IF_PUBLISHED: [&str; 8] = [
     "fps",
 ];
 
-/// The presets' steps and their heads; other steps stand under their own names.
+/// Names of the presets' steps, each with its head in tables. Other steps have their names as
+/// heads.
 pub const STEPS: [(&str, &str); 5] = [
     ("create_shadow_map", "map"),
     ("detect_uncertain", "detect"),
@@ -282,7 +284,8 @@ pub const STEPS: [(&str, &str); 5] = [
     ("fix_pixels", "fix"),
 ];
 
-/// The head of a step's column, or of a sum of steps: `gbuffer+detect_uncertain`.
+/// Returns the head of the column of a step, or of a sum of steps such as
+/// `gbuffer+detect_uncertain`.
 pub fn step_head(step: &str) -> String {
     let heads = step.split('+').map(|step| {
         let short = STEPS.iter().find(|(name, _)| *name == step);
@@ -373,11 +376,12 @@ fn area(run: &Run, figure: fn(&AreaReference) -> Value) -> Value {
     run.area.as_ref().map_or(Unknown, figure)
 }
 
-/// A column of a table.
+/// A column in a table of runs.
 pub struct Column {
-    /// Heading above it.
+    /// Head of the column.
     pub head: &'static str,
-    /// Name of published figures of it; empty where there are none.
+    /// Name of the quantity of published figures that can stand beside the column; empty if none
+    /// can.
     pub quantity: &'static str,
     source: &'static Source,
 }
@@ -393,7 +397,7 @@ impl Column {
         })
     }
 
-    /// True if it is empty where the method could not run.
+    /// True if the figure is measured: its cell is empty for a method that could not run.
     pub fn is_measured(&self) -> bool {
         matches!(self.source, Measure(_))
     }
@@ -405,7 +409,8 @@ impl Column {
         }
     }
 
-    /// Its cell in a table, with shares as `share` writes them of a count and a whole.
+    /// Returns the cell of a run in a table, `–` for an unknown figure. `share` formats a count and
+    /// its whole as a share.
     pub fn cell(&self, results: &Results, run: &Run, share: fn(u64, u64) -> String) -> String {
         match self.value(results, run) {
             Unknown => "–".to_owned(),
@@ -419,7 +424,7 @@ impl Column {
         }
     }
 
-    /// Its cell in results.csv; empty for what is not known.
+    /// Returns the cell of a run in results.csv, empty for an unknown figure.
     pub fn csv_cell(&self, results: &Results, run: &Run) -> String {
         match self.value(results, run) {
             Unknown => String::new(),
@@ -431,13 +436,13 @@ impl Column {
     }
 }
 
-/// The columns of results.csv.
+/// Returns the columns of results.csv.
 pub fn csv() -> Vec<Column> {
     let entries = CSV.iter().map(|(name, _)| (*name, *name, ""));
     entries.filter_map(Column::new).collect()
 }
 
-/// The columns of the terminal's table for some runs: those that none of them has are left out.
+/// Returns the columns of the terminal's table, without those that say nothing about any of `runs`.
 pub fn terminal(runs: &[&Run]) -> Vec<Column> {
     let has_maps = runs.iter().any(|run| run.map_size.is_some());
     let entries = TERMINAL.iter().filter(|(name, ..)| {
@@ -452,14 +457,15 @@ fn is_shown<'a>(name: &str, runs: impl Iterator<Item = &'a Run> + Clone) -> bool
         && (!OF_GRADES.contains(&name) || runs.clone().any(|run| !run.is_hard()))
 }
 
-/// True if any run is of a camera path.
+/// True if any run follows a camera path.
 pub fn are_paths<'a>(runs: impl IntoIterator<Item = &'a Run>) -> bool {
     let mut measured = runs.into_iter().filter_map(|run| run.measured.as_ref());
     measured.any(|of| of.sequence.is_some())
 }
 
-/// The columns of a document's table for some runs but for the times of steps, of which two parts
-/// stand before and behind them. `published` says of which quantities there are published figures.
+/// Returns the columns of a document's table of `runs`, in two lists: those before and those behind
+/// the times of steps, which are not among them. `published` says if there are published figures of
+/// a quantity.
 pub fn document(runs: &[&Run], published: impl Fn(&str) -> bool) -> [Vec<Column>; 2] {
     let shown = |(name, _, quantity): &Entry| {
         (!IF_PUBLISHED.contains(name) || published(quantity))
@@ -473,8 +479,8 @@ pub fn document(runs: &[&Run], published: impl Fn(&str) -> bool) -> [Vec<Column>
     })
 }
 
-/// Lists the quantities that can be published about a run and stand beside its figures, but for
-/// sums of steps, `ms.gbuffer+detect_uncertain`.
+/// Lists the quantities whose published figures can stand beside a run's, without sums of steps
+/// such as `ms.gbuffer+detect_uncertain`.
 pub fn quantities() -> Vec<String> {
     let of_columns = DOCUMENT.iter().map(|(.., quantity)| quantity.to_string());
     let of_steps = STEPS.iter().map(|(step, _)| format!("ms.{step}"));
@@ -482,14 +488,15 @@ pub fn quantities() -> Vec<String> {
     all.filter(|quantity| !quantity.is_empty()).collect()
 }
 
-/// The steps of a quantity that is their time: `ms.gbuffer+detect_uncertain`. `None` of all others.
+/// Returns the steps of a quantity that is the time of steps: `gbuffer+detect_uncertain` for
+/// `ms.gbuffer+detect_uncertain`. Returns `None` for all other quantities.
 pub fn steps_of(quantity: &str) -> Option<&str> {
     let steps = quantity.strip_prefix("ms.")?;
     let is_known = |step| step == GBUFFER || STEPS.iter().any(|(known, _)| *known == step);
     steps.split('+').all(is_known).then_some(steps)
 }
 
-/// The head of the column of a quantity.
+/// Returns the head of the column of a quantity; the quantity itself if it has no column.
 pub fn head_of(quantity: &str) -> String {
     let mut entries = DOCUMENT.iter();
     let entry = entries.find(|(.., known)| *known == quantity);
@@ -500,7 +507,8 @@ pub fn head_of(quantity: &str) -> String {
     }
 }
 
-/// Our figure of a quantity, in its unit: percent, milliseconds, a count, a rate.
+/// Returns a run's own figure for a quantity, in the quantity's unit: percent, milliseconds, a
+/// count, frames per second. Returns `None` if the figure is unknown or not a number.
 pub fn figure(quantity: &str, results: &Results, run: &Run) -> Option<f64> {
     if let Some(steps) = steps_of(quantity) {
         return run.measured.as_ref()?.step_ms(steps);

@@ -1,5 +1,5 @@
-//! Measurements as plain data. The types of the JSON files are their schemas: scripts rely on them,
-//! so fields are added and never renamed.
+//! Holds measurements as plain data. The types of the JSON files are their schemas: scripts rely on
+//! them, so fields are added and never renamed.
 //!
 //! ```
 //! use skiagraph_compare::records::read_back;

@@ -28,39 +28,39 @@ use std::{
     time::Duration,
 };
 
-/// The value of [`Profile::kind`]; tells the file from the results of `compare`.
+/// Value of [`Profile::kind`], which tells a profile from the results of `compare`.
 pub const KIND: &str = "profile";
 
-/// Everything that one `profile` measured.
+/// Measurements of one `profile` command.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Profile {
     /// Version of this schema: 1.
     pub schema: u32,
-    /// [`KIND`].
+    /// Kind of the file, always [`KIND`].
     pub kind: String,
-    /// Under which everything was measured.
+    /// Conditions under which everything was measured.
     pub conditions: Conditions,
     /// The passes in the order in which they ran.
     pub passes: Vec<PassProfile>,
-    /// Whole frames.
+    /// Times of whole frames.
     pub frame: FrameProfile,
-    /// The graph's own textures and buffers.
+    /// Memory of the graph's own textures and buffers.
     pub memory: Memory,
-    /// How it stands to an older profile; absent without `--baseline`. Not read back.
+    /// Comparison with an older profile; absent without `--baseline`. Not read back.
     #[serde(default, skip_serializing_if = "Option::is_none", skip_deserializing)]
     pub baseline: Option<Comparison>,
 }
 
-/// Conditions without which a time is worth nothing.
+/// Conditions of a measurement, without which its times mean nothing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Conditions {
     /// The program, `skiagraph 0.1.0`.
     pub program: String,
     /// `release`, or `debug`: then CPU times are those of unoptimised code.
     pub build: String,
-    /// When, ISO 8601 in UTC.
+    /// Time of the measurement, ISO 8601 in UTC.
     pub date: String,
-    /// Where; `gpu_unavailable` says why GPU times are null.
+    /// GPU that was measured; `gpu_unavailable` says why GPU times are null.
     pub adapter: Adapter,
     /// The scene that was drawn.
     pub scene: Scene,
@@ -72,14 +72,14 @@ pub struct Conditions {
     pub viewport: [u32; 2],
     /// All params of the graph with the values it ran with.
     pub params: BTreeMap<String, serde_json::Value>,
-    /// Timed frames that were asked for; there are fewer samples if it was stopped early.
+    /// Number of timed frames that were asked for; there are fewer samples after an early end.
     pub frames: u32,
-    /// Frames before the timed ones.
+    /// Number of warm-up frames before the timed ones.
     pub warmup: u32,
 }
 
 impl Conditions {
-    /// The params as `--set` takes them: `cull=front`.
+    /// Returns each param's name and value as text, as `--set` takes them: `cull` and `front`.
     pub fn params(&self) -> impl Iterator<Item = (&str, String)> {
         self.params.iter().map(|(name, value)| {
             let text = value
@@ -121,66 +121,67 @@ impl Conditions {
     }
 }
 
-/// One pass.
+/// Times of one pass.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PassProfile {
-    /// Its name in the graph.
+    /// Name of the pass in the graph.
     pub name: String,
-    /// Its kind, as the document writes it.
+    /// Kind of the pass, as the document writes it.
     pub kind: String,
-    /// Between its GPU timestamps; null where they cannot be had or trusted.
+    /// Milliseconds between the pass's GPU timestamps; null where they cannot be had or trusted.
     pub gpu_ms: Option<Series>,
-    /// Median over the frames of its GPU time by that of its frame; passes may overlap, so the sum
-    /// need not be 1.
+    /// Share of the frame's GPU time that the pass takes, 0 to 1, median over the frames; null
+    /// without GPU times. Passes may overlap, so that shares need not add up to 1.
     pub share: Option<f64>,
-    /// Encoding on the CPU.
+    /// Milliseconds of encoding the pass on the CPU.
     pub cpu_ms: Series,
 }
 
-/// Whole frames.
+/// Times of whole frames, in milliseconds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrameProfile {
-    /// From the first pass's begin to the last one's end; null where timestamps cannot be had or
-    /// trusted.
+    /// GPU time from the first pass's begin to the last one's end; null where timestamps cannot be
+    /// had or trusted.
     pub gpu_ms: Option<Series>,
-    /// Encoding of all passes on the CPU.
+    /// CPU time of encoding all passes.
     pub cpu_ms: Series,
-    /// From the start of encoding until the GPU was done, by the CPU's clock.
+    /// Time from the start of encoding until the GPU was done, by the CPU's clock.
     pub wall_ms: Series,
 }
 
-/// The graph's own textures and buffers.
+/// Memory of the graph's own textures and buffers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Memory {
-    /// Bytes of all of them.
+    /// Bytes of all textures and buffers together.
     pub bytes: u64,
-    /// Saved by letting materials share memory.
+    /// Bytes saved by letting materials share memory.
     pub saved_bytes: u64,
-    /// One entry each, in the order of the document.
+    /// Textures and buffers, in the order of the document.
     pub materials: Vec<Material>,
 }
 
-/// A texture or buffer.
+/// Memory of one texture or buffer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Material {
-    /// The material, or a pass's own buffer.
+    /// Name of the material, or of a pass's own buffer.
     pub name: String,
     /// Format of a texture; null for a buffer.
     pub format: Option<String>,
-    /// Width and height of a texture's mip 0; `[bytes, 1]` of a buffer.
+    /// Width and height of a texture's mip 0 in texels; `[bytes, 1]` for a buffer.
     pub size: [u32; 2],
-    /// Mip levels.
+    /// Number of mip levels.
     pub mips: u32,
-    /// Array layers.
+    /// Number of array layers.
     pub layers: u32,
-    /// Bytes that it takes.
+    /// Bytes of the texture or buffer.
     pub bytes: u64,
-    /// Materials in the same memory.
+    /// Names of the materials that share its memory.
     pub shared_with: Vec<String>,
 }
 
 impl Profile {
-    /// Puts together what was measured; `None` if there is no frame.
+    /// Creates a profile from the samples of frames; `None` if there are no frames. `kinds` are the
+    /// passes of the plan, for the kind of each.
     pub fn new(
         conditions: Conditions,
         kinds: &[PassSummary],
@@ -216,7 +217,7 @@ impl Profile {
         })
     }
 
-    /// How it stands to an older profile, read from `file`.
+    /// Compares the profile with an older one that was read from `file`.
     pub fn against(&self, file: &Path, old: &Self) -> Comparison {
         let missing = |from: &Self, other: &Self| {
             let names = from.passes.iter().map(|pass| pass.name.clone());
@@ -248,7 +249,7 @@ impl Profile {
         }
     }
 
-    /// How many frames were timed.
+    /// Returns the number of frames that were timed.
     pub fn timed(&self) -> usize {
         self.frame.wall_ms.samples.len()
     }

@@ -1,4 +1,4 @@
-//! Published figures, to stand beside ours.
+//! Reads published figures, and puts them beside those of runs.
 //!
 //! ```
 //! use skiagraph_compare::records::{published, published_row::PublishedFile, read_back};
@@ -32,10 +32,10 @@ const CSV_FILE: Limit = Limit {
     way_out: "split it, and name each part",
 };
 
-/// Reads all files.
+/// Reads files of published figures.
 ///
 /// # Errors
-/// A file that cannot be read; everything that is wrong in them, with its place.
+/// A file that cannot be read; every mistake in the files, with its place.
 pub fn read(files: &[PublishedFile]) -> Result<Vec<Row>, CompareError> {
     let (mut rows, mut faults) = (Vec::new(), Vec::new());
     for PublishedFile { label, file } in files {
@@ -56,13 +56,15 @@ pub fn read(files: &[PublishedFile]) -> Result<Vec<Row>, CompareError> {
     })
 }
 
-/// Puts the figures beside the runs that they belong to.
+/// Replaces the published figures of a run of the scene named `scene` by those of `rows` that apply
+/// to it.
 pub fn attach(rows: &[Row], scene: &str, run: &mut Run) {
     let figures = rows.iter().filter(|row| row.applies_to(scene, run));
     run.published = figures.map(|row| row.figure.clone()).collect();
 }
 
-/// Puts the figures beside all runs of some results, instead of those that are there.
+/// Replaces the published figures of all runs of some results by those of `rows` that apply to
+/// them.
 pub fn attach_all(rows: &[Row], results: &mut Results) {
     for run in &mut results.runs {
         attach(rows, &results.scene.name, run);

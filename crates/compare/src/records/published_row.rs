@@ -1,4 +1,4 @@
-//! One line of a file of published figures: its fields, and what is wrong with them.
+//! Reads one line of a file of published figures: its fields, and the mistakes in them.
 //!
 //! ```
 //! use skiagraph_compare::records::published_row::{HEADER, PublishedFile};
@@ -21,9 +21,9 @@ use std::{path::PathBuf, str::FromStr};
 /// A file of published figures, `[LABEL:]FILE.csv`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PublishedFile {
-    /// How the figures are marked in tables. Without one: the file's name.
+    /// Label that marks the figures in tables; by default the file's name without its extension.
     pub label: String,
-    /// The file.
+    /// Path of the file.
     pub file: PathBuf,
 }
 
@@ -48,30 +48,32 @@ impl FromStr for PublishedFile {
 /// Figures of the reference: they hold for every preset and map.
 const OF_REFERENCE: [&str; 4] = ["facing_light", "facing_away", "lit", "shadow"];
 
-/// The columns of the file, in any order.
+/// Names of the columns of the file, which may stand in any order.
 pub const HEADER: [&str; 9] = [
     "scene", "view", "viewport", "map_size", "preset", "quantity", "value", "source", "note",
 ];
 
-/// A published figure and where it belongs.
+/// A published figure, with the scene, view, viewport, map size and preset that it belongs to.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     scene: String,
     view: String,
     viewport: [u32; 2],
     map_size: Option<u32>,
-    /// Empty: of the reference.
+    /// Name of the preset, empty for a figure of the reference. A row from `Row::read` has all
+    /// names of its line here, separated by spaces.
     pub preset: String,
-    /// All presets that its line names.
+    /// Names of all presets on the row's line.
     pub named: Vec<String>,
-    /// The figure.
+    /// The figure, with its quantity and source.
     pub figure: Published,
-    /// Its line in the file.
+    /// Number of the row's line in the file, from 1.
     pub line: usize,
 }
 
 impl Row {
-    /// Returns the fields that tell it from every other figure.
+    /// Returns the fields that tell the figure from every other one: scene, view, viewport, map
+    /// size, preset, quantity.
     pub fn key(&self) -> (&str, &str, [u32; 2], Option<u32>, &str, &str) {
         let Self { scene, view, .. } = self;
         let quantity = &self.figure.quantity;
@@ -79,7 +81,8 @@ impl Row {
         (scene, view, viewport, map_size, &self.preset, quantity)
     }
 
-    /// The same figure for each of the presets that the column names, words apart.
+    /// Returns a copy of the row for each preset that its line names; the row itself for a figure
+    /// of the reference.
     pub fn of_each_preset(self) -> Vec<Self> {
         if self.preset.is_empty() {
             return vec![self];
@@ -91,17 +94,18 @@ impl Row {
         self.named.iter().map(of).collect()
     }
 
-    /// True if it is of this run, or of its reference.
+    /// True if the figure belongs to a run of the scene named `scene`, or to the reference of this
+    /// run.
     pub fn applies_to(&self, scene: &str, run: &Run) -> bool {
         let of_run = self.preset == run.preset && self.map_size == run.map_size;
         (self.scene.as_str(), &self.view, self.viewport) == (scene, &run.view, run.viewport)
             && (self.preset.is_empty() || of_run)
     }
 
-    /// Reads a line.
+    /// Reads a line of the file whose label is `label`.
     ///
     /// # Errors
-    /// Everything that is wrong in it.
+    /// All mistakes in the line.
     pub fn read(label: &str, line: &Line, columns: &Columns) -> Result<Self, Vec<Diagnostic>> {
         let count = line.record.len();
         if count != HEADER.len() {
@@ -247,11 +251,11 @@ fn is_known(quantity: &str) -> bool {
     OF_REFERENCE.contains(&quantity) || is_of_run(quantity)
 }
 
-/// Where each of [`HEADER`] stands.
+/// Index of each column of [`HEADER`] in the lines of a file.
 pub struct Columns([usize; 9]);
 
 impl Columns {
-    /// Reads the columns of a file that begins with this line.
+    /// Finds the columns of a file in its first line.
     ///
     /// # Errors
     /// Unknown or missing columns.
@@ -281,7 +285,7 @@ impl Columns {
         }
     }
 
-    /// The place of one of [`HEADER`].
+    /// Returns the index in a line of the column `name`, which is one of [`HEADER`].
     pub fn at(&self, name: &str) -> usize {
         let mut columns = HEADER.into_iter().zip(self.0);
         let column = columns.find(|(known, _)| *known == name);
@@ -289,16 +293,16 @@ impl Columns {
     }
 }
 
-/// A record with the places of its fields.
+/// A line of a CSV file, split into fields.
 pub struct Line<'a> {
-    /// Where it stands.
+    /// The file that the line is in.
     pub file: &'a SourceFile,
-    /// Its fields.
+    /// The fields of the line.
     pub record: StringRecord,
 }
 
 impl Line<'_> {
-    /// Reports a mistake in a field.
+    /// Creates an error with the message `what` at the field with the index `field`.
     pub fn fault(&self, code: Code, field: usize, what: String) -> Diagnostic {
         Diagnostic::error(code, what).at(self.span(field), "")
     }

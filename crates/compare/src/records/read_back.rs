@@ -1,4 +1,4 @@
-//! Decoding back what `compare` and `profile --json` wrote.
+//! Reads files back that `compare`, `stress` and `profile --json` wrote.
 //!
 //! ```
 //! use skiagraph_compare::records::read_back;
@@ -26,7 +26,7 @@ use skiagraph_graph::SourceFile;
 use skiagraph_scene::Limit;
 use std::{io, path::Path};
 
-/// How to get on without earlier results.
+/// Advice for messages: how to go on without the earlier results of a folder.
 pub const WITHOUT_RESULTS: &str =
     "take another folder (`--out`), or replace all that this one holds (`--replace`)";
 
@@ -53,10 +53,10 @@ const PROFILE: Limit = Limit {
     way_out: "name one that `skiagraph profile --json FILE` wrote, of fewer --frames",
 };
 
-/// Reads an older profile, for `--baseline`.
+/// Reads the older profile at `path`, for `--baseline`.
 ///
 /// # Errors
-/// A file that cannot be read, or that is not a profile; with the place.
+/// A file that cannot be read, or is not a profile; the message shows the place.
 pub fn profile(path: &Path) -> Result<Profile, CompareError> {
     let text = PROFILE
         .read_text(path)
@@ -64,16 +64,17 @@ pub fn profile(path: &Path) -> Result<Profile, CompareError> {
     profile_of(&SourceFile::new(path.display().to_string(), text))
 }
 
-/// Reads earlier results, for `--resume`; `None` if there are none.
+/// Reads the results.json at `path`, for `--resume`; `None` if the file does not exist.
 ///
 /// # Errors
-/// A file that cannot be read, or that is not a results.json; with the place.
+/// A file that cannot be read, or is not a results.json; the message shows the place.
 pub fn results(path: &Path) -> Result<Option<Results>, CompareError> {
     let file = results_file(path)?;
     file.map(|file| results_of(&file)).transpose()
 }
 
-/// The file of earlier results, whatever is in it; `None` if there is none.
+/// Reads the text of the results.json at `path`, without parsing it; `None` if the file does not
+/// exist.
 ///
 /// # Errors
 /// A file that cannot be read.
@@ -91,11 +92,11 @@ fn read(limit: &Limit, path: &Path) -> Result<Option<SourceFile>, String> {
     }
 }
 
-/// Reads the results in a folder, to do something with them.
+/// Reads the results.json in a folder, to use finished results.
 ///
 /// # Errors
-/// No such folder, no results.json in it, or a file that cannot be read or is no results.json; with
-/// the place.
+/// No such folder or results.json; a file that cannot be read, or is not a results.json. The
+/// message shows the place.
 pub fn kept(folder: &Path) -> Result<Results, CompareError> {
     let refused = |why: String| CompareError::Input(format!("{why}; {COMPARE_FIRST}"));
     if !folder.is_dir() {
@@ -110,10 +111,10 @@ pub fn kept(folder: &Path) -> Result<Results, CompareError> {
     })
 }
 
-/// Reads the matrix in a folder; `None` if there is none.
+/// Reads the stress.json in a folder; `None` if the file does not exist.
 ///
 /// # Errors
-/// A file that cannot be read or is not a stress.json; with the place.
+/// A file that cannot be read, or is not a stress.json; the message shows the place.
 pub fn stress(folder: &Path) -> Result<Option<Report>, CompareError> {
     let file = read(&KEPT, &folder.join("stress.json")).map_err(CompareError::Input)?;
     let matrix = file.map(|file| {
@@ -144,10 +145,10 @@ fn profile_of(file: &SourceFile) -> Result<Profile, CompareError> {
     })
 }
 
-/// The results in a file.
+/// Parses the text of a results.json that is to be resumed.
 ///
 /// # Errors
-/// At the place where it is no results.json.
+/// Text that is not a results.json; the message shows the place.
 pub fn results_of(file: &SourceFile) -> Result<Results, CompareError> {
     parse_results(&file.text).map_err(|mistake| {
         let summary = "nothing was measured";

@@ -31,19 +31,19 @@ use skiagraph_reference::{
 };
 use std::{collections::BTreeMap, fmt};
 
-/// The program that measures, as files name it.
+/// Name and version of this program, as files show them.
 pub const PROGRAM: &str = concat!("skiagraph ", env!("CARGO_PKG_VERSION"));
 
-/// Everything that one `compare` measured.
+/// Content of `results.json`: the results of one or several `compare` commands.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Results {
     /// Version of this schema: 1.
     pub schema: u32,
     /// The program that measured, `skiagraph 0.1.0`.
     pub program: String,
-    /// The GPU that it ran on.
+    /// GPU on which the runs were measured.
     pub adapter: Adapter,
-    /// The machine that it ran on.
+    /// Machine on which the runs were measured.
     pub machine: Machine,
     /// The scene that was drawn.
     pub scene: Scene,
@@ -51,45 +51,45 @@ pub struct Results {
     pub oracle: String,
     /// Timed frames per run.
     pub frames: u32,
-    /// Frames before the timed ones.
+    /// Number of warm-up frames before the timed ones.
     pub warmup: u32,
     /// Timed frames in which only the camera moves, per run.
     pub cached_frames: u32,
-    /// When the comparison began that measured the newest runs, `2026-11-21T04:30:12Z`.
+    /// Start of the comparison that measured the newest runs, in UTC: `2026-11-21T04:30:12Z`.
     pub began: String,
-    /// Limits on methods that are to be taken; absent without any.
+    /// Limits that an acceptable method keeps; absent if there are none.
     #[serde(default, skip_serializing_if = "Budgets::is_empty")]
     pub budgets: Budgets,
-    /// The commands that measured it, the first one first.
+    /// Commands that measured the runs, the first one first.
     pub commands: Vec<String>,
     /// One entry per view, viewport, preset and map size, in this order.
     pub runs: Vec<Run>,
 }
 
-/// The GPU.
+/// GPU on which something was measured.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Adapter {
-    /// Name by its driver.
+    /// Name of the GPU by its driver.
     pub name: String,
-    /// vulkan, metal or dx12.
+    /// Graphics API: vulkan, metal or dx12.
     pub backend: String,
     /// Driver and its version.
     pub driver: String,
     /// DiscreteGpu, IntegratedGpu, VirtualGpu, Cpu or Other.
     pub device_type: String,
-    /// Why all `gpu_ms` are null; absent where they are not.
+    /// Reason why all `gpu_ms` are null; absent if they are measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gpu_unavailable: Option<String>,
 }
 
-/// The machine, as it was when a comparison began.
+/// Machine on which something was measured, as it was when the comparison began.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Machine {
-    /// Its name in its network; null where the system does not say.
+    /// Name of the machine in its network; null where the system does not say.
     pub host: Option<String>,
-    /// Name of its processor; empty where the system does not say.
+    /// Name of the processor; empty where the system does not say.
     pub processor: String,
-    /// Logical processors.
+    /// Number of logical processors.
     pub cores: u32,
     /// Mean number of processes that ran or waited to run over the minute before; null where the
     /// system does not say.
@@ -97,32 +97,33 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// True if other processes took half of the processors and more: they slow down what is timed.
+    /// True if the load is half of the logical processors or more: other processes then slow down
+    /// what is timed.
     pub fn is_loaded(&self) -> bool {
         self.load
             .is_some_and(|load| load >= 0.5 * f64::from(self.cores))
     }
 }
 
-/// The scene.
+/// Scene on which something was measured.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scene {
-    /// Its name.
+    /// Name of the scene.
     pub name: String,
-    /// Triangles in its mesh.
+    /// Number of triangles in the mesh.
     pub triangles: u64,
-    /// How much of its mesh is open.
+    /// Numbers of open and closed parts of the mesh.
     pub parts: OpenParts,
 }
 
-/// The parts of a mesh, triangles that share edges, and which are open.
+/// Numbers of a mesh's parts: sets of triangles that are connected by shared edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct OpenParts {
-    /// All of them.
+    /// Number of all parts.
     pub all: u64,
-    /// Those that have an edge of one side.
+    /// Number of open parts, which have an edge with a triangle on one side only.
     pub open: u64,
-    /// Triangles of the open ones.
+    /// Number of triangles in open parts.
     pub open_triangles: u64,
 }
 
@@ -180,53 +181,54 @@ pub struct Run {
     pub map_size: Option<u32>,
     /// All params of the graph with the values it ran with.
     pub params: BTreeMap<String, serde_json::Value>,
-    /// Hash of everything else that the run depends on: the texts of the graph, of what it includes
-    /// and of their shaders, the same of the graph that finds the visible triangles, mesh, light
-    /// and view.
+    /// Hash of everything but the params that the run depends on: the files of the graph, its
+    /// includes and shaders; those of the graph that finds the visible triangles; mesh, light and
+    /// view.
     pub fingerprint: String,
-    /// The day on which it was measured, `2026-11-21` (UTC).
+    /// Day on which the run was measured, `2026-11-21` (UTC).
     pub date: String,
-    /// When the comparison began that measured it, `2026-11-21T04:30:12Z`.
+    /// Start of the comparison that measured the run, in UTC: `2026-11-21T04:30:12Z`.
     pub session: String,
-    /// The document's promise of its answers with these params; absent where it has none.
+    /// Promise of the method's document about its answers with these params; absent if it makes
+    /// none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub promise: Option<Promise>,
-    /// The reference's pixels.
+    /// Counts of the reference's pixels.
     pub pixels: PixelCounts,
-    /// Pixels facing the light whose answer flips within the rounding error of receiver and
-    /// casters.
+    /// Number of pixels facing the light whose answer flips within the rounding error of receiver
+    /// and casters: the band.
     pub band: u64,
-    /// Pixels whose primitive, as rasterised, is hidden behind another one by more than rounding.
-    /// All methods are judged on the rasterised one.
+    /// Number of pixels whose primitive, as rasterised, is hidden behind another one by more than
+    /// rounding. All methods are judged on the rasterised one.
     pub wrong_surface: u64,
-    /// Sampling of the reference, of a light that has an extent; absent where it has none.
+    /// Sampling of the reference for a light with an extent; absent for other lights.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub area: Option<AreaReference>,
     /// The measurements; absent where the preset is unavailable.
     #[serde(flatten)]
     pub measured: Option<Measured>,
-    /// Why the preset could not run on this adapter; absent where it did.
+    /// Reason why the preset could not run on this adapter; absent where it did.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unavailable: Option<String>,
-    /// Figures that others have published, with `--beside`.
+    /// Figures that others have published about the run, with `--beside`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub published: Vec<Published>,
 }
 
 impl Run {
-    /// True if answer and light are hard, so that pixels are right or wrong.
+    /// True if method and light are hard: each pixel is then lit or in shadow, and right or wrong.
     pub fn is_hard(&self) -> bool {
         let measured = self.measured.as_ref();
         self.area.is_none() && measured.is_none_or(|of| of.answer == Answer::Hard)
     }
 
-    /// True unless it was kept at an early end, with a single frame that was timed by itself.
+    /// True unless the run was kept at an early end, with a single frame that was timed by itself.
     pub fn is_whole(&self) -> bool {
         let measured = self.measured.as_ref();
         measured.is_none_or(|of| of.sequence.is_some() || of.turns.is_some())
     }
 
-    /// Method, view, viewport and map in words.
+    /// Returns method, view, viewport and map size as text: `nsm on main 512x256, map 1024`.
     pub fn label(&self) -> String {
         let map = self
             .map_size
@@ -235,55 +237,58 @@ impl Run {
         format!("{} on {} {size}{map}", self.preset, self.view)
     }
 
-    /// The pixels that the method lights wrongly, of all that it lights.
+    /// Returns the number of pixels that the method lights wrongly, of all that it lights; `None`
+    /// without measurements.
     pub fn wrong_lit(&self) -> Option<Part> {
         let WrongCounts { lit, shadow, .. } = self.measured.as_ref()?.wrong;
         let of = (self.pixels.lit + lit).saturating_sub(shadow);
         Some(Part { count: lit, of })
     }
 
-    /// The pixels that the method has wrongly in shadow, of all that it has there.
+    /// Returns the number of pixels that the method has wrongly in shadow, of all that it has in
+    /// shadow; `None` without measurements.
     pub fn wrong_shadow(&self) -> Option<Part> {
         let WrongCounts { lit, shadow, .. } = self.measured.as_ref()?.wrong;
         let of = (self.pixels.shadow + shadow).saturating_sub(lit);
         Some(Part { count: shadow, of })
     }
 
-    /// True if it stands at the same place of a comparison as another one: of the same method,
-    /// view, viewport and map.
+    /// True if both runs have the same preset, view, viewport and map size, so that one replaces
+    /// the other in results.
     pub fn is_in_place_of(&self, other: &Self) -> bool {
         (&self.preset, &self.view, self.viewport, self.map_size)
             == (&other.preset, &other.view, other.viewport, other.map_size)
     }
 
-    /// Preset and map size, as a row's name.
+    /// Returns preset and map size as the name of a row: `nsm 1024`.
     pub fn method_label(&self) -> String {
         let with_size = |size| format!("{} {size}", self.preset);
         self.map_size.map_or(self.preset.clone(), with_size)
     }
 }
 
-/// The promise of a document.
+/// Promise that a document makes about its method's answers.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Promise {
-    /// `exact` of all its pixels, `certain` of those that it calls certain.
+    /// Pixels that are promised to be right: `exact` for all, `certain` for those that the method
+    /// calls certain.
     pub of: String,
-    /// True if it holds of closed casters alone, as the method leaves out faces.
+    /// True if the promise holds for closed casters alone, since the method leaves out faces.
     pub closed_only: bool,
 }
 
-/// In what a method answers.
+/// Kind of a method's answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Answer {
-    /// In 0 and 1: its visibility is a texture of integers.
+    /// Answers 0 and 1: the output `visibility` is a texture of integers.
     Hard,
-    /// In shares of light.
+    /// Answers that are shares of light.
     Graded,
 }
 
 impl Answer {
-    /// As tables and files have it.
+    /// Returns the word for tables and files: `hard` or `graded`.
     pub fn word(self) -> &'static str {
         match self {
             Self::Hard => "hard",
@@ -292,23 +297,23 @@ impl Answer {
     }
 }
 
-/// The reference of a light that has an extent; the run's `pixels` count as lit what sees half of
-/// it or more.
+/// Sampling of the reference for a light with an extent. The run's `pixels` count a pixel as lit if
+/// it sees half of the light or more.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AreaReference {
-    /// Shadow rays per pixel that faces the light.
+    /// Number of shadow rays per pixel that faces the light.
     pub samples: u32,
-    /// The estimated standard error of its shares, root mean square over the pixels that face the
-    /// light.
+    /// Estimated standard error of the reference's shares of light, root mean square over the
+    /// pixels that face the light.
     pub standard_error_rms: f64,
-    /// The greatest one.
+    /// Greatest estimated standard error of a pixel's share of light.
     pub standard_error_worst: f64,
-    /// Pixels facing the light that see a part of it.
+    /// Number of pixels facing the light that see only a part of it.
     pub penumbra: u64,
 }
 
 impl AreaReference {
-    /// Takes the figures of the oracle's answer.
+    /// Takes the figures from the oracle's answer for a light with an extent.
     pub fn new(area: &AreaVisibility, truth: &GroundTruthPixels) -> Self {
         let [standard_error_rms, standard_error_worst] = area.standard_error(truth);
         let partial = area
@@ -324,27 +329,27 @@ impl AreaReference {
     }
 }
 
-/// Some of those pixels that the method gives the same answer.
+/// A part of some pixels, as two counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Part {
-    /// How many.
+    /// Number of pixels in the part.
     pub count: u64,
-    /// Number of all of them.
+    /// Number of all pixels of which these are a part.
     pub of: u64,
 }
 
-/// A figure published by others about such a run or about its view and viewport.
+/// A figure that others have published about a run, or about its view and viewport.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Published {
-    /// Label of who did.
+    /// Label of the publication.
     pub by: String,
-    /// Quantity that it is of: `wrong_percent`, `ms.trace_rays` …
+    /// Name of the quantity: `wrong_percent`, `ms.trace_rays` …
     pub quantity: String,
-    /// The figure.
+    /// Value of the figure, in the unit of its quantity.
     pub value: f64,
-    /// Where it stands, `table 12`.
+    /// Place in the publication, `table 12`.
     pub source: String,
-    /// A remark on what is wrong with it as it is printed there.
+    /// Remark on a mistake in the figure as it is printed; absent if there is none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub note: Option<String>,
 }
@@ -352,37 +357,38 @@ pub struct Published {
 /// Measurements of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
-    /// Pixels that the method decided by its map alone.
+    /// Counts of the pixels that the method decided by its map alone.
     pub certain: CertainCounts,
-    /// Pixels that it left to rays, or all that it traced.
+    /// Number of pixels that the method left to rays, or all that it traced.
     pub uncertain: u64,
-    /// Certain and uncertain pixels, apart for those that the reference lights and those in its
-    /// shadow, each with how many are wrong.
+    /// Counts of the certain and the uncertain pixels, and of the wrong ones among them, separately
+    /// for pixels that the reference lights and pixels in its shadow.
     pub split: Split,
-    /// Rays traced per frame; null where the graph does not count them.
+    /// Number of rays traced per frame; null where the graph does not count them.
     pub rays: Option<u64>,
-    /// Pixels facing the light on which method and reference disagree.
+    /// Counts of the pixels facing the light on which method and reference disagree.
     pub wrong: WrongCounts,
-    /// The pixels of `wrong.certain` by what blocks them; absent where there are none, or where
-    /// answers are graded.
+    /// Counts of the pixels of `wrong.certain`, by the caster that blocks their light; absent if
+    /// there are none, or if answers are graded.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub certain_wrong_blockers: Option<BlockerCounts>,
-    /// Pixels that face the light by the reference but not by the method, or the other way round.
+    /// Number of pixels that face the light by the reference but not by the method, or the other
+    /// way round.
     pub facing_mismatch: u64,
-    /// Kind of the answers: 0 and 1, or shares of light. Of shares, `certain`, `split` and
-    /// `wrong` count as lit what is one half or more.
+    /// Kind of the answers: 0 and 1, or shares of light. Of shares, `certain`, `split` and `wrong`
+    /// count one half or more as lit.
     pub answer: Answer,
-    /// How far the shares of light that it shows are from the reference's; a hard answer shows 0 or
-    /// 1.
+    /// Errors of the shares of light that the method shows, against the reference; a hard answer
+    /// shows 0 or 1.
     pub graded: Graded,
-    /// How far wrong pixels lie from the edges of the reference's shadows.
+    /// Distances of wrong pixels from the edges of the reference's shadows.
     pub edges: EdgeDistances,
     /// Times of each pass, in the order in which they ran.
     pub passes: Vec<Pass>,
     /// Times of whole frames.
     pub frame: FrameTimes,
-    /// Times of frames in which only the camera moved and unchanged passes were skipped; null where
-    /// nothing was.
+    /// Times of frames in which only the camera moved and unchanged passes were skipped; null if no
+    /// pass was skipped.
     pub cached: Option<Cached>,
     /// Bytes of the graph's own materials.
     pub memory_bytes: u64,
@@ -390,53 +396,54 @@ pub struct Measured {
     pub saved_bytes: u64,
     /// Bytes of the scene's resources: positions, indices, hierarchy …
     pub scene_bytes: u64,
-    /// The methods that it took turns with, frame by frame; absent of a camera path, which each
-    /// method follows by itself.
+    /// Group of methods that took turns with this one, frame by frame; absent for a camera path,
+    /// which each method follows by itself.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub turns: Option<Turns>,
-    /// How a method that remembers came to its steady state; absent of one that does not.
+    /// Steady state of a method that remembers earlier frames; absent for other methods.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub steady: Option<Steady>,
-    /// Texels of its shadow map per pixel, of a path's worst frame; absent where the graph has no
-    /// output `texel_density`.
+    /// Texels of the shadow map per pixel, for a path in its worst frame; absent where the graph
+    /// has no output `texel_density`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub texels: Option<TexelsPerPixel>,
-    /// How errors jump where two layers of its shadow map meet, in a path's worst frame; absent
-    /// where the graph has no output `map_layer`, or no two layers meet.
+    /// Jumps of errors where two layers of the shadow map meet, for a path in its worst frame;
+    /// absent where the graph has no output `map_layer`, or no two layers meet.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub layer_jump: Option<LayerJump>,
-    /// The frames of a camera path; all other fields are their sums and spreads. Absent of a still
-    /// view.
+    /// Measurements of each frame of a camera path; all other fields are sums and spreads over the
+    /// frames. Absent for a still view.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sequence: Option<Sequence>,
-    /// The run's pictures, those of a path's worst frame, file names in the results' folder; absent
-    /// with `--images none`.
+    /// File names of the run's pictures in the results' folder, for a path of its worst frame;
+    /// absent with `--images none`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub images: Option<Images>,
 }
 
-/// The step that a pass belongs to: its name up to the first dot, so that `create_shadow_map.outer`
-/// and `create_shadow_map.inner` are one. What is repeated is no step, but what is in it:
-/// `turn[0].trace_rays` is of the step `trace_rays`.
+/// Returns the step that a pass belongs to: its name up to the first dot. `create_shadow_map.outer`
+/// and `create_shadow_map.inner` belong to the step `create_shadow_map`. The name of a repeat is
+/// skipped: `turn[0].trace_rays` belongs to the step `trace_rays`.
 pub fn step(pass: &str) -> &str {
     let mut steps = pass.split('.');
     steps.find(|step| !step.ends_with(']')).unwrap_or(pass)
 }
 
-/// The step that every preset begins with, and that is not the method's own work.
+/// Name of the step that every preset begins with, and that is not the method's own work.
 pub const GBUFFER: &str = "gbuffer";
 
 impl Measured {
-    /// The sum of the medians of a step's passes, or of several steps' in `one+another`; `None` if
-    /// a step has none, or one without a GPU time.
+    /// Returns the median GPU times of a step's passes, added up, in milliseconds; `one+another`
+    /// adds up several steps. Returns `None` if a step has no pass, or a pass no GPU time.
     pub fn step_ms(&self, name: &str) -> Option<f64> {
         let steps = name.split('+');
         let each = steps.map(|name| self.sum_ms(|pass| step(pass) == name));
         each.sum()
     }
 
-    /// The sum of the medians of all passes, to stand beside figures that are sums. Where passes
-    /// overlap it is more than the frame; `None` without GPU times.
+    /// Returns the median GPU times of all passes, added up, in milliseconds, to compare with
+    /// published sums. Where passes overlap, this is more than the frame's time. Returns `None`
+    /// without GPU times.
     pub fn steps_ms(&self) -> Option<f64> {
         self.sum_ms(|_| true)
     }
@@ -450,23 +457,25 @@ impl Measured {
         (!medians.is_empty()).then(|| medians.iter().sum())
     }
 
-    /// Frames per second: what the median frame allows. `None` without GPU times.
+    /// Returns the frames per second that the median GPU time of a frame allows; `None` without GPU
+    /// times.
     pub fn fps(&self) -> Option<f64> {
         Some(1000.0 / self.frame.gpu_ms?.median)
     }
 
-    /// The sum of the medians of the G-buffer's passes, those of the step `gbuffer`.
+    /// Returns the median GPU times of the passes of the step `gbuffer`, added up, in milliseconds;
+    /// `None` if there are none.
     pub fn gbuffer_ms(&self) -> Option<f64> {
         self.step_ms(GBUFFER)
     }
 
-    /// The median frame less its G-buffer; `None` without GPU times. A method that calls its
-    /// G-buffer something else keeps it in.
+    /// Returns the median GPU time of a frame without the step `gbuffer`, in milliseconds; `None`
+    /// without GPU times. A G-buffer under another name is included.
     pub fn ms_without_gbuffer(&self) -> Option<f64> {
         Some(self.frame.gpu_ms?.median - self.gbuffer_ms().unwrap_or(0.0))
     }
 
-    /// Wrong pixels that are determinate: outside the band.
+    /// Returns the number of wrong pixels outside the band, where rounding cannot be the cause.
     pub fn wrong_outside_band(&self) -> u64 {
         self.wrong.total.saturating_sub(self.wrong.in_band)
     }
@@ -475,51 +484,54 @@ impl Measured {
 /// Times of one pass.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pass {
-    /// Its name in the graph.
+    /// Name of the pass in the graph.
     pub name: String,
-    /// Between its GPU timestamps; null where they cannot be had or trusted.
+    /// Milliseconds between the pass's GPU timestamps; null where they cannot be had or trusted.
     pub gpu_ms: Option<Spread>,
-    /// Encoding on the CPU.
+    /// Milliseconds of encoding the pass on the CPU.
     pub cpu_ms: Spread,
 }
 
-/// A frame in which unchanged passes did not run.
+/// Times of frames in which unchanged passes did not run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cached {
-    /// Its times.
+    /// Times of whole frames.
     pub frame: FrameTimes,
     /// Names of the passes that did not run.
     pub skipped: Vec<String>,
 }
 
-/// File names of a run's pictures.
+/// File names of a run's pictures, in the folder of the results.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Images {
-    /// Frame of a camera path that they show, counted from 0: the worst. Its number is in
-    /// their names. Absent of a still view.
+    /// Index of the frame of a camera path that the pictures show, from 0: the worst frame. The
+    /// file names contain it. Absent for a still view.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frame: Option<usize>,
-    /// The reference's shadows, the same of all methods.
+    /// File name of the picture of the reference's shadows, the same for all methods.
     pub reference: String,
-    /// The scene in the method's shadow.
+    /// File name of the picture of the scene, shaded with the method's shadows.
     pub shaded: String,
-    /// The output `visibility`.
+    /// File name of the picture of the output `visibility`.
     pub visibility: String,
-    /// Blue where wrongly lit, red where wrongly in shadow, paler in the band, in as many pixels as
-    /// are wrong. Of grades the stronger the farther off, in full from a quarter on.
+    /// File name of the picture of the errors: blue where wrongly lit, red where wrongly in shadow,
+    /// paler in the band. For shares of light the colour grows with the error, and is full from an
+    /// error of a quarter on.
     pub error: String,
-    /// `shaded` with purple where uncertain; absent where the method calls no pixel certain or
-    /// uncertain.
+    /// File name of the picture `shaded` with uncertain pixels in purple; absent where the method
+    /// calls no pixel certain or uncertain.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub uncertain: Option<String>,
-    /// Shadow-map texels per pixel, from red (few) over pale yellow (1) to blue (many); absent
-    /// where the graph has no output `texel_density`.
+    /// File name of the picture of the shadow map's texels per pixel, from red (few) over pale
+    /// yellow (1) to blue (many); absent where the graph has no output `texel_density`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub texels: Option<String>,
-    /// Their part of distance and map alone; absent as `texels` is.
+    /// File name of the picture of the part of the texels per pixel that comes from distance and
+    /// map alone; absent as `texels` is.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub perspective: Option<String>,
-    /// Their part of angles alone; absent as `texels` is.
+    /// File name of the picture of the part of the texels per pixel that comes from angles alone;
+    /// absent as `texels` is.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub projection: Option<String>,
 }

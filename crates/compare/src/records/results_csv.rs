@@ -21,11 +21,11 @@ fn to_csv(results: &Results) -> Result<String, ::csv::Error> {
     Table::new(heads, 0, results.runs.iter().map(row)).csv()
 }
 
-/// Writes `results.json` and `results.csv` into `folder`; each is replaced whole or not at all.
-/// Returns the contents of the first.
+/// Writes `results.json` and `results.csv` into `folder`, each whole or not at all. Returns the
+/// text of `results.json`.
 ///
 /// # Errors
-/// One cannot be written.
+/// A file that cannot be written.
 pub fn save(results: &Results, folder: &Path) -> Result<String, CompareError> {
     let text = json::to_text(results);
     write_whole(&folder.join("results.json"), text.as_bytes())?;

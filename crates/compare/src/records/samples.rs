@@ -1,4 +1,4 @@
-//! Times of frames as they were sampled, one by one.
+//! Holds the times of single frames as they were sampled.
 //!
 //! ```
 //! use skiagraph_compare::records::samples::{Samples, TimedFrame};
@@ -18,43 +18,43 @@
 use skiagraph_gpu::FrameTiming;
 use std::time::Duration;
 
-/// A frame that was timed.
+/// Times of one frame.
 pub struct TimedFrame {
-    /// When its encoding began, from that of the first timed frame on.
+    /// Time from the start of the first timed frame until the encoding of this frame began.
     pub began: Duration,
-    /// Times of its passes.
+    /// GPU and CPU times of the frame's passes.
     pub timing: FrameTiming,
-    /// From the start of encoding until the GPU was done.
+    /// Time from the start of encoding until the GPU was done.
     pub wall: Duration,
-    /// The passes that did not run.
+    /// Names of the passes that did not run.
     pub skipped: Vec<String>,
 }
 
-/// The times of several frames, sorted by what they are times of.
+/// Times of several frames, as one list per kind of time with one item per frame.
 #[derive(Default)]
 pub struct Samples {
-    /// Each pass, in the order in which they ran.
+    /// Times of each pass, in the order in which the passes ran.
     pub passes: Vec<PassSamples>,
-    /// From the first begin to the last end on the GPU.
+    /// GPU time from the first pass's begin to the last one's end; `None` where it is not known.
     pub gpu: Vec<Option<Duration>>,
-    /// Encoding of all passes.
+    /// CPU time of encoding all passes.
     pub cpu: Vec<Duration>,
-    /// From the start of encoding until the GPU was done.
+    /// Time from the start of encoding until the GPU was done.
     pub wall: Vec<Duration>,
 }
 
-/// The times of one pass in several frames.
+/// Times of one pass, with one item for each frame in which it ran.
 pub struct PassSamples {
-    /// Its name.
+    /// Name of the pass.
     pub name: String,
-    /// Between its timestamps.
+    /// GPU time between the pass's timestamps; `None` where it is not known.
     pub gpu: Vec<Option<Duration>>,
-    /// Encoding.
+    /// CPU time of encoding the pass.
     pub cpu: Vec<Duration>,
 }
 
 impl Samples {
-    /// Gathers the samples of some frames.
+    /// Gathers the times of some frames.
     pub fn new(frames: &[TimedFrame]) -> Self {
         let mut samples = Self::default();
         for TimedFrame { timing, wall, .. } in frames {

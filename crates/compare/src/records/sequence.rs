@@ -1,4 +1,4 @@
-//! The frames of a camera path, in `results.json`.
+//! Measurements of the frames of a camera path, in `results.json`.
 //!
 //! ```
 //! use skiagraph_compare::records::sequence::Sequence;
@@ -26,9 +26,10 @@ use std::collections::BTreeMap;
 /// times the spread over them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sequence {
-    /// In their order.
+    /// Measurements of each frame, in the order of the path.
     pub frames: Vec<SequenceFrame>,
-    /// Answers that changed though the right ones did not, all frames together.
+    /// Counts of the answers that changed from frame to frame though the right ones did not, over
+    /// all frames.
     pub shimmer: Shimmer,
     /// The spread over the path of the frames' times with every pass run; absent where no frame
     /// skips one, and with `--cached-frames 0`.
@@ -36,33 +37,34 @@ pub struct Sequence {
     pub every_pass: Option<FrameTimes>,
 }
 
-/// One frame of a path.
+/// Measurements of one frame of a path.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SequenceFrame {
-    /// Pixels facing the light (PFL).
+    /// Number of pixels facing the light.
     pub facing_light: u64,
-    /// Number of these that are wrong, in-band pixels included.
+    /// Number of pixels facing the light that are wrong, in-band pixels included.
     pub wrong: u64,
-    /// Number of these that are wrong outside the band.
+    /// Number of pixels facing the light that are wrong outside the band.
     pub wrong_outside_band: u64,
-    /// How far the shown shares of light are off.
+    /// Errors of the shares of light that the frame shows.
     pub graded: Graded,
-    /// Rays traced; null where the graph does not count them.
+    /// Number of rays traced; null where the graph does not count them.
     pub rays: Option<u64>,
-    /// Its times; they stand beside its other figures.
+    /// Times of the frame; in JSON their fields stand beside the others.
     #[serde(flatten)]
     pub cost: FrameCost,
-    /// Beside the frame before; absent in the first.
+    /// Counts of the answers that changed since the frame before; absent in the first frame.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shimmer: Option<Shimmer>,
-    /// Passes that did not run, as nothing that they read had changed.
+    /// Names of the passes that did not run, as nothing that they read had changed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub skipped: Vec<String>,
-    /// Resources of the scene that were made anew before it, as something that they follow from has
-    /// changed.
+    /// Resources of the scene that were made anew before the frame, as something that they depend
+    /// on had changed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub remade: Vec<Remade>,
-    /// Its times when every pass runs: what it costs without what is kept.
+    /// Times of the frame when every pass runs, as if nothing were kept from earlier frames; absent
+    /// where this was not measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub every_pass: Option<FrameCost>,
 }
@@ -70,51 +72,55 @@ pub struct SequenceFrame {
 /// A resource of the scene that was made anew before a frame.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Remade {
-    /// Its name.
+    /// Name of the resource.
     pub name: String,
-    /// `made`, or `refitted`, of a hierarchy.
+    /// `made`, or `refitted` for a hierarchy.
     pub how: String,
-    /// Time that this took on the CPU in milliseconds, uploads included; not part of the frame's
-    /// times.
+    /// Milliseconds that this took on the CPU, uploads included; not part of the frame's times.
     pub ms: f64,
 }
 
-/// The times of one frame.
+/// Times of one frame.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrameCost {
-    /// From the first pass's begin to the last one's end; null where it cannot be had or trusted.
+    /// GPU time in milliseconds, from the first pass's begin to the last one's end; null where it
+    /// cannot be had or trusted.
     pub gpu_ms: Option<f64>,
-    /// From the start of encoding until the outputs were read back.
+    /// Milliseconds from the start of encoding until the outputs were read back, by the CPU's
+    /// clock.
     pub wall_ms: f64,
 }
 
 impl FrameCost {
-    /// The GPU's time, or that of the wall where there is none.
+    /// Returns the GPU time in milliseconds, or the time by the CPU's clock if there is none.
     pub fn ms(self) -> f64 {
         self.gpu_ms.unwrap_or(self.wall_ms)
     }
 }
 
 impl SequenceFrame {
-    /// By what frames are ranked: the root mean square error of shares.
+    /// Returns the error by which frames are ranked: the root mean square error of the shares of
+    /// light.
     pub fn error(&self) -> f64 {
         self.graded.rmse
     }
 }
 
 impl Sequence {
-    /// The frame with the largest [error](SequenceFrame::error), the first of equal ones, with its
-    /// index: the one that columns name and that pictures are of.
+    /// Returns the frame with the largest [error](SequenceFrame::error) and its index, the first of
+    /// equal ones. Columns and pictures show this frame. Returns `None` if there are no frames.
     pub fn worst(&self) -> Option<(usize, &SequenceFrame)> {
         greatest(self.frames.iter(), |frame| frame.error())
     }
 
-    /// The frame that takes the longest as it is, the first of equal ones, with its index.
+    /// Returns the index and times of the frame that takes longest, the first of equal ones; `None`
+    /// if there are no frames.
     pub fn slowest(&self) -> Option<(usize, FrameCost)> {
         greatest(self.frames.iter().map(|frame| frame.cost), |cost| cost.ms())
     }
 
-    /// The frame that takes the longest with every pass run.
+    /// Returns the index and times of the frame that takes longest when every pass runs, the first
+    /// of equal ones; `None` if this was not measured.
     pub fn slowest_with_every_pass(&self) -> Option<(usize, FrameCost)> {
         greatest(
             self.frames.iter().filter_map(|frame| frame.every_pass),
@@ -122,8 +128,8 @@ impl Sequence {
         )
     }
 
-    /// Lists resources of the scene whose remaking took a tenth of a millisecond or more, each with
-    /// how, in how many frames, and the median time in ms.
+    /// Lists the resources of the scene that took a median of 0.1 ms or more to make anew: name,
+    /// `made` or `refitted`, number of frames, and median time in milliseconds.
     pub fn remade<'s>(&'s self) -> Vec<(&'s str, &'s str, usize, f64)> {
         let all = self.frames.iter().flat_map(|frame| &frame.remade);
         let mut times: BTreeMap<(&str, &str), Vec<f64>> = BTreeMap::new();

@@ -1,4 +1,4 @@
-//! Order statistics of times.
+//! Order statistics of times: quartiles, medians and percentiles.
 //!
 //! ```
 //! use skiagraph_compare::records::statistics::{Series, Spread};
@@ -15,38 +15,38 @@
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
-/// Order statistics over frames, milliseconds.
+/// Order statistics of times over frames, in milliseconds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
-    /// Least.
+    /// Least sample.
     pub min: f64,
     /// First quartile, linear between the samples beside it.
     pub q1: f64,
-    /// Middle one, or the mean of the two in the middle.
+    /// Middle sample, or the mean of the two in the middle.
     pub median: f64,
-    /// Third quartile.
+    /// Third quartile, linear between the samples beside it.
     pub q3: f64,
     /// The smallest sample that at least 95 % of the samples do not exceed.
     pub p95: f64,
 }
 
-/// Times of frames.
+/// Times of frames by the GPU's and the CPU's clock, in milliseconds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrameTimes {
-    /// From the first pass's begin to the last one's end; null where timestamps cannot be had or
-    /// trusted.
+    /// GPU times from the first pass's begin to the last one's end; null where timestamps cannot be
+    /// had or trusted.
     pub gpu_ms: Option<Spread>,
-    /// From the start of encoding until the GPU was done, by the CPU's clock.
+    /// Times from the start of encoding until the GPU was done, by the CPU's clock.
     pub wall_ms: Spread,
-    /// The GPU's times of all frames in their order; null where one has none.
+    /// GPU time of each frame, in order; null if any frame has none.
     pub gpu_frames: Option<Vec<f64>>,
-    /// The same by the CPU's clock.
+    /// Time of each frame by the CPU's clock, in order.
     pub wall_frames: Vec<f64>,
 }
 
 impl FrameTimes {
-    /// Creates the times of frames; `None` if there are none. `gpu`: `None` where timestamps cannot
-    /// be had or trusted.
+    /// Creates the times of frames from the GPU time and the wall time of each; `None` if there are
+    /// no frames. GPU times are left out if any is missing.
     pub fn new(gpu: &[Option<Duration>], wall: &[Duration]) -> Option<Self> {
         let gpu_frames = all(gpu)
             .map(|gpu| in_ms(&gpu))
@@ -61,13 +61,15 @@ impl FrameTimes {
         })
     }
 
-    /// The times of all frames by the GPU's clock, or by the CPU's if `by_wall`.
+    /// Returns the time of each frame in milliseconds: by the CPU's clock if `by_wall`, otherwise
+    /// by the GPU's. Returns `None` if there are no GPU times.
     pub fn frames(&self, by_wall: bool) -> Option<&[f64]> {
         let wall = by_wall.then_some(&self.wall_frames[..]);
         wall.or(self.gpu_frames.as_deref().filter(|_| !by_wall))
     }
 
-    /// Their spread.
+    /// Returns the spread of the frames' times: by the CPU's clock if `by_wall`, otherwise by the
+    /// GPU's. Returns `None` if there are no GPU times.
     pub fn spread(&self, by_wall: bool) -> Option<Spread> {
         if by_wall {
             Some(self.wall_ms)
@@ -76,7 +78,7 @@ impl FrameTimes {
         }
     }
 
-    /// Leaves out the GPU's times.
+    /// Removes the GPU times.
     pub fn without_gpu(&mut self) {
         (self.gpu_ms, self.gpu_frames) = (None, None);
     }
@@ -104,7 +106,7 @@ impl Spread {
         })
     }
 
-    /// Returns the spread of samples of which any may be missing; `None` if one is.
+    /// Returns the spread of samples; `None` if one is missing, or if there are none.
     pub fn from_all(samples: &[Option<Duration>]) -> Option<Self> {
         Self::new(&all(samples)?)
     }
@@ -120,8 +122,7 @@ fn quartiles(sorted: &[f64]) -> [f64; 2] {
     })
 }
 
-/// Whole nanoseconds in milliseconds, so that a sample has no more than six digits behind the
-/// point.
+/// Converts times into milliseconds of whole nanoseconds, with at most six decimals.
 pub fn in_ms(times: &[Duration]) -> Vec<f64> {
     times
         .iter()
@@ -136,20 +137,20 @@ fn all(samples: &[Option<Duration>]) -> Option<Vec<Duration>> {
 /// Times in milliseconds, one per frame, and their order statistics.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Series {
-    /// Least.
+    /// Least sample.
     pub min: f64,
-    /// Middle one, or the mean of the two in the middle.
+    /// Middle sample, or the mean of the two in the middle.
     pub median: f64,
     /// The smallest sample that at least 95 % of the samples do not exceed.
     pub p95: f64,
-    /// Greatest.
+    /// Greatest sample.
     pub max: f64,
-    /// One per frame, in the order of the frames.
+    /// Samples, one per frame, in the order of the frames.
     pub samples: Vec<f64>,
 }
 
 impl Series {
-    /// Creates a series of some milliseconds; `None` if there are none.
+    /// Creates a series of times in milliseconds; `None` if there are none.
     pub fn new(samples: Vec<f64>) -> Option<Self> {
         let spread = Spread::from_ms(samples.iter().copied())?;
         let Spread {
@@ -164,17 +165,17 @@ impl Series {
         })
     }
 
-    /// Creates a series of some samples; `None` if there are none.
+    /// Creates a series of times; `None` if there are none.
     pub fn from_times(times: &[Duration]) -> Option<Self> {
         Self::new(in_ms(times))
     }
 
-    /// Creates a series of samples of which any may be missing; `None` if one is.
+    /// Creates a series of times; `None` if one is missing, or if there are none.
     pub fn from_all(times: &[Option<Duration>]) -> Option<Self> {
         Self::from_times(&all(times)?)
     }
 
-    /// First and third quartile, linear between the samples beside them.
+    /// Returns the first and third quartile of the samples, linear between the samples beside each.
     pub fn quartiles(&self) -> [f64; 2] {
         let mut sorted = self.samples.clone();
         sorted.sort_by(f64::total_cmp);

@@ -1,4 +1,4 @@
-//! The steady state of a method that remembers, in `results.json`.
+//! Steady state of a method that remembers earlier frames, in `results.json`.
 //!
 //! ```
 //! use skiagraph_compare::records::steady::Steady;
@@ -15,31 +15,33 @@
 
 use serde::{Deserialize, Serialize};
 
-/// How long a view stood still until a method that remembers showed the same again and again.
+/// Steady state of a method that remembers earlier frames: how long a view stood still until the
+/// picture repeated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Steady {
-    /// Frames until then, the first of them with an empty memory.
+    /// Number of frames until the picture repeated, the first with an empty memory.
     pub frames: u32,
-    /// Its picture repeats after so many frames, a graded one within 1/1024; null if it did not
-    /// within `frames`.
+    /// Number of frames after which the picture repeats, shares of light within 1/1024; null if it
+    /// did not repeat within `frames`.
     pub period: Option<u32>,
-    /// The cycle that was judged in this state; absent where a camera path begins in it.
+    /// Means of the pictures that were judged in this state; absent where a camera path begins in
+    /// it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub judged: Option<Cycle>,
 }
 
-/// Pictures of the steady state. By their mean methods are ranked; a run's counts are those of the
-/// worst.
+/// Means over the pictures of a steady state, by which methods are ranked. A run's counts are those
+/// of the worst picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Cycle {
-    /// How many: those of one period, or as many as the longest that was looked for.
+    /// Number of pictures: one period, or the longest period that was looked for if none was found.
     pub pictures: u32,
-    /// Wrong pixels of a picture in the mean, in-band ones included.
+    /// Mean number of wrong pixels in a picture, in-band ones included.
     pub wrong_mean: f64,
-    /// Wrong pixels of a picture outside the band, in the mean.
+    /// Mean number of wrong pixels outside the band in a picture.
     pub wrong_outside_band_mean: f64,
-    /// Root mean square error of a picture in the mean.
+    /// Mean of the pictures' root mean square errors.
     pub rmse_mean: f64,
-    /// FLIP of a picture in the mean.
+    /// Mean of the pictures' FLIP errors.
     pub flip_mean: f64,
 }

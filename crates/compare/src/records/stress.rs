@@ -1,5 +1,5 @@
-//! The schema of `stress.json`, version 1, and what is judged of it. Scripts rely on it: extend it,
-//! rename nothing.
+//! The schema of `stress.json`, version 1, and its verdicts. Scripts rely on it: extend it, rename
+//! nothing.
 //!
 //! ```
 //! use skiagraph_compare::records::{read_back, stress::{Report, Verdict}};
@@ -24,24 +24,25 @@ pub use skiagraph_cases::Casters;
 use skiagraph_reference::{PixelCounts, Statistics, WrongCounts};
 use std::collections::BTreeMap;
 
-/// The matrix.
+/// Results of `stress`: a matrix with a row per case and a column per method.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Report {
     /// Version of this schema: 1.
     pub schema: u32,
     /// The program that ran, `skiagraph 0.1.0`.
     pub program: String,
-    /// Where.
+    /// GPU on which the cases ran.
     pub adapter: Adapter,
     /// Width and height in pixels.
     pub viewport: [u32; 2],
-    /// The columns.
+    /// Methods, the columns of the matrix.
     pub methods: Vec<Column>,
-    /// The rows that are done, in the order of the catalogue or of the command line.
+    /// Finished cases, the rows of the matrix, in the order of the catalogue or of the command
+    /// line.
     pub cases: Vec<Case>,
 }
 
-/// A method.
+/// A method, as a column of the matrix.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Column {
     /// Name of the preset, or path of the graph.
@@ -51,28 +52,29 @@ pub struct Column {
     /// All params of the graph with the values it runs with, but for cells with a `set` of their
     /// own.
     pub params: BTreeMap<String, Value>,
-    /// Which pixels must be right; null where nothing is guaranteed.
+    /// Pixels that the method guarantees to be right; null where nothing is guaranteed.
     #[serde(rename = "promise")]
     pub guarantee: Option<Guarantee>,
-    /// Why it can be guaranteed; null where nothing is.
+    /// Reason for the guarantee; null where nothing is guaranteed.
     pub because: Option<String>,
-    /// Why it cannot run on this adapter; absent where it can, and then it has no cells.
+    /// Reason why the method cannot run on this adapter; absent where it can. Such a method has no
+    /// cells.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unavailable: Option<String>,
 }
 
-/// Which pixels must be right, outside the band.
+/// Pixels that a method guarantees to be right, outside the band.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Guarantee {
-    /// Those of the final picture.
+    /// All pixels of the final picture.
     Exact,
-    /// Those that the method calls certain.
+    /// Pixels that the method calls certain.
     Certain,
 }
 
 impl Guarantee {
-    /// As headers have it.
+    /// Returns the word for headers: `exact` or `certain`.
     pub fn word(self) -> &'static str {
         match self {
             Self::Exact => "exact",
@@ -81,63 +83,64 @@ impl Guarantee {
     }
 }
 
-/// A case with all methods.
+/// A case with the results of all methods, as a row of the matrix.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Case {
-    /// Its name in the catalogue.
+    /// Name of the case in the catalogue.
     pub name: String,
-    /// The fault that it provokes.
+    /// Fault that the case provokes.
     pub reason: String,
-    /// Closed or open casters.
+    /// Kind of the case's casters: closed or open.
     pub casters: Casters,
     /// The greatest share of the pixels facing the light that the band may take.
     pub band_cap: f64,
-    /// Verdict on the band: failed where it is above its cap, or there is no reference at all.
+    /// Verdict on the band: failed if it is above its cap, or if the case has no reference.
     pub verdict: Verdict,
-    /// Why there is no reference, and so no cell; absent where there is one.
+    /// Reason why the case has no reference, and so no cells; absent where it has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failed: Option<String>,
-    /// The reference's pixels.
+    /// Counts of the reference's pixels.
     pub pixels: PixelCounts,
-    /// Pixels facing the light whose answer flips within the rounding error of receiver and
-    /// casters.
+    /// Number of pixels facing the light whose answer flips within the rounding error of receiver
+    /// and casters: the band.
     pub band: u64,
-    /// Pixels that show a surface which is not seen there: another one stands before it by more
-    /// than rounding.
+    /// Number of pixels whose primitive, as rasterised, is hidden behind another one by more than
+    /// rounding.
     pub wrong_surface: u64,
-    /// One per method that runs, and one more without culling where that is what is judged.
+    /// Results of the methods: a cell per method that runs, and a second one without culling if
+    /// only that way to run it is judged.
     pub cells: Vec<Cell>,
 }
 
-/// One method on one case.
+/// Result of one method on one case.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Cell {
     /// Name of the preset, or path of the graph.
     pub preset: String,
     /// Value of the param `map_size`; null where the graph has none.
     pub map_size: Option<u32>,
-    /// The param that differs from the method's, `cull=none`; null where none does.
+    /// Assignment that differs from the method's params, `cull=none`; null if there is none.
     pub set: Option<String>,
     /// The cell's verdict.
     pub verdict: Verdict,
-    /// The cell's counts; absent where it could not run.
+    /// Counts of the cell's pixels; absent where the method could not run.
     #[serde(flatten)]
     pub counts: Option<Counts>,
-    /// Why it could not run; absent where it could.
+    /// Reason why the method could not run; absent where it could.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failed: Option<String>,
-    /// Its pictures, file names in the folder of `--save`.
+    /// File names of the cell's pictures in the folder of `--save`; absent without pictures.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub images: Option<Images>,
 }
 
-/// Verdict on a cell or band.
+/// Verdict on a cell, or on the band of a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// As guaranteed.
+    /// The guarantee holds.
     Pass,
-    /// Not as guaranteed, or it could not run.
+    /// The guarantee is broken, or the method could not run.
     Fail,
     /// Not judged: what the method guarantees of closed casters does not hold for this case's open
     /// ones.
@@ -147,34 +150,34 @@ pub enum Verdict {
     Unjudged,
 }
 
-/// Counts of a cell.
+/// Counts of a cell's pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Counts {
-    /// Pixels on which method and reference disagree.
+    /// Counts of the pixels on which method and reference disagree.
     pub wrong: WrongCounts,
-    /// Those of them that are not in the band.
+    /// Counts of the wrong pixels that are not in the band.
     pub outside_band: OutsideBand,
-    /// Pixels facing the light that the method left to rays, or all that it traced.
+    /// Number of pixels facing the light that the method left to rays, or all that it traced.
     pub uncertain: u64,
-    /// The same as a share.
+    /// Uncertain pixels as a share of the pixels facing the light, 0 to 1.
     pub uncertain_share: f64,
-    /// Rays traced; null where the graph does not count them.
+    /// Number of rays traced; null where the graph does not count them.
     pub rays: Option<u64>,
 }
 
-/// Wrong pixels outside the band.
+/// Counts of the wrong pixels outside the band.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct OutsideBand {
-    /// Lit by the method, not by the reference.
+    /// Pixels lit by the method, but not by the reference.
     pub lit: u64,
-    /// In shadow by the method, lit by the reference.
+    /// Pixels in shadow by the method, but lit by the reference.
     pub shadow: u64,
-    /// Those of both that the method called certain.
+    /// Wrong pixels of both kinds that the method called certain.
     pub certain: u64,
 }
 
 impl OutsideBand {
-    /// True if this breaks the guarantee.
+    /// True if these wrong pixels break a guarantee.
     pub fn breaks(&self, guarantee: Guarantee) -> bool {
         match guarantee {
             Guarantee::Exact => self.lit + self.shadow > 0,
@@ -184,8 +187,9 @@ impl OutsideBand {
 }
 
 impl Verdict {
-    /// Judges a cell that ran. `culls`: not all faces cast shadows, so that nothing is guaranteed
-    /// of open casters; `certain`: pixels called so.
+    /// Judges a cell that ran. `culls` says that not all faces cast shadows, so that nothing is
+    /// guaranteed for open casters. `certain` is the number of pixels that the method calls
+    /// certain, `outside` counts the wrong pixels outside the band.
     pub fn new(
         guarantee: Option<Guarantee>,
         culls: bool,
@@ -204,8 +208,8 @@ impl Verdict {
 }
 
 impl Counts {
-    /// Counts a picture: `whole` counts all of its pixels, `settled` the same with the reference's
-    /// answer wherever that is in the band.
+    /// Creates the counts of a picture. `whole` counts all of its pixels; `settled` counts them
+    /// with the reference's answer for pixels in the band.
     pub fn new(whole: &Statistics, settled: &Statistics, rays: Option<u64>) -> Self {
         let outside = settled.wrong;
         Self {
@@ -223,21 +227,21 @@ impl Counts {
 }
 
 impl Cell {
-    /// True if it is of this method.
+    /// True if the cell belongs to the method of a column.
     pub fn is_of(&self, column: &Column) -> bool {
         (&self.preset, self.map_size) == (&column.preset, column.map_size)
     }
 }
 
 impl Case {
-    /// True if the band takes more than its cap: the pixels in it are not proven, and a band that
-    /// swallows a case proves nothing.
+    /// True if the band takes more than its cap of the pixels facing the light. Pixels in the band
+    /// prove nothing, and so does a case that consists of them.
     pub fn exceeds_cap(&self) -> bool {
         self.band as f64 > self.band_cap * self.pixels.facing_light as f64
     }
 
-    /// True if a method with a map called nothing certain, so that a right answer says nothing of
-    /// the map.
+    /// True if a method with a shadow map left all pixels facing the light to rays, so that a right
+    /// answer says nothing about its map.
     pub fn is_left_to_rays(&self, cell: &Cell) -> bool {
         let all = self.pixels.facing_light;
         let of_all = |counts: &Counts| all > 0 && counts.uncertain == all;
@@ -246,13 +250,13 @@ impl Case {
 }
 
 impl Report {
-    /// How many cells came to this.
+    /// Returns the number of cells with a verdict.
     pub fn count(&self, verdict: Verdict) -> usize {
         let cells = self.cases.iter().flat_map(|case| &case.cells);
         cells.filter(|cell| cell.verdict == verdict).count()
     }
 
-    /// How many cells passed without calling anything certain.
+    /// Returns the number of cells that passed, but whose method left all pixels to rays.
     pub fn left_to_rays(&self) -> usize {
         let cases = self.cases.iter();
         let cells = cases.flat_map(|case| case.cells.iter().map(move |cell| (case, cell)));
@@ -262,7 +266,7 @@ impl Report {
             .count()
     }
 
-    /// How many cases have too large a band, or no reference.
+    /// Returns the number of cases that failed: their band is too large, or they have no reference.
     pub fn failed_cases(&self) -> usize {
         let failed = |case: &&Case| case.verdict == Verdict::Fail;
         self.cases.iter().filter(failed).count()

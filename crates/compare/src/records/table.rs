@@ -1,4 +1,4 @@
-//! A table as plain data, and as text where that needs no more than text.
+//! A table as plain data, which can be written as Markdown or CSV.
 //!
 //! ```
 //! use skiagraph_compare::records::table::Table;
@@ -13,19 +13,19 @@
 use crate::files::csv;
 use serde::Serialize;
 
-/// Heads and rows of cells, which are as they are shown.
+/// A table of cells with text that is shown as it is.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Table {
-    /// A head for each column.
+    /// Head of each column.
     pub heads: Vec<String>,
-    /// How many columns hold words, from the first on; the others hold numbers.
+    /// Number of columns, from the first on, that hold words; the others hold numbers.
     pub words: usize,
-    /// Rows of as many cells as there are heads.
+    /// Cells of each row, one per column.
     pub rows: Vec<Vec<String>>,
 }
 
 impl Table {
-    /// A table whose first `words` columns hold words.
+    /// Creates a table whose first `words` columns hold words, the others numbers.
     pub fn new<H: Into<String>>(
         heads: impl IntoIterator<Item = H>,
         words: usize,
@@ -38,7 +38,7 @@ impl Table {
         }
     }
 
-    /// The table for a document.
+    /// Returns the table as Markdown, with numbers aligned to the right.
     pub fn markdown(&self) -> String {
         let line = |cells: &[String]| {
             let cells: Vec<String> = cells.iter().map(|cell| cell.replace('|', "\\|")).collect();
@@ -50,7 +50,7 @@ impl Table {
         format!("{}|{rule}\n{rows}", line(&self.heads))
     }
 
-    /// The table as CSV: a line per row, quoted where needed.
+    /// Returns the table as CSV: a line per row, quoted where needed.
     ///
     /// # Errors
     /// A row that is not as long as the heads.

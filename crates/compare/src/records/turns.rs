@@ -18,23 +18,24 @@
 use crate::records::statistics::FrameTimes;
 use serde::{Deserialize, Serialize};
 
-/// The group of methods that a run took turns with.
+/// Group of methods that took turns frame by frame, to which a run belongs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Turns {
-    /// Index of the group in the view and viewport: all methods that fit the memory at once.
+    /// Index of the group among those of the view and viewport. A group holds as many methods as
+    /// fit the memory at once.
     pub group: u32,
-    /// Times of the frames of the group's first method, which is the same in all groups of the view
-    /// and viewport: their common measure.
+    /// Times of the frames of the group's first method. It is the same method in all groups of the
+    /// view and viewport, so that groups can be compared.
     pub anchor: FrameTimes,
 }
 
 /// The ratio of the times of two methods over their turns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PairedRatio {
-    /// Lower end of the interval in which the median of all such ratios lies, with a confidence of
-    /// at least 99 % (order statistics: no distribution is supposed).
+    /// Lower end of the interval in which the median of all such ratios lies with a confidence of
+    /// at least 99 %, whatever their distribution (order statistics).
     pub low: f64,
-    /// Median of the ratios.
+    /// Median of the ratios, one per turn.
     pub median: f64,
     /// Upper end of the interval.
     pub high: f64,
@@ -51,8 +52,8 @@ const LEVEL: f64 = 0.03;
 const RESOLUTION_MS: f64 = 1e-6;
 
 impl PairedRatio {
-    /// Divides the times of `one` by those of `other`, turn by turn; `None` if there are too few
-    /// for an interval, fewer than eight.
+    /// Divides the times of `one` by those of `other`, turn by turn; `None` for fewer than eight
+    /// turns.
     pub fn new(one: &[f64], other: &[f64]) -> Option<Self> {
         let pairs = one.iter().zip(other);
         let ratio = |(one, other): (&f64, &f64)| one.max(RESOLUTION_MS) / other.max(RESOLUTION_MS);

@@ -1,35 +1,35 @@
-//! Which passes run in a frame, by what changed since they ran last.
+//! Decides which passes run in a frame, by the changes since each ran last.
 //!
-//! A pass need not run again while everything that it reads is what it read the last time. Contents
-//! are not compared, that would cost more than most passes: every write and every word of the host
-//! that something has changed is a new number, and a pass remembers the numbers that it has seen.
+//! A pass need not run again while its inputs are unchanged. Contents are not compared, which would
+//! cost more than most passes. Instead every write, and every change that the host reports, gets a
+//! new number, and a pass remembers the numbers that it has seen.
 
 use super::pass::{GpuPass, InputVersions};
 use crate::memory::physical::{PingPong, Versions};
 use skiagraph_graph::{Origin, Plan, ResourceId, When};
 use std::collections::BTreeMap;
 
-/// Contents of the resources of a plan, as far as they can be told without looking.
+/// Version numbers of the contents of a plan's resources.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Contents {
     /// Version of every resource of the plan, by id.
     versions: Vec<u64>,
     clock: u64,
-    /// Which of its two allocations holds a resource that has two.
+    /// Index of the allocation with the latest content, for each resource with two allocations.
     latest: BTreeMap<ResourceId, usize>,
-    /// Version that each copy of a provided resource, as it was in the frame before, is a copy of.
+    /// Version of the content in each `.previous` copy of a provided resource.
     copied: BTreeMap<ResourceId, u64>,
-    /// The provided resources that are read as they were in the frame before, and their copies.
+    /// The provided resources that are read as `.previous`, with their copies.
     host_copies: Vec<HostCopy>,
     /// Versions before the frame.
     before: Vec<u64>,
 }
 
-/// A provided resource, and the copy of it that the next frame reads.
+/// A provided resource, and the copy of it that the next frame reads as `.previous`.
 pub(super) type HostCopy = (ResourceId, ResourceId);
 
 impl Contents {
-    /// Contents of a plan of which nothing is known.
+    /// Creates the versions of a plan whose resources have no known content.
     pub fn new(plan: &Plan, clock: u64) -> Self {
         let mut contents = Self {
             versions: vec![0; plan.resources().len()],
@@ -46,18 +46,19 @@ impl Contents {
         contents
     }
 
-    /// The number of the last change.
+    /// Returns the number of the last change.
     pub fn clock(&self) -> u64 {
         self.clock
     }
 
-    /// Another content.
+    /// Gives a resource a new version: its content has changed.
     pub fn touch(&mut self, id: ResourceId) {
         self.clock += 1;
         self.versions[id.index()] = self.clock;
     }
 
-    /// The content is that which another resource had.
+    /// Gives a resource the version that the resource `of` has in `other`: it holds the same
+    /// content.
     pub fn take_over(&mut self, id: ResourceId, other: &Self, of: ResourceId) {
         self.versions[id.index()] = other.versions[of.index()];
         if let Some(latest) = other.latest.get(&of) {
@@ -68,7 +69,8 @@ impl Contents {
         }
     }
 
-    /// Decides which passes of the schedule run. A group runs if one of its passes has a reason to.
+    /// Sets `runs` to true for each pass of the schedule that runs. A group runs if one of its
+    /// passes has a reason to, or if `all` is set and its run condition is not false.
     pub fn running(&self, plan: &Plan, passes: &[GpuPass], all: bool, runs: &mut Vec<bool>) {
         let conditions = &plan.schedule().conditions;
         let groups = &conditions.group;
@@ -115,7 +117,8 @@ impl Contents {
         }
     }
 
-    /// Whose turn it is in a frame in which these passes run.
+    /// Sets the current and previous allocation of each resource with two, for a frame that runs
+    /// these passes.
     pub fn ping_pong(&self, plan: &Plan, runs: &[bool], turn: &mut PingPong) {
         let writers = &plan.schedule().conditions.writers;
         // Entries that exist stay in their place: every frame comes here.
@@ -174,8 +177,8 @@ impl Contents {
         }
     }
 
-    /// Calls `copy` for what has to be copied before a frame's first pass: there was no frame
-    /// before, so what it reads of that is what there is now.
+    /// Calls `copy` for each `.previous` copy that was never filled, before a frame's first pass:
+    /// there was no frame before, so the current content takes its place.
     pub fn first_copies(&mut self, mut copy: impl FnMut(HostCopy)) {
         for &(base, of_base) in &self.host_copies {
             self.copied.entry(of_base).or_insert_with(|| {
@@ -185,7 +188,8 @@ impl Contents {
         }
     }
 
-    /// Calls `copy` for what has to be copied behind a frame's last pass: it is not what it was.
+    /// Calls `copy` for each provided resource that has changed since it was last copied, after a
+    /// frame's last pass.
     pub fn copies(&mut self, mut copy: impl FnMut(HostCopy)) {
         for at in 0..self.host_copies.len() {
             let (base, of_base) = self.host_copies[at];
@@ -198,8 +202,9 @@ impl Contents {
     }
 }
 
-/// Returns the resource that another is last frame's version of, if its content is counted there:
-/// two allocations take turns. Copies of what the host provides are counted by themselves.
+/// Returns the resource whose version counts for a `.previous` resource with two alternating
+/// allocations. `None` for other resources; `.previous` copies of provided ones have versions of
+/// their own.
 fn counted(plan: &Plan, id: ResourceId) -> Option<ResourceId> {
     match plan.resource(id).origin {
         Origin::Previous(base) if plan.resource(base).origin == Origin::Own => Some(base),
@@ -207,7 +212,7 @@ fn counted(plan: &Plan, id: ResourceId) -> Option<ResourceId> {
     }
 }
 
-/// Returns the provided resources that a live pass reads as they were in the frame before.
+/// Returns the provided resources that a live pass reads as `.previous`, with their copies.
 fn host_copies(plan: &Plan) -> impl Iterator<Item = HostCopy> + '_ {
     let copy = |id: &ResourceId| match plan.resource(*id).origin {
         Origin::Previous(base) if plan.resource(base).origin == Origin::Host => Some((base, *id)),

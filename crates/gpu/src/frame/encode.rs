@@ -1,20 +1,20 @@
-//! Steps become commands.
+//! Encodes the steps of passes as wgpu commands.
 
 use super::{statistics::Counters, timer::Timer};
 use crate::pipelines::handles::{GpuAttachment, GpuOperand, GpuProgram, Handles, PipelineKind};
 use skiagraph_graph::step::{Dispatch, Draw, DrawCall, Groups, Step};
 use smallvec::SmallVec;
 
-/// Timer and counters of a pass.
+/// Timer and counters of a frame; `None` if they were not requested.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Meters<'t> {
     pub timer: Option<&'t Timer>,
     pub counters: Option<&'t Counters>,
 }
 
-/// Encodes the steps of a pass, under its name in captures. A single draw or dispatch bears it as
-/// the label of its render or compute pass; a debug group around that would say it twice, and costs
-/// more than all else that the graph adds.
+/// Encodes the steps of a pass, under its name in captures of graphics debuggers. The render or
+/// compute pass of a single draw or dispatch carries the name as its label. A debug group around it
+/// would repeat the name, and cost more than all else that the graph adds.
 pub(super) fn encode_all(
     steps: &[Step<Handles>],
     name: &str,
@@ -195,7 +195,7 @@ fn end(
     }
 }
 
-/// The place of the attachments in a draw without any: it is never read.
+/// Returns the placeholder attachment of a draw without attachments; its content is discarded.
 fn canvas_attachment(canvas: &GpuAttachment) -> Option<wgpu::RenderPassColorAttachment<'_>> {
     let mut attachment = color_attachment(canvas, None, Some([0.0; 4]))?;
     attachment.ops.store = wgpu::StoreOp::Discard;

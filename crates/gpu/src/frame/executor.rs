@@ -1,4 +1,4 @@
-//! A plan on a device, and its frames.
+//! Runs a plan on a device, frame by frame.
 
 use super::{
     fetch::Fetch,
@@ -33,23 +33,23 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// How long it is waited for another thread that polls the device to say what is done.
+/// Longest wait for another thread that polls the device to signal finished work.
 const CALLBACK: Duration = Duration::from_secs(10);
 
-/// A plan on a device.
+/// Runs a plan on a device: creates its resources and pipelines, and encodes its frames.
 ///
-/// For each frame call [`encode`](Self::encode), then submit the encoder. Only if times or
-/// readbacks were asked for, call [`poll`](Self::poll), which does not wait, in this frame or a
-/// later one, or [`finish`](Self::finish), which waits. Submit every such encoder, in the order of
-/// encoding: later frames use what earlier ones wrote, in passes that are skipped and as
-/// `.previous`.
+/// For each frame call [`encode`](Self::encode), then submit the encoder. If the frame asked for
+/// times, statistics or readbacks, collect its report with [`poll`](Self::poll), which does not
+/// wait, in this frame or a later one, or with [`finish`](Self::finish), which waits. Submit every
+/// such encoder, in the order of encoding: later frames use the results of earlier ones, in skipped
+/// passes and as `.previous`.
 pub struct Executor {
     device: wgpu::Device,
     presence: Presence,
     queue: wgpu::Queue,
     pipelines: Pipelines,
     state: State,
-    /// Whose turn it was in the frame that was encoded last.
+    /// Allocation that each resource with two of them uses in the frame that was encoded last.
     ping_pong: PingPong,
     decision: FrameDecision,
     host_changes: HostChanges,
@@ -61,13 +61,14 @@ pub struct Executor {
 }
 
 impl Executor {
-    /// Makes what the plan needs on the device, asks the provider for what live passes bind, and
-    /// encodes every pass once into a throw-away encoder, so that whatever the device refuses is
-    /// refused here. (A pass that uses an import is tried when it is first needed after the import
-    /// was handed over: in [`Executor::encode`], before the host's encoder is touched.)
+    /// Creates an executor for a plan. It creates what the plan needs on the device and asks the
+    /// provider for the resources that live passes bind. It encodes every pass once into a
+    /// throw-away encoder, so that errors of the device are found here. A pass that uses an import,
+    /// or a resource that the provider cannot build yet, is tried only in [`Executor::encode`],
+    /// before the host's encoder is touched.
     ///
     /// # Errors
-    /// See [`ExecuteError`]; an error about a pass names it and its place.
+    /// See [`ExecuteError`]; an error about a pass names the pass and its place in the document.
     pub fn new(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
@@ -101,20 +102,19 @@ impl Executor {
         Ok(executor)
     }
 
-    /// The plan.
+    /// Returns the plan that the executor runs.
     pub fn plan(&self) -> &Plan {
         &self.state.plan
     }
 
-    /// Encodes a frame, which the host submits; returns its number. It never waits: any number of
-    /// frames may be under way. A resource with `grow` that was too small for an earlier frame, as
-    /// submissions have told since, is larger from this frame on: see [`Plan::grown`].
+    /// Encodes a frame, which the host submits, and returns the frame's number. It never waits; any
+    /// number of frames may be in flight. Resources with `grow` that proved too small for an
+    /// earlier, submitted frame are larger from this frame on: see [`Plan::grown`].
     ///
     /// # Errors
-    /// If an output is asked for that the plan does not have, an import or something of the
-    /// provider's is missing, the device is lost or has no memory to read something back, or
-    /// refuses a pass that is bound in this frame for the first time. Nothing has been encoded
-    /// then.
+    /// If the plan lacks a requested output; an import or a provided resource is missing; the
+    /// device is lost, has too little memory for a readback, or refuses a pass that is bound for
+    /// the first time. After an error nothing has been encoded.
     pub fn encode(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -141,7 +141,7 @@ impl Executor {
         Ok(index)
     }
 
-    /// Gets ready what a frame needs besides the passes' own.
+    /// Gets ready the uniform, readbacks and timers that a frame needs besides its passes.
     fn prepare(
         &mut self,
         frame_in_flight: &mut FrameInFlight,
@@ -207,13 +207,14 @@ impl Executor {
         state.contents.copies(&mut copy_host);
     }
 
-    /// Returns the report of a frame that asked for times or contents, if it is done: the oldest
-    /// one that was not handed out yet. It never waits. Each such frame brings one report, in the
-    /// order of encoding, but for those whose encoders were dropped and not submitted.
+    /// Returns the report of the oldest frame that asked for times, statistics or readbacks and has
+    /// not been reported yet. `None` if the GPU has not finished that frame, or if there is none.
+    /// It never waits. Each such frame brings one report, in the order of encoding; frames whose
+    /// encoder was dropped without being submitted bring none.
     ///
     /// # Errors
-    /// If the device was lost, or something could not be read back or timed: that frame brings no
-    /// report.
+    /// If the device was lost, or a readback or the times of the frame failed. The failed frame
+    /// brings no report.
     pub fn poll(&mut self) -> Result<Option<FrameReport>, ExecuteError> {
         if self.under_way() == 0 {
             return Ok(None);
@@ -222,15 +223,16 @@ impl Executor {
         self.frames_in_flight.report(&self.device, &self.presence)
     }
 
-    /// How many frames have asked for times or contents that were not handed out yet. A host that
-    /// asks in every frame must ask [`poll`](Self::poll), too, or they become ever more.
+    /// Returns the number of frames that asked for times, statistics or readbacks and have not been
+    /// reported yet. It grows without bound if a host asks in every frame but does not call
+    /// [`poll`](Self::poll).
     pub fn under_way(&self) -> usize {
         self.frames_in_flight.asked()
     }
 
-    /// Waits until all that was submitted is done, and hands out what [`poll`](Self::poll) would.
-    /// If no frame brings a report, it names the passes that were skipped in the one that was
-    /// encoded last.
+    /// Waits until the GPU has finished all submitted work, and returns the report that
+    /// [`poll`](Self::poll) would. If no report is due, it returns one for the last encoded frame
+    /// that holds only the frame's number and its skipped passes.
     ///
     /// # Errors
     /// Those of [`poll`](Self::poll), and [`ExecuteError::NotSubmitted`].
@@ -238,13 +240,13 @@ impl Executor {
         self.finish_within(None)
     }
 
-    /// [`finish`](Self::finish) that waits no longer than `timeout`, if there is one. A shader that
-    /// never ends blocks some drivers for ever; others lose the device.
+    /// Waits as [`finish`](Self::finish) does, but no longer than `timeout`; `None` sets no limit.
+    /// A shader that never ends blocks some drivers for ever; others lose the device.
     ///
     /// # Errors
-    /// Besides those of `finish`: [`ExecuteError::Unfinished`]. The frame can be waited for again.
-    /// A host that gives up must know that wgpu waits, without end, when the last handle of the
-    /// queue is dropped: `std::mem::forget` a clone of it to let the process end.
+    /// Those of `finish`, and [`ExecuteError::Unfinished`] after the timeout; the frame can be
+    /// waited for again. A host that gives up should `std::mem::forget` a clone of the queue before
+    /// it exits: wgpu waits without end when the last handle of the queue is dropped.
     pub fn finish_within(
         &mut self,
         timeout: Option<Duration>,
@@ -287,7 +289,7 @@ impl Executor {
         report.ok_or(ExecuteError::NotSubmitted)
     }
 
-    /// Names the passes of the last frame.
+    /// Returns the error of a frame that has not finished, with the passes of the last frame.
     fn unfinished(&self, began: Instant) -> ExecuteError {
         let passes = self.state.passes.iter().map(|pass| &*pass.name);
         let ran = passes.filter(|name| self.skipped.iter().all(|skipped| **skipped != **name));
@@ -297,13 +299,13 @@ impl Executor {
         }
     }
 
-    /// Hands over a texture that the plan was told of in
-    /// [`PlanRequest::imports`](skiagraph_graph::PlanRequest::imports). Its content counts as
-    /// changed.
+    /// Sets the texture of an import that
+    /// [`PlanRequest::imports`](skiagraph_graph::PlanRequest::imports) describes. Its content
+    /// counts as changed, even if the texture is the one set before.
     ///
     /// # Errors
-    /// If the plan has no such import, the texture is not as described, or it is another one and
-    /// the device is lost.
+    /// If the plan has no import of this name, the texture differs from its description, or the
+    /// device is lost.
     pub fn import_texture(
         &mut self,
         name: &str,
@@ -312,7 +314,7 @@ impl Executor {
         self.import(name, Physical::Texture(texture.clone()))
     }
 
-    /// Hands over a buffer; see [`import_texture`](Self::import_texture).
+    /// Sets the buffer of an import; see [`import_texture`](Self::import_texture).
     ///
     /// # Errors
     /// Those of [`import_texture`](Self::import_texture).
@@ -320,8 +322,8 @@ impl Executor {
         self.import(name, Physical::Buffer(buffer.clone()))
     }
 
-    /// Hands over a sampler; see [`import_texture`](Self::import_texture). wgpu does not tell how
-    /// it filters: what disagrees with the description is refused where it is bound.
+    /// Sets the sampler of an import; see [`import_texture`](Self::import_texture). wgpu does not
+    /// tell how a sampler filters, so a wrong one is refused only when a pass binds it.
     ///
     /// # Errors
     /// Those of [`import_texture`](Self::import_texture).
@@ -364,13 +366,14 @@ impl Executor {
         Ok(())
     }
 
-    /// Tells that the content of an import or provided resource has changed, so that passes with
-    /// `run: OnChange` that read it run in the next frame, and that the one after it finds this
-    /// content as `.previous`. (A provider that counts [`versions`](Provider::version) needs
-    /// [`refresh`](Self::refresh) instead.)
+    /// Marks the content of an import or provided resource as changed. In the next frame, passes
+    /// with `run: OnChange` that read it run; the frame after that finds this content as
+    /// `.previous`. With a provider that counts [`versions`](Provider::version), call
+    /// [`refresh`](Self::refresh) instead.
     ///
     /// # Errors
-    /// If the plan has nothing of the host's under this name. (One that no live pass uses is fine.)
+    /// If the plan has neither an import nor a provided resource of this name. A name that no live
+    /// pass uses is accepted.
     pub fn touch(&mut self, name: &str) -> Result<(), ExecuteError> {
         let of_host = |resource: &Resource| resource.origin == Origin::Host;
         if !self.plan().imports().contains_key(name) {
@@ -390,14 +393,15 @@ impl Executor {
         Ok(())
     }
 
-    /// Asks the provider again for every resource whose [version](Provider::version) has changed
-    /// since it was last asked, and for those that it could not build the last time. Frames that
-    /// were encoded before keep what they were encoded with.
+    /// Rebuilds the provided resources whose [version](Provider::version) has changed since the
+    /// last request, and those that the provider could not build then. Frames that are already
+    /// encoded keep their resources.
     ///
     /// # Errors
-    /// If one cannot be built, or is described otherwise than when the graph was planned (more
-    /// items, say, or a light of another kind: [`ExecuteError::OtherThanPlanned`]), or the device
-    /// is lost. The rest stays as it was and is asked for again the next time.
+    /// If a resource cannot be built or its description differs from the one that the graph was
+    /// planned for ([`ExecuteError::OtherThanPlanned`], for example with more items or another kind
+    /// of light), or the device is lost. The remaining resources stay as they are; the next call
+    /// asks for them again.
     pub fn refresh(&mut self, provider: &mut dyn Provider) -> Result<(), ExecuteError> {
         let refreshed = self.refresh_live(provider);
         if refreshed.is_ok() {
@@ -408,7 +412,7 @@ impl Executor {
         refreshed
     }
 
-    /// Notes what of the provider's has changed, after live passes have what they bind of it.
+    /// Notes which provided resources have changed; called after live passes have the new ones.
     fn note_changes(&mut self, provider: &dyn Provider) {
         match self.state.uniform {
             Some(_) => self.host_changes.compare(provider),
@@ -447,9 +451,10 @@ impl Executor {
         Ok(())
     }
 
-    /// An output or capture as the last frame left it, for the host to bind. A resource that is
-    /// also read as it was in the frame before has another view in every frame, and
-    /// [`resize`](Self::resize) and the like make new ones.
+    /// Returns a view of an output or capture with the content of the last encoded frame, for the
+    /// host to bind. `None` if the plan has no texture of this name among them. Fetch it anew in
+    /// every frame if the resource is also read as `.previous`, and after [`resize`](Self::resize)
+    /// or another change of the plan.
     pub fn output_view(&self, name: &str) -> Option<wgpu::TextureView> {
         let target = self.plan().readable_target(name)?;
         let dimension = match &self.plan().resource(target.id).kind {
@@ -463,7 +468,8 @@ impl Executor {
             .ok()
     }
 
-    /// A buffer among the outputs and captures as the last frame left it.
+    /// Returns the buffer of an output or capture with the content of the last encoded frame.
+    /// `None` if the plan has no buffer of this name among them.
     pub fn output_buffer(&self, name: &str) -> Option<wgpu::Buffer> {
         let target = self.plan().readable_target(name)?;
         self.state
@@ -473,12 +479,12 @@ impl Executor {
             .cloned()
     }
 
-    /// Another viewport. Textures that follow it are made anew: last frame's versions are zero
-    /// again, and passes that keep their outputs run once more.
+    /// Changes the viewport, in pixels. Textures whose size follows it are recreated: their
+    /// `.previous` contents are zero, and passes that keep their outputs run again.
     ///
     /// # Errors
-    /// If the graph cannot be planned for this viewport or the device refuses something. The
-    /// executor is as it was then.
+    /// If the graph cannot be planned for this viewport, a provided resource cannot be built, or
+    /// the device refuses something. After an error the executor is unchanged.
     pub fn resize(
         &mut self,
         viewport: [u32; 2],
@@ -488,19 +494,19 @@ impl Executor {
         self.replace_graph(plan, provider)
     }
 
-    /// Another value of a param. One that only `var<uniform> params` reads costs an upload. For all
-    /// others the graph is planned anew; from what comes out otherwise than before follows what it
-    /// costs:
+    /// Changes the value of a param. A param that only `var<uniform> params` reads costs an upload.
+    /// For every other param the graph is planned again, and the cost depends on its use:
     ///
-    /// - one that is an `override` constant, a culling mode, a depth bias or the like: new
-    ///   pipelines of these passes;
-    /// - one that sizes, counts or `repeat`s something, or that an `if` reads: new resources and
-    ///   passes, and whatever follows from them;
-    /// - one of `run: When(…)`: nothing.
+    /// - an `override` constant, a culling mode, a depth bias or the like: new pipelines for the
+    ///   passes that use it;
+    /// - a size, a count, a `repeat` or an `if`: new resources and passes, including those that
+    ///   depend on them;
+    /// - a condition of `run: When(…)`: nothing more.
     ///
     /// # Errors
-    /// If there is no such param, its value is out of range, or the graph cannot be planned with
-    /// it; if what the provider has changed cannot be had. The executor is as it was then.
+    /// If the graph has no such param, its value is out of range, the graph cannot be planned with
+    /// it, or a changed provided resource cannot be built. After an error the executor is
+    /// unchanged.
     pub fn set_param(
         &mut self,
         name: &str,
@@ -538,12 +544,13 @@ impl Executor {
         Ok(report)
     }
 
-    /// Another plan: of the same graph, of one that was loaded again, or of any other. Pipelines,
-    /// textures and buffers that are the same in both are kept, those of the provider and the
-    /// imports included.
+    /// Replaces the plan by another, of the same graph or of a different one. It keeps the
+    /// pipelines, textures and buffers that both plans have in common, with the imports and the
+    /// provided resources.
     ///
     /// # Errors
-    /// If the device refuses something. The executor is as it was then.
+    /// If a provided resource cannot be built or the device refuses something. After an error the
+    /// executor is unchanged.
     pub fn replace_graph(
         &mut self,
         plan: Plan,
@@ -554,7 +561,8 @@ impl Executor {
         Ok(report)
     }
 
-    /// [`replace_graph`](Self::replace_graph), but for the flags of the uniform `frame`.
+    /// Replaces the plan as [`replace_graph`](Self::replace_graph) does, but leaves the flags of
+    /// the uniform `frame` alone.
     fn put_in(
         &mut self,
         plan: Plan,
@@ -617,8 +625,8 @@ impl Executor {
         Ok(report)
     }
 
-    /// The passes that were made with other params than those of before; such a pass counts as
-    /// changed.
+    /// Marks the passes whose params differ from the former plan's as changed, and returns their
+    /// names.
     fn note_params(&mut self, before: &Plan, positions: &[Option<usize>]) -> Vec<String> {
         let mut uploads = Vec::new();
         let schedule = self.state.plan.live().zip(positions);
@@ -635,8 +643,8 @@ impl Executor {
         uploads
     }
 
-    /// Returns the [`Preparer`] with which another thread [`prepare`s](Preparer::prepare) the next
-    /// graph while this one is drawn.
+    /// Returns a [`Preparer`], which can [`prepare`](Preparer::prepare) the next plan on another
+    /// thread while this executor draws.
     pub fn preparer(&self) -> Preparer {
         let steps = |pass: &LinkedPass| (pass.name.value.clone(), pass.steps.clone());
         Preparer {
@@ -646,11 +654,13 @@ impl Executor {
         }
     }
 
-    /// [`replace_graph`](Self::replace_graph) with a plan whose pipelines are there. Parts that the
-    /// plan has changed since the [`preparer`](Self::preparer) was taken are made now.
+    /// Replaces the plan by one whose pipelines a [`Preparer`] has created; otherwise like
+    /// [`replace_graph`](Self::replace_graph). If the executor's plan has changed since
+    /// [`preparer`](Self::preparer) was called, pipelines that are missing are created now.
     ///
     /// # Errors
-    /// Those of [`replace_graph`](Self::replace_graph). The executor is as it was then.
+    /// Those of [`replace_graph`](Self::replace_graph). After an error the executor's plan is
+    /// unchanged.
     pub fn replace(
         &mut self,
         prepared: Prepared,
@@ -663,16 +673,18 @@ impl Executor {
         report
     }
 
-    /// Makes buffers and textures larger that have `grow` and were too small for a frame that is
-    /// done, as the next [`encode`](Self::encode) would do; for a host that wants the new plan at a
-    /// time of its own, or to know of it. It never waits: a counter that has not arrived is looked
-    /// at the next time. `None` if there was nothing to do. Where the memory limit or the device
-    /// refuses more, what the document does for items that have no room holds, and nothing is tried
-    /// until the plan changes otherwise.
+    /// Enlarges the buffers and textures with `grow` that were too small for a finished frame.
+    /// [`encode`](Self::encode) does this by itself; call `grow` to choose the time or to get the
+    /// report. `None` if nothing had to grow or could. It never waits: a counter that has not
+    /// arrived is read by a later call.
+    ///
+    /// If the memory limit or the device refuses a larger size, the resources keep their size, and
+    /// growth stops until the plan changes otherwise. Items that do not fit are then handled as the
+    /// document says.
     ///
     /// # Errors
-    /// If the device was lost, or a provided resource that has changed cannot be built. The
-    /// executor is as it was then, and the next frame asks again.
+    /// If the device was lost, or a changed provided resource cannot be built. After an error the
+    /// executor is unchanged, and the next frame tries again.
     pub fn grow(
         &mut self,
         provider: &mut dyn Provider,
@@ -696,8 +708,7 @@ impl Executor {
         Ok(report)
     }
 
-    /// The same with what the executor has of the provider, by the counters that submissions have
-    /// brought.
+    /// Grows as [`grow`](Self::grow) does, with the provided resources that the executor has.
     fn grow_by_itself(&mut self) -> Result<(), ExecuteError> {
         let Some(plan) = self.larger() else {
             return Ok(());
@@ -709,7 +720,8 @@ impl Executor {
         self.grow_to(plan, &mut unchanged).map(drop)
     }
 
-    /// The plan with room for all that frames which are done have asked for; `None` if they had it.
+    /// Returns the plan with room for all items and layers that finished frames have asked for;
+    /// `None` if everything had room.
     fn larger(&mut self) -> Option<Result<Plan, ExecuteError>> {
         let growth_readbacks = self.state.growth_readbacks.iter_mut();
         let wanted = growth_readbacks.filter_map(|readback| {
@@ -755,7 +767,7 @@ pub(super) fn check_backend(device: &wgpu::Device, plan: &Plan) -> Result<(), Ex
     Ok(())
 }
 
-/// Names for a message.
+/// Joins names for a message.
 pub(super) fn list(names: &[&str]) -> String {
     if names.is_empty() {
         "none".to_owned()

@@ -1,5 +1,5 @@
-//! Bringing outputs back to the host: asked for per frame, copied behind the frame, mapped when the
-//! host submits it.
+//! Reads outputs back to the host: requested for a frame, copied after its passes, and mapped when
+//! the host submits it.
 
 use crate::{
     buffer,
@@ -15,24 +15,24 @@ use crate::{
 use skiagraph_graph::{Plan, Resource, ResourceKind, SubresourceRange, Target, Texture};
 use std::{ops::Range, sync::Arc};
 
-/// An output or capture of a plan, and how it is copied.
+/// An output or capture of a plan, and the copies that read it back.
 #[derive(Debug)]
 pub(super) struct Readable {
     name: String,
     target: Target,
-    /// Copies of a texture's mips.
+    /// Copies of a texture's mips; empty for a buffer.
     mips: Vec<MipCopy>,
 }
 
-/// A mip of what is copied, with all layers of it that are read back.
+/// Copy of one mip of a texture, with all its layers that are read back.
 #[derive(Debug)]
 pub(super) struct MipCopy {
     mip: u32,
     layer: u32,
     pub size: wgpu::Extent3d,
-    /// Bytes of a row in the staging buffer.
+    /// Bytes of a row in the staging buffer, with padding.
     row: u32,
-    /// Where it stands in the staging buffer.
+    /// Offset of the mip in the staging buffer, in bytes.
     offset: u64,
 }
 
@@ -63,7 +63,7 @@ impl MipCopy {
 }
 
 impl Readable {
-    /// Those of a plan.
+    /// Returns the outputs and captures of a plan.
     pub fn all(plan: &Plan) -> Vec<Arc<Self>> {
         let readable = |(name, target): &(String, Target)| {
             let mips = match &plan.resource(target.id).kind {
@@ -110,18 +110,18 @@ impl Readable {
 /// Source of a readback.
 enum Source {
     Texture(wgpu::Texture),
-    /// These bytes of a buffer.
+    /// A range of bytes of a buffer.
     Buffer(wgpu::Buffer, Range<u64>),
 }
 
-/// A readback under way.
+/// A readback in flight.
 pub(super) struct Fetch {
     readable: Arc<Readable>,
     source: Source,
     staging: Staging,
 }
 
-/// A buffer that contents come back in.
+/// A buffer that the host can map, and the signal that it is mapped.
 struct Staging {
     buffer: wgpu::Buffer,
     mapped: Signal,
@@ -140,7 +140,7 @@ impl StagingPool {
         Some(self.0.swap_remove(spare))
     }
 
-    /// Gives up what another plan may have no use for.
+    /// Drops all buffers; another plan may have no use for them.
     pub fn clear(&mut self) {
         self.0.clear();
     }
@@ -204,7 +204,7 @@ impl Fetch {
         mapped.when_mapped(buffer, wgpu::MapMode::Read, encoder);
     }
 
-    /// The content, after the frame is done.
+    /// Returns the content of a finished frame's output or capture.
     pub fn take(self, pool: &mut StagingPool) -> Result<Readback, ExecuteError> {
         let Self {
             readable,
@@ -235,20 +235,19 @@ impl Fetch {
         })
     }
 
-    /// Gives the staging buffer of a frame back that was never submitted.
+    /// Returns the staging buffer of a frame that was never submitted to the pool.
     pub fn give_up(self, pool: &mut StagingPool) {
         pool.0.push(self.staging);
     }
 }
 
-/// The bytes that are copied for those that are asked for: items may be smaller than what can be
-/// copied.
+/// Extends a byte range to the alignment of copies; items may be smaller.
 fn copied(bytes: &Range<u64>) -> Range<u64> {
     let least = wgpu::COPY_BUFFER_ALIGNMENT;
     bytes.start / least * least..bytes.end.next_multiple_of(least)
 }
 
-/// The mips of a part of a texture in a staging buffer.
+/// Returns the copies of a texture part's mips, with their places in a staging buffer.
 pub(super) fn mips(texture: &Texture, part: &SubresourceRange) -> Vec<MipCopy> {
     let texel = texture.format.block_copy_size(None).unwrap_or(4);
     let layers = &part.layers;

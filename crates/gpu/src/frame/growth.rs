@@ -1,12 +1,12 @@
-//! Buffers and textures that grow: after a frame the counter says how many items or layers it would
-//! have needed.
+//! Buffers and textures that grow: after a frame, a counter says how many items or layers it
+//! needed.
 
 use crate::provider::{Provider, ProviderError};
 use skiagraph_graph::{Describe, Provided};
 use std::collections::BTreeMap;
 
-/// Stands for the provider where nothing of its has changed: by name, the version that the executor
-/// has, or what is missing.
+/// Provider for a change of plan in which no provided resource has changed. It holds by name the
+/// version that the executor has, or the missing part.
 pub(super) struct Unchanged(pub BTreeMap<String, Result<u64, String>>);
 
 impl Describe for Unchanged {
@@ -14,7 +14,7 @@ impl Describe for Unchanged {
         self.0.keys().cloned().collect()
     }
 
-    /// Nothing: what the plan says of it holds.
+    /// Returns `None`: the plan's descriptions still hold.
     fn describe(&self, _: &str) -> Option<Provided> {
         None
     }

@@ -1,6 +1,6 @@
-//! Counters of buffers and textures that grow, on their way to the host: copied behind a frame,
-//! mapped when it is submitted, looked at when they have arrived. One at a time: what frames need
-//! meanwhile, the next one that is counted needs too, or it is no longer needed.
+//! Reads back the counters of buffers and textures that grow: copied after a frame, mapped when it
+//! is submitted, read when they have arrived. Each resource has at most one counter in flight; a
+//! need that is missed meanwhile shows in the next one, or has passed.
 
 use crate::{
     buffer,
@@ -16,21 +16,21 @@ use skiagraph_graph::{Growth, Plan, ResourceId, ResourceKind};
 /// Bytes of a counter.
 const COUNTER: u64 = 4;
 
-/// A buffer or texture that may grow, and its counter on the way to the host.
+/// A buffer or texture that may grow, with the readback of its counter.
 pub(super) struct GrowthReadback {
     /// Full name of the buffer or texture.
     pub name: String,
-    /// Its items or layers.
+    /// Number of items or layers that the plan gives it.
     count: u64,
     growth: Growth,
     staging: wgpu::Buffer,
     mapped: Signal,
-    /// True if a counter is on its way.
+    /// True while a counter is in flight.
     is_asked: bool,
 }
 
 impl GrowthReadback {
-    /// Those of a plan that have not yet grown as far as they may.
+    /// Returns the growing resources of a plan that are not at their greatest size.
     pub fn all(plan: &Plan, device: &wgpu::Device) -> Result<Vec<Self>, ExecuteError> {
         let readback = |(id, growth): (ResourceId, Growth)| {
             let resource = plan.resource(id);
@@ -58,8 +58,8 @@ impl GrowthReadback {
         plan.growing().into_iter().filter_map(readback).collect()
     }
 
-    /// Goes on with what a plan before had under way for the same names: a host that changes its
-    /// plan in every frame would lose each counter otherwise.
+    /// Takes over the counters in flight for a former plan, by name. Otherwise a host that changes
+    /// its plan in every frame would never see one.
     pub fn take_over(growth_readbacks: &mut [Self], before: Vec<Self>) {
         for old in before {
             if let Some(readback) = growth_readbacks
@@ -73,7 +73,7 @@ impl GrowthReadback {
         }
     }
 
-    /// Encodes the copy of the counter, unless an earlier one is under way.
+    /// Encodes the copy of the counter, unless an earlier one is in flight.
     pub fn copy(
         &mut self,
         plan: &Plan,
@@ -95,12 +95,13 @@ impl GrowthReadback {
         self.is_asked = true;
     }
 
-    /// Returns true if a counter is on its way.
+    /// True while a counter is in flight.
     pub fn is_asked(&self) -> bool {
         self.is_asked
     }
 
-    /// How many items or layers it should have, if it has too few and the counter has arrived.
+    /// Returns the number of items or layers to grow to; `None` if the counter has not arrived or
+    /// everything fits.
     pub fn wanted(&mut self) -> Option<u64> {
         let progress = self.mapped.progress();
         if !self.is_asked || progress == Progress::UnderWay {

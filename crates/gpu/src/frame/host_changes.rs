@@ -1,15 +1,15 @@
-//! Flags of the uniform `frame`: the scene, its lights or the memory are others than in the frame
+//! Flags of the uniform `frame`: the scene, its lights or the memory have changed since the frame
 //! before.
 
 use crate::provider::Provider;
 use std::collections::BTreeMap;
 
-/// True for each in which something has changed.
+/// Changes since the frame before.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Changed {
     pub scene: bool,
     pub light: bool,
-    /// True if something that stays from frame to frame is in new memory.
+    /// True if a resource that lasts from frame to frame has new memory.
     pub memory: bool,
 }
 
@@ -20,7 +20,7 @@ impl Changed {
         memory: true,
     };
 
-    /// Notes a change of what stands behind a name.
+    /// Sets the flag of the provided resource with this name.
     fn note(&mut self, name: &str) {
         let (list, part) = name.split_once('.').unwrap_or((name, ""));
         let of_light = matches!(list, "light" | "lights" | "light_area" | "light_areas")
@@ -30,16 +30,16 @@ impl Changed {
     }
 }
 
-/// Changes since the frame that was encoded last.
+/// Changes since the last encoded frame.
 #[derive(Debug)]
 pub(super) struct HostChanges {
-    /// Versions of all that the provider lists; `None` while no live pass reads `frame`.
+    /// Versions of all provided resources by name; `None` while no live pass reads `frame`.
     known: Option<BTreeMap<String, u64>>,
     changed: Changed,
 }
 
 impl Default for HostChanges {
-    /// Before the first frame everything is new.
+    /// Creates the state before the first frame, in which everything counts as changed.
     fn default() -> Self {
         Self {
             known: None,
@@ -58,23 +58,23 @@ impl HostChanges {
         self.changed = Changed::default();
     }
 
-    /// Notes what the host says of a name.
+    /// Notes that the host reported a change of this resource.
     pub fn touch(&mut self, name: &str) {
         self.changed.note(name);
     }
 
-    /// Notes that anything of the provider's may have changed.
+    /// Notes that any provided resource may have changed.
     pub fn touch_all(&mut self) {
         self.changed.scene = true;
         self.changed.light = true;
     }
 
-    /// Notes that something that stays from frame to frame is in new memory.
+    /// Notes that a resource that lasts from frame to frame has new memory.
     pub fn note_new_memory(&mut self) {
         self.changed = Changed::ALL;
     }
 
-    /// Compares the versions of all that a provider lists with those that were known.
+    /// Notes the provided resources whose versions differ from the known ones.
     pub fn compare(&mut self, provider: &dyn Provider) {
         let names = provider.names().into_iter();
         let now = names.map(|name| {
@@ -93,7 +93,8 @@ impl HostChanges {
         self.known = now;
     }
 
-    /// Notes that no live pass reads the flags: the first frame in which one does has both.
+    /// Forgets the known versions, because no live pass reads the flags. The first frame that reads
+    /// them again gets scene and light as changed.
     pub fn forget(&mut self) {
         self.known = None;
     }

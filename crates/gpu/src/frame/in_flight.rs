@@ -1,5 +1,5 @@
-//! Frames between their encoding and their report. Any number may be under way; each has its own
-//! readbacks, its own times and its own copy of the uniform `frame`.
+//! Frames between their encoding and their report. Any number may be in flight; each has its own
+//! readbacks, timer and copy of the uniform `frame`.
 
 use super::{
     fetch::{Fetch, StagingPool},
@@ -16,7 +16,7 @@ use crate::{
 };
 use std::{collections::VecDeque, sync::Arc, time::Duration};
 
-/// A frame that was encoded, with what was asked of it.
+/// An encoded frame with the requests of the host.
 #[derive(Default)]
 pub(super) struct FrameInFlight {
     pub index: u32,
@@ -24,18 +24,18 @@ pub(super) struct FrameInFlight {
     /// Timer of a timed frame, kept for the next timed one.
     pub timer: Option<Timer>,
     pub is_timed: bool,
-    /// Counters of a frame that asks how often its shaders run.
+    /// Counters, if the frame asks for statistics.
     pub counters: Option<Counters>,
-    /// If it is timed: the passes that run, with the time that encoding them took. Names, because
-    /// the next plan may have other passes.
+    /// CPU time of encoding each pass that runs, by name, if the frame is timed. Names are used
+    /// because the next plan may have other passes.
     pub cpu: Vec<(Arc<str>, Duration)>,
     pub skipped: Vec<Arc<str>>,
     pub fetches: Vec<Fetch>,
-    /// Kept like the timer.
+    /// Source of the uniform `frame`, kept for the next frame as the timer is.
     pub uniform: Option<FrameUniform>,
 }
 
-/// The frames that are under way, and what is left of earlier ones for the next.
+/// The frames in flight, and the parts of finished ones that later frames reuse.
 #[derive(Default)]
 pub(super) struct FramesInFlight {
     under_way: VecDeque<FrameInFlight>,
@@ -48,8 +48,8 @@ impl FrameInFlight {
         self.is_timed || self.counters.is_some() || !self.fetches.is_empty()
     }
 
-    /// Starts the mapping of its timestamps, once the GPU is done with it, and takes them; `None`
-    /// if another thread that polls the device is about to say that they are there.
+    /// Starts the mapping of the timestamps and returns the frame's times. `None` if another thread
+    /// that polls the device has not yet signalled that they are mapped.
     fn times(&mut self, device: &wgpu::Device) -> Result<Option<FrameTiming>, ExecuteError> {
         let Some(timer) = &mut self.timer else {
             return Ok(Some(times(&self.cpu, &[])));
@@ -62,7 +62,7 @@ impl FrameInFlight {
 }
 
 impl FramesInFlight {
-    /// The frames that bring a report.
+    /// Returns the number of frames that will bring a report.
     pub fn asked(&self) -> usize {
         self.under_way
             .iter()
@@ -70,19 +70,19 @@ impl FramesInFlight {
             .count()
     }
 
-    /// A frame to fill, out of what an earlier one has left.
+    /// Returns an empty frame, with the reusable parts of a finished one.
     pub fn begin(&mut self) -> FrameInFlight {
         self.sweep();
         self.spare.pop().unwrap_or_default()
     }
 
-    /// Takes in a frame all of which is encoded.
+    /// Puts an encoded frame in flight.
     pub fn submit(&mut self, frame_in_flight: FrameInFlight, encoder: &wgpu::CommandEncoder) {
         frame_in_flight.done.when_done(encoder);
         self.under_way.push_back(frame_in_flight);
     }
 
-    /// Keeps what the next frame can use of one that is over, or was never encoded.
+    /// Keeps the reusable parts of a frame that is finished or was not encoded.
     pub fn recycle(&mut self, mut frame_in_flight: FrameInFlight) {
         for fetch in frame_in_flight.fetches.drain(..) {
             fetch.give_up(&mut self.staging);
@@ -94,7 +94,7 @@ impl FramesInFlight {
         self.spare.push(frame_in_flight);
     }
 
-    /// Puts aside the frames that are over and of which nothing was asked.
+    /// Recycles the finished frames without requests.
     fn sweep(&mut self) {
         let mut at = 0;
         while let Some(frame_in_flight) = self.under_way.get(at) {
@@ -106,8 +106,8 @@ impl FramesInFlight {
         }
     }
 
-    /// The report of the oldest frame that brings one, if it is done. Frames that were never
-    /// submitted bring none.
+    /// Returns the report of the oldest frame with requests; `None` if the GPU has not finished it.
+    /// Frames that were never submitted bring none.
     pub fn report(
         &mut self,
         device: &wgpu::Device,
@@ -177,7 +177,8 @@ impl FramesInFlight {
         Ok(None)
     }
 
-    /// Takes no GPU times of the oldest frame: they have not come although the GPU is done.
+    /// Gives up the GPU times of the oldest frame with requests: they did not arrive although the
+    /// GPU is done.
     pub fn give_up_times(&mut self) {
         if let Some(frame_in_flight) = self
             .under_way

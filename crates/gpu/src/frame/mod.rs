@@ -1,4 +1,4 @@
-//! Frames: which passes run, their commands in the host's encoder, another plan on what is there.
+//! Frames: decides which passes run, encodes them into the host's encoder, and changes the plan.
 
 mod contents;
 mod encode;

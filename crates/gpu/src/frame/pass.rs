@@ -1,4 +1,4 @@
-//! One pass on the device: pipelines, params, and bindings for either turn.
+//! A pass on the device: its pipelines, params, and bindings for each state of the ping-pong.
 
 use super::encode::{Meters, encode_all};
 use crate::{
@@ -16,36 +16,36 @@ use crate::{
 use skiagraph_graph::{LinkedPass, Origin, Plan, ResourceId, step::Step};
 use std::sync::Arc;
 
-/// A pass with everything it needs on the device.
+/// A pass with its pipelines, params and bindings.
 pub(super) struct GpuPass {
     pub name: Arc<str>,
-    /// Pipeline of each step.
+    /// Pipeline of each step; `None` for copies and clears.
     pipelines: Vec<Option<Pipeline>>,
-    /// Uniform `params` of each step.
+    /// Buffer of the uniform `params` of each step; `None` for steps without one.
     params: Vec<Option<wgpu::Buffer>>,
-    /// The resources with two versions that it touches.
+    /// The resources with two allocations that the pass uses.
     ping_pong: Vec<ResourceId>,
-    /// Its steps, bound, for each state of those that there was so far.
+    /// The bound steps for each state of these resources that has occurred so far.
     variants: Vec<(Vec<Versions>, Vec<Step<Handles>>)>,
-    /// The states for which the device has taken it as it is but for the content of buffers.
+    /// The states for which the device has accepted the pass.
     tried: Vec<Vec<Versions>>,
-    /// Versions that decide if it runs again.
+    /// Versions of the inputs, which decide if the pass runs again.
     pub input_versions: InputVersions,
 }
 
-/// Resources that a pass reads, and their versions when the pass ran last.
+/// Resources that a pass reads, and their versions when it ran last.
 #[derive(Clone, Debug, Default)]
 pub(super) struct InputVersions {
     pub inputs: Vec<ResourceId>,
-    /// `None` if it has not run, or what it made is lost.
+    /// Version of each input; `None` if the pass has not run, or its results are lost.
     pub versions: Option<Vec<u64>>,
-    /// True if its params or state are others than when it ran.
+    /// True if the params or the state of the pass have changed since it ran.
     pub stale: bool,
 }
 
 impl GpuPass {
-    /// Makes the pass at `at` in the schedule; pipelines and params of `old` serve again where they
-    /// fit.
+    /// Creates the pass at position `at` of the schedule. Pipelines and params of the former pass
+    /// `old` are reused where they match.
     pub fn new(
         plan: &Plan,
         at: usize,
@@ -93,12 +93,13 @@ impl GpuPass {
         })
     }
 
-    /// Returns true if the pass is bound for this state of the ping-pong.
+    /// True if the pass is bound for this state of the ping-pong.
     pub fn is_bound(&self, ping_pong: &PingPong) -> bool {
         self.steps(ping_pong).is_some()
     }
 
-    /// The steps for a state of the ping-pong that it was bound for.
+    /// Returns the bound steps for a state of the ping-pong; `None` if the pass is not bound for
+    /// it.
     pub fn steps(&self, ping_pong: &PingPong) -> Option<&[Step<Handles>]> {
         let is_state = |(state, _): &&(Vec<Versions>, _)| {
             let mut known = self.ping_pong.iter().zip(state);
@@ -108,8 +109,8 @@ impl GpuPass {
         Some(steps)
     }
 
-    /// Binds the pass for a state of the ping-pong, and the first time encodes it once into a
-    /// throw-away encoder, so that whatever the device refuses is refused here.
+    /// Binds the pass for a state of the ping-pong. The first time it also encodes the pass into a
+    /// throw-away encoder, so that errors of the device are found here.
     pub fn bind(
         &mut self,
         plan: &Plan,
@@ -153,25 +154,25 @@ impl GpuPass {
         Ok(())
     }
 
-    /// Forgets what is bound: something that the pass uses is another than before.
+    /// Drops all bindings, after a resource of the pass was replaced.
     pub fn unbind(&mut self) {
         self.rebind();
         self.tried.clear();
     }
 
-    /// The same where what it uses is another buffer of the same size and usage: what the device
-    /// took before, it takes again.
+    /// Drops all bindings, after a buffer of the pass was replaced by one of the same size and
+    /// usage. The device need not accept the pass again.
     pub fn rebind(&mut self) {
         self.variants.clear();
     }
 
-    /// Takes over what `old` had bound.
+    /// Takes over the bindings of `old`.
     pub fn rebind_as(&mut self, old: &mut GpuPass) {
         self.variants = std::mem::take(&mut old.variants);
         self.tried = std::mem::take(&mut old.tried);
     }
 
-    /// The uniforms `params` of each step as a linked pass has them.
+    /// Creates the buffers of the uniform `params` of each step, with the values of a linked pass.
     pub fn params_of(
         pass: &LinkedPass,
         device: &wgpu::Device,
@@ -183,8 +184,8 @@ impl GpuPass {
         params.collect()
     }
 
-    /// Sets other params, in memory of their own: a frame that is not submitted yet reads those of
-    /// before.
+    /// Sets other params, in new buffers: frames that are not submitted yet still read the former
+    /// ones.
     pub fn set_params(&mut self, params: Vec<Option<wgpu::Buffer>>) {
         self.params = params;
         self.rebind();
@@ -192,7 +193,7 @@ impl GpuPass {
     }
 }
 
-/// The resources with two allocations that a pass touches either of.
+/// Returns the resources with two allocations of which the pass uses one or both.
 fn two_versions(plan: &Plan, pass: &LinkedPass) -> Vec<ResourceId> {
     let base = |id: ResourceId| match plan.resource(id).origin {
         Origin::Previous(base) => base,
@@ -205,8 +206,7 @@ fn two_versions(plan: &Plan, pass: &LinkedPass) -> Vec<ResourceId> {
     touched
 }
 
-/// Returns the resources that a pass reads and neither it nor the passes that run together with it
-/// write.
+/// Returns the resources that a pass reads and that no pass of its group writes.
 fn inputs(plan: &Plan, at: usize) -> Vec<ResourceId> {
     let conditions = &plan.schedule().conditions;
     let group = conditions.group[at];

@@ -1,5 +1,5 @@
-//! Memory filled with a pattern before a resource is first used in a frame. A pass that then reads
-//! something unwritten reads the pattern, and outputs differ between two patterns.
+//! Fills memory with a pattern before a resource is first used in a frame. A pass that reads
+//! something unwritten then reads the pattern, so its outputs differ between two patterns.
 
 use super::{
     encode::clear_view,
@@ -16,7 +16,8 @@ use crate::{
 };
 use skiagraph_graph::{Origin, Plan, ResourceId, ResourceKind, Target, Texture};
 
-/// Fills by position in the schedule; of a resource with two allocations one for each of them.
+/// Fills of the resources: the position in the schedule before which each is filled, and a fill for
+/// each of its allocations.
 pub(super) struct Poison {
     pattern: wgpu::Buffer,
     fills: Vec<(usize, ResourceId, Vec<Fill>)>,
@@ -63,9 +64,9 @@ impl Fill {
 }
 
 impl Poison {
-    /// `None` if the plan asks for none. Resources that outlive the frame are not filled. With two
-    /// allocations, last frame's is not filled; the one that is written, which holds the content of
-    /// the frame before that, is.
+    /// Returns the fills of a plan; `None` if it does not ask for a pattern. Resources that outlive
+    /// the frame are not filled. Of two allocations, the one that the frame writes is filled, the
+    /// one read as `.previous` is not.
     pub fn new(
         plan: &Plan,
         memory: &Memory,
@@ -107,7 +108,7 @@ impl Poison {
         Ok(Some(Self { pattern, fills }))
     }
 
-    /// Fills what the pass at `at` is the first to use.
+    /// Fills the resources that the pass at position `at` is the first to use.
     pub fn fill(&self, at: usize, ping_pong: &PingPong, encoder: &mut wgpu::CommandEncoder) {
         for (_, id, fills) in self.fills.iter().filter(|(first, ..)| *first == at) {
             let current = ping_pong.get(id).map_or(0, |versions| versions.current);
@@ -118,7 +119,7 @@ impl Poison {
     }
 }
 
-/// How a resource is filled with a byte; `None` for what has no bytes.
+/// Returns the way to fill a resource with a byte; `None` if it has no bytes.
 fn fill(binder: &Binder<'_>, id: ResourceId, byte: u8) -> Result<Option<Fill>, ExecuteError> {
     Ok(Some(match &binder.plan.resource(id).kind {
         ResourceKind::Buffer(_) => {
@@ -141,7 +142,7 @@ fn fill(binder: &Binder<'_>, id: ResourceId, byte: u8) -> Result<Option<Fill>, E
     }))
 }
 
-/// The value that stands for a byte where bytes cannot be written; of a stencil the second one.
+/// Returns the clear value that stands for a byte; the second number is for stencils.
 fn cleared_to(texture: &Texture, byte: u8) -> [f64; 4] {
     let (whole, share) = (f64::from(byte), f64::from(byte) / 255.0);
     match texture.format.sample_type(None, None) {

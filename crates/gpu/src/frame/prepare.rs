@@ -1,5 +1,5 @@
-//! The next graph, made ready on another thread: its shader modules and pipelines, which take most
-//! of the time. Parts that depend on existing memory are made when it is put in.
+//! Prepares the next plan on another thread: its shader modules and pipelines, which take most of
+//! the time. Bindings to existing memory are made later, when the plan is put in.
 
 use crate::{
     error::{ExecuteError, named, scoped},
@@ -9,26 +9,27 @@ use crate::{
 use skiagraph_graph::{Ids, Plan, step::Step};
 use std::collections::HashMap;
 
-/// Parts of an executor that its next graph can use: from
-/// [`Executor::preparer`](super::Executor::preparer), for another thread.
+/// Creates the pipelines of an executor's next plan on another thread.
+/// [`Executor::preparer`](super::Executor::preparer) returns one.
 pub struct Preparer {
     pub(super) device: wgpu::Device,
     pub(super) pipelines: Pipelines,
-    /// The steps of the passes that there are, which have pipelines.
+    /// Steps of each pass of the executor's plan, by pass name; their pipelines exist already.
     pub(super) known: HashMap<String, Vec<Step<Ids>>>,
 }
 
-/// A plan with its pipelines, for [`Executor::replace`](super::Executor::replace).
+/// A plan with its pipelines, created by [`Preparer::prepare`], for
+/// [`Executor::replace`](super::Executor::replace).
 pub struct Prepared {
     pub(super) plan: Plan,
     pub(super) pipelines: Pipelines,
 }
 
 impl Preparer {
-    /// Makes the shader modules and pipelines of a plan that the executor does not have yet.
+    /// Creates the shader modules and pipelines of a plan that the executor does not have yet.
     ///
     /// # Errors
-    /// The device refuses a step, named with its pass and place, or it is lost.
+    /// If the device refuses a step, with its pass and the pass's place, or the device is lost.
     pub fn prepare(self, plan: Plan) -> Result<Prepared, ExecuteError> {
         let Self {
             device,

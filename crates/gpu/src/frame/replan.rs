@@ -1,12 +1,11 @@
-//! Another plan on the same device: a new size, another value of a param, another graph. Everything
-//! that can be kept is kept.
+//! Changes the plan of an executor, for a new viewport, param value or graph, and keeps every part
+//! that both plans have in common.
 //!
-//! Why it is kept matters: a program that changes a param in every frame must not make a pipeline
-//! in every frame, a shadow map that a later pass does not touch must not be drawn again, and a
-//! plan that the device refuses must leave the program with the one that ran. So another plan is
-//! made beside the one that is there, out of its parts, and takes its place when nothing can fail
-//! any more. Resources and passes are known by their names, for numbers mean something else in
-//! another plan.
+//! A program that changes a param in every frame must not create a pipeline in every frame. A
+//! shadow map must not be drawn again because a later pass changed. A plan that the device refuses
+//! must leave the former one running. So the new state is built beside the former one, out of its
+//! parts, and replaces it when nothing can fail any more. Resources and passes are matched by name,
+//! because indices differ between plans.
 
 use super::{
     contents::Contents,
@@ -21,19 +20,19 @@ use crate::{
 use skiagraph_graph::{Ids, LinkedPass, Plan, ResourceId, ResourceKind, step::Step};
 use std::collections::{BTreeMap, HashMap};
 
-/// Result of a change of an executor's plan.
+/// Work that a change of an executor's plan took.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ReplanReport {
-    /// Passes whose params were uploaded.
+    /// Names of the passes whose params were uploaded.
     pub uploads: Vec<String>,
-    /// Passes that got new pipelines: another shader, format, constant or state; or passes that
-    /// were not there before.
+    /// Names of the passes that got new pipelines: new passes, and passes with another shader,
+    /// format, constant or state.
     pub pipelines: Vec<String>,
-    /// Textures and buffers that were made anew; their content is lost.
+    /// Names of the textures and buffers that were created anew; their content is lost.
     pub resources: Vec<String>,
 }
 
-/// Returns true if all steps of a pass have the pipelines that they had.
+/// True if all steps of a pass keep their pipelines.
 fn has_same_pipelines(old: &LinkedPass, new: &LinkedPass) -> bool {
     let is_same = |(old, new): (&Step<Ids>, &Step<Ids>)| {
         old.program().is_none() && new.program().is_none() || same_pipeline(old, new)
@@ -41,20 +40,20 @@ fn has_same_pipelines(old: &LinkedPass, new: &LinkedPass) -> bool {
     old.steps.len() == new.steps.len() && old.steps.iter().zip(&new.steps).all(is_same)
 }
 
-/// Returns true if all steps of a pass have the bytes of params that they had.
+/// True if all steps of two passes have the same bytes of params.
 pub(super) fn has_same_params(old: &LinkedPass, new: &LinkedPass) -> bool {
     old.params().eq(new.params())
 }
 
-/// Parts of an executor's state that a new plan keeps.
+/// The parts of an executor's state that a new plan keeps.
 pub(super) struct Reused<'a> {
     old: &'a State,
     plan: &'a Plan,
     memory: &'a Memory,
-    /// Former position of each pass of the plan.
+    /// Position of each pass in the former schedule; `None` for a new pass.
     pub positions: Vec<Option<usize>>,
-    /// The resources that are in the memory that they were in before, or go on with its content in
-    /// a larger buffer, or are the provider's and as large as before; and what they were then.
+    /// Resources that keep their content, with their former ids: same memory, same content in a
+    /// larger buffer, or a provided buffer of the same size.
     same: BTreeMap<ResourceId, ResourceId>,
 }
 
@@ -98,7 +97,7 @@ impl<'a> Reused<'a> {
         }
     }
 
-    /// Returns the former state of the pass at `at`.
+    /// Returns the former pass for the pass at position `at`; `None` if it is new.
     fn before(&self, at: usize) -> Option<(&'a LinkedPass, &'a GpuPass)> {
         let position = self.positions[at]?;
         let linked = self
@@ -108,7 +107,7 @@ impl<'a> Reused<'a> {
         Some((linked, &self.old.passes[position]))
     }
 
-    /// The passes of the plan, with what they remember of frames before.
+    /// Creates the passes of the plan, with the input versions that they remember.
     pub fn passes(
         &self,
         pipelines: &mut Pipelines,
@@ -130,7 +129,7 @@ impl<'a> Reused<'a> {
         groups.iter().enumerate().map(make).collect()
     }
 
-    /// Names of the passes whose pipelines are not what they were.
+    /// Returns the names of the passes with new pipelines.
     pub fn made_pipelines(&self) -> Vec<String> {
         let passes = self.plan.live().enumerate();
         let made = passes.filter(|(at, pass)| {
@@ -140,7 +139,7 @@ impl<'a> Reused<'a> {
         made.map(|(_, pass)| pass.name.value.clone()).collect()
     }
 
-    /// Names of the resources whose content is lost.
+    /// Returns the names of the resources whose content is lost.
     pub fn made_resources(&self) -> Vec<String> {
         let schedule = self.plan.schedule();
         let own =
@@ -150,7 +149,7 @@ impl<'a> Reused<'a> {
             .collect()
     }
 
-    /// Returns true if something that stays from frame to frame is in new memory.
+    /// True if a resource that lasts from frame to frame has new memory.
     pub fn has_new_memory(&self) -> bool {
         let schedule = self.plan.schedule();
         let is_lasting =
@@ -174,8 +173,8 @@ impl<'a> Reused<'a> {
         contents
     }
 
-    /// The pass at `at`, and what it was before, if everything that it uses is in the memory that
-    /// it was in before.
+    /// Returns the pass at position `at` and its former version, if all its resources are in the
+    /// same memory as before; `None` otherwise.
     fn with_its_memory(&self, at: usize) -> Option<[&LinkedPass; 2]> {
         let pass = self.plan.pass(self.plan.schedule().passes[at]);
         let (old, _) = self.before(at)?;
@@ -188,8 +187,8 @@ impl<'a> Reused<'a> {
         is_there.then_some([pass, old])
     }
 
-    /// Tells of each group if its passes still do the same, whatever their params. Then what they
-    /// made is still there.
+    /// Returns for each group, by its first position, true if its passes do the same work as
+    /// before, whatever their params. Their results are then still valid.
     fn groups(&self) -> Vec<bool> {
         let shader = |step: &Step<Ids>| step.program().map(|program| program.shader.clone());
         let is_kept = |[pass, old]: [&LinkedPass; 2]| {
@@ -222,8 +221,8 @@ impl<'a> Reused<'a> {
         reused
     }
 
-    /// The position before of a pass that needs no binding: word for word what it was, on the very
-    /// memory.
+    /// Returns the former position of a pass whose bindings still hold: it is unchanged and uses
+    /// the very same memory. `None` if it must be bound again.
     pub fn bound(&self, at: usize) -> Option<usize> {
         let [pass, old] = self.with_its_memory(at)?;
         let mut numbers = pass.accesses.iter().zip(&old.accesses);
@@ -237,7 +236,8 @@ impl<'a> Reused<'a> {
         self.positions[at].filter(|_| same_steps && same_numbers)
     }
 
-    /// Returns the versions of its inputs that a pass saw when it ran last.
+    /// Returns the versions of the inputs that a pass saw when it ran last; `None` if they are not
+    /// known.
     fn seen(&self, inputs: &[ResourceId], old: &InputVersions) -> Option<Vec<u64>> {
         let seen = old.inputs.iter().zip(old.versions.as_ref()?);
         let seen: BTreeMap<ResourceId, u64> = seen.map(|(id, seen)| (*id, *seen)).collect();

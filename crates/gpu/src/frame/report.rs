@@ -1,36 +1,38 @@
-//! Requests to a frame, and its report.
+//! Requests of a host for a frame, and the report of a frame.
 
 use super::{statistics::PassStatistics, times::FrameTiming};
 use crate::readback::Readback;
 
-/// Requests to a frame.
+/// Settings of one frame, for [`Executor::encode`](crate::Executor::encode).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Frame<'a> {
-    /// Take GPU timestamps.
+    /// Take GPU timestamps of every pass.
     pub timing: bool,
-    /// Count how often the shaders of each pass run, where the device has
-    /// `PIPELINE_STATISTICS_QUERY`.
+    /// Count how often the shaders of each pass run, if the device has `PIPELINE_STATISTICS_QUERY`.
     pub statistics: bool,
-    /// Run every pass, also those of which nothing that they read has changed.
+    /// Run every pass, even if nothing that it reads has changed. Passes whose `run: When(…)`
+    /// condition is false are still skipped.
     pub all: bool,
-    /// Outputs and captures to read back.
+    /// Names of the outputs and captures to read back.
     pub read: &'a [&'a str],
-    /// The time of what is shown, seconds: `frame.seconds` of the shaders.
+    /// Time of the shown moment in seconds: `frame.seconds` in the shaders.
     pub seconds: f32,
 }
 
-/// Report of a frame.
+/// Times, statistics, skipped passes and readbacks of one frame.
 #[derive(Clone, Debug, Default)]
 pub struct FrameReport {
-    /// Which frame: its `frame.index` in the shaders, and what
-    /// [`encode`](crate::Executor::encode) returned.
+    /// Number of the frame: `frame.index` in the shaders, and the result of
+    /// [`encode`](crate::Executor::encode).
     pub index: u32,
-    /// Times, if they were asked for.
+    /// Times of the passes; `None` if [`Frame::timing`] was not set.
     pub timing: Option<FrameTiming>,
-    /// Counts of the passes that ran, in schedule order, if asked for and supported by the device.
+    /// Shader runs of the passes that ran, in schedule order. `None` if [`Frame::statistics`] was
+    /// not set, the device cannot count, or the plan has no draws and dispatches.
     pub statistics: Option<Vec<PassStatistics>>,
-    /// The passes that did not run because their run condition said so, in schedule order.
+    /// Names of the passes that did not run because their run condition was not met, in schedule
+    /// order.
     pub skipped: Vec<String>,
-    /// Contents, in the order in which they were asked for.
+    /// Contents of the outputs and captures, in the order of [`Frame::read`].
     pub readbacks: Vec<Readback>,
 }

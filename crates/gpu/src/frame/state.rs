@@ -1,4 +1,4 @@
-//! A plan with what was made for it on a device.
+//! A plan with its memory, passes and contents on a device.
 
 use super::{
     contents::{Contents, HostCopy},
@@ -21,25 +21,25 @@ use crate::{
 use skiagraph_graph::{LinkedPass, Origin, Plan, ResourceId, ResourceKind};
 use std::{sync::Arc, time::Instant};
 
-/// A plan and what was made for it; another plan has another one.
+/// A plan and everything that was created for it on the device.
 pub(super) struct State {
     pub plan: Plan,
     pub memory: Memory,
-    /// The passes of the schedule.
+    /// The passes in schedule order.
     pub passes: Vec<GpuPass>,
     pub contents: Contents,
     pub poison: Option<Poison>,
-    /// Buffers and textures that may grow.
+    /// The buffers and textures that may grow.
     pub growth_readbacks: Vec<GrowthReadback>,
-    /// Resources that can be read back.
+    /// The outputs and captures.
     pub readables: Vec<Arc<Readable>>,
-    /// The uniform `frame`, if a live pass reads it.
+    /// The uniform `frame`; `None` if no live pass reads it.
     pub uniform: Option<ResourceId>,
-    /// Contents to be copied before the next frame's passes, in this order.
+    /// Contents to copy into larger resources before the next frame's passes, in this order.
     pub grown: Vec<Grown>,
 }
 
-/// Work of a frame: made anew for each, in the same memory.
+/// Decision about a frame. It is reused for every frame, to save allocations.
 #[derive(Default)]
 pub(super) struct FrameDecision {
     /// True for each pass of the schedule that runs.
@@ -63,7 +63,7 @@ impl State {
         Self::of(plan, memory, passes, contents, factory.device)
     }
 
-    /// Puts together what was made for a plan, and what the plan alone decides.
+    /// Builds the state from memory, passes and contents that were created for the plan.
     pub fn of(
         plan: Plan,
         mut memory: Memory,
@@ -85,7 +85,7 @@ impl State {
         })
     }
 
-    /// Whose turn it is in a frame in which every pass runs, or none.
+    /// Returns the ping-pong state of a frame in which every pass runs, or none if `runs` is false.
     pub fn ping_pong(&self, runs: bool) -> PingPong {
         let mut decision = PingPong::new();
         let runs = vec![runs; self.passes.len()];
@@ -93,19 +93,20 @@ impl State {
         decision
     }
 
-    /// The resource of a name that a live pass uses.
+    /// Returns the resource of this name that a live pass uses.
     pub fn live(&self, name: &str) -> Option<ResourceId> {
         let mut live = self.plan.schedule().lifetimes.keys();
         live.find(|id| self.plan.resource(**id).name == name)
             .copied()
     }
 
-    /// Forgets what the passes that use a resource have bound.
+    /// Drops the bindings of the passes that use a resource.
     pub fn unbind(&mut self, id: ResourceId) {
         self.users(id).for_each(GpuPass::unbind);
     }
 
-    /// The same where the resource is another buffer of the same make.
+    /// Drops the bindings of the passes that use a buffer that was replaced by one of the same size
+    /// and usage.
     pub fn rebind(&mut self, id: ResourceId) {
         self.users(id).for_each(GpuPass::rebind);
     }
@@ -116,7 +117,7 @@ impl State {
         passes.filter_map(move |(pass, made)| uses(pass).then_some(made))
     }
 
-    /// Binds the passes that run and are not bound for this state of the ping-pong.
+    /// Binds the passes that run and are not yet bound for this state of the ping-pong.
     pub fn bind(
         &mut self,
         runs: &[bool],
@@ -135,8 +136,8 @@ impl State {
         Ok(())
     }
 
-    /// Binds every pass for which all is there that the host gives, as a frame in which all run
-    /// will need it.
+    /// Binds every pass whose imports and provided resources exist, for a frame in which all passes
+    /// run.
     pub fn bind_what_can_be(&mut self, device: &wgpu::Device) -> Result<(), ExecuteError> {
         let ready: Vec<bool> = (0..self.passes.len())
             .map(|at| missing(&self.plan, &self.memory, at).is_none())
@@ -144,7 +145,7 @@ impl State {
         self.bind(&ready, &self.ping_pong(true), device)
     }
 
-    /// Decides which passes run in the next frame, and whose turn it is then.
+    /// Decides which passes run in the next frame, and which allocations they use.
     pub fn decide(&mut self, all: bool, FrameDecision { runs, ping_pong }: &mut FrameDecision) {
         // Its content is another one in every frame.
         if let Some(uniform) = self.uniform {
@@ -154,8 +155,8 @@ impl State {
         self.contents.ping_pong(&self.plan, runs, ping_pong);
     }
 
-    /// Encodes the passes that run; the others are `skipped`. In a timed flight, their times are
-    /// taken.
+    /// Encodes the passes that run and lists the others in `skipped`. In a timed frame it takes
+    /// their times.
     pub fn encode(
         &self,
         decision: &FrameDecision,
@@ -194,7 +195,8 @@ impl State {
         }
     }
 
-    /// Copies contents into the larger buffers and textures that were made since the frame before.
+    /// Copies contents into the larger buffers and textures that replaced smaller ones since the
+    /// last frame.
     pub fn copy_grown(&mut self, encoder: &mut wgpu::CommandEncoder) {
         for pair in self.grown.drain(..) {
             match &pair {
@@ -220,7 +222,7 @@ impl State {
         }
     }
 
-    /// Copies what the host provides to where the next frame finds it as it was in this one.
+    /// Copies a provided resource to the buffer that the next frame reads as `.previous`.
     pub fn copy_host(memory: &Memory, (base, copy): HostCopy, encoder: &mut wgpu::CommandEncoder) {
         let none = PingPong::new();
         let buffers = [base, copy].map(|id| memory.buffer(id, &none));
@@ -230,16 +232,16 @@ impl State {
     }
 }
 
-/// The uniform `frame`, if a live pass reads it.
+/// Returns the uniform `frame`, if a live pass reads it.
 fn frame_uniform(plan: &Plan) -> Option<ResourceId> {
     let mut live = plan.schedule().lifetimes.keys();
     let is_frame = |id: &&ResourceId| matches!(plan.resource(**id).kind, ResourceKind::Frame);
     live.find(is_frame).copied()
 }
 
-/// A resource of the host that a pass uses and that is not there: an import that was not handed
-/// over, or what the provider could not build yet; also if the pass reads it as it was in the frame
-/// before.
+/// Returns a resource of the host that the pass at position `at` uses, directly or as `.previous`,
+/// and that does not exist yet: an unset import, or one that the provider cannot build. `None` if
+/// all exist.
 fn missing(plan: &Plan, memory: &Memory, at: usize) -> Option<ResourceId> {
     let accesses = plan.pass(plan.schedule().passes[at]).accesses.iter();
     let mut of_host = accesses.filter_map(|access| {
@@ -253,7 +255,7 @@ fn missing(plan: &Plan, memory: &Memory, at: usize) -> Option<ResourceId> {
     of_host.find(|id| memory.host(*id).is_none())
 }
 
-/// The error of a pass that runs without that.
+/// Returns the error of a pass that needs a missing resource of the host.
 fn not_there(plan: &Plan, memory: &Memory, id: ResourceId, at: usize) -> ExecuteError {
     let name = plan.resource(id).name.clone();
     let pass = &plan.pass(plan.schedule().passes[at]).name;

@@ -1,4 +1,4 @@
-//! Pipeline statistics of frames: how much work the shaders of each pass did.
+//! Pipeline statistics of frames: how often the shaders of each pass ran.
 
 use crate::{
     buffer,
@@ -8,18 +8,19 @@ use crate::{
 use skiagraph_graph::{Plan, step::Step};
 use std::{cell::Cell, mem::size_of, ops::Range, sync::Arc};
 
-/// How often the shaders of a pass ran in a frame, as the device counted.
+/// Number of shader runs of a pass in one frame, as the device counted them.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct PassStatistics {
-    /// The pass.
+    /// Name of the pass.
     pub name: String,
-    /// Runs of vertex shaders; a device may share them among triangles.
+    /// Runs of vertex shaders. A device may run the shader once for a vertex that several triangles
+    /// share.
     pub vertices: u64,
-    /// Primitives that were left after clipping, which may cut one into several.
+    /// Primitives that remained after clipping. Clipping may cut a primitive into several.
     pub primitives: u64,
-    /// Runs of fragment shaders; a device may count helpers, too.
+    /// Runs of fragment shaders. A device may count helper invocations as well.
     pub fragments: u64,
-    /// Runs of compute shaders, those of threads beyond the end of a size, too.
+    /// Runs of compute shaders, including threads beyond the end of the dispatch size.
     pub threads: u64,
 }
 
@@ -33,7 +34,7 @@ const COUNTED: wgpu::PipelineStatisticsTypes =
 /// Bytes of a query.
 const BYTES: u64 = 4 * size_of::<u64>() as u64;
 
-/// Counts in one frame after the other: a query for each draw and dispatch.
+/// Counters of frames, one after another, with a query for each draw and dispatch.
 pub(crate) struct Counters {
     set: wgpu::QuerySet,
     resolved: wgpu::Buffer,
@@ -45,7 +46,7 @@ pub(crate) struct Counters {
 }
 
 impl Counters {
-    /// For the frames of a plan; `None` if the device does not count.
+    /// Creates the counters for the frames of a plan; `None` if the device does not count.
     pub fn new(plan: &Plan, device: &wgpu::Device) -> Result<Option<Self>, ExecuteError> {
         let steps = plan.live().flat_map(|pass| &pass.steps);
         let counted = steps.filter(|step| matches!(step, Step::Draw(_) | Step::Dispatch(_)));
@@ -73,7 +74,7 @@ impl Counters {
         scoped(device, name, make).map(Some)
     }
 
-    /// The query of the next draw or dispatch, while there are some left.
+    /// Returns the query set and the index of the next query; `None` if all queries are used.
     pub fn next(&self) -> Option<(&wgpu::QuerySet, u32)> {
         let index = self.used.get();
         (index < self.count).then(|| {
@@ -82,17 +83,17 @@ impl Counters {
         })
     }
 
-    /// How many queries there were so far.
+    /// Returns the number of queries used so far.
     pub fn used(&self) -> u32 {
         self.used.get()
     }
 
-    /// Says that the queries since `first` are those of a pass.
+    /// Assigns the queries from index `first` on to a pass.
     pub fn pass(&mut self, name: Arc<str>, first: u32) {
         self.passes.push((name, first..self.used.get()));
     }
 
-    /// Encodes what brings the counts back when the encoder is submitted.
+    /// Encodes the copy of the counts, which are mapped when the encoder is submitted.
     pub fn resolve(&self, encoder: &mut wgpu::CommandEncoder) {
         let used = self.used.get();
         if used > 0 {
@@ -104,7 +105,7 @@ impl Counters {
             .when_mapped(&self.staging, wgpu::MapMode::Read, encoder);
     }
 
-    /// The counts of a frame that is done, in the order of its passes.
+    /// Returns the counts of a finished frame, in the order of its passes.
     pub fn take(&mut self) -> Result<Vec<PassStatistics>, ExecuteError> {
         let failed = || ExecuteError::Readback {
             name: "pipeline statistics".to_owned(),

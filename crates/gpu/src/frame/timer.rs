@@ -1,13 +1,13 @@
-//! Timestamps of frames: written, and read when the GPU has written them.
+//! Writes the timestamps of frames, and reads them when the GPU has written them.
 
 use super::times::{FrameTiming, PassTiming};
 use crate::error::ExecuteError;
 use std::{sync::Arc, time::Duration};
 use wgpu_profiler::{GpuProfiler, GpuProfilerSettings, GpuTimerQueryResult};
 
-/// Writes and reads the timestamps of one frame after the other. Frames that are under way at once
-/// have a timer each: a profiler cannot tell the queries of two that were both not submitted yet,
-/// and of more than it was made for it drops some.
+/// Timestamps of one frame after another. Frames in flight have a timer each: a profiler cannot
+/// separate the queries of two frames that are not submitted yet, and drops those of more frames
+/// than it was created for.
 pub(crate) struct Timer {
     profiler: GpuProfiler,
     /// One query that is never read. Mesa 22.3's lavapipe takes the begin timestamp of a compute
@@ -50,7 +50,7 @@ impl Timer {
         &self.profiler
     }
 
-    /// To be called first in every compute pass that is timed.
+    /// Starts the timing of a compute pass; must be called before its other commands.
     pub fn open_compute(&self, pass: &mut wgpu::ComputePass<'_>) {
         if let Some(spare) = &self.spare {
             pass.write_timestamp(spare, 0);
@@ -61,7 +61,7 @@ impl Timer {
         self.profiler.resolve_queries(encoder);
     }
 
-    /// Starts the mapping of the timestamps of a frame that was submitted; false if it was started
+    /// Starts the mapping of the timestamps of a submitted frame. Returns false if it was started
     /// before.
     pub fn end_frame(&mut self) -> Result<bool, ExecuteError> {
         if self.is_ended {
@@ -74,8 +74,9 @@ impl Timer {
         Ok(true)
     }
 
-    /// The frame's times, if they are mapped; `passes` are names and CPU times in order. Then the
-    /// timer is free for another frame.
+    /// Returns the times of the frame; `None` if its timestamps are not mapped yet. `passes` holds
+    /// the name and the CPU time of each pass, in order. The timer can then be used for another
+    /// frame.
     pub fn take(&mut self, passes: &[(Arc<str>, Duration)]) -> Option<FrameTiming> {
         let results = self.profiler.process_finished_frame(self.period)?;
         self.is_ended = false;
@@ -83,7 +84,7 @@ impl Timer {
     }
 }
 
-/// Times of a frame; without results of its queries those of the CPU.
+/// Combines the CPU times of passes with the results of their timestamp queries, if there are any.
 pub(crate) fn times(
     passes: &[(Arc<str>, Duration)],
     results: &[GpuTimerQueryResult],

@@ -2,31 +2,32 @@
 
 use std::time::Duration;
 
-/// Times of one frame.
+/// GPU and CPU times of one frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameTiming {
-    /// Times of the passes, in the order in which they ran.
+    /// Times of the passes that ran, in the order in which they ran.
     pub passes: Vec<PassTiming>,
 }
 
-/// Times of one pass.
+/// GPU and CPU times of one pass in one frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PassTiming {
-    /// The pass.
+    /// Name of the pass.
     pub name: String,
-    /// When its first step began on the GPU, from the frame's first begin on; `None` where `gpu`
-    /// is.
+    /// Begin of the pass's first step on the GPU, counted from the earliest begin in the frame.
+    /// `None` if `gpu` is `None`.
     pub begin: Option<Duration>,
-    /// From the begin of its first step to the end of its last on the GPU; `None` where the adapter
-    /// has no timestamps.
+    /// GPU time from the begin of the pass's first step to the end of its last. `None` if there are
+    /// no valid timestamps, for example because the adapter has none.
     pub gpu: Option<Duration>,
-    /// Time that encoding it took on the CPU.
+    /// CPU time that encoding the pass took.
     pub cpu: Duration,
 }
 
 impl FrameTiming {
-    /// From the first begin to the last end on the GPU. Not the sum of the passes: they may
-    /// overlap, and there are gaps.
+    /// Returns the GPU time from the earliest begin of a pass to the latest end; `None` if no pass
+    /// has GPU times. It differs from the sum of the passes: passes may overlap, and there are
+    /// gaps.
     pub fn gpu(&self) -> Option<Duration> {
         let timed = || {
             let passes = self.passes.iter();
@@ -37,7 +38,7 @@ impl FrameTiming {
         Some(end - begin)
     }
 
-    /// Time that encoding all passes took on the CPU.
+    /// Returns the CPU time that encoding all passes took.
     pub fn cpu(&self) -> Duration {
         self.passes.iter().map(|pass| pass.cpu).sum()
     }

@@ -1,6 +1,6 @@
 //! The uniform `frame`: number, time and flags. The host may encode several frames before it
-//! submits the first, so each frame under way has a copy of its own, from which the uniform is
-//! written in the frame's own commands.
+//! submits the first. So each frame in flight has its own source buffer, which the frame's commands
+//! copy to the uniform.
 
 use super::host_changes::Changed;
 use crate::{
@@ -10,10 +10,10 @@ use crate::{
 };
 use skiagraph_graph::FRAME_BYTES;
 
-/// Source buffers of the uniform.
+/// Source buffer of the uniform `frame`.
 pub(super) struct FrameUniform {
     staging: wgpu::Buffer,
-    /// Raised when it is mapped again, after the frame that it was last written for.
+    /// Signals when the buffer is mapped again, after its last frame has finished.
     mapped: Signal,
 }
 
@@ -27,7 +27,7 @@ impl FrameUniform {
         })
     }
 
-    /// Writes number, time and flags into the copy of a frame that is over, or into a new one.
+    /// Writes number, time and flags into the source buffer of a finished frame, or into a new one.
     pub fn write(
         used: &mut Option<Self>,
         (index, seconds, changed): (u32, f32, Changed),
@@ -50,7 +50,7 @@ impl FrameUniform {
         Ok(())
     }
 
-    /// Encodes the copy into the uniform.
+    /// Encodes the copy from the source buffer to the uniform.
     pub fn copy(&mut self, uniform: &wgpu::Buffer, encoder: &mut wgpu::CommandEncoder) {
         self.staging.unmap();
         encoder.copy_buffer_to_buffer(&self.staging, 0, uniform, 0, FRAME_BYTES);

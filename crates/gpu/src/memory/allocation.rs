@@ -1,4 +1,4 @@
-//! Textures and buffers that resources of a plan take turns in.
+//! Textures and buffers that the resources of a plan share, one after another.
 
 use super::physical::Physical;
 use crate::{
@@ -8,21 +8,22 @@ use crate::{
 use skiagraph_graph::{Origin, Plan, Resource, ResourceId, ResourceKind, Texture};
 use std::collections::HashMap;
 
-/// One allocation that resources take turns in, or two of one that is also read as it was in the
-/// frame before.
+/// One texture or buffer that resources share, or two for a resource that is also read as
+/// `.previous`.
 pub(crate) struct GpuAllocation {
     pub label: String,
     usage: (wgpu::TextureUsages, wgpu::BufferUsages),
     pub versions: Vec<Physical>,
-    /// The smaller buffer or texture that holds the content until the next frame copies it.
+    /// The smaller buffer or texture whose content the next frame copies; `None` if it did not
+    /// grow.
     pub grown_from: Option<Physical>,
 }
 
-/// Allocations of another plan by their labels.
+/// Allocations of a former plan by their labels.
 pub(super) type Known<'a> = HashMap<&'a str, (&'a Plan, &'a GpuAllocation)>;
 
 impl GpuAllocation {
-    /// Makes what resources take turns in, or takes it from what is known by label.
+    /// Creates an allocation for the resources `aliases`, or reuses the one with this label.
     pub fn new(
         plan: &Plan,
         aliases: &[ResourceId],
@@ -111,7 +112,7 @@ pub(super) fn dimension(is_3d: bool) -> wgpu::TextureDimension {
     }
 }
 
-/// The size of some layers of a mip.
+/// Returns the size of this mip of a texture with this number of layers.
 pub(crate) fn extent(texture: &Texture, mip: u32, layers: u32) -> wgpu::Extent3d {
     let [width, height] = texture.mip_size(mip);
     wgpu::Extent3d {
@@ -121,7 +122,7 @@ pub(crate) fn extent(texture: &Texture, mip: u32, layers: u32) -> wgpu::Extent3d
     }
 }
 
-/// Writes what stands in the document into a resource that holds just that.
+/// Writes the content that the document declares into a constant resource.
 fn fill(version: &Physical, resource: &Resource, queue: &wgpu::Queue) {
     match (version, &resource.kind) {
         (Physical::Texture(made), ResourceKind::Texture(texture)) => {
@@ -146,7 +147,8 @@ fn fill(version: &Physical, resource: &Resource, queue: &wgpu::Queue) {
     }
 }
 
-/// Returns the allocation of another plan that a larger one continues: one with `keep` that grows.
+/// Returns the smaller allocation of a former plan whose content a larger resource with `keep` and
+/// `grow` continues.
 fn grown(of: &Plan, allocation: &GpuAllocation, resource: &Resource) -> Option<Physical> {
     let goes_on = |it: &Resource| it.keep && it.growth.is_some();
     let known = was(of, resource).filter(|known| goes_on(known) && goes_on(resource))?;
@@ -170,7 +172,7 @@ fn grown(of: &Plan, allocation: &GpuAllocation, resource: &Resource) -> Option<P
     is_smaller.then(|| made.clone())
 }
 
-/// Another plan's resource of the same name.
+/// Returns the resource of the same name in another plan.
 fn was<'p>(of: &'p Plan, resource: &Resource) -> Option<&'p Resource> {
     let mut resources = of.resources().iter();
     resources.find(|known| known.name == resource.name)

@@ -3,8 +3,8 @@
 use super::{allocation::dimension, physical::Physical};
 use skiagraph_graph::Import;
 
-/// Why a texture or buffer is not what the host said that it would import. Its usages may be more
-/// than those that were said.
+/// Says how a texture, buffer or sampler differs from its description as an import; `None` if it
+/// matches. It may have more usages than described.
 pub(crate) fn differs(physical: &Physical, described: &Import) -> Option<String> {
     fn unless<T: PartialEq + std::fmt::Debug>(what: &str, planned: T, given: T) -> Option<String> {
         (planned != given).then(|| format!("{what} is {given:?}, not {planned:?}"))

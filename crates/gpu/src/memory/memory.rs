@@ -1,4 +1,4 @@
-//! All memory of a plan: made here, built by the provider, or handed over by the host.
+//! Memory of a plan: created here, built by the provider, or imported by the host.
 
 use super::{
     allocation::{GpuAllocation, Known},
@@ -15,28 +15,27 @@ use skiagraph_graph::{
 };
 use std::{collections::BTreeMap, ops::Range};
 
-/// Textures, buffers and samplers of a plan.
+/// All textures, buffers and samplers of a plan.
 #[derive(Default)]
 pub(crate) struct Memory {
     allocations: Vec<GpuAllocation>,
     of: BTreeMap<ResourceId, usize>,
-    /// Resource that another is last frame's version of, where two allocations take turns.
+    /// The resource that each `.previous` resource belongs to, if its two allocations alternate.
     bases: BTreeMap<ResourceId, ResourceId>,
-    /// Provided resources, copies of them from the frame before, the uniform `frame`, and imports;
-    /// the latter from when the host has handed them over.
+    /// Provided resources, their `.previous` copies, the uniform `frame`, and the imports that the
+    /// host has set.
     host: BTreeMap<ResourceId, Physical>,
-    /// Imports that no live pass uses, for plans in which one does.
+    /// Imports by name that no live pass uses; a later plan may use them.
     spare: BTreeMap<String, Physical>,
     samplers: BTreeMap<ResourceId, wgpu::Sampler>,
-    /// Versions of the provided resources; of those that the provider cannot build yet, the missing
-    /// part in its words.
+    /// Version of each provided resource, or the part that is missing to build it.
     provided: BTreeMap<ResourceId, Result<u64, String>>,
 }
 
-/// A buffer or texture, and the larger one that goes on with its content.
+/// A buffer or texture, and the larger one that takes over its content.
 pub(crate) type Grown = (Physical, Physical);
 
-/// Maker of memory.
+/// Device, queue and provider that memory is created with.
 pub(crate) struct ResourceFactory<'a> {
     pub device: &'a wgpu::Device,
     pub queue: &'a wgpu::Queue,
@@ -44,8 +43,8 @@ pub(crate) struct ResourceFactory<'a> {
 }
 
 impl Memory {
-    /// Makes every resource with a lifetime; provided ones are asked of the provider, and only
-    /// here. Resources of `old` with the same name and make are taken over with their content.
+    /// Creates every resource that a live pass uses, and asks the provider for the provided ones.
+    /// Resources of `old` with the same name and properties are reused with their content.
     pub fn new(
         plan: &Plan,
         old: Option<(&Plan, &Memory)>,
@@ -81,7 +80,7 @@ impl Memory {
         Ok(memory)
     }
 
-    /// Makes what no allocation of the plan holds.
+    /// Creates the memory of a resource that has no allocation in the plan.
     fn enter(
         &mut self,
         plan: &Plan,
@@ -131,7 +130,7 @@ impl Memory {
         Ok(())
     }
 
-    /// A buffer that is copied to, or the one of the same name and size that is there.
+    /// Creates a buffer that is copied to, or reuses the one of the same name and size.
     fn own_buffer(
         &mut self,
         id: ResourceId,
@@ -154,7 +153,7 @@ impl Memory {
         Ok(())
     }
 
-    /// Returns the resource behind a name of the host's.
+    /// Returns the id and memory of the host's resource with this name.
     fn host_by_name(&self, plan: &Plan, name: &str) -> Option<(ResourceId, &Physical)> {
         let mut host = self.host.iter();
         let known = host.find(|(id, _)| plan.resource(**id).name == name);
@@ -220,7 +219,7 @@ impl Memory {
         }
     }
 
-    /// A view of one part, of the dimension that a shader or an attachment sees.
+    /// Returns a view of a part of a texture, with the dimension that a shader or attachment needs.
     pub fn view(
         &self,
         target: &Target,
@@ -247,7 +246,7 @@ impl Memory {
         Ok(texture.create_view(&descriptor))
     }
 
-    /// Asks the provider for a resource if it has another version than the one that is there.
+    /// Asks the provider for a resource, unless `old` has it in the same version.
     pub fn refresh(
         &mut self,
         id: ResourceId,
@@ -311,17 +310,17 @@ impl Memory {
         Ok(())
     }
 
-    /// The provided resources with the versions that are there, or what is missing of them.
+    /// Returns the version of each provided resource, or the part that is missing to build it.
     pub fn provided(&self) -> &BTreeMap<ResourceId, Result<u64, String>> {
         &self.provided
     }
 
-    /// The version that a provided resource was built of.
+    /// Returns the version that a provided resource was built from; `None` if it is not built.
     pub fn version(&self, id: ResourceId) -> Option<u64> {
         self.provided.get(&id)?.as_ref().ok().copied()
     }
 
-    /// The part of a resource that the provider could not build, in its words.
+    /// Returns the part that is missing to build a provided resource; `None` if it is built.
     pub fn missing(&self, id: ResourceId) -> Option<&str> {
         self.provided.get(&id)?.as_ref().err().map(String::as_str)
     }
@@ -331,7 +330,7 @@ impl Memory {
         self.host.get(&id)
     }
 
-    /// Sets an import; whether it is another one than before.
+    /// Sets an import. Returns true if it differs from the one before.
     pub fn import(&mut self, id: ResourceId, physical: Physical) -> bool {
         self.host.insert(id, physical.clone()) != Some(physical)
     }
@@ -341,8 +340,8 @@ impl Memory {
         self.spare.insert(name.to_owned(), physical);
     }
 
-    /// Returns true if a provided buffer of one state of an executor and that of another are of one
-    /// make, so that passes which were bound to one can be bound to the other.
+    /// True if both are buffers of the same size and usage, so that the device accepts one wherever
+    /// it accepts the other.
     pub fn is_alike(one: Option<&Physical>, other: Option<&Physical>) -> bool {
         match (one, other) {
             (Some(Physical::Buffer(one)), Some(Physical::Buffer(other))) => {
@@ -352,13 +351,13 @@ impl Memory {
         }
     }
 
-    /// Returns true if a resource is larger than before, with the same content.
+    /// True if a resource is larger than in the former plan, with the same content.
     pub fn is_grown(&self, id: ResourceId) -> bool {
         let allocation = self.of.get(&id).map(|at| &self.allocations[*at]);
         allocation.is_some_and(|allocation| allocation.grown_from.is_some())
     }
 
-    /// Takes what is to be copied into larger buffers and textures, each with that.
+    /// Takes the smaller resources whose content must be copied, each with its larger successor.
     pub fn take_grown(&mut self) -> Vec<Grown> {
         let grown = self.allocations.iter_mut().filter_map(|allocation| {
             let from = allocation.grown_from.take()?;
@@ -367,8 +366,8 @@ impl Memory {
         grown.collect()
     }
 
-    /// Returns true if a resource has the very memory in two states of an executor, and so its
-    /// content.
+    /// True if a resource has the very same memory, and so the same content, in two states of an
+    /// executor.
     pub fn same(&self, id: ResourceId, other: &Memory, of_other: ResourceId) -> bool {
         let versions = |memory: &Memory, id: ResourceId| -> Option<Vec<Physical>> {
             if let Some(host) = memory.host.get(&id) {
@@ -389,13 +388,13 @@ fn is_copyable(built: &Physical) -> bool {
     }
 }
 
-/// Returns true if a live pass reads a provided resource as it was in the frame before.
+/// True if a live pass reads a provided resource as `.previous`.
 fn is_read_as_before(id: ResourceId, plan: &Plan) -> bool {
     plan.used()
         .any(|other| other.origin == Origin::Previous(id))
 }
 
-/// The bytes of a buffer that a part of a resource is.
+/// Returns the byte range of a part of a buffer; `whole` is the size of the buffer in bytes.
 pub(crate) fn bytes(resource: &Resource, part: &SubresourceRange, whole: u64) -> Range<u64> {
     let stride = match &resource.kind {
         ResourceKind::Buffer(buffer) => buffer.stride,
@@ -406,7 +405,7 @@ pub(crate) fn bytes(resource: &Resource, part: &SubresourceRange, whole: u64) ->
     part.items().map_or(0..whole, range)
 }
 
-/// An import that was handed over before, if it is still described the same way.
+/// Returns an import that the host set for a former plan, if its description is unchanged.
 fn kept_import(plan: &Plan, name: &str, (of, memory): (&Plan, &Memory)) -> Option<Physical> {
     let described = |plan: &Plan| plan.imports().get(name).copied();
     if described(plan) != described(of) {

@@ -1,4 +1,4 @@
-//! Textures, buffers and samplers of what the live passes touch.
+//! Textures, buffers and samplers that the live passes use.
 
 pub(crate) mod allocation;
 pub(crate) mod import;

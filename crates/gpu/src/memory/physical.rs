@@ -1,4 +1,4 @@
-//! Memory of a resource on the device, and the turns that two allocations take.
+//! Memory of a resource on the device, and the alternation of two allocations.
 
 use skiagraph_graph::ResourceId;
 use std::collections::BTreeMap;
@@ -12,13 +12,13 @@ pub(crate) enum Physical {
     AccelerationStructure(wgpu::Tlas),
 }
 
-/// Which of its two allocations a resource is written to in a frame, and which one holds what it
-/// was before; both the same in a frame that does not write it.
+/// Indices of the allocations that hold a resource's content in this frame and in the frame before.
+/// Both are the same in a frame that does not write the resource.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Versions {
     pub current: usize,
     pub previous: usize,
 }
 
-/// Resources that are also read as they were in the frame before, and whose turn it is.
+/// The resources that are also read as `.previous`, with the allocations they use in a frame.
 pub(crate) type PingPong = BTreeMap<ResourceId, Versions>;

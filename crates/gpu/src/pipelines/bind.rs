@@ -1,4 +1,4 @@
-//! Bindings of the pipelines: bind groups, attachments, sources and targets of copies.
+//! Binds pipelines to memory: bind groups, attachments, and operands of copies.
 
 use super::{
     handles::{GpuAttachment, GpuOperand, GpuProgram, Handles},
@@ -18,7 +18,7 @@ use skiagraph_graph::{
     step::{ColorTarget, DepthTarget, Dispatch, Draw, Groups, StencilTarget, Step},
 };
 
-/// The uniform buffer of a step's `params`, if its shader has one.
+/// Creates the uniform buffer of a step's `params`; `None` if its shader has none.
 pub(crate) fn upload(
     device: &wgpu::Device,
     label: &str,
@@ -35,7 +35,7 @@ pub(crate) fn upload(
     buffer::filled(device, &label, bytes, usage, failed).map(Some)
 }
 
-/// Binds steps to the memory of one state of the ping-pong.
+/// Binds steps to memory, for one state of the ping-pong.
 pub(crate) struct Binder<'a> {
     pub device: &'a wgpu::Device,
     pub plan: &'a Plan,
@@ -79,7 +79,7 @@ impl Binder<'_> {
         })
     }
 
-    /// Each mip of each layer of a part.
+    /// Returns a view of each mip of each layer of a part.
     pub fn single_views(&self, target: &Target) -> Result<Vec<GpuAttachment>, ExecuteError> {
         let id = target.id;
         let ResourceKind::Texture(texture) = &self.plan.resource(id).kind else {

@@ -1,9 +1,9 @@
-//! Steps with everything they need on the device.
+//! Steps of passes as wgpu objects, ready to encode.
 
 use skiagraph_graph::{SubresourceRange, step::Stage};
 use std::ops::Range;
 
-/// The stage in which everything is a handle of wgpu's.
+/// Stage of a step in which every resource is a wgpu object.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Handles;
 
@@ -16,7 +16,7 @@ impl Stage for Handles {
     type Canvas = GpuAttachment;
 }
 
-/// Attachment of a draw: a view, and the slice of it that a 3D texture has.
+/// Attachment of a draw: a view, and the slice if the texture is 3D.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct GpuAttachment {
     pub view: wgpu::TextureView,
@@ -31,7 +31,7 @@ pub(crate) enum GpuOperand {
         part: SubresourceRange,
         /// Size of each mip of the part.
         mips: Vec<wgpu::Extent3d>,
-        /// Each mip of each layer, where the step clears them.
+        /// A view of each mip of each layer, if the step clears them; else empty.
         views: Vec<GpuAttachment>,
     },
     Buffer {
@@ -40,7 +40,7 @@ pub(crate) enum GpuOperand {
     },
 }
 
-/// A pipeline and what is bound to it.
+/// A pipeline with its bind groups.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct GpuProgram {
     pub pipeline: PipelineKind,
@@ -48,7 +48,7 @@ pub(crate) struct GpuProgram {
     pub groups: Vec<(u32, wgpu::BindGroup)>,
 }
 
-/// A pipeline of either kind.
+/// A render or compute pipeline.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum PipelineKind {
     Render(wgpu::RenderPipeline),

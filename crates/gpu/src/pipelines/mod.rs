@@ -1,4 +1,4 @@
-//! Pipelines of the live passes, and what is bound to them.
+//! Pipelines and bindings of the live passes.
 
 pub(crate) mod bind;
 pub(crate) mod handles;

@@ -1,4 +1,4 @@
-//! Pipelines: one per draw or dispatch, shaders compiled once.
+//! Creates pipelines: one for each draw or dispatch; shaders are compiled once.
 
 use super::handles::PipelineKind;
 use naga::ShaderStage;
@@ -15,11 +15,11 @@ pub(crate) struct Pipeline {
     pub layouts: Vec<Option<wgpu::BindGroupLayout>>,
 }
 
-/// Makes pipelines; every shader is compiled once.
+/// Creates pipelines and keeps the compiled shaders.
 #[derive(Clone, Default)]
 pub(crate) struct Pipelines {
     modules: HashMap<String, (Arc<Shader>, wgpu::ShaderModule)>,
-    /// Steps of passes of the next plan, by the pass's name, that another thread has made.
+    /// Pipelines of the next plan that another thread has created, by pass name; one for each step.
     prepared: HashMap<String, Vec<Option<Pipeline>>>,
 }
 
@@ -30,8 +30,8 @@ const FULLSCREEN: &str =
 }";
 
 impl Pipelines {
-    /// Makes the pipelines of a pass for the plan that is put in next; `steps` are those that need
-    /// one.
+    /// Creates pipelines of a pass for the next plan. `steps` yields every step; `None` for a step
+    /// that needs no new pipeline.
     pub fn prepare<'s>(
         &mut self,
         device: &wgpu::Device,
@@ -42,12 +42,12 @@ impl Pipelines {
         self.prepared.insert(label.to_owned(), made);
     }
 
-    /// Forgets what was made for a plan that is there now, or was refused.
+    /// Drops the pipelines prepared for a plan that was put in or refused.
     pub fn forget_prepared(&mut self) {
         self.prepared.clear();
     }
 
-    /// The pipeline of a pass's step at `index`; copies and clears have none.
+    /// Returns the pipeline of the pass's step at `index`; `None` for copies and clears.
     pub fn get_or_make(
         &mut self,
         device: &wgpu::Device,
@@ -111,7 +111,7 @@ impl Pipelines {
     }
 }
 
-/// Returns true if the pipeline of one step serves for another.
+/// True if two steps can use the same pipeline.
 pub(crate) fn same_pipeline(a: &Step<Ids>, b: &Step<Ids>) -> bool {
     match (a, b) {
         (Step::Draw(a), Step::Draw(b)) => {

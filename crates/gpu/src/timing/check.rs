@@ -1,4 +1,4 @@
-//! Checks that an adapter's timestamps are true.
+//! Checks that the timestamps of an adapter agree with wall time.
 
 use crate::{
     device::partial,
@@ -12,30 +12,30 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Verdict on an adapter's timestamps.
+/// Result of the check of an adapter's timestamps.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Trust {
-    /// They agree with wall time.
+    /// The timestamps agree with wall time.
     Trusted,
-    /// They do not, or there are none.
+    /// The timestamps disagree with wall time, are missing, or cannot be checked on this backend.
     Untrusted {
-        /// Why.
+        /// Reason, as text for the user.
         reason: String,
     },
 }
 
-/// The shortest dispatch, in wall time, that is compared: long against the cost of submitting and
+/// Shortest wall time of a dispatch that is compared. It is long against the cost of submitting and
 /// waiting.
 const LONG: Duration = Duration::from_millis(30);
 
-/// Frames that are compared, one to warm up included.
+/// Number of frames that are run for a comparison; the first one only warms up.
 const FRAMES: usize = 5;
 
-/// Compares the GPU time of a long dispatch that follows a raster pass with wall time, by the very
-/// means that time frames.
+/// Compares the GPU time of a long dispatch after a raster pass with its wall time. The dispatch is
+/// timed by an [`Executor`], as the passes of any graph are.
 ///
 /// # Errors
-/// If the little graph that it runs fails on this device.
+/// If the check's own small graph fails on this device.
 pub fn check(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Trust, ExecuteError> {
     if !device.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
         return Ok(Trust::Untrusted {

@@ -1,4 +1,4 @@
-//! GPU timestamps that are true, or none; and what the device counts.
+//! GPU timestamps, checked against wall time, and pipeline statistics.
 //!
 //! ```no_run
 //! use skiagraph_gpu::{Executor, Frame, device::Gpu, timing::{self, Trust}};

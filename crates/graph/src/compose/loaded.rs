@@ -35,21 +35,21 @@ use std::{
     sync::Arc,
 };
 
-/// A document that was read, with all shaders and pictures that it names.
+/// A document that was read, with all documents, shaders and pictures that it names.
 #[derive(Debug)]
 pub(crate) struct Loaded {
     pub document: Arc<Document>,
     pub shaders: Shaders,
     pub pictures: Pictures,
     include_sites: Vec<IncludeSite>,
-    /// Features that the documents require.
+    /// Device features that the document and its includes require.
     pub required: wgt::Features,
     /// Features that they ask for by `has`, or that their passes can make use of.
     asked_for: wgt::Features,
     pub warnings: Vec<Diagnostic>,
 }
 
-/// The pictures of all documents, by the path of the document and their own.
+/// Decoded pictures of all documents, by the path of the document and the file name in it.
 #[derive(Debug, Default)]
 pub(crate) struct Pictures(HashMap<(Arc<str>, String), Reported<Picture>>);
 
@@ -61,7 +61,11 @@ impl Pictures {
 }
 
 impl Loaded {
-    /// Reads a document. Returns its readable part, and the mistakes.
+    /// Reads a document with its includes. Returns its readable part, and the errors. `chosen`
+    /// holds a document for each open include that is asked for, by the include's open name.
+    ///
+    /// # Errors
+    /// All diagnostics, if the root document itself cannot be read.
     pub fn read(
         path: &str,
         registry: &Registry,
@@ -113,17 +117,18 @@ impl Loaded {
         Ok((loaded, errors))
     }
 
-    /// Where the document was read from.
+    /// Returns the path of the document.
     pub fn path(&self) -> &str {
         &self.document.file.name
     }
 
-    /// The place of the document itself, for mistakes of a request.
+    /// Returns the begin of the document, as the place for mistakes of a request.
     pub fn place(&self) -> Span {
         self.document.file.span(0..0)
     }
 
-    /// The features that the documents require, ask for, or have passes that can make use of.
+    /// Returns all device features that matter to the graph: required ones, ones that `has(…)` asks
+    /// for, and ones that a pass can use.
     pub fn features(&self) -> wgt::Features {
         self.required | self.asked_for
     }
@@ -132,8 +137,8 @@ impl Loaded {
         find(&self.document.params, name, self.path())
     }
 
-    /// Collects the mistakes of the document. Those in other documents get the place where they are
-    /// asked for.
+    /// Sorts the mistakes of the document. A mistake in an included document gets the place of the
+    /// include, too.
     pub fn diagnostics(&self, mut list: Vec<Diagnostic>) -> Diagnostics {
         label(&mut list, self.path(), &self.include_sites);
         Diagnostics::new(list)

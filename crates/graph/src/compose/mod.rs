@@ -1,4 +1,4 @@
-//! Phase 1, second half: the documents that a document extends and includes are read, each once.
+//! Phase 1, second half: reads the documents that a document extends and includes, each once.
 
 pub(crate) mod loaded;
 pub(crate) mod reader;

@@ -35,10 +35,10 @@ use std::{
 /// stack.
 const DEEPEST: usize = 64;
 
-/// Where a document is asked for: its path, the place, and what asks there in words.
+/// Place where a document is asked for: its path, the place, and a text such as "included here".
 pub(crate) type IncludeSite = (String, Span, &'static str);
 
-/// Reads documents.
+/// Reads a document with the documents that it extends and includes, each once.
 pub(crate) struct Reader<'a> {
     registry: &'a Registry,
     sources: &'a dyn Sources,
@@ -47,14 +47,15 @@ pub(crate) struct Reader<'a> {
     read: HashMap<String, Result<Arc<Document>, ErrorGuaranteed>>,
     /// The documents that are being read, outermost first, with the include that asks for each.
     open: Vec<(String, Option<Span>)>,
-    /// Every place where a document is asked for.
+    /// Every place where a document is extended or included.
     pub include_sites: Vec<IncludeSite>,
     /// Documents for open includes of the root document, by path.
     chosen: &'a BTreeMap<String, String>,
 }
 
 impl<'a> Reader<'a> {
-    /// `chosen`: paths of documents for open includes of the root document.
+    /// Creates a reader. `chosen` holds paths of documents for the root's open includes, by open
+    /// name.
     pub fn new(
         registry: &'a Registry,
         sources: &'a dyn Sources,
@@ -72,7 +73,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The included documents, each once.
+    /// Iterates over the included documents that were read, each once.
     pub fn documents(&self) -> impl Iterator<Item = &Arc<Document>> {
         self.read.values().flatten()
     }
@@ -91,7 +92,8 @@ impl<'a> Reader<'a> {
         Ok(document)
     }
 
-    /// Reads the document at `path` with all that it extends.
+    /// Reads the document at `path`, with the documents that it extends merged in. Includes are not
+    /// read.
     pub fn flat(&mut self, path: &str) -> Result<RawDocument, ErrorGuaranteed> {
         let file = self.file(path)?;
         self.raw(file, &mut Vec::new())
@@ -432,7 +434,8 @@ fn has_constant_default(param: &Param) -> bool {
     is_constant
 }
 
-/// Says for mistakes in other documents where these are asked for.
+/// Adds labels to mistakes in other documents than `root`: the places where these are included or
+/// extended.
 pub(crate) fn label(diagnostics: &mut [Diagnostic], root: &str, include_sites: &[IncludeSite]) {
     /// More includes of one document say nothing new.
     const SHOWN: usize = 4;

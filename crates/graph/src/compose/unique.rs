@@ -1,5 +1,5 @@
-//! Names that must be free: of materials, groups, includes and what these give, of passes, of
-//! outputs.
+//! Checks that names are unique: those of materials, groups, includes and their outputs, of passes,
+//! and of a document's outputs.
 
 use crate::{
     diagnostics::reports::Reports,
@@ -13,7 +13,8 @@ use crate::{
 };
 use std::collections::HashMap;
 
-/// Reports every second one of a name. Conditions do not count: names are unique whatever they are.
+/// Reports each name that is declared twice. Conditions do not count: two declarations may not
+/// share a name even if only one of them can exist.
 pub(super) fn check(document: &Document, reports: &mut Reports) {
     let mut materials = Names::new("material");
     for input in &document.inputs {

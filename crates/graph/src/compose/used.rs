@@ -1,4 +1,4 @@
-//! Which names a document uses. What it has of an extended document and does not use goes.
+//! Finds the names that a document uses, and drops what it inherits by `extends` without using it.
 
 use crate::{
     diagnostics::reports::Reports,
@@ -13,7 +13,7 @@ use std::{
     sync::Arc,
 };
 
-/// Names that a document uses.
+/// Names of materials and params that a document uses.
 #[derive(Default)]
 pub(crate) struct Used {
     pub materials: BTreeSet<String>,
@@ -60,9 +60,9 @@ impl Used {
     }
 }
 
-/// Drops params, values, inputs and materials that a document inherits from those that it extends
-/// and does not use; the same in all documents that it includes. Warns of another default that the
-/// document gives to a dropped param. `known`: the included documents that are done, by path.
+/// Drops params, values, inputs and materials that a document inherits by `extends` and does not
+/// use, in the document and in all that it includes. Warns of a default for a dropped param.
+/// `known` holds the included documents that are done, by path.
 pub(crate) fn drop_unused(
     document: &mut Document,
     shaders: &Shaders,

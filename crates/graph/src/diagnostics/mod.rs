@@ -1,6 +1,6 @@
-//! Mistakes in documents and shaders.
+//! Diagnostics of mistakes in documents and shaders, as `Graph` returns them.
 //!
-//! The phases report typed mistakes; `errors/` puts them into words.
+//! The phases report typed mistakes; `errors/` turns them into diagnostics.
 //!
 //! ```
 //! use skiagraph_graph::{Code, FolderSources, Graph, Registry};

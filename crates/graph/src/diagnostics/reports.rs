@@ -1,4 +1,4 @@
-//! Where the phases report mistakes.
+//! Collects the mistakes that the phases report.
 
 use super::diagnostic::{Diagnostic, Severity};
 use std::collections::BTreeSet;
@@ -10,32 +10,33 @@ const ENOUGH: usize = 1000;
 /// and to compare all with all takes minutes.
 const HINTED: usize = 50;
 
-/// The proof that something is wrong and was reported, so that it need not be reported again.
+/// Proof that a mistake was reported, so that what follows from it need not be reported again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ErrorGuaranteed(());
 
-/// A value, or the proof that something is wrong with it.
+/// A value, or the proof that a mistake in it was reported.
 pub(crate) type Reported<T> = Result<T, ErrorGuaranteed>;
 
-/// The mistakes found so far.
+/// Collected mistakes of all phases.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Reports {
     list: Vec<Diagnostic>,
     errors: usize,
     /// True if the adapter is not known yet: exceeding its limits is then a warning.
     pub any_adapter: bool,
-    /// Params of the root document that the plan depends on: other values might lead to other
-    /// mistakes.
+    /// Params of the root document that the plan depends on; other values of these may lead to
+    /// other mistakes.
     pub depends_on: BTreeSet<String>,
 }
 
 impl Reports {
-    /// A result whose mistake is reported.
+    /// Reports the mistake of a result, if it is one.
     pub fn check<T>(&mut self, result: Result<T, impl Into<Diagnostic>>) -> Reported<T> {
         result.map_err(|mistake| self.report(mistake))
     }
 
-    /// Takes a mistake of a phase, which `errors/` puts into words, or one that has them already.
+    /// Reports a mistake: a typed one of a phase, or a diagnostic. Returns the proof that it was
+    /// reported.
     pub fn report(&mut self, mistake: impl Into<Diagnostic>) -> ErrorGuaranteed {
         let diagnostic = mistake.into();
         self.errors += usize::from(diagnostic.severity == Severity::Error);
@@ -50,7 +51,8 @@ impl Reports {
         });
     }
 
-    /// Something that this adapter cannot do, and another one might.
+    /// Reports that the adapter cannot do something. If the adapter is not known yet, this is a
+    /// warning, and the result is `Ok`.
     pub fn unsupported(&mut self, mistake: impl Into<Diagnostic>) -> Result<(), ErrorGuaranteed> {
         if self.any_adapter {
             self.warn(mistake);
@@ -59,7 +61,8 @@ impl Reports {
         Err(self.report(mistake))
     }
 
-    /// The names that a misspelt one is compared with; none once there are too many mistakes.
+    /// Returns `names`, as candidates for a suggestion; empty once there are too many mistakes to
+    /// search for suggestions.
     pub fn known<S: Into<String>>(&self, names: impl IntoIterator<Item = S>) -> Vec<String> {
         if self.list.len() < HINTED {
             names.into_iter().map(Into::into).collect()
@@ -68,7 +71,7 @@ impl Reports {
         }
     }
 
-    /// How many errors there are; warnings do not count.
+    /// Returns the number of errors, without warnings.
     pub fn errors(&self) -> usize {
         self.errors
     }
@@ -82,7 +85,7 @@ impl Reports {
         self.list.iter()
     }
 
-    /// Notes that what follows depends on these params of the root document.
+    /// Notes that the plan depends on these params of the root document.
     pub fn depend_on<'n>(&mut self, params: impl Iterator<Item = &'n String>) {
         for param in params {
             if !self.depends_on.contains(param) {
@@ -91,7 +94,7 @@ impl Reports {
         }
     }
 
-    /// Errors and warnings.
+    /// Returns all errors and warnings, in the order in which they were reported.
     pub fn into_list(self) -> Vec<Diagnostic> {
         self.list
     }

@@ -10,10 +10,12 @@ use std::collections::HashMap;
 
 type Entries = Vec<Result<RawEntry, Invalid>>;
 
-/// Where an entry that is no edit comes to stand.
+/// Fields of an entry that place it in the extended document: before or after an entry, or instead
+/// of it.
 pub(crate) const PLACES: [&str; 3] = ["before", "after", "instead"];
 
-/// Applies the edits of `own` to `base`. An edit that cannot be made is reported and left out.
+/// Applies the edits of the document `own` to the document `base` that it extends. An edit that
+/// cannot be made is reported and left out.
 pub(crate) fn extend(base: RawDocument, own: RawDocument, reports: &mut Reports) -> RawDocument {
     let mut inputs = without(base.inputs, &own.materials);
     let mut materials = without(base.materials, &own.inputs);
@@ -264,7 +266,7 @@ fn find<'e>(
     Err(EditError::NoString(path.span.clone()))
 }
 
-/// Reports edits in a document that extends none.
+/// Reports edits in a document that does not extend another one, and makes their entries invalid.
 pub(crate) fn no_edits(entries: &mut Entries, reports: &mut Reports) {
     for slot in entries {
         let Ok(entry) = slot else {

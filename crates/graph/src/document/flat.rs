@@ -1,4 +1,4 @@
-//! A document with all that it extends written out, each line with its origin.
+//! Writes a document out with everything that it extends, each line with its origin.
 
 use super::{
     raw::{Invalid, RawDocument, RawEntry, RawItem, RawMap},
@@ -7,7 +7,8 @@ use super::{
 use crate::source::span::Span;
 use skiagraph_located_ron::reader::{Field, Node};
 
-/// The document as text in format 3, which reads as it does.
+/// Returns a document as text in format 3, with the documents that it extends merged in. Reading
+/// the text gives an equal document.
 pub(crate) fn flat(document: &RawDocument) -> String {
     let mut flat = Flat::default();
     flat.line(0, "(", &[]);
@@ -34,8 +35,8 @@ pub(crate) fn flat(document: &RawDocument) -> String {
     flat.text
 }
 
-/// Leaves out the params, values, inputs and materials that are not in `document`, which was
-/// read from it.
+/// Removes the params, values, inputs and materials from `raw` that `document` does not have;
+/// `document` was read from `raw`.
 pub(crate) fn keep(raw: &mut RawDocument, document: &Document) {
     let params: Vec<&str> = document.params.iter().map(|it| it.name.as_str()).collect();
     let materials = document.materials.iter().map(|it| it.name().as_str());

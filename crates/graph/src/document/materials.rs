@@ -31,7 +31,7 @@ impl Material {
         }
     }
 
-    /// True if its content stays from frame to frame.
+    /// True if the material's content stays from frame to frame.
     pub fn keeps(&self) -> bool {
         match self {
             Self::Texture(texture) => texture.keep,
@@ -40,7 +40,7 @@ impl Material {
         }
     }
 
-    /// Calls `each` with everything that its size and format are made of.
+    /// Calls `each` with every leaf of the expressions for the material's size and format.
     pub fn visit<'a>(&'a self, each: &mut dyn FnMut(Leaf<'a>)) {
         let (grow, exprs) = match self {
             Self::Texture(texture) => {
@@ -103,12 +103,12 @@ pub(crate) struct TextureEntry {
     pub keep: bool,
 }
 
-/// Number of mips.
+/// Number of mips of a texture.
 #[derive(Clone, Debug, Default)]
 pub(crate) enum Mips {
     #[default]
     One,
-    /// Down to one texel.
+    /// All mips down to one texel.
     All,
     Number(Expr),
 }
@@ -179,7 +179,7 @@ pub(crate) struct GrowEntry {
     pub max: Expr,
 }
 
-/// Constant items: numbers, or tuples of numbers, one per scalar of the shader's type.
+/// Constant items of a buffer: one list per item, with one number per scalar of the shader's type.
 #[derive(Clone, Debug)]
 pub(crate) struct Data(pub Vec<Vec<f64>>);
 
@@ -265,7 +265,7 @@ pub(crate) struct Input {
 
 #[derive(Clone, Debug)]
 pub(crate) enum InputKind {
-    /// `None`: of any format.
+    /// A texture of this format, or of any format for `None`.
     Texture(Option<wgt::TextureFormat>),
     Buffer,
     Sampler {
@@ -284,7 +284,7 @@ impl InputKind {
         }
     }
 
-    /// The same with the format that a texture must have.
+    /// Returns the kind of input in words, with the format that a texture must have.
     pub fn describe_with_format(&self) -> String {
         match self {
             Self::Texture(Some(format)) => format!("a texture {format:?}"),

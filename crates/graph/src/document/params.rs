@@ -1,4 +1,4 @@
-//! Params as a document writes them.
+//! Reads the params that a document declares.
 
 use crate::fields::prose;
 use crate::{

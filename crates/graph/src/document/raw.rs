@@ -1,4 +1,4 @@
-//! A document as sections of raw pieces. [`extend`](super::extend) edits them, and
+//! A document as sections of raw RON. [`extend`](super::extend) edits the sections, and
 //! [`typed`](super::typed) reads them.
 use crate::{
     diagnostics::reports::{ErrorGuaranteed, Reports},
@@ -15,27 +15,27 @@ use std::{
 /// the square.
 const MOST_ENTRIES: usize = 4096;
 
-/// The edit that takes a pass out.
+/// Tag of the edit that removes a pass of the extended document.
 pub(crate) const REMOVE: &str = "Remove";
 
-/// The document format that is read.
+/// Version of the document format that this crate reads.
 pub(crate) const FORMAT: u32 = 3;
 
-/// A map as it is written, each key once.
+/// A map as it is written: names with raw values, each name once.
 pub(crate) type RawMap = Vec<(Located<String>, Node)>;
 
 /// The sections of a document.
 #[derive(Debug)]
 pub(crate) struct RawDocument {
     pub file: SourceFile,
-    /// The paths of the documents that it extends, the nearest first.
+    /// Paths of the documents that this one extends, the nearest first.
     pub extended: Vec<Arc<str>>,
     pub description: Option<Node>,
     pub extends: Option<Node>,
     pub requires: Vec<Node>,
     pub params: Vec<RawItem>,
     pub values: RawMap,
-    /// In the order in which they hold: those of extended documents first.
+    /// Narrowed choices, in the order in which they apply: those of extended documents first.
     pub narrow: RawMap,
     pub imports: Vec<Node>,
     pub inputs: Vec<RawItem>,
@@ -46,32 +46,32 @@ pub(crate) struct RawDocument {
     pub lights: Vec<Node>,
     pub proven_on: Vec<Node>,
     pub claims: RawMap,
-    /// A param could not be read: nothing of the document has a size then.
+    /// Set if a param could not be read; sizes of this document are then unknown.
     pub invalid_params: Option<ErrorGuaranteed>,
-    /// A list or one of its items could not be read, so some names are unknown.
+    /// Set if a list or one of its items could not be read; some names are then unknown.
     pub incomplete: Option<ErrorGuaranteed>,
 }
 
-/// `Kind(name: …, …)`, a param, an input or a material.
+/// A param, an input or a material, `Kind(name: …, …)`: its tag and its raw fields.
 #[derive(Clone, Debug)]
 pub(crate) struct RawItem {
     pub tag: Located<String>,
     pub fields: Vec<Field>,
 }
 
-/// An entry of `passes`.
+/// An entry of `passes` with its raw fields; `bind`, `set` and `passes` are split further.
 #[derive(Clone, Debug)]
 pub(crate) struct RawEntry {
     pub tag: Located<String>,
     pub fields: Vec<Field>,
     pub bind: RawMap,
     pub set: RawMap,
-    /// The entries of a group.
+    /// Entries of a group; `None` for other entries.
     pub passes: Option<Vec<Result<RawEntry, Invalid>>>,
 }
 
-/// An entry that could not be read, which was reported. Its writes are not known, nor the content
-/// of an include.
+/// An entry that could not be read, which was reported. The materials that it writes are unknown,
+/// and so is the content of an include.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Invalid {
     pub is_include: bool,
@@ -92,7 +92,8 @@ impl RawItem {
 }
 
 impl RawEntry {
-    /// The name, or that of the file that an include without one names.
+    /// Returns the entry's name, or the file name of an include without a name. `None` if neither
+    /// can be read.
     pub fn name(&self) -> Option<String> {
         if let Some(name) = name_of(&self.fields) {
             return Some(name.value);
@@ -112,13 +113,13 @@ impl RawEntry {
     }
 }
 
-/// The name of a file without folder and ending.
+/// Returns the file name of a path, without its folder and ending.
 pub(crate) fn stem(path: &str) -> &str {
     let file = path.rsplit(['/', '\\']).next().unwrap_or(path);
     file.strip_suffix(".ron").unwrap_or(file)
 }
 
-/// The sections of a document, and what each holds.
+/// All sections of a document: each name, with a sentence about its content.
 pub(crate) const SECTIONS: [(&str, &str); 16] = [
     ("format", "The version of the language, 3."),
     ("extends", "Another document, of which this one is an edit."),
@@ -162,7 +163,7 @@ pub(crate) const SECTIONS: [(&str, &str); 16] = [
     ),
 ];
 
-/// Splits a document into its sections. Mistakes in some of them are reported.
+/// Splits a document into its sections. Mistakes in a section are reported.
 pub(crate) fn split(
     file: SourceFile,
     reports: &mut Reports,

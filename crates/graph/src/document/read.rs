@@ -1,4 +1,4 @@
-//! Reads a document, whatever is wrong with some of it.
+//! Reads the sections of a document; a mistake in one part does not hide the others.
 
 use super::{
     entries,
@@ -25,7 +25,7 @@ use crate::{
 use serde::de::DeserializeOwned;
 use skiagraph_located_ron::reader::{Node, from_fields};
 
-/// Reads a document and reports its mistakes. Its readable part is returned all the same, so that
+/// Reads a document and reports its mistakes. The readable part is returned in any case, so that
 /// later phases find more mistakes in one go.
 pub(crate) fn document(raw: RawDocument, registry: &Registry, reports: &mut Reports) -> Document {
     let description = raw.description.map(|node| reports.check(node.parse()));

@@ -1,4 +1,4 @@
-//! A document with everything in it read, and nothing looked up.
+//! The typed form of a document: every value is parsed, no name is looked up yet.
 
 use super::{
     materials::{Input, Material},
@@ -20,46 +20,46 @@ use serde::{Deserialize, Deserializer};
 use skiagraph_located_ron::reader::{raw, read, refuse};
 use std::{collections::BTreeSet, sync::Arc};
 
-/// A document as its author wrote it.
+/// A document as its author wrote it, with the documents that it extends merged in.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Document {
     pub file: SourceFile,
-    /// The paths of the documents that it extends, the nearest first.
+    /// Paths of the documents that this one extends, the nearest first.
     pub extended: Vec<Arc<str>>,
     pub description: String,
     pub requires: Vec<(Located<String>, wgt::Features)>,
-    /// The params that it declares, then those that it exposes.
+    /// Params that the document declares, then the params that it exposes of its includes.
     pub params: Vec<Param>,
-    /// How many of them it declares.
+    /// Number of params at the front of `params` that the document declares itself.
     pub declared: usize,
-    /// Expressions with a name.
+    /// Named expressions.
     pub values: Vec<(Located<Name>, Expr)>,
-    /// Fewer words for a `Choice`.
+    /// Names of `Choice` params, each with the words that remain.
     pub narrow: Vec<(Located<String>, Narrow)>,
-    /// Modules that stand in for others.
+    /// Modules that shaders import in the place of other modules.
     pub imports: Vec<ImportEntry>,
-    /// Other defaults for exposed params.
+    /// Exposed params, each with the default that the document gives it.
     pub defaults: Vec<(Located<String>, Expr)>,
     pub inputs: Vec<Input>,
     pub materials: Vec<Material>,
     pub entries: Vec<Result<Entry, Invalid>>,
     pub outputs: Vec<Output>,
-    /// The kinds of light that it takes.
+    /// Kinds of light that the method takes.
     pub lights: Vec<Located<Name>>,
-    /// Backends that give less than WebGPU, on which it is proven all the same.
+    /// Backends below WebGPU on which the graph is known to be right.
     pub proven_on: Vec<Located<Name>>,
     pub claims: Vec<(Located<String>, ClaimEntry)>,
-    /// Names of materials and inputs that could not be read.
+    /// Names of the materials and inputs that could not be read.
     pub broken_materials: Vec<(String, ErrorGuaranteed)>,
-    /// A param could not be read: nothing of the document has a size then.
+    /// Set if a param could not be read; sizes of this document are then unknown.
     pub invalid_params: Option<ErrorGuaranteed>,
-    /// Something could not be read, so some names are unknown.
+    /// Set if something could not be read; some names are then unknown.
     pub incomplete: Option<ErrorGuaranteed>,
-    /// An output could not be read, so its name is unknown.
+    /// Set if an output could not be read; its name is then unknown.
     pub broken_outputs: Option<ErrorGuaranteed>,
-    /// The outputs that are values.
+    /// Names of the outputs that give a value, not a material.
     pub gives_values: BTreeSet<String>,
-    /// How many includes there are one within the other below this document.
+    /// Greatest number of includes nested below this document; 0 without includes.
     pub include_depth: usize,
 }
 
@@ -97,10 +97,10 @@ pub(crate) struct ImportEntry {
     pub condition: Option<Expr>,
 }
 
-/// Promise of a method: `(if: "n >= 0.5", because: "…")`, or the condition alone.
+/// A promise of a method: `(if: "n >= 0.5", because: "…")`, or its condition alone.
 #[derive(Clone, Debug)]
 pub(crate) struct ClaimEntry {
-    /// `None`: always.
+    /// Condition under which the promise holds; `None` for always.
     pub condition: Option<Expr>,
     pub because: String,
 }
@@ -132,14 +132,14 @@ impl<'de> Deserialize<'de> for ClaimEntry {
     }
 }
 
-/// Output for the includer and the host.
+/// An output that a document gives its includer and the host.
 #[derive(Clone, Debug)]
 pub(crate) struct Output {
     pub name: Located<Name>,
     pub material: Reference,
-    /// Condition under which it exists.
+    /// Condition under which the output exists; `None` for always.
     pub condition: Option<Expr>,
-    /// True if a host has to name it to get it.
+    /// True if only a host that names the output gets it.
     pub on_request: bool,
 }
 
@@ -178,15 +178,15 @@ impl<'de> Deserialize<'de> for Output {
     }
 }
 
-/// One entry, at its place in the sequential program.
+/// An entry of `passes` (a pass, an include or a group), at its place in the document's order.
 #[derive(Clone, Debug)]
 pub(crate) struct Entry {
     pub name: Located<Name>,
-    /// Condition under which it exists.
+    /// Condition under which the entry exists; `None` for always.
     pub condition: Option<Expr>,
-    /// How often it is instantiated; `None` = once, without an index.
+    /// Number of copies of the entry; `None` for one copy without an index.
     pub repeat: Option<Expr>,
-    /// In which frames it runs; `None` = as what is around it.
+    /// Frames in which the entry runs; `None` to run as the entry around it does.
     pub run: Option<Run>,
     pub bind: Vec<(Located<String>, Reference)>,
     pub set: Vec<(Located<String>, Expr)>,
@@ -200,52 +200,52 @@ pub(crate) enum What {
     Group(Vec<Result<Entry, Invalid>>),
 }
 
-/// A pass: the fields of every kind, and the kind's own body.
+/// A pass: the fields that all kinds share, and the body of its own kind.
 #[derive(Clone, Debug)]
 pub(crate) struct Pass {
     pub shader: Option<Located<String>>,
-    /// Materials that are cleared to zero before anything else of it runs.
+    /// Materials that are cleared to zero before the pass runs.
     pub clear: Vec<Reference>,
     /// Materials that the pass writes in every texel or item, as its author promises.
     pub overwrites: Vec<Reference>,
-    /// Materials that the pass reads, if its author lists them.
+    /// Materials that the pass reads; `None` if the author does not list them.
     pub reads: Option<Vec<Reference>>,
     pub kind: &'static str,
     pub body: Arc<dyn PassKind>,
-    /// The shaders that it runs, or may run for other values.
+    /// Shaders that the pass runs, for any values of its params.
     pub shaders: Vec<ShaderUse>,
-    /// The features that it can make use of.
+    /// Optional device features that the pass can use.
     pub features: wgt::Features,
-    /// Names in its fields.
+    /// Expressions and references in the fields of the pass's kind.
     pub mentions: Mentions,
 }
 
-/// Another document whose passes stand here.
+/// An include: another document whose passes run at this place.
 #[derive(Clone, Debug)]
 pub(crate) struct Include {
-    /// The document that stands here; of an open include the one that was asked for.
+    /// Document to include; in an open include, the document that was asked for.
     pub graph: Located<String>,
-    /// The name under which another document can be asked for.
+    /// Name under which a run can ask for another document; `None` if the include is not open.
     pub open: Option<Located<Name>>,
-    /// True if it has a name of its own, which stands before the names that it gives.
+    /// True if the include has a name of its own, which is put before the names that it gives.
     pub is_named: bool,
     pub expose: Expose,
-    /// Put here once it is read.
+    /// The included document; `None` until it is read.
     pub document: Option<Result<Arc<Document>, ErrorGuaranteed>>,
 }
 
 impl Include {
-    /// The included document, if it could be read.
+    /// Returns the included document; `None` if it is not read yet or could not be read.
     pub fn document(&self) -> Option<&Arc<Document>> {
         self.document.as_ref()?.as_ref().ok()
     }
 }
 
-/// Params of an included document that are params of this one.
+/// Params of an included document that become params of the including one.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Expose {
-    /// Those that neither the include nor a group around it sets: `names`, once the document is
-    /// read.
+    /// True to expose every param that neither the include nor a group around it sets. Once the
+    /// document is read, `names` lists them.
     pub all: bool,
     pub names: Vec<Located<String>>,
 }
@@ -285,25 +285,27 @@ pub(crate) enum Run {
 }
 
 impl Document {
-    /// True if the document itself says what stands there, not one that it extends or includes.
+    /// True if a place lies in this document's own file, not in a document that it extends or
+    /// includes.
     pub fn is_own(&self, span: &Span) -> bool {
         span.file.name == self.file.name
     }
 
-    /// How many documents extend the one that says what stands there, this one last.
+    /// Returns the number of extensions between this document and the one that `span` lies in: 0
+    /// for this document, 1 for the document that it extends, and so on.
     pub fn rank(&self, span: &Span) -> usize {
         let mut extended = self.extended.iter();
         let found = extended.position(|file| *file == span.file.name);
         found.map_or(0, |below| below + 1)
     }
 
-    /// The outputs that are no values.
+    /// Iterates over the outputs that give a material, not a value.
     pub fn material_outputs(&self) -> impl Iterator<Item = &Output> {
         let is_value = |output: &&Output| self.gives_values.contains(output.name.as_str());
         self.outputs.iter().filter(move |output| !is_value(output))
     }
 
-    /// Every entry, those in groups, too.
+    /// Iterates over all entries, including those in groups.
     pub fn all_entries(&self) -> impl Iterator<Item = &Entry> {
         let mut open = vec![self.entries.iter().flatten()];
         std::iter::from_fn(move || {
@@ -320,7 +322,7 @@ impl Document {
         })
     }
 
-    /// Every pass, those in groups, too.
+    /// Iterates over all passes, including those in groups.
     pub fn passes(&self) -> impl Iterator<Item = &Pass> {
         self.all_entries().filter_map(|entry| match &entry.what {
             What::Pass(pass) => Some(pass),
@@ -328,7 +330,8 @@ impl Document {
         })
     }
 
-    /// Every include whose document could be read, those in groups, too, with that document.
+    /// Iterates over the includes whose document could be read, including those in groups: the
+    /// entry, the include in it, and the included document.
     pub fn includes(&self) -> impl Iterator<Item = (&Entry, &Include, &Arc<Document>)> {
         self.all_entries().filter_map(|entry| match &entry.what {
             What::Include(include) => Some((entry, include, include.document()?)),
@@ -336,8 +339,8 @@ impl Document {
         })
     }
 
-    /// The open includes, those in groups, too, by the name under which another document can be
-    /// asked for.
+    /// Iterates over the open includes, including those in groups, each with the name under which a
+    /// run can ask for another document.
     pub fn openings(&self) -> impl Iterator<Item = (&Located<Name>, &Include)> {
         self.all_entries().filter_map(|entry| match &entry.what {
             What::Include(include) => Some((include.open.as_ref()?, include)),
@@ -345,7 +348,7 @@ impl Document {
         })
     }
 
-    /// Calls `each` with everything that expressions and references of the document are made of.
+    /// Calls `each` with every leaf of the document's expressions and references.
     pub fn visit<'a>(&'a self, each: &mut dyn FnMut(Leaf<'a>)) {
         let params = self.params[..self.declared].iter();
         let exprs = params
@@ -373,7 +376,7 @@ impl Document {
 }
 
 impl Entry {
-    /// The name here of what an include gives, or of a param that it exposes.
+    /// Returns the name, in the including document, of an output or exposed param of `include`.
     pub fn outer_name(&self, include: &Include, name: &str) -> String {
         if include.is_named {
             format!("{}.{name}", *self.name)
@@ -403,7 +406,7 @@ impl Entry {
     }
 }
 
-/// Calls `each` with every include, those in groups, too.
+/// Calls `each` with every include, including those in groups.
 pub(crate) fn each_include(
     entries: &mut [Result<Entry, Invalid>],
     each: &mut dyn FnMut(&mut Include),

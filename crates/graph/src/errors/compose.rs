@@ -23,7 +23,7 @@ mistakes! {
              pipelines/, and are named without folder signs like `..`",
         );
 
-    /// Where it was looked for, and what it may have been meant to be.
+    /// No document at any of `candidates`, the paths that were tried; `likeness` suggests a name.
     NoInclude(path: Located<String>, candidates: Vec<String>, likeness: Option<String>) =>
         MissingFile("document `{path}` not found")
         .at(path, "asked for here").help(looked_for(&candidates, likeness));
@@ -52,7 +52,7 @@ mistakes! {
             "an include can be given a name: `name: \"left\"` makes `left.x` of its output `x`",
         ));
 
-    /// Two names that are one in a shader.
+    /// Two names that are spelt alike in a shader, such as `a.b` and `a_b`.
     Clash(name: Located<String>, known: Located<String>) =>
         Name("`{name}` and `{known}` are one name in a shader")
         .at(&name, format!("gives `{name}`")).at(known, "declared here").help("rename one of them");

@@ -131,7 +131,7 @@ pub(crate) const PARAM_TYPES: [&str; 8] = [
 /// The kinds of materials and inputs.
 const MATERIALS: [&str; 3] = ["Texture", "Buffer", "Sampler"];
 
-/// Changes since format 2, for its authors.
+/// Help for documents in format 2: the changes since.
 const FORMAT_2: &str = "this is format 3 (docs/authoring.md): write `format: 3`; `refused` of a \
     param is `narrow` of the document; shadow maps come from `shared/create_shadow_map.ron` and \
     their place from `shared/fit_map.ron`, which give `map_layers` and `map_is_projective`, too: \
@@ -139,7 +139,7 @@ const FORMAT_2: &str = "this is format 3 (docs/authoring.md): write `format: 3`;
     `eye` is `camera`, `tighten` is `fit_to_receivers`, `focus` is `warp`; a shader `x_masked` is \
     `x` with `imports`";
 
-/// Changes since format 1.
+/// Help for documents in format 1: the changes since.
 const FORMAT_1: &str = "this is format 3 (docs/authoring.md): a param is `U32(name: …)`, an \
     expression stands in quotes (`size: \"map_size\"`, `count: \"scene.indices.count\"`), \
     `\"x.previous\"` and `\"x.mip[1]\"` are references, included documents state `inputs` and \

@@ -1,4 +1,4 @@
-//! Expressions that have no value.
+//! Mistakes of expressions that cannot be evaluated.
 
 use super::language::attributes;
 use crate::{
@@ -83,7 +83,8 @@ mistakes! {
         Value("values are made of each other more than {most} deep at `{name}`")
         .at(name, "").help("use fewer steps");
 
-    /// An index where nothing is repeated; of a group or include, if one is named.
+    /// `index` outside of a repetition. `of` names the group or include whose index is asked for;
+    /// `None` for the innermost one.
     NoIndex(place: Span, of: Option<Name>) =>
         Expression("nothing is repeated here")
         .at(place, match &of {
@@ -115,7 +116,8 @@ fn names(ring: &[Located<String>]) -> Vec<&str> {
 }
 
 impl EvaluationError {
-    /// A name in an expression that is no param.
+    /// Creates the error for the name of an expression that is not a param. `is_material` is true
+    /// if a material is called so.
     pub fn param(name: &str, span: &Span, is_material: bool, known: Vec<String>) -> Self {
         Self::Unknown {
             span: span.clone(),

@@ -1,15 +1,16 @@
-//! Orders of passes that cannot be.
+//! Mistakes in the order of passes.
 
 use crate::source::span::{Located, Span};
 
 mistakes! {
-    /// An order of passes that cannot be.
+    /// A mistake in the order of passes: a read before the write, a cycle, or different run
+    /// conditions.
     OrderError:
 
     Capture {
         name: String,
         first: Option<String>,
-        /// Something above has written some of it.
+        /// True if a pass above has written a part of it.
         partly: bool,
     } =>
         Output("`{name}` cannot be read back: {}", written(partly))
@@ -26,9 +27,9 @@ mistakes! {
         name: String,
         pass: Located<String>,
         read: Span,
-        /// The pass writes it, too.
+        /// True if the pass writes the material, too.
         changes: bool,
-        /// Something above has written some of it.
+        /// True if a pass above has written a part of the material.
         partly: bool,
     } =>
         ReadBeforeWrite(

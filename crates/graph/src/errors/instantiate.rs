@@ -57,7 +57,8 @@ mistakes! {
     /// A mistake at the border between two documents.
     InterfaceError:
 
-    /// Two includes of one content, between which a pass writes what they read or write.
+    /// Two includes of the same document with the same content, between which a pass writes a
+    /// material that they read or write.
     TwoCopies { graph: String, pass: String, material: String, span: Span, by: Span } =>
         TwoCopies("`{graph}` runs twice, because `{pass}` writes `{material}` in between")
         .at(span, "the second copy").at(by, "written by this pass")
@@ -120,7 +121,7 @@ mistakes! {
         Output("the output `{name}` cannot be written into a material here")
         .at(name, why).at(declared, "declared here");
 
-    /// `document` is the file in which the name stands.
+    /// Name without a material; `document` is the path of the document in which the name stands.
     Unknown { name: Located<String>, document: String, known: Vec<String> } =>
         UnknownResource("unknown material `{name}`")
         .at(&name, format!("`{document}` declares no material or input of this name"))
@@ -149,7 +150,7 @@ mistakes! {
         name: String,
         span: Span,
         what: String,
-        /// The material, if it is one with `keep: true`.
+        /// Name of the material, if it has `keep: true`; `None` otherwise.
         kept: Option<String>,
     } =>
         ResourceKind("`{name}` has no version of the frame before")

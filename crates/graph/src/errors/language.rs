@@ -41,7 +41,7 @@ mistakes! {
     Arguments { span: Span, function: &'static str, expected: usize, found: usize } =>
         Expression("`{function}` takes {expected} arguments, not {found}").at(span, "here");
 
-    /// End of a reference that stands elsewhere, or in an expression.
+    /// End of a reference, such as `.previous` or `.mip[0]`, in the wrong place.
     Part(place: Span, part: &'static str) =>
         Expression("`{}` does not stand here", place.text())
         .at(place, match part {
@@ -59,7 +59,7 @@ mistakes! {
         .at(place, "`\\` here").help("write the signs themselves");
 }
 
-/// The attributes in a sentence.
+/// Returns the attributes of materials as a list in words, for messages.
 pub(crate) fn attributes() -> String {
     let all = Attribute::ALL.iter().map(|(_, of)| *of);
     let of_materials = all.filter(|of| *of != Attribute::Index);

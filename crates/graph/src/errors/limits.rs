@@ -2,7 +2,7 @@
 
 use crate::source::span::{Located, Span};
 
-/// An entry point of a shader.
+/// An entry point of a shader, for messages.
 #[derive(Clone, Debug)]
 pub(crate) struct Entry {
     pub file: String,
@@ -10,7 +10,7 @@ pub(crate) struct Entry {
     pub span: Span,
 }
 
-/// Bytes that are too many, and the variable that takes the most of them.
+/// Memory above a limit, and the variable that takes the most of it.
 #[derive(Clone, Debug)]
 pub(crate) struct Excess {
     pub bytes: u64,
@@ -82,7 +82,8 @@ mistakes! {
         entry: Entry,
         location: u32,
         why: String,
-        /// The vertex shader's, if it is not the graph's own.
+        /// Place of the vertex shader's entry point; `None` if the graph brings the vertex shader
+        /// itself.
         vertex: Option<Span>,
     } =>
         StageInterface("{entry} reads @location({location}), which {why}")

@@ -151,7 +151,8 @@ mistakes! {
         member: String,
         span: Span,
         known: Vec<String>,
-        /// The type of a param that is such a member, if there is one.
+        /// Param type that fits the member, for the suggested declaration; `None` if no param can
+        /// be it.
         ty: Option<String>,
     } =>
         UnknownParam("unknown param `{member}` in the shader's `params`")
@@ -211,7 +212,7 @@ mistakes! {
         .at(from, format!("{:?}", formats[0])).at(to, format!("{:?}", formats[1]))
         .help("format, samples and dimension must be the same");
 
-    /// Width, height, layers and mips.
+    /// Sizes that differ; `extents` holds width, height, layers and mips of both.
     CopySize { from: Located<String>, to: Located<String>, extents: [[usize; 4]; 2] } =>
         FormatMismatch("`{from}` cannot be copied onto `{to}`")
         .at(from, extent(extents[0])).at(to, extent(extents[1])).help("both must be equally large");
@@ -351,7 +352,7 @@ mistakes! {
 }
 
 mistakes! {
-    /// A reason why a texture cannot be what a shader declares: part of another mistake.
+    /// Reason why a texture cannot be bound as a shader declares it; part of another diagnostic.
     TextureMisfit:
 
     Scalar { reads: ScalarClass, holds: Option<ScalarClass>, depth: bool } =>

@@ -1,7 +1,7 @@
-//! Mistakes of each phase, each in one place: what is known of it, its kind, its message, its
-//! places and the way out.
+//! Mistakes of each phase, as typed values: each variant declares its kind, message, places and
+//! help in one place.
 //!
-//! A phase reports a variant; nothing else knows how it reads.
+//! A phase reports a variant; only this folder knows its text.
 
 /// Declares the mistakes of a phase. Each says all of itself in one arm:
 ///

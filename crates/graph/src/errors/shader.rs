@@ -16,7 +16,7 @@ mistakes! {
              like `..`",
         );
 
-    /// Where it was looked for, and what it may have been meant to be.
+    /// No shader at any of `candidates`, the paths that were tried; `likeness` suggests a name.
     NoShader(name: Located<String>, candidates: Vec<String>, likeness: Option<String>) =>
         MissingFile("shader `{name}.wgsl` not found")
         .at(name, "asked for here").help(looked_for(&candidates, likeness));
@@ -73,13 +73,13 @@ mistakes! {
         Shader("`{file}` has more than {most} declarations, those of its imports included")
         .at(at, "counted up to here").help("split it into several shaders, or import less");
 
-    /// Message of naga, with its places. The file stands in backquotes, with the shader that
-    /// imports it if it is not that itself.
+    /// An error of naga's with its places. `file` is in backquotes, followed by the importing
+    /// shader if the mistake is in a module.
     Naga(file: String, what: String, places: Vec<(Span, String)>, notes: Vec<String>) =>
         Shader("{file} {what}")
         .at_all(places).help_any((!notes.is_empty()).then(|| notes.join("\n")));
 
-    /// A library's mistake, not the author's.
+    /// A panic of naga's: a mistake of the library, not of the author.
     Panicked { file: String, while_it: &'static str, panicked: Panicked, at: Span } =>
         LibraryPanic("naga panics while `{file}` {while_it}: {}", panicked.message)
         .at(at, "this brings it about").help(panicked.way_out());

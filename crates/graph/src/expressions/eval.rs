@@ -1,4 +1,4 @@
-//! Values of expressions.
+//! Evaluates expressions.
 
 use crate::{
     diagnostics::reports::{ErrorGuaranteed, Reports},
@@ -13,21 +13,23 @@ use crate::{
 };
 use std::{cmp::Ordering, mem::discriminant};
 
-/// Values of names in an expression at its place.
+/// Gives the names in an expression their values, at the place where the expression stands.
 pub(crate) trait Environment {
-    /// Width and height in pixels.
+    /// Returns width and height of the viewport, in pixels.
     fn viewport(&self) -> [u32; 2];
 
     fn has(&self, feature: wgt::Features) -> bool;
 
-    /// Items of what the scene provides, where that is known.
+    /// Returns the number of items of a buffer that the scene provides, by its name; `None` if it
+    /// is not known.
     fn provided_items(&self, _: &str) -> Option<u64> {
         None
     }
 
     fn param(&mut self, name: &str, span: &Span) -> Result<Value, ErrorGuaranteed>;
 
-    /// A param of that name, where a word may stand as well.
+    /// Returns the value of the param called `name`; `None` if there is none, so that the name is a
+    /// word.
     fn word_or_param(&mut self, name: &Name) -> Option<Value>;
 
     fn index(&mut self, of: Option<&Name>, span: &Span) -> Result<u32, ErrorGuaranteed>;
@@ -41,7 +43,7 @@ pub(crate) trait Environment {
 
     fn constant(&mut self, name: &str, span: &Span) -> Result<Value, ErrorGuaranteed>;
 
-    /// The kind of something that is provided, by its name.
+    /// Returns the kind of a provided resource, by its name; `None` if it has none.
     fn kind(&mut self, _of: &str) -> Option<ProvidedKind> {
         None
     }
@@ -55,7 +57,7 @@ pub(crate) trait Environment {
 
 type Evaluated<T> = Result<T, ErrorGuaranteed>;
 
-/// The value of the expression.
+/// Evaluates an expression. A mistake in it is reported to `env`.
 pub(crate) fn value(expr: &Expr, env: &mut dyn Environment) -> Evaluated<Value> {
     match &expr.kind {
         ExprKind::Literal(value) => Ok(value.clone()),
@@ -155,21 +157,22 @@ pub(crate) fn whole_number(expr: &Expr, env: &mut dyn Environment) -> Evaluated<
     }
 }
 
-/// A number of things: whole, and none at least.
+/// Evaluates an expression that must be an integer of at least 0.
 pub(crate) fn count(expr: &Expr, env: &mut dyn Environment) -> Evaluated<u64> {
     let whole = whole_number(expr, env)?;
     let negative = || EvaluationError::Negative(expr.span.clone(), whole);
     u64::try_from(whole).map_err(|_| env.report(negative()))
 }
 
-/// The same where 32 bits must do.
+/// Evaluates an expression that must be an integer from 0 to `u32::MAX`.
 pub(crate) fn count32(expr: &Expr, env: &mut dyn Environment) -> Evaluated<u32> {
     let count = count(expr, env)?;
     let large = || EvaluationError::Large(expr.span.clone(), count);
     u32::try_from(count).map_err(|_| env.report(large()))
 }
 
-/// Two or three edges; one number stands for a square.
+/// Evaluates a size: two or three edges, each an integer of at least 0. A single number is a
+/// square.
 pub(crate) fn edges(expr: &Expr, env: &mut dyn Environment) -> Evaluated<Vec<u64>> {
     let list = match value(expr, env)? {
         Value::Scalar(edge) => vec![edge; 2],

@@ -1,4 +1,4 @@
-//! Expressions and references as tokens.
+//! Splits expressions and references into tokens.
 
 use crate::{errors::language::SyntaxFault, source::span::SourceFile};
 use std::ops::Range;
@@ -21,7 +21,8 @@ const SIGNS: [&str; 23] = [
     "[", "]", ",", "?", ":", ".",
 ];
 
-/// The tokens of `range` of a file, each with its place; the last one is [`Token::End`].
+/// Splits the bytes `range` of a file into tokens, each with its place. The last one is
+/// [`Token::End`].
 pub(crate) fn tokens(
     file: &SourceFile,
     range: Range<usize>,

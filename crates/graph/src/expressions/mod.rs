@@ -1,4 +1,4 @@
-//! Expressions and references: from text, and to values.
+//! Reads expressions and references from text, and evaluates expressions.
 
 pub(crate) mod eval;
 mod lexer;

@@ -1,4 +1,5 @@
-//! Tokens become expressions and references: recursive descent, a level of binding at a time.
+//! Parses tokens into expressions and references, by recursive descent: one level per binding
+//! strength.
 
 use super::lexer::{Token, tokens};
 use crate::{
@@ -18,12 +19,12 @@ use std::ops::Range;
 
 type Parsed<T> = Result<T, SyntaxFault>;
 
-/// Reads the expression that stands in `range` of a file.
+/// Parses the expression at the bytes `range` of a file.
 pub(crate) fn expression(file: &SourceFile, range: Range<usize>) -> Parsed<Expr> {
     whole(file, range, |parser| parser.expr())
 }
 
-/// Reads the reference that stands in `range` of a file.
+/// Parses the reference at the bytes `range` of a file.
 pub(crate) fn reference(file: &SourceFile, range: Range<usize>) -> Parsed<Reference> {
     whole(file, range, |parser| parser.conditional())
 }

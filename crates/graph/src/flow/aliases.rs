@@ -1,5 +1,5 @@
-//! Which resources share memory. Two that have equal descriptors, and of which one is not needed
-//! any more when the other is first written, take turns in one allocation.
+//! Allocations, and the resources that share them. Two resources with equal descriptors take turns
+//! in one allocation if the last use of one comes before the first write of the other.
 
 use super::{
     lifetimes::{Lifetime, Lifetimes},
@@ -11,29 +11,29 @@ use crate::{
 };
 use std::collections::{BTreeMap, BTreeSet};
 
-/// One allocation and the resources that take turns in it, in the order in which they are written.
+/// One allocation of memory, and the resources that use it one after the other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Allocation {
-    /// The resources, in the order in which they are first used.
+    /// The resources that use the allocation, in the order of their first use.
     pub aliases: Vec<ResourceId>,
-    /// Position in the schedule of the last use of the last of them.
+    /// Position in the schedule of the last use of the last of these resources.
     until: usize,
 }
 
-/// All allocations of a plan.
+/// All allocations of the textures and buffers that a plan makes itself.
 #[derive(Clone, Debug, Default)]
 pub struct Aliases {
-    /// The allocations.
+    /// The allocations. Each resource is in exactly one.
     pub list: Vec<Allocation>,
-    /// The number of the allocation of each resource.
+    /// Index in `list` of the allocation that each resource uses.
     pub of: BTreeMap<ResourceId, usize>,
 }
 
-/// Gives every own texture and buffer with a lifetime its allocation.
+/// Assigns an allocation to every texture and buffer of the graph with a lifetime.
 ///
-/// Memory is handed on only to a resource whose first use provably overwrites all of it. So the
-/// rest of another's content cannot be read. `kept` ones are needed beyond the frame and have
-/// memory of their own.
+/// Memory is handed on only to a resource whose first use provably overwrites all of it, so that
+/// content of the resource before it cannot be read. Resources in `kept` are needed beyond the
+/// frame and never share memory.
 pub(crate) fn aliases(
     view: GraphView<'_>,
     sequence: &[PassId],
@@ -130,7 +130,7 @@ fn overwritten(pass: &LinkedPass, resource: &Resource, id: ResourceId) -> bool {
     (0..texture.mips).all(|mip| (0..texture.mip_layers(mip)).all(|layer| covers(mip, layer)))
 }
 
-/// True if two resources would be made the same way.
+/// True if two resources would be created with equal descriptors.
 fn alike(a: &Resource, of_a: &Lifetime, b: &Resource, of_b: &Lifetime) -> bool {
     let same = match (&a.kind, &b.kind) {
         (ResourceKind::Texture(a), ResourceKind::Texture(b)) => a == b,

@@ -1,4 +1,4 @@
-//! Which passes run or are skipped together, and what a skipped pass leaves behind.
+//! Groups of passes that run or are skipped together in a frame, by their run conditions.
 
 use super::view::GraphView;
 use crate::{
@@ -11,47 +11,50 @@ use crate::{
 use petgraph::unionfind::UnionFind;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// When a pass runs in this plan.
+/// Frames in which a pass runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum When {
     /// In every frame.
     Always,
-    /// In no frame: its condition is false.
+    /// In no frame: the condition of its [`Run::When`] is false in this plan.
     Never,
-    /// In the first frame.
+    /// In the first frame after planning.
     Once,
-    /// When something that it reads has changed.
+    /// In frames where content that the pass reads has changed.
     OnChange,
-    /// When its group does: a capture between two writes.
+    /// In frames where another pass of its group runs: the pass is a capture between two writes.
     Follows,
 }
 
-/// Run conditions of a schedule, worked out. They are flat because every frame reads them.
+/// Run conditions of a schedule. A *position* is an index into
+/// [`Schedule::passes`](crate::Schedule::passes). A *group* is a set of passes that run or are
+/// skipped together; its number is the position of its first pass.
 #[derive(Clone, Debug, Default)]
 pub struct Conditions {
-    /// For every position in the schedule, the first position of its group. A group runs or is
-    /// skipped as a whole.
+    /// Group of the pass at each position.
     pub group: Vec<usize>,
-    /// For every position in the schedule.
+    /// Run condition of the pass at each position.
     pub when: Vec<When>,
-    /// Every position in the schedule with every resource that is written there.
+    /// Pairs of a position and a resource that its pass writes, sorted.
     pub written: Vec<(usize, ResourceId)>,
-    /// For every resource, by id, the group of the passes that write it; of one with `keep`, which
-    /// may have several, that of the first.
+    /// Group that writes each resource, by index of the resource; `None` if no pass writes it. A
+    /// resource with `keep` may be written by several groups; this is the first.
     pub writers: Vec<Option<usize>>,
-    /// The resources that must outlive the frame: those with `keep`, and those that a pass writes
-    /// which may be skipped.
+    /// Resources whose content must outlive the frame: those with `keep`, and those written by a
+    /// pass that may be skipped.
     pub kept: BTreeSet<ResourceId>,
 }
 
 impl Conditions {
-    /// True if a pass of a group writes a resource.
+    /// Returns true if a pass of the group with number `group` writes the resource `id`.
     pub fn is_written_by(&self, group: usize, id: ResourceId) -> bool {
         let mut written = self.written.iter();
         written.any(|(at, of)| *of == id && self.group[*at] == group)
     }
 
-    /// True if a pass of the groups that run writes a resource before the pass at `at` reads it.
+    /// Returns true if a pass that runs in this frame writes the resource `id` before the pass at
+    /// position `at` reads it. `keep` is the resource's field `keep`. `runs[group]` is true if the
+    /// group with this number runs.
     pub fn is_written_before(
         &self,
         (id, keep): (ResourceId, bool),
@@ -66,10 +69,11 @@ impl Conditions {
     }
 }
 
-/// Joins all writers of one resource, and with them each pass that reads a version that is
-/// overwritten later in the frame: were the writers skipped, only the last version would be there.
-/// A group of several conditions is reported. A resource with `keep` joins only writers of one
-/// condition: a pass that runs finds what was left by those that ran before it.
+/// Finds the groups of a schedule. All writers of a resource are one group, and with them every
+/// pass that reads content that a later pass overwrites: if the writers were skipped, only the last
+/// content would be left. A group whose passes have several run conditions is reported. For a
+/// resource with `keep`, only writers with the same condition are joined: a pass that runs finds
+/// the content that the passes before it left.
 pub(crate) fn conditions(
     view: GraphView<'_>,
     schedule: &[PassId],
@@ -147,7 +151,7 @@ pub(crate) fn conditions(
     }
 }
 
-/// The resources that must outlive the frame.
+/// Returns the resources whose content must outlive the frame.
 fn outliving(
     view: GraphView<'_>,
     schedule: &[PassId],
@@ -163,7 +167,7 @@ fn outliving(
     outliving.map(|(id, _)| *id).collect()
 }
 
-/// Joins the positions of writers that have one run condition.
+/// Joins the writers that have the same run condition into one group each.
 fn join_by_condition<'r>(
     joint: &mut UnionFind<usize>,
     writers: &[&(usize, &Access)],

@@ -1,11 +1,12 @@
-//! A pass that no output needs does not run.
+//! Culling: finds the passes that an output needs. All others do not run.
 
 use super::order::{Hazard, Order};
 use crate::link::pass::PassId;
 use petgraph::{Direction, graph::NodeIndex, visit::EdgeRef};
 
-/// Finds the live passes. A live pass makes one of the `roots`, or something that a live pass reads
-/// in this frame or, by `keeps`, in the next one.
+/// Finds the live passes; the result has an entry for each pass. A pass is live if it is in
+/// `roots`, if a live pass reads content that it wrote in this frame, or if `keeps` returns it for
+/// a live pass: a pass whose content is needed in the next frame.
 pub(crate) fn live<K: IntoIterator<Item = PassId>>(
     order: &Order,
     roots: impl IntoIterator<Item = PassId>,

@@ -1,5 +1,5 @@
-//! Lifetimes and usages of resources, from the live passes. A resource that none of them uses is
-//! never made.
+//! Lifetimes and usages of resources, from the live passes. A resource that no live pass uses is
+//! never created.
 
 use super::view::GraphView;
 use crate::{
@@ -8,23 +8,26 @@ use crate::{
 };
 use std::collections::BTreeMap;
 
-/// The lifetime of every resource that a scheduled pass touches; only those are made.
+/// Lifetimes by resource. Only resources that a scheduled pass uses are listed, and only these are
+/// created.
 pub type Lifetimes = BTreeMap<ResourceId, Lifetime>;
 
-/// Uses of one resource by the passes of a schedule.
+/// First and last use of one resource in a schedule, and the usages to create it with.
 #[derive(Clone, Debug)]
 pub struct Lifetime {
-    /// Usages of a texture.
+    /// Usages that a texture must be created with.
     pub textures: wgt::TextureUsages,
-    /// Usages of a buffer.
+    /// Usages that a buffer must be created with.
     pub buffers: wgt::BufferUsages,
-    /// Position in the schedule of the first pass that uses it.
+    /// Index in [`Schedule::passes`](crate::Schedule::passes) of the first pass that uses the
+    /// resource.
     pub first: usize,
-    /// Position of the last one.
+    /// Index in [`Schedule::passes`](crate::Schedule::passes) of the last pass that uses the
+    /// resource.
     pub last: usize,
 }
 
-/// Only resources that a scheduled pass touches have a lifetime, and only those are made.
+/// Finds the lifetime of every resource that a pass of the sequence uses.
 pub(crate) fn lifetimes(view: GraphView<'_>, sequence: &[PassId]) -> Lifetimes {
     let mut lifetimes = Lifetimes::new();
     for (at, &pass) in sequence.iter().enumerate() {

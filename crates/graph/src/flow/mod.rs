@@ -1,5 +1,5 @@
-//! Phase 5: dependences of passes, passes that run, their order, and resources that share memory.
-//! Each file is one step, in this order.
+//! Phase 5: finds the dependences between passes, the passes that run, their order, and the
+//! resources that share memory. Each file is one step, in this order.
 
 pub(crate) mod view;
 

@@ -1,5 +1,5 @@
-//! The file reads as a sequential program. Every access gets the version it means, and with it the
-//! edges.
+//! Dependences between passes. The document reads as a sequential program: each access uses the
+//! content that the passes above it left, which gives the edges of the dependency graph.
 
 use super::view::{GraphView, Subresources};
 use crate::{
@@ -14,27 +14,28 @@ use petgraph::{
 };
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Why one pass comes before another.
+/// Reason for which one pass must run before another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Hazard {
-    /// The later one reads what the earlier one wrote.
+    /// The later pass reads content that the earlier pass wrote.
     ReadAfterWrite,
-    /// The later one overwrites what the earlier one reads.
+    /// The later pass overwrites content that the earlier pass reads.
     WriteAfterRead,
-    /// The later one overwrites what the earlier one wrote.
+    /// The later pass overwrites content that the earlier pass wrote.
     WriteAfterWrite,
 }
 
-/// Earlier pass, later pass and why, with the resources that it comes through.
+/// Dependences between passes. A key is the earlier pass, the later pass and the reason for the
+/// order; its value is the set of resources that cause the dependence.
 pub type Dependences = BTreeMap<(PassId, PassId, Hazard), BTreeSet<ResourceId>>;
 
-/// The dependency graph: node i is pass i of the file, an edge runs from the earlier to the later
-/// pass.
+/// Dependency graph of passes: node i is pass i of the document, and an edge runs from the earlier
+/// to the later pass.
 #[derive(Debug)]
 pub(crate) struct Order {
     pub edges: DiGraph<(), Hazard>,
-    /// The same edges, with the resources behind them; drawings show both.
+    /// The edges with the resources behind them, for drawings.
     pub dependences: Dependences,
     /// The pass that writes each subresource last.
     last: BTreeMap<(ResourceId, [u32; 3]), PassId>,
@@ -42,7 +43,7 @@ pub(crate) struct Order {
 }
 
 impl Order {
-    /// The passes whose versions of a part of a resource are final.
+    /// Returns the passes that write a part of a resource last.
     pub fn final_writers(&self, target: &Target) -> BTreeSet<PassId> {
         let parts = self.subresources.within(target.id, &target.part);
         parts
@@ -57,9 +58,9 @@ struct State {
     readers: BTreeSet<PassId>,
 }
 
-/// Orders all passes, from which follows which of them are live. A read before any write is
-/// reported for the passes of the valid prefix only: below it a missing pass might have written the
-/// content.
+/// Finds the dependences of all passes, which decide later which passes are live. A read before any
+/// write is reported only for the first `first_invalid` passes: below a pass with a mistake, that
+/// pass might have written the content.
 pub(crate) fn order(view: GraphView<'_>, first_invalid: usize, reports: &mut Reports) -> Order {
     let (order, uninitialized) = walk(view, |_| true);
     for (pass, access) in uninitialized
@@ -71,19 +72,19 @@ pub(crate) fn order(view: GraphView<'_>, first_invalid: usize, reports: &mut Rep
     order
 }
 
-/// The order among the live passes alone. A chain of overwrites that led through a culled pass is
-/// closed here: first, culled, last would else leave nothing that keeps the first before the last.
+/// Finds the dependences of the live passes alone. A chain of overwrites may lead through a culled
+/// pass; without that pass a direct edge must keep the first overwrite before the last.
 pub(crate) fn order_of_live(view: GraphView<'_>, live: &[bool]) -> Order {
     walk(view, |pass| live[pass.0]).0
 }
 
-/// Finds the passes that the running ones depend on, and the resources that cause it.
+/// Finds the dependences between the passes for which `runs` is true, as if no others existed.
 pub(crate) fn dependences(view: GraphView<'_>, runs: impl Fn(PassId) -> bool) -> Dependences {
     walk(view, runs).0.dependences
 }
 
-/// Runs through the file as a sequential program. Notes the dependences of passes, and reads before
-/// any write.
+/// Reads the passes for which `runs` is true as a sequential program. Returns their dependences,
+/// and the reads that come before any write.
 fn walk<'p>(
     view: GraphView<'p>,
     runs: impl Fn(PassId) -> bool,
@@ -155,8 +156,8 @@ fn walk<'p>(
     (order, uninitialized)
 }
 
-/// A read with nothing written above it: written never, written below, or written below by a pass
-/// that needs the reader.
+/// Returns the error for a read with no write above it: the resource is written never, or below, or
+/// below by a pass that needs the reader.
 fn explain(reader: PassId, access: &Access, view: GraphView<'_>, order: &Order) -> OrderError {
     let name = view.resource(access.resource).name.clone();
     let pass = view.pass(reader);

@@ -1,4 +1,5 @@
-//! An order of the live passes that every edge agrees with; ties keep the order of the file.
+//! Order of the live passes that respects every dependence. Where the dependences leave a choice,
+//! passes keep the order of the document.
 
 use super::{aliases::Aliases, conditions::Conditions, lifetimes::Lifetimes, order::Order};
 use crate::{link::pass::PassId, resource::ResourceId};
@@ -8,23 +9,25 @@ use std::{
     collections::{BTreeSet, BinaryHeap},
 };
 
-/// The live passes in the order in which they run, and what follows from that.
+/// The live passes in the order in which they run, with the lifetimes, run conditions and
+/// allocations that follow from this order.
 #[derive(Debug, Default)]
 pub struct Schedule {
-    /// The passes; a *position* is a place in this list.
+    /// The passes in the order in which they run. A *position* is an index into this list.
     pub passes: Vec<PassId>,
-    /// Use of each resource: for what, and from which pass to which.
+    /// First use, last use and usages of each resource that a live pass uses.
     pub lifetimes: Lifetimes,
-    /// Which passes run or are skipped together, and when.
+    /// Run condition of each pass, and the passes that run or are skipped together.
     pub conditions: Conditions,
-    /// Which resources take turns in one allocation.
+    /// Allocations, and the resources that share each of them.
     pub aliases: Aliases,
-    /// The resources that are also read as they were in the frame before: two allocations take
-    /// turns.
+    /// The graph's own resources that a pass also reads as they were in the frame before. Each has
+    /// two allocations, which take turns from frame to frame.
     pub ping_pong: BTreeSet<ResourceId>,
 }
 
-/// Kahn's algorithm on file order (petgraph's own topological sort does not keep it).
+/// Orders the live passes by Kahn's algorithm; of the passes that could come next, the first in the
+/// document is taken. (petgraph's own topological sort does not keep this order.)
 pub(crate) fn sequence(order: &Order, live: &[bool]) -> Vec<PassId> {
     let live_neighbours = |pass: usize, direction| {
         order

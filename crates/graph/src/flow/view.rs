@@ -1,4 +1,4 @@
-//! Input of the phases of this folder: linked passes, and the resources that they use.
+//! Input of the steps of this phase: linked passes, and the resources that they use.
 
 use crate::{
     link::pass::{LinkedPass, PassId},
@@ -14,7 +14,7 @@ pub(crate) struct GraphView<'p> {
 }
 
 impl<'p> GraphView<'p> {
-    /// Every pass with its number.
+    /// Returns every pass with its id.
     pub fn ids(self) -> impl Iterator<Item = (PassId, &'p LinkedPass)> {
         let passes = self.passes.iter().enumerate();
         passes.map(|(index, pass)| (PassId(index), pass))
@@ -29,23 +29,25 @@ impl<'p> GraphView<'p> {
     }
 }
 
-/// Parts that have versions: mips and layers of textures, of one aspect; of buffers the stretches
-/// of items that accesses tell apart.
+/// Divides resources into the parts that passes write independently: mips, layers and aspects of
+/// textures, and ranges of a buffer's items that accesses tell apart.
 #[derive(Debug)]
 pub(crate) struct Subresources {
-    /// Where stretches of layers or items begin and end, for resources of which parts are used.
+    /// Bounds between the ranges of layers or items of each resource, sorted; every access begins
+    /// and ends at one.
     cuts: BTreeMap<ResourceId, Vec<u32>>,
-    /// Extent of each resource in layers or items.
+    /// Extent of each resource in layers or items, by index of the resource.
     reach: Vec<Reach>,
 }
 
-/// How far the layers of a texture or the items of a buffer reach, and what else has versions.
+/// Extent of a texture in layers or of a buffer in items, and the aspects that have versions of
+/// their own.
 #[derive(Clone, Copy, Debug)]
 struct Reach {
-    /// Layers; slices of mip 0 of a 3D texture; items.
+    /// Number of layers of a texture, of slices of mip 0 of a 3D texture, or of items of a buffer.
     layers: u32,
     is_3d: bool,
-    /// Depth and stencil have versions of their own.
+    /// True if depth and stencil have versions of their own.
     is_combined: bool,
 }
 
@@ -72,7 +74,7 @@ impl Reach {
         }
     }
 
-    /// Layers of a mip: the slices of a 3D texture become fewer.
+    /// Returns the number of layers of a mip; the slices of a 3D texture are halved with each mip.
     fn layers(self, mip: u32) -> u32 {
         if self.is_3d {
             (self.layers >> mip).max(1)
@@ -101,7 +103,8 @@ impl Subresources {
         }
     }
 
-    /// The mips, stretches of layers and aspects of a part.
+    /// Returns the parts of a resource that lie in `part`, each as mip, first layer or item, and
+    /// aspect (1 for stencil, otherwise 0).
     pub fn within(
         &self,
         id: ResourceId,

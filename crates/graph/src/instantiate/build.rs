@@ -1,4 +1,5 @@
-//! Walks the entries of documents: conditions, repetitions, groups.
+//! Flattens documents: walks their entries and resolves conditions, repetitions, groups and
+//! includes.
 
 use super::{
     flat::{EntryContext, Flat, FlatPass, Inherited, Interface, Merge, PlanInputs, Run},
@@ -32,8 +33,8 @@ use std::{
     sync::Arc,
 };
 
-/// Most passes (groups and includes among them), and most materials, of a graph. A guard against
-/// documents that double with each include: more would take absurd time and memory.
+/// Greatest number of passes (groups and includes among them), and of materials, of a graph. It
+/// guards against documents that double with each include, which would take absurd time and memory.
 const MOST: usize = 16_384;
 
 pub(super) struct Builder<'a> {
@@ -42,17 +43,19 @@ pub(super) struct Builder<'a> {
     first_invalid: Option<usize>,
     pub interfaces: Vec<Interface>,
     plan_inputs: PlanInputs,
-    /// True if includes of one content are one.
+    /// True if includes of the same content are merged.
     pub(super) merges: bool,
     pub(super) sites: Vec<Site>,
     pub(super) merged: Vec<Merge>,
-    /// Settings of groups: the group, the name, and true if something in the group asks for it.
+    /// Settings of groups: name of the group, name of the setting, and true if an entry in the
+    /// group uses it.
     said: Vec<(&'a Located<Name>, &'a Located<String>, bool)>,
     spent: usize,
     full: Option<ErrorGuaranteed>,
 }
 
-/// Flattens a document with all that it includes; `merges`: those of one content are one.
+/// Flattens a document with all that it includes. `merges`: includes of the same content are
+/// merged.
 pub(crate) fn flatten<'a>(
     graph: &'a Loaded,
     request: &'a PlanRequest<'a>,
@@ -95,7 +98,7 @@ pub(crate) fn flatten<'a>(
 }
 
 impl<'a> Builder<'a> {
-    /// The features that a document cannot do without.
+    /// Reports features that a document requires and the device lacks.
     pub fn require(&mut self, document: &Document) {
         for (feature, flag) in &document.requires {
             if !self.symbols.request.features.contains(*flag) {
@@ -109,7 +112,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// The inputs of the root document are what the host imports.
+    /// Declares the inputs of the root document as the host's imports.
     fn imports(&mut self, document: &Document, scope: ScopeId) {
         for input in &document.inputs {
             let name = &input.name;
@@ -150,7 +153,7 @@ impl<'a> Builder<'a> {
         })
     }
 
-    /// The materials and entries of a document.
+    /// Declares the values and materials of a document, then walks its entries.
     pub fn document(&mut self, document: &'a Arc<Document>, context: &EntryContext<'a>) {
         let scope = context.scope;
         for (name, reported) in &document.broken_materials {
@@ -289,7 +292,7 @@ impl<'a> Builder<'a> {
         wrong.map_or(Ok(()), Err)
     }
 
-    /// Notes the words and switches that decide what a pass is, such as its engine.
+    /// Notes the params that decide the form of a pass, such as its engine.
     fn note_choices(&mut self, pass: &Pass, scope: ScopeId) {
         let roots = pass.mentions.exprs.iter();
         let roots: BTreeSet<String> = roots
@@ -303,7 +306,7 @@ impl<'a> Builder<'a> {
         self.plan_inputs.params.extend(choices.cloned());
     }
 
-    /// One instance of an entry; returns the names that it gives where it is repeated.
+    /// Adds one repetition of an entry. Returns the names that it gives if the entry is repeated.
     fn instance(
         &mut self,
         entry: &'a Entry,
@@ -379,8 +382,8 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// The names that one instance of an include gives; where it has no name of its own and is not
-    /// repeated, they are declared here.
+    /// Adds one repetition of an include and returns the names that it gives. If the include has no
+    /// name and is not repeated, these names are declared in the document around it.
     fn include(
         &mut self,
         entry: &'a Entry,
@@ -467,7 +470,7 @@ impl<'a> Builder<'a> {
         Ok(names)
     }
 
-    /// In which frames an entry runs, and what is in it and does not say otherwise.
+    /// Returns the frames in which an entry runs, which entries inside inherit.
     fn run(
         &mut self,
         entry: &Entry,
@@ -506,7 +509,8 @@ impl<'a> Builder<'a> {
         Ok(Some((Run::When(text), enabled)))
     }
 
-    /// Adds what a group says to what is said around it; the inner one counts.
+    /// Adds the settings of a group to those of the groups around it; the inner setting of a name
+    /// replaces the outer one.
     fn say<T>(
         &mut self,
         own: &'a [(Located<String>, T)],
@@ -536,7 +540,7 @@ impl<'a> Builder<'a> {
         said
     }
 
-    /// Returns the settings of groups that are asked for.
+    /// Returns the settings of groups for the names that `asks` accepts.
     pub fn asked<T>(
         &self,
         said: &[Inherited<'a, T>],
@@ -548,7 +552,7 @@ impl<'a> Builder<'a> {
             .collect()
     }
 
-    /// Notes that something asks for what groups say.
+    /// Notes that an entry uses these settings of groups.
     pub fn mark<T, U>(&mut self, bind: &[Inherited<'_, T>], set: &[Inherited<'_, U>]) {
         let numbers = bind.iter().map(|said| said.number);
         for number in numbers.chain(set.iter().map(|said| said.number)) {
@@ -565,7 +569,7 @@ impl<'a> Builder<'a> {
             })
     }
 
-    /// The same of a param or override.
+    /// True if a shader of a pass has this param or override and the pass itself does not set it.
     fn asks_param(&self, scope: ScopeId, entry: &Entry, name: &str) -> bool {
         let said = entry.set.iter().any(|(own, _)| **own == *name);
         !said && self.any_shader(scope, entry, |shader| shader.params().any(|n| n == name))
@@ -589,7 +593,7 @@ impl<'a> Builder<'a> {
         shaders.any(|shader| shader.as_ref().map_or(true, |shader| asks(shader)))
     }
 
-    /// Says once that there is no room for more.
+    /// Reports once that the graph has too many passes or materials.
     fn is_full(&mut self, at: &Span, what: &'static str) {
         self.broken();
         if self.full.is_none() {
@@ -601,7 +605,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Every size is found, every full name noted.
+    /// Finds the sizes of all resources, and returns the flat graph.
     fn finish(mut self) -> Flat<'a> {
         let mut number = 0;
         // Finding one may add others.
@@ -648,7 +652,7 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// The resource that an import is.
+/// Returns the resource kind for an import.
 fn imported(import: Import) -> ResourceKind {
     match import {
         Import::Texture {

@@ -1,4 +1,4 @@
-//! The tree of entries made flat: one list of passes.
+//! Result of flattening the tree of entries: one list of passes.
 
 use super::{
     scopes::{InstanceId, Position, ScopeId},
@@ -17,16 +17,17 @@ use crate::{
 };
 use std::{collections::BTreeSet, ops::Range};
 
-/// In which frames a pass runs.
+/// Frames in which a pass runs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Run {
     /// In every frame.
     Always,
     /// In the first frame after planning.
     Once,
-    /// In frames where something that it reads has changed.
+    /// In frames where content that the pass reads has changed.
     OnChange,
-    /// In frames where an expression is true; equal texts are equal conditions.
+    /// In every frame of a plan for which an expression is true, in none otherwise. Holds the text
+    /// of the expression; equal texts are equal conditions.
     When(String),
 }
 
@@ -39,27 +40,28 @@ impl std::fmt::Display for Run {
     }
 }
 
-/// A graph with nothing nested any more.
+/// A graph whose includes, groups and repetitions are resolved to one list of passes.
 pub(crate) struct Flat<'a> {
     pub symbols: SymbolTable<'a>,
     pub passes: Vec<FlatPass<'a>>,
-    /// How many passes stand above the first entry with a mistake that was reported.
+    /// Number of passes above the first entry with a mistake that was reported; `None` without a
+    /// mistake.
     pub first_invalid: Option<usize>,
     pub interfaces: Vec<Interface>,
-    /// Includes that others stand for.
+    /// Includes that are replaced by an earlier include of the same content.
     pub merged: Vec<Merge>,
     pub plan_inputs: PlanInputs,
 }
 
-/// An include that another one stands for.
+/// An include that is replaced by an earlier include of the same content.
 pub(crate) struct Merge {
-    /// The numbers of the passes between the end of the one that stands there and this one.
+    /// Indices of the passes between the end of the earlier include and this one.
     pub between: Range<usize>,
-    /// Resources from outside that it reads.
+    /// Resources from outside that the include reads.
     pub inputs: Vec<ResourceId>,
-    /// The resources of the one that stands there.
+    /// Indices of the resources that the earlier include declares.
     pub owned: Range<usize>,
-    /// The document that is included.
+    /// Path of the included document.
     pub graph: String,
     pub span: Span,
 }
@@ -71,19 +73,19 @@ pub(crate) struct FlatPass<'a> {
     pub pass: &'a Pass,
     pub position: Position,
     pub run: Run,
-    /// The value of the expression in [`Run::When`]; true without one.
+    /// Value of the expression in [`Run::When`]; true for every other [`Run`].
     pub enabled: bool,
-    /// Bindings of its shader's globals by groups around it.
+    /// Bindings that groups around the pass give to globals of its shader.
     pub bind: Vec<Inherited<'a, Reference>>,
-    /// Values of its shader's params from groups around it.
+    /// Values that groups around the pass give to params of its shader.
     pub set: Vec<Inherited<'a, Expr>>,
 }
 
-/// Surroundings of an entry.
+/// Settings that an entry inherits from the document and the groups around it.
 #[derive(Clone)]
 pub(super) struct EntryContext<'a> {
     pub scope: ScopeId,
-    /// Prefix of the names of passes.
+    /// Prefix of the full names of passes.
     pub prefix: String,
     pub run: Option<(Run, bool)>,
     pub bind: Vec<Inherited<'a, Reference>>,
@@ -101,8 +103,8 @@ impl<'a> EntryContext<'a> {
         }
     }
 
-    /// Returns the surroundings of the entries of an included document. Groups outside say nothing
-    /// of its names, for these are not their own.
+    /// Returns the settings that the entries of an included document inherit. Bindings and values
+    /// of groups outside are dropped, because they mean names of another document.
     pub fn inside(&self, scope: ScopeId) -> Self {
         Self {
             prefix: self.prefix.clone(),
@@ -112,12 +114,12 @@ impl<'a> EntryContext<'a> {
     }
 }
 
-/// Setting of a group, with its place.
+/// Setting of a group that entries inside inherit, with the place where it is evaluated.
 pub(crate) struct Inherited<'a, T> {
     pub name: &'a Located<String>,
     pub value: &'a T,
     pub position: Position,
-    /// Its number in `Builder::said`.
+    /// Index of the setting in `Builder::said`.
     pub(super) number: usize,
 }
 
@@ -129,15 +131,15 @@ impl<T> Clone for Inherited<'_, T> {
 
 impl<T> Copy for Inherited<'_, T> {}
 
-/// Inputs and outputs of a document, to be compared with the accesses of its passes.
+/// Inputs and outputs of an instance of a document, to be compared with the accesses of its passes.
 pub(crate) struct Interface {
     pub instance: InstanceId,
     pub outputs: Vec<(Located<Name>, Target)>,
-    /// Inputs that are no outputs.
+    /// Inputs that the document does not write.
     pub read_only: Vec<(Located<Name>, Target)>,
 }
 
-/// Values that decide which entries exist.
+/// Params and features that decide which entries exist.
 #[derive(Debug, Default)]
 pub(crate) struct PlanInputs {
     pub params: BTreeSet<String>,
@@ -145,7 +147,8 @@ pub(crate) struct PlanInputs {
 }
 
 impl PlanInputs {
-    /// True if an entry or output exists, on whose condition the plan depends then.
+    /// Evaluates the condition of an entry or output, and notes the params and features in it; true
+    /// without a condition.
     pub(super) fn is_there(
         &mut self,
         condition: Option<&Expr>,

@@ -1,4 +1,4 @@
-//! Materials that grow between frames: from which size, by which counter, how far.
+//! Growth of materials between frames: first size, counter and greatest size.
 
 use crate::{
     diagnostics::reports::Reported,
@@ -10,13 +10,14 @@ use crate::{
     source::span::Located,
 };
 
-/// Surroundings in which a material's size is found.
+/// Environment in which the size of a material is found.
 pub(super) trait Sizing: Environment {
-    /// Another material that it asks for.
+    /// Resolves a reference to another material that the size asks for.
     fn resource(&mut self, of: &Reference) -> Reported<(Target, &Resource)>;
 }
 
-/// Gives a buffer the items that frames before have asked for.
+/// Sets the number of items of a buffer with `grow`: `grown` is the number that earlier frames
+/// needed. Returns `None` for a buffer without `grow`.
 pub(super) fn grow_buffer(
     entry: &BufferEntry,
     buffer: &mut Buffer,
@@ -35,7 +36,8 @@ pub(super) fn grow_buffer(
     Ok(Some(growth))
 }
 
-/// Gives a texture the layers that frames before have asked for, no more than the adapter has.
+/// Sets the number of layers of a texture with `grow`: `grown` is the number that earlier frames
+/// needed, `most` that of the adapter. Returns `None` for a texture without `grow`.
 pub(super) fn grow_texture(
     entry: &TextureEntry,
     texture: &mut Texture,

@@ -1,5 +1,5 @@
-//! A document is called as a shader is: inputs and params by name or by what the include says,
-//! outputs come back.
+//! Includes: a document gets inputs and params by name or by the settings of the include, and gives
+//! its outputs back.
 
 use super::{
     flat::{EntryContext, Inherited, PlanInputs},
@@ -24,21 +24,22 @@ use crate::{
 };
 use std::{collections::BTreeMap, sync::Arc};
 
-/// A material here that an output is written into, with the place that says so.
+/// Material of the outer document that an output is written into, with the place that says so.
 type Bound = (Located<String>, Reported<Target>);
 
-/// Settings of groups around an include that its document asks for.
+/// Bindings and values of groups around an include that its document uses.
 type Said<'e> = (Vec<Inherited<'e, Reference>>, Vec<Inherited<'e, Expr>>);
 
-/// An include as it stands in a graph once.
+/// One use of an include, with all settings for its document.
 pub(super) struct Call<'e> {
     entry: &'e Entry,
     include: &'e Include,
     document: &'e Document,
     position: Position,
-    /// True if it has a name, its own or that of a repetition.
+    /// True if the include has a name of its own or stands in a repetition, so that its outputs
+    /// have a prefix.
     pub has_namespace: bool,
-    /// Settings for names of its document, its own before those of groups.
+    /// Bindings of names of the included document: those of the include before those of groups.
     bind: Vec<(&'e Located<String>, &'e Reference, Position)>,
     set: Vec<(&'e Located<String>, &'e Expr, Position)>,
 }
@@ -48,7 +49,7 @@ fn has_input(document: &Document, name: &str) -> bool {
     inputs.any(|input| input.name.as_str() == name)
 }
 
-/// True if an input can be this resource.
+/// True if an input takes a resource of this kind.
 pub(super) fn takes(input: &InputKind, found: &ResourceKind) -> bool {
     match (input, found) {
         (InputKind::Texture(format), ResourceKind::Texture(texture)) => {
@@ -68,8 +69,8 @@ pub(super) fn is_output(document: &Document, input: &Input) -> bool {
     outputs.any(|output| output.material.path() == *input.name.as_str())
 }
 
-/// Returns the settings of an include, and those of groups around it for names that its
-/// document asks for.
+/// Returns the bindings and values of groups around an include that its document uses and the
+/// include does not set itself.
 pub(super) fn said<'e>(
     entry: &'e Entry,
     document: &Document,
@@ -93,7 +94,8 @@ pub(super) fn said<'e>(
     (bind, set)
 }
 
-/// The material here that is written instead of one that the document declares.
+/// Returns the material of the outer document that is written instead of a declared one; `None` if
+/// none is.
 pub(super) fn overridden(material: &Material, at: &mut At<'_, '_>) -> Option<Reported<Target>> {
     let overrides = &at.instance().overrides;
     let (name, target) = overrides.get(material.name().as_str())?.clone();
@@ -118,7 +120,7 @@ pub(super) fn overridden(material: &Material, at: &mut At<'_, '_>) -> Option<Rep
 }
 
 impl<'e> Call<'e> {
-    /// The settings of an include itself stand before those of groups.
+    /// Creates the call with the settings of the include before those of groups.
     pub fn new(
         entry: &'e Entry,
         include: &'e Include,
@@ -145,7 +147,7 @@ impl<'e> Call<'e> {
         }
     }
 
-    /// Where an include stands.
+    /// Returns the place of the include.
     pub fn outer(&self, context: &EntryContext<'_>) -> Outer {
         Outer {
             scope: self.position.scope,
@@ -160,7 +162,8 @@ impl<'e> Call<'e> {
         }
     }
 
-    /// Makes what an include is given known in it; returns what it may only read.
+    /// Declares the inputs of the included document in its scope. Returns those that it may only
+    /// read.
     pub fn declare_inputs(
         &self,
         scope: ScopeId,
@@ -180,7 +183,7 @@ impl<'e> Call<'e> {
         read_only
     }
 
-    /// Makes what an include gives known where it stands.
+    /// Declares the outputs of the included document in the document around it.
     pub fn give(&self, names: &Names, scopes: &mut Scopes) -> Reported<()> {
         let name = &self.entry.name.value;
         if let Some(reported) = self.document.broken_outputs {
@@ -201,7 +204,7 @@ impl<'e> Call<'e> {
         Ok(())
     }
 
-    /// The params of an included document.
+    /// Returns the params of the included document with their values.
     pub fn params(&self, at: &mut At<'_, '_>) -> Params {
         let mut set: BTreeMap<String, SetParam> = BTreeMap::new();
         for (name, expr, place) in &self.set {
@@ -237,7 +240,8 @@ impl<'e> Call<'e> {
         given.bind(self.document, &set, at.reports())
     }
 
-    /// Params without a default that the include does not set are filled by values of that name.
+    /// Sets params without a default that the include does not set to the outer document's values
+    /// of their names.
     fn values_asked(&self, set: &mut BTreeMap<String, SetParam>, at: &mut At<'_, '_>) {
         for param in &self.document.params {
             let name = &param.name.value;
@@ -267,7 +271,8 @@ impl<'e> Call<'e> {
         }
     }
 
-    /// Reports a setting of what the document does not have; `known`: what it has.
+    /// Reports a setting for a name that the document does not have; `known` lists the names that
+    /// it has.
     fn unused(
         &self,
         name: &Located<String>,
@@ -282,8 +287,8 @@ impl<'e> Call<'e> {
         });
     }
 
-    /// Returns the bindings of an include besides inputs: outputs, which are written into a
-    /// material here, and names of the scene.
+    /// Returns the bindings of an include that are not for inputs: outputs, which are written into
+    /// a material of the outer document, and names of the scene.
     pub fn outside(
         &self,
         at: &mut At<'_, '_>,
@@ -334,13 +339,13 @@ impl<'e> Call<'e> {
         })
     }
 
-    /// Finds the setting of an input or output of its document.
+    /// Finds the binding of an input or output of the included document.
     fn bound(&self, name: &Name) -> Option<&(&Located<String>, &Reference, Position)> {
         let mut bound = self.bind.iter();
         bound.find(|(bound, ..)| bound.as_str() == name.as_str())
     }
 
-    /// The target that an include gives to an input of its document.
+    /// Returns the target for an input of the included document.
     pub fn input(&self, input: &Input, at: &mut At<'_, '_>) -> Reported<Target> {
         let name = &input.name.value;
         let (target, span) = match self.bound(name) {
@@ -388,8 +393,8 @@ impl<'e> Call<'e> {
         }))
     }
 
-    /// Returns the names that a document gives, and every output with its target, to be compared
-    /// with the writes.
+    /// Returns the names that the included document gives, and every output with its target, to be
+    /// compared with the writes of its passes.
     pub fn outputs(
         &self,
         plan_inputs: &mut PlanInputs,

@@ -1,4 +1,5 @@
-//! Passes become steps: each kind says what its body is, with values of this plan.
+//! Lowers passes to steps: each pass kind turns its body into GPU work, with the values of this
+//! plan.
 
 use super::{
     flat::{Flat, FlatPass, Interface, Merge, PlanInputs},
@@ -18,16 +19,16 @@ use crate::{
 pub(crate) struct LoweredPass<'a> {
     pub flat: FlatPass<'a>,
     pub steps: Vec<Step<Names>>,
-    /// The pass's own buffers.
+    /// Buffers that only this pass uses.
     pub scratch: Vec<ResourceId>,
     pub instance: InstanceId,
-    /// The name of the shader that has the pass's own bindings.
+    /// Name of the shader that the pass's own bindings are for.
     pub shader: Located<String>,
-    /// A value of the body has a mistake that was reported.
+    /// True if a value of the body has a mistake, which was reported.
     pub is_broken: bool,
 }
 
-/// A graph of passes that are lowered.
+/// A flat graph whose passes are lowered to steps.
 pub(crate) struct Lowered<'a> {
     pub symbols: SymbolTable<'a>,
     pub passes: Vec<LoweredPass<'a>>,

@@ -1,4 +1,4 @@
-//! Sizes of materials.
+//! Kinds and sizes of materials.
 
 use super::{
     growth::{Sizing, grow_buffer, grow_texture},
@@ -17,8 +17,8 @@ use crate::{
 };
 use std::sync::Arc;
 
-/// Finds what a declared material is, with its size; `full_name` is what frames before have grown
-/// it by.
+/// Finds kind, size and growth of a declared material. `full_name` is its key among the sizes that
+/// earlier frames needed.
 pub(super) fn kind(
     declared: &Declared,
     full_name: &str,
@@ -125,7 +125,8 @@ fn named_format(expr: &Expr, at: &mut impl Sizing) -> Reported<wgt::TextureForma
     }
 }
 
-/// A picture has a size of its own, and a format must be able to hold it.
+/// Checks that the format of a texture with a picture can hold it, and that the document gives no
+/// size, mips, layers or samples beside it.
 fn check_picture(
     entry: &TextureEntry,
     file: &Located<String>,

@@ -1,5 +1,5 @@
-//! Includes without a name whose document, params and bindings equal another's are that one: a step
-//! over a method includes the G-buffer beside it, and it is drawn once.
+//! Merges includes without a name that have the same document, params and bindings. For example, an
+//! include of the G-buffer beside a method that includes it too is drawn once.
 
 use super::{
     flat::{Merge, Run},
@@ -18,34 +18,37 @@ use std::{
     sync::Arc,
 };
 
-/// All that decides what an include does.
+/// Everything that the work of an include depends on; two includes with equal content can be
+/// merged.
 #[derive(PartialEq)]
 pub(super) struct Content {
-    /// Documents are read once each, so two of one path are one.
+    /// Each path is read once, so equal pointers are equal documents.
     document: *const Document,
     params: Vec<ParamContent>,
     pub inputs: Vec<Target>,
-    /// Targets of names of the scene; the nearest one counts.
+    /// Targets of names of the scene; the innermost include that binds a name decides.
     scene: BTreeMap<String, Target>,
     replaced: Replaced,
     run: Option<(Run, bool)>,
 }
 
-/// A param's value, the param of the root document that it is, and those that it is made of.
+/// Value of a param, the param of the root document that it is (if any), and the params of the root
+/// document that it depends on.
 type ParamContent = (ParamValue, Option<String>, BTreeSet<String>);
 
-/// An include that others may be.
+/// An include that later includes of the same content are merged into.
 pub(super) struct Site {
     pub content: Content,
     pub names: Names,
-    /// Number of passes above its end.
+    /// Number of passes above the end of the include.
     pub end: usize,
-    /// The resources that were declared in it.
+    /// Indices of the resources that the include declared.
     pub owned: Range<usize>,
 }
 
 impl Site {
-    /// Notes that another include of the same content stands behind so many passes.
+    /// Returns the merge of a later include with the same content, above which there are `passes`
+    /// passes.
     pub fn merge(&self, passes: usize, include: &Include) -> Merge {
         Merge {
             between: self.end..passes,
@@ -58,7 +61,7 @@ impl Site {
 }
 
 impl Content {
-    /// `None` where something in it is wrong.
+    /// Creates the content of an include; `None` if a part of it has a mistake.
     pub fn new(
         document: &Arc<Document>,
         params: &super::params::Params,

@@ -1,7 +1,7 @@
-//! Phase 3: the tree of entries becomes one list of passes and one of resources, each with its full
-//! name, every size a number.
+//! Phase 3: flattens the tree of entries into one list of passes and one of resources. Each has its
+//! full name, and every size becomes a number.
 //!
-//! How often something is repeated follows params and sizes, hence this is done for every plan.
+//! The number of repetitions depends on params and sizes, so this is done anew for every plan.
 
 pub(crate) mod build;
 pub(crate) mod flat;

@@ -1,4 +1,5 @@
-//! Values of params: the root's from the request, an included document's from the including one.
+//! Values of params: those of the root document come from the request, those of an included
+//! document from the document that includes it.
 
 use crate::{
     diagnostics::reports::{Reported, Reports},
@@ -15,16 +16,18 @@ use crate::{
 };
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Promise of a method about itself. The graph knows no meaning of it: its caller judges it.
+/// Entry of a document's section `claims`: a property that the document claims for itself. The
+/// graph does not know its meaning; a caller, such as a test, checks it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Claim {
-    /// The promise, a word that the judge knows.
+    /// Name of the property; the caller knows its meaning.
     pub name: String,
-    /// The condition as the document writes it; empty without one.
+    /// Condition under which the claim is made, as the document writes it; empty without a
+    /// condition.
     pub condition: String,
-    /// Why it holds, as the document says.
+    /// Reason for which the property holds, from the document; may be empty.
     pub because: String,
-    /// True if the condition holds for these values of params.
+    /// True if the condition holds for the given params, or if there is none.
     pub holds: bool,
 }
 
@@ -39,9 +42,9 @@ pub(crate) struct Params {
 pub(crate) struct BoundParam {
     pub param: Param,
     pub value: Reported<ParamValue>,
-    /// The param of the root document whose value this is, unchanged.
+    /// Param of the root document whose value this is, unchanged; `None` if it is not one.
     pub root: Option<String>,
-    /// The params of the root document that it depends on.
+    /// Params of the root document that the value depends on.
     pub roots: BTreeSet<String>,
 }
 
@@ -61,14 +64,14 @@ impl Params {
             .find(|bound| bound.param.name.value == name)
     }
 
-    /// The param that a shader spells so.
+    /// Finds a param by its spelling in shaders.
     pub fn wgsl_name(&self, identifier: &str) -> Option<&BoundParam> {
         let wgsl_name = |bound: &&BoundParam| wgsl_identifier(&bound.param.name) == identifier;
         self.bound(identifier)
             .or_else(|| self.list.iter().find(wgsl_name))
     }
 
-    /// The values that are right, by name.
+    /// Returns the values without mistakes, by name.
     pub fn values(&self) -> BTreeMap<String, ParamValue> {
         let values = self.list.iter().filter_map(|bound| {
             let value = bound.value.clone().ok()?;
@@ -81,19 +84,21 @@ impl Params {
         self.list.iter().map(|bound| bound.param.name.as_str())
     }
 
-    /// The value of a param in an expression, on which whatever is asked for then depends.
+    /// Returns the value of a param for an expression, and notes that the plan depends on it;
+    /// `None` for an unknown name.
     pub fn value(&self, name: &str, reports: &mut Reports) -> Option<Reported<Value>> {
         let bound = self.bound(name)?;
         reports.depend_on(bound.roots.iter());
         Some(bound.in_expression())
     }
 
-    /// The value of a param that is handed on as it is: nothing depends on it yet.
+    /// Returns the value of a param that an expression hands on unchanged, without noting a
+    /// dependence; `None` for any other expression.
     pub fn forwarded(&self, expr: &Expr) -> Option<Reported<Value>> {
         Some(self.bound(expr.as_param()?)?.in_expression())
     }
 
-    /// The params of the root document that an expression depends on.
+    /// Returns the params of the root document that an expression depends on.
     pub fn roots(&self, expr: &Expr) -> BTreeSet<String> {
         let mut roots = BTreeSet::new();
         expr.visit(&mut |leaf| {
@@ -104,14 +109,14 @@ impl Params {
     }
 }
 
-/// Values besides params that defaults and claims may ask for.
+/// Viewport and features, which defaults and claims may ask for besides params.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Surroundings {
     pub viewport: [u32; 2],
     pub features: wgt::Features,
 }
 
-/// Only params, the viewport and features have values: for defaults, and for claims.
+/// Environment for defaults and claims: only params, the viewport and features have values.
 struct ParamsAlone<'a> {
     params: &'a Params,
     context: Surroundings,
@@ -159,7 +164,8 @@ impl Environment for ParamsAlone<'_> {
     }
 }
 
-/// The value that a default has; exposed params are known before the declared ones.
+/// Evaluates the default of a param. Exposed params are evaluated before declared ones, so `params`
+/// may lack the later ones.
 fn default(
     params: &Params,
     param: &Param,
@@ -190,32 +196,34 @@ fn default(
     })
 }
 
-/// The params of a document in the order in which their values are found.
+/// Returns the params of a document in the order in which their values are found: exposed ones
+/// first.
 fn in_order(document: &Document) -> impl Iterator<Item = &Param> {
     let (declared, exposed) = document.params.split_at(document.declared);
     exposed.iter().chain(declared)
 }
 
-/// Value that an include sets a param to.
+/// Value to which an include sets a param.
 pub(crate) struct SetParam {
     pub expr: Located<Expr>,
     pub value: Reported<Value>,
-    /// The params of the root document that it depends on.
+    /// Params of the root document that the value depends on.
     pub roots: BTreeSet<String>,
 }
 
-/// Settings of an include for the params of its document.
+/// Settings from which the params of an included document get their values.
 pub(crate) struct Given<'a> {
-    /// Names of the params where they are exposed: with the include's name, if it has one.
+    /// Name under which the outer document exposes each param: with the include's name in front, if
+    /// it has one.
     pub exposed: BTreeMap<&'a str, String>,
     pub outer: &'a Params,
-    /// The include's own place.
+    /// Place of the include.
     pub span: &'a Span,
     pub context: Surroundings,
 }
 
 impl Given<'_> {
-    /// The params of an included document.
+    /// Returns the params of an included document with their values.
     pub fn bind(
         &self,
         document: &Document,
@@ -267,8 +275,8 @@ impl Given<'_> {
         }
     }
 
-    /// A param that the include says nothing of: one of the outer document that is exposed or asked
-    /// for, or what it is by itself.
+    /// Returns the value of a param that the include does not set: that of a param of the outer
+    /// document, if it is exposed there or has no default, or else its own default.
     fn unset(
         &self,
         document: &Document,
@@ -323,7 +331,7 @@ impl Given<'_> {
     }
 }
 
-/// The params of the root document, all of them right.
+/// Returns the params of the root document with their values, after checking the values in `asked`.
 pub(crate) fn checked(
     document: &Document,
     asked: &BTreeMap<String, ParamValue>,
@@ -360,7 +368,7 @@ pub(crate) fn checked(
     wrong.map_or(Ok(params), Err)
 }
 
-/// Returns the promises of a document about itself for these values of params.
+/// Returns the claims of a document for these values of params.
 pub(crate) fn claims(
     document: &Document,
     asked: &BTreeMap<String, ParamValue>,

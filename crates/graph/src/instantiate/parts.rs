@@ -1,4 +1,4 @@
-//! Parts of resources: what is selected of one, and its attributes.
+//! Parts of resources: the mips, layers or items that references select, and attributes of parts.
 
 use crate::{
     diagnostics::diagnostic::Diagnostic,
@@ -12,7 +12,7 @@ use crate::{
 };
 use std::ops::Range;
 
-/// How many layers, slices or items a target has, and which of these they are.
+/// Returns the word for a target's parts (`layers`, `slices` or `items`) and their number.
 pub(super) fn layers(
     target: &Target,
     resource: &Resource,
@@ -37,7 +37,7 @@ pub(super) fn layers(
     Ok((what, count.ok_or_else(|| uncounted(resource, reference))?))
 }
 
-/// The items of a buffer are asked for, and not known.
+/// Returns the error for a buffer whose number of items is asked for but not known.
 pub(super) fn uncounted(resource: &Resource, reference: &Reference) -> EvaluationError {
     let name = Located::new(reference.path(), reference.span.clone());
     match &resource.kind {
@@ -46,7 +46,7 @@ pub(super) fn uncounted(resource: &Resource, reference: &Reference) -> Evaluatio
     }
 }
 
-/// How many mips a target has.
+/// Returns the word `mips` and the number of mips of a target.
 pub(super) fn mips(
     target: &Target,
     resource: &Resource,
@@ -62,7 +62,7 @@ pub(super) fn mips(
     }
 }
 
-/// Narrows a target to some of its mips.
+/// Narrows a target to a range of its mips.
 pub(super) fn select_mips(
     target: &mut Target,
     range: Range<u32>,
@@ -87,7 +87,7 @@ pub(super) fn select_mips(
     Ok(())
 }
 
-/// A range that lies in so many layers, items or mips.
+/// Checks that a range lies within `count` layers, items or mips; `what` is the word for them.
 pub(super) fn narrow(
     (range, span): (Range<u64>, &Span),
     (what, count): (&str, u64),
@@ -110,7 +110,8 @@ pub(super) fn narrow(
     })
 }
 
-/// An attribute of a target; `None` if it has no such one.
+/// Returns the value of an attribute of a target; `None` if the resource does not have this
+/// attribute.
 pub(super) fn attribute(
     resource: &Resource,
     target: &Target,
@@ -158,7 +159,8 @@ pub(super) fn attribute(
     })
 }
 
-/// How many items of a buffer a target is, where that is known.
+/// Returns the number of items of a buffer that a target selects; `None` if the number is not
+/// known.
 pub(super) fn items(resource: &Resource, target: &Target) -> Option<u64> {
     let selected = target.part.items().map(|items| items.len() as u64);
     selected.or(match &resource.kind {

@@ -1,5 +1,6 @@
-//! Meaning of names in a document: its own materials and inputs, and names from its includes and
-//! the scene. Nothing else crosses the border between two documents.
+//! Scopes: the meaning of names in a document. A document knows its own materials and inputs, the
+//! outputs of its includes, and the names of the scene. No other name crosses the border between
+//! two documents.
 
 use super::params::Params;
 use crate::{
@@ -15,12 +16,12 @@ use std::{
     sync::Arc,
 };
 
-/// Number of a frame in [`Scopes`].
+/// Index of a scope in [`Scopes`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ScopeId(usize);
 
 impl ScopeId {
-    /// The place of an expression that is no entry's.
+    /// Returns the position of an expression that belongs to no entry.
     pub fn begin(self) -> Position {
         Position {
             scope: self,
@@ -29,59 +30,60 @@ impl ScopeId {
     }
 }
 
-/// Number of a value in [`SymbolTable`](super::symbols::SymbolTable).
+/// Index of a value in [`SymbolTable`](super::symbols::SymbolTable).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct ValueId(pub(super) usize);
 
-/// Number of an instance of a document in [`Scopes`].
+/// Index of an instance of a document in [`Scopes`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct InstanceId(usize);
 
-/// A document as it stands in the graph once.
+/// One use of a document in the graph: the root, or one include of it.
 #[derive(Debug)]
 pub(crate) struct Instance {
     pub document: Arc<Document>,
     pub params: Arc<Params>,
-    /// Targets of names of the scene in here, besides those from the scene itself.
+    /// Targets that includes bind to names of the scene in this instance.
     pub scene: BTreeMap<String, Reported<Target>>,
-    /// Where it is included; `None` for the root.
+    /// Place where the document is included; `None` for the root.
     pub outer: Option<Outer>,
-    /// The materials outside that are written instead of its own ones, with the place that says so.
+    /// Materials outside that the instance writes instead of its own, by name of its own, with the
+    /// place that says so.
     pub overrides: BTreeMap<String, (Located<String>, Reported<Target>)>,
-    /// Modules that stand in for others in its shaders.
+    /// Modules that replace others in the instance's shaders.
     pub replaced: Replaced,
-    /// Something in it could not be read, so that unknown names are no mistakes.
+    /// Set if a part of the document could not be read, so that an unknown name is not reported.
     pub incomplete: Option<ErrorGuaranteed>,
 }
 
-/// Where a document is included.
+/// Place where a document is included.
 #[derive(Debug)]
 pub(crate) struct Outer {
     pub scope: ScopeId,
-    /// Prefix of the names of its outputs there: `left.`, `lamp[2].`.
+    /// Prefix of the names of the document's outputs at that place: `left.`, `lamp[2].`.
     pub namespace: Option<String>,
-    /// Prefix of the full names of everything else in it.
+    /// Prefix of the full names of all other things in the document.
     pub private: String,
 }
 
-/// The names of an instance of a document, or of one repetition of a group in it.
+/// Names that an instance of a document, or one repetition of a group in it, declares.
 #[derive(Debug)]
 struct Scope {
     instance: InstanceId,
-    /// The frame around it in the same document.
+    /// Scope around this one in the same document; `None` for the document's own.
     parent: Option<ScopeId>,
-    /// Prefix of its names in the document: `sample[3].`.
+    /// Prefix of the scope's names in the document: `sample[3].`.
     path: String,
     names: Names,
-    /// Their spellings in shaders, those of parts of namespaces included.
+    /// Targets by the spelling of their names in shaders, those in namespaces included.
     wgsl_name: HashMap<String, Reported<Target>>,
-    /// The same of values.
+    /// Values by the spelling of their names in shaders.
     wgsl_values: HashMap<String, ValueId>,
-    /// The repeated entry, and which repetition this is.
+    /// Name of the repeated entry, and the index of this repetition.
     index: Option<(Name, u32)>,
 }
 
-/// Names and what they mean.
+/// Names with their meanings.
 pub(crate) type Names = BTreeMap<Name, Symbol>;
 
 /// Meaning of a name of a document.
@@ -90,16 +92,17 @@ pub(crate) enum Symbol {
     Target(Target),
     /// A named expression.
     Value(ValueId),
-    /// Declared with a mistake.
+    /// A name that is declared with a mistake.
     Invalid(ErrorGuaranteed),
-    /// Names that a named include gives.
+    /// Names that a named include gives to the document around it.
     Namespace(Names),
-    /// Names that each repetition of an entry gives.
+    /// Names that each repetition of an entry gives, by index of the repetition.
     Repeated(Vec<Names>),
 }
 
 impl Symbol {
-    /// Returns the meanings of a name behind a dot: of repetitions, one for each of them.
+    /// Returns the meanings of `name` behind this symbol and a dot. A repeated entry gives one for
+    /// each repetition; a target or value gives none.
     pub fn named<'m>(&'m self, name: &Name) -> Vec<&'m Self> {
         match self {
             Self::Target(_) | Self::Value(_) | Self::Invalid(_) => Vec::new(),
@@ -109,14 +112,14 @@ impl Symbol {
     }
 }
 
-/// Where an expression stands: the frame, and the index of its own entry if that is repeated.
+/// Place of an expression: its scope, and the index of its entry if the entry is repeated.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Position {
     pub scope: ScopeId,
     pub index: Option<u32>,
 }
 
-/// All frames of a graph.
+/// All scopes and instances of a graph.
 #[derive(Debug, Default)]
 pub(crate) struct Scopes {
     scopes: Vec<Scope>,
@@ -148,7 +151,7 @@ impl Scopes {
         ScopeId(self.scopes.len() - 1)
     }
 
-    /// The frame of the root document.
+    /// Returns the scope of the root document.
     pub fn root(&self) -> ScopeId {
         ScopeId(0)
     }
@@ -165,17 +168,18 @@ impl Scopes {
         &mut self.instances[id.0]
     }
 
-    /// The instance of the document that a frame is of.
+    /// Returns the instance of the document that a scope belongs to.
     pub fn document(&self, scope: ScopeId) -> &Instance {
         self.instance(self.instance_of(scope))
     }
 
-    /// Returns the prefix of a frame's names in its document.
+    /// Returns the prefix of a scope's names in its document.
     pub fn path(&self, scope: ScopeId) -> &str {
         &self.scopes[scope.0].path
     }
 
-    /// The full name of what a document calls `name`: the outermost name by which it is known.
+    /// Returns the full name for `name` of a document: the name that the outermost document knows
+    /// it by.
     pub fn full_name(&self, id: InstanceId, name: &str) -> String {
         let instance = self.instance(id);
         let Some(outer) = &instance.outer else {
@@ -193,25 +197,26 @@ impl Scopes {
         }
     }
 
-    /// The instance around another one.
+    /// Returns the instance that includes another one; `None` for the root.
     fn parent(&self, id: InstanceId) -> Option<InstanceId> {
         let outer = self.instance(id).outer.as_ref()?;
         Some(self.instance_of(outer.scope))
     }
 
-    /// The names that were declared in a frame itself.
+    /// Returns the names that were declared in a scope itself.
     pub fn names(&self, scope: ScopeId) -> &Names {
         &self.scopes[scope.0].names
     }
 
-    /// The frame and those around it in its document, from the inside out.
+    /// Returns a scope and those around it in its document, from the inside out.
     fn outwards(&self, id: ScopeId) -> impl Iterator<Item = &Scope> {
         std::iter::successors(Some(&self.scopes[id.0]), |scope| {
             scope.parent.map(|parent| &self.scopes[parent.0])
         })
     }
 
-    /// The first of a name stays; a second one is reported where documents are read.
+    /// Declares a name in a scope. A second declaration of a name is ignored here; it is reported
+    /// where documents are read.
     pub fn declare(&mut self, scope: ScopeId, name: &Name, symbol: Symbol) {
         let scope = &mut self.scopes[scope.0];
         spell(scope, &wgsl_identifier(name), &symbol);
@@ -228,7 +233,7 @@ impl Scopes {
             .find_map(|scope| scope.wgsl_name.get(identifier).cloned())
     }
 
-    /// The value of that name; of a named include with a dot, `left.edge`.
+    /// Finds the value `name`; that of a named include has a dot, `left.edge`.
     pub fn find_value(&self, scope: ScopeId, name: &str) -> Option<ValueId> {
         let mut parts = name.split('.');
         let mut symbol = self.find(scope, parts.next()?)?;
@@ -244,13 +249,14 @@ impl Scopes {
         }
     }
 
-    /// The value that a shader's param or override of that spelling is.
+    /// Finds the value for a shader's param or override by its spelling.
     pub fn find_wgsl_value(&self, scope: ScopeId, identifier: &str) -> Option<ValueId> {
         self.outwards(scope)
             .find_map(|scope| scope.wgsl_values.get(identifier).copied())
     }
 
-    /// The index of the innermost repetition, or of that of a named entry.
+    /// Returns the index of the innermost repetition around a position, or of that of the entry
+    /// `of`; `None` outside of repetitions.
     pub fn index(&self, position: Position, of: Option<&Name>) -> Option<u32> {
         let own = position.index.filter(|_| of.is_none());
         own.or_else(|| {
@@ -261,7 +267,7 @@ impl Scopes {
         })
     }
 
-    /// Every name that is known in a frame, with those of namespaces.
+    /// Returns every name that is known in a scope, those in namespaces included.
     pub fn known(&self, scope: ScopeId) -> Vec<String> {
         let mut known = Vec::new();
         for scope in self.outwards(scope) {
@@ -270,18 +276,19 @@ impl Scopes {
         known
     }
 
-    /// An instance and those around it, from the inside out.
+    /// Returns an instance and those that include it, from the inside out.
     fn outer_instances(&self, id: InstanceId) -> impl Iterator<Item = InstanceId> {
         std::iter::successors(Some(id), |id| self.parent(*id))
     }
 
-    /// The resource that a name of the scene stands for in an instance, where an include says so.
+    /// Returns the target that an include binds to a name of the scene in an instance; `None` if
+    /// none does.
     pub fn scene(&self, id: InstanceId, name: &str) -> Option<Reported<Target>> {
         self.outer_instances(id)
             .find_map(|id| self.instance(id).scene.get(name).cloned())
     }
 
-    /// Returns the targets of names of the scene in an instance.
+    /// Returns all targets that includes bind to names of the scene in an instance.
     pub fn bound_scene(&self, id: InstanceId) -> BTreeMap<String, Reported<Target>> {
         let mut bound = BTreeMap::new();
         for instance in self.outer_instances(id) {
@@ -292,13 +299,13 @@ impl Scopes {
         bound
     }
 
-    /// True if one instance stands in another one.
+    /// True if `inner` is `outer`, or is included in it, however deep.
     pub fn is_within(&self, inner: InstanceId, outer: InstanceId) -> bool {
         self.outer_instances(inner).any(|id| id == outer)
     }
 }
 
-/// Notes how shaders spell what a name means.
+/// Notes the spelling in shaders of a name.
 fn spell(scope: &mut Scope, spelling: &str, symbol: &Symbol) {
     match symbol {
         Symbol::Target(target) => {

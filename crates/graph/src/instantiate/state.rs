@@ -1,4 +1,4 @@
-//! Materials on their way to a size, and values on theirs to a number.
+//! States of materials whose sizes, and of values whose results, are found on demand.
 
 use super::scopes::ScopeId;
 use crate::{
@@ -9,23 +9,23 @@ use crate::{
 };
 use std::sync::Arc;
 
-/// State of a resource's size.
+/// State of finding a resource's size.
 #[derive(Clone, Debug)]
 pub(super) enum State {
     Known,
-    /// Its size has not been asked for yet.
+    /// The size has not been asked for yet.
     Declared(Declared),
     /// It is being found: if it is asked for now, it is made of itself.
     Resolving,
     Invalid(ErrorGuaranteed),
 }
 
-/// A material of an instance of a document.
+/// Material of an instance of a document, whose size is not known yet.
 #[derive(Clone, Debug)]
 pub(super) struct Declared {
     pub scope: ScopeId,
     pub document: Arc<Document>,
-    /// Its number among the document's materials.
+    /// Index in the document's `materials`.
     pub number: usize,
 }
 
@@ -35,17 +35,17 @@ impl Declared {
     }
 }
 
-/// A value of an instance of a document.
+/// Named value of an instance of a document.
 #[derive(Clone, Debug)]
 pub(super) struct DeclaredValue {
     pub scope: ScopeId,
     pub document: Arc<Document>,
-    /// Its number among the document's values.
+    /// Index in the document's `values`.
     pub number: usize,
     pub state: ValueState,
 }
 
-/// How far a value is known.
+/// State of finding a value.
 #[derive(Clone, Debug)]
 pub(super) enum ValueState {
     Declared,

@@ -1,4 +1,4 @@
-//! Resources of a plan, and how references of its documents find them.
+//! Resources and values of a plan, and the resolution of references to them.
 
 use super::{
     growth::Sizing,
@@ -35,33 +35,33 @@ use std::{
     sync::Arc,
 };
 
-/// Longest chain of values that are made of each other; far above any sensible one, far below the
-/// stack.
+/// Greatest length of a chain of values that use each other; far above any sensible one, far below
+/// the limit of the stack.
 const DEEPEST_VALUE: usize = 64;
 
-/// Most sizes of which each is asked for while another is found.
+/// Greatest depth of sizes that are found while another size is being found.
 const NESTED: usize = 8;
 
-/// Everything that names of a graph can mean in one plan.
+/// Everything that names of a graph can mean in one plan: scopes, resources and values.
 pub(crate) struct SymbolTable<'a> {
     pub graph: &'a Loaded,
     pub request: &'a PlanRequest<'a>,
-    /// The mistakes so far: names and sizes may be asked for anywhere.
+    /// Mistakes so far; any access to a name or size may add one.
     pub reports: Reports,
     pub scopes: Scopes,
     pub resources: Vec<Resource>,
-    /// State of each resource's size.
+    /// State of each resource's size, by index of the resource.
     pub(super) states: Vec<State>,
-    /// The materials whose sizes are being found, each for the sake of the one before.
+    /// Materials whose sizes are being found; each was asked for by the one before.
     pub(super) evaluating: Vec<ResourceId>,
     /// Values, and those of them that are being found, each for the sake of the one before.
     values: Vec<DeclaredValue>,
     resolving: Vec<ValueId>,
-    /// Resources of the scene that were named so far.
+    /// Resources for the names of the scene that were used so far.
     scene: HashMap<String, ResourceId>,
-    /// How shaders spell the names of the scene.
+    /// Names of the scene by their spelling in shaders.
     wgsl_name: HashMap<String, String>,
-    /// Last frame's versions, by the resource that they are versions of.
+    /// Last frame's version of each resource that has one.
     previous: BTreeMap<ResourceId, ResourceId>,
 }
 
@@ -88,8 +88,8 @@ impl<'a> SymbolTable<'a> {
         }
     }
 
-    /// Meaning of the names of an expression at a place; `shader`: that of the pass, where it is
-    /// one's expression.
+    /// Returns an environment for expressions at a position. `shader` is the shader of the pass,
+    /// for an expression of a pass.
     pub fn at<'w>(
         &'w mut self,
         position: Position,
@@ -125,13 +125,13 @@ impl<'a> SymbolTable<'a> {
         ResourceId(self.resources.len() - 1)
     }
 
-    /// Adds a value, which is found when an expression or a shader asks for it.
+    /// Adds a value, which is evaluated when an expression or a shader first asks for it.
     pub(super) fn declare_value(&mut self, value: DeclaredValue) -> ValueId {
         self.values.push(value);
         ValueId(self.values.len() - 1)
     }
 
-    /// The value of a named expression.
+    /// Returns a value, evaluated if this is the first time that it is asked for.
     pub fn value(&mut self, id: ValueId) -> Reported<Value> {
         let declared = &mut self.values[id.0];
         match &declared.state {
@@ -156,7 +156,7 @@ impl<'a> SymbolTable<'a> {
         value
     }
 
-    /// Every value that was found, by its full name, and what it came to.
+    /// Returns the values that were evaluated: pairs of full name and result.
     pub fn found_values(&self) -> Vec<(String, String)> {
         let found = self.values.iter().filter_map(|declared| {
             let ValueState::Known(Ok(value)) = &declared.state else {
@@ -177,13 +177,13 @@ impl<'a> SymbolTable<'a> {
             .report(EvaluationError::CircularValue(ring.collect()))
     }
 
-    /// Where a value is written, for messages about it.
+    /// Returns the place of a value's expression, for messages.
     pub fn value_span(&self, id: ValueId) -> &Span {
         &self.values[id.0].expr().span
     }
 
-    /// Calls `each` with everything that an expression at a scope is made of, values written out,
-    /// each with the scope in which it stands.
+    /// Calls `each` with every leaf of an expression and the scope in which it stands. Values are
+    /// replaced by the leaves of their expressions.
     pub fn visit<'e>(
         &'e self,
         scope: ScopeId,
@@ -208,7 +208,7 @@ impl<'a> SymbolTable<'a> {
         }
     }
 
-    /// The params of the root document that an expression depends on.
+    /// Returns the params of the root document that an expression depends on.
     pub fn roots(&self, scope: ScopeId, expr: &Expr) -> BTreeSet<String> {
         let mut roots = BTreeSet::new();
         self.visit(scope, expr, &mut |scope, leaf| {
@@ -219,14 +219,14 @@ impl<'a> SymbolTable<'a> {
         roots
     }
 
-    /// A buffer whose number of items was asked for and is not known.
+    /// Marks a buffer as invalid whose number of items was asked for and is not known.
     pub(super) fn mark_invalid(&mut self, id: ResourceId, reported: ErrorGuaranteed) {
         if matches!(self.get(id).kind, ResourceKind::Buffer(_)) {
             self.states[id.0] = State::Invalid(reported);
         }
     }
 
-    /// All of a resource.
+    /// Returns the target of the whole of a resource.
     pub fn whole(&self, id: ResourceId) -> Target {
         let part = match &self.get(id).kind {
             ResourceKind::Texture(texture) => texture.whole(),
@@ -240,7 +240,7 @@ impl<'a> SymbolTable<'a> {
         self.at(position, None).resolve(reference)
     }
 
-    /// Finds the target of a name of the scene in a frame.
+    /// Finds the target of a name of the scene in a scope; `None` for an unknown name.
     pub fn find_scene(&mut self, name: &str, scope: ScopeId) -> Option<Reported<Target>> {
         let instance = self.scopes.instance_of(scope);
         if let Some(bound) = self.scopes.scene(instance, name) {
@@ -266,8 +266,8 @@ impl<'a> SymbolTable<'a> {
         Some(Ok(self.whole(id)))
     }
 
-    /// The kind of what a name of the scene stands for in a frame. A document's own material that
-    /// stands in for it is of the first kind.
+    /// Returns the kind of the resource that a name of the scene stands for in a scope. A
+    /// document's own material in its place has the first kind.
     pub fn provided_kind(&mut self, name: &str, scope: ScopeId) -> Option<ProvidedKind> {
         let target = self.find_scene(name, scope)?.ok()?;
         if let ResourceKind::Provided(provided) = &self.get(target.id).kind {
@@ -277,13 +277,13 @@ impl<'a> SymbolTable<'a> {
         Some(ProvidedKind { number: 0, ..kind })
     }
 
-    /// The kind that a shader asks for by an overridable constant of that name: `light_kind`.
+    /// Returns the kind that a shader asks for by an overridable constant such as `light_kind`.
     pub fn kind_of_wgsl_name(&mut self, constant: &str, scope: ScopeId) -> Option<ProvidedKind> {
         let name = self.wgsl_name.get(constant.strip_suffix("_kind")?)?.clone();
         self.provided_kind(&name, scope)
     }
 
-    /// Finds the target of a shader's global of that name in a frame.
+    /// Finds the target for a shader's global of this name in a scope; `None` for an unknown name.
     pub fn find_global(&mut self, global: &str, scope: ScopeId) -> Option<Reported<Target>> {
         let found = self.scopes.find_wgsl_name(scope, global).or_else(|| {
             let name = self.wgsl_name.get(global).cloned()?;
@@ -307,7 +307,7 @@ impl<'a> SymbolTable<'a> {
         previous.transpose()
     }
 
-    /// The place of the root document's own expressions.
+    /// Returns the position of the root document's own expressions.
     pub fn root(&self) -> Position {
         self.scopes.root().begin()
     }
@@ -332,7 +332,7 @@ impl<'a> SymbolTable<'a> {
         found.ok().map(Ok)
     }
 
-    /// Full names of all resources, and of what the scene has besides.
+    /// Returns the full names of all resources, and the names of the scene that were not used.
     pub fn full_names(&self) -> Vec<String> {
         let mut names: Vec<String> = self.resources.iter().map(|r| r.name.clone()).collect();
         names.sort();
@@ -345,21 +345,21 @@ impl<'a> SymbolTable<'a> {
         names
     }
 
-    /// Every name that is known in a frame, its document's first.
+    /// Returns every name that is known in a scope, that of its document first.
     pub fn known(&self, scope: ScopeId) -> Vec<String> {
         let mut known = self.scopes.known(scope);
         known.extend(self.request.provider.names());
         known
     }
 
-    /// The name of a material with `keep: true`.
+    /// Returns the name of a resource with `keep: true`; `None` for any other.
     pub fn kept(&self, id: ResourceId) -> Option<String> {
         let resource = self.get(id);
         resource.keep.then(|| resource.name.clone())
     }
 
-    /// The resource that is last frame's version of another one; if there is none, the kind of that
-    /// one.
+    /// Returns last frame's version of a resource, added on first use. The error is a word for a
+    /// resource that has no such version.
     fn previous(&mut self, base: ResourceId) -> Result<ResourceId, String> {
         if let Some(id) = self.previous.get(&base) {
             return Ok(*id);
@@ -387,8 +387,8 @@ impl<'a> SymbolTable<'a> {
         Ok(id)
     }
 
-    /// The resource whose layout and size a resource has: itself, or what it is last frame's
-    /// version of.
+    /// Returns the resource that has the layout and size of `id`: for last frame's version of a
+    /// resource that resource, otherwise `id` itself.
     pub fn base(&self, id: ResourceId) -> ResourceId {
         match self.get(id).origin {
             Origin::Previous(base) => base,
@@ -396,7 +396,7 @@ impl<'a> SymbolTable<'a> {
         }
     }
 
-    /// Gives last frame's versions the sizes of what they are versions of.
+    /// Copies the kind and size of each resource to last frame's version of it.
     pub fn size_previous(&mut self) {
         for (base, previous) in &self.previous {
             self.resources[previous.0].kind = self.resources[base.0].kind.clone();
@@ -450,7 +450,8 @@ impl<'a> SymbolTable<'a> {
         }
     }
 
-    /// Returns the materials that the size of one is made of, if their own sizes are not found yet.
+    /// Returns the materials that the size of a material depends on, if their own sizes are not
+    /// found yet.
     fn parts(&self, id: ResourceId) -> Vec<ResourceId> {
         let State::Declared(declared) = &self.states[id.0] else {
             return Vec::new();
@@ -509,11 +510,11 @@ impl<'a> SymbolTable<'a> {
     }
 }
 
-/// Meaning of the names of an expression at a place of a document.
+/// Environment that evaluates expressions and resolves references at a position of a document.
 pub(crate) struct At<'w, 'a> {
     symbols: &'w mut SymbolTable<'a>,
     pub position: Position,
-    /// The shader of the pass, where it is one's expression.
+    /// Shader of the pass, for an expression of a pass.
     shader: Option<Reported<Arc<Shader>>>,
 }
 
@@ -526,12 +527,12 @@ impl<'a> At<'_, 'a> {
         self.symbols
     }
 
-    /// The instance of a document that the place stands in.
+    /// Returns the instance of the document at this position.
     pub fn instance(&self) -> &Instance {
         self.symbols.scopes.document(self.position.scope)
     }
 
-    /// Another place, without a shader.
+    /// Returns an environment at another position, without a shader.
     pub fn elsewhere(&mut self, position: Position) -> At<'_, 'a> {
         self.symbols.at(position, None)
     }
@@ -650,7 +651,7 @@ impl<'a> At<'_, 'a> {
         Err(self.unknown(reference))
     }
 
-    /// Which repetition a segment selects.
+    /// Returns the index of the repetition that a segment selects.
     fn repetition(&mut self, segment: &Segment, count: usize) -> Reported<usize> {
         let name = &segment.name;
         let Some(Selection::One(expr)) = &segment.selection else {
@@ -691,8 +692,9 @@ impl<'a> At<'_, 'a> {
         }
     }
 
-    /// One of a list whose members have names of their own, such as `lights[1]`: it may be of
-    /// another kind than the others. `None` if it is no such list, or an own material stands in.
+    /// Finds an item of a provided list whose items have names of their own, such as `lights[1]`,
+    /// because each may have another kind. `None` if the list is not of this sort, or an own
+    /// material stands in its place.
     fn of_list(
         &mut self,
         list: &str,
@@ -723,7 +725,7 @@ impl<'a> At<'_, 'a> {
         }))
     }
 
-    /// Reports a reference that names nothing.
+    /// Reports a reference to an unknown name.
     fn unknown(&mut self, reference: &Reference) -> ErrorGuaranteed {
         let instance = self.symbols.scopes.document(self.position.scope);
         if let Some(reported) = instance.incomplete {
@@ -740,7 +742,8 @@ impl<'a> At<'_, 'a> {
         })
     }
 
-    /// The range that is selected of so many layers, items or mips.
+    /// Evaluates a selection to a range of layers, items or mips; `have` is the word for them and
+    /// their number.
     fn range(
         &mut self,
         selection: &Selection,

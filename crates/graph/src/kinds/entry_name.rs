@@ -27,7 +27,7 @@ impl<'de> Deserialize<'de> for EntryName {
 }
 
 impl EntryName {
-    /// The name; `None` if it is none of the shader's.
+    /// Returns the chosen name; `None` for the word `none`.
     pub fn chosen(&self, pass: &mut Lowering<'_>) -> Option<Located<String>> {
         let name = match self {
             Self::Name(name) => name.clone(),

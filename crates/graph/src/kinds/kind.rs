@@ -1,4 +1,4 @@
-//! Pass kinds: types that deserialise their own body and lower it to [`Step`]s.
+//! Pass kinds: types that deserialise the body of an entry in `passes` and lower it to [`Step`]s.
 
 use super::step::{Names, Operand, Program, Scratch, ShaderUse, Step, Threads};
 use crate::{
@@ -15,16 +15,18 @@ use crate::{
 };
 use std::fmt;
 
-/// The body of a pass of some kind. Its fields are what the RON entry holds beside `name`,
-/// `shader`, `bind`, `set`, `if`, `repeat`, `run`, `clear`, `overwrites` and `reads`.
+/// Body of a pass, read from its entry in `passes`. The type's fields are all fields of the RON
+/// entry except `name`, `shader`, `bind`, `set`, `if`, `repeat`, `run`, `clear`, `overwrites` and
+/// `reads`, which every kind has.
 pub trait PassKind: fmt::Debug + Send + Sync {
-    /// Says which GPU work the pass is, in order. Called without a GPU, more than once; it must
-    /// depend on nothing but the body and values that it asks for. A shader that it names only for
-    /// some of these is a [`Lowering::alternative`].
+    /// Appends the pass's GPU work to `pass`, step by step ([`Lowering::step`]). Called more than
+    /// once, and without a GPU: when the document is loaded, and for every plan. It must depend
+    /// only on the body and on values that it asks `pass` for. A shader that it uses for some of
+    /// these values only must be announced by [`Lowering::alternative`].
     fn lower(&self, pass: &mut Lowering<'_>);
 }
 
-/// Fields of a pass beside those of its kind.
+/// Fields that passes of every kind have.
 pub(crate) const OF_PASS: [&str; 10] = [
     "name",
     "shader",
@@ -38,20 +40,21 @@ pub(crate) const OF_PASS: [&str; 10] = [
     "reads",
 ];
 
-/// Surroundings in which a [`PassKind`] lowers: the pass's name, shader and values in, steps and
-/// diagnostics out.
+/// Interface through which a [`PassKind`] lowers its body: it reads the pass's name, shader and
+/// values, and takes steps and diagnostics. While a document is loaded, expressions have no value
+/// yet, and the methods that evaluate them return a fixed stand-in.
 pub struct Lowering<'a> {
     pub(crate) name: &'a Located<Name>,
     pub(crate) shader: Option<&'a Located<String>>,
-    /// Bindings of the pass for its own shader's globals.
+    /// Bindings that the document gives the globals of the pass's own shader.
     pub(crate) bind: &'a [(Located<String>, Reference)],
-    /// `None` where a document is only read: nothing has a value then.
+    /// Values of expressions; `None` while a document is loaded.
     pub(crate) environment: Option<&'a mut dyn Environment>,
     pub(crate) steps: Vec<Step<Names>>,
-    /// Shaders that are named for other values.
+    /// Shaders that the pass runs for other values only.
     pub(crate) alternatives: Vec<ShaderUse>,
     pub(crate) features: wgt::Features,
-    /// Name and bytes of the pass's own buffers.
+    /// Name and size in bytes of each buffer that only this pass uses.
     pub(crate) scratch: Vec<(String, u64)>,
     pub(crate) diagnostics: Vec<Diagnostic>,
 }
@@ -77,18 +80,19 @@ impl<'a> Lowering<'a> {
         }
     }
 
-    /// The pass's name with its place in the document.
+    /// Returns the pass's name with its place in the document.
     pub fn name(&self) -> Located<String> {
         self.named(self.name)
     }
 
-    /// The program of the pass's own shader (its `shader` field, else its name) with the bindings
-    /// the document gives.
+    /// Creates the program for the pass's own shader, with the bindings that the document gives.
+    /// The shader is that of the field `shader`, or else the one with the pass's name.
     pub fn program(&self) -> Program {
         self.program_with(self.shader.cloned().unwrap_or_else(|| self.name()))
     }
 
-    /// The program of a shader that comes with the pass kind.
+    /// Creates the program for a shader that comes with the pass kind, with the bindings that the
+    /// document gives. `shader` is the WGSL file without folder and ending.
     pub fn program_of(&self, shader: &str) -> Program {
         self.program_with(self.named(shader))
     }
@@ -104,19 +108,22 @@ impl<'a> Lowering<'a> {
         }
     }
 
-    /// A name that the kind itself gives; errors about it point at the pass.
+    /// Returns a name that the pass kind chooses, with the pass as its place: errors about the name
+    /// point at the pass.
     pub fn named(&self, name: &str) -> Located<String> {
         Located::new(name.to_owned(), self.name.span.clone())
     }
 
-    /// Adds a buffer of `bytes` that only this pass uses; `name` is what captures show.
+    /// Adds a buffer of `bytes` bytes that only this pass uses. Captures show it as `pass/name`.
     pub fn scratch(&mut self, name: &str, bytes: u64) -> Scratch {
         self.scratch.push((name.to_owned(), bytes));
         Scratch(self.scratch.len() - 1)
     }
 
-    /// Says that for other values a step may run this shader, which comes with the kind, with these
-    /// modules in the place of others, and that it can make use of these features of a device.
+    /// Announces a shader that the pass runs for other values of its expressions only, so that it
+    /// is loaded with the document. `shader` comes with the pass kind. Each pair in `imports` is a
+    /// module and the module that it imports in its place. `features` are device features that the
+    /// pass can make use of.
     pub fn alternative(&mut self, shader: &str, imports: &[(&str, &str)], features: wgt::Features) {
         let imports = imports.iter();
         self.alternatives.push(ShaderUse {
@@ -128,23 +135,24 @@ impl<'a> Lowering<'a> {
         self.features |= features;
     }
 
-    /// Appends a step.
+    /// Appends a step to the pass. Steps run in the order in which they are appended.
     pub fn step(&mut self, step: Step<Names>) {
         self.steps.push(step);
     }
 
-    /// Reports a mistake in the body.
+    /// Reports a mistake in the pass's body.
     pub fn report(&mut self, mistake: impl Into<Diagnostic>) {
         self.diagnostics.push(mistake.into());
     }
 
-    /// Reports a value that cannot be, at the expression that it is.
+    /// Reports a value that is not allowed, with the message `what`, at the place of its
+    /// expression.
     pub fn report_value(&mut self, code: Code, expr: &Expr, what: impl Into<String>) {
         self.report(Diagnostic::error(code, what).at(expr.span.clone(), ""));
     }
 
-    /// Applies `of` to an expression in the plan's environment. Returns `fallback` where nothing
-    /// has a value, or after a mistake, which was reported.
+    /// Calls `of` with the plan's environment. Returns `fallback` while a document is loaded, and
+    /// after a mistake, which was reported.
     fn evaluate<T>(
         &mut self,
         fallback: T,
@@ -156,8 +164,8 @@ impl<'a> Lowering<'a> {
         }
     }
 
-    /// How many items the scene provides under a name; none where it provides nothing of that name,
-    /// does not say, or the document is only read.
+    /// Returns the number of items of the provided buffer `name`, such as `scene.indices`. Returns
+    /// 0 if the provider does not know the name or the number, and while a document is loaded.
     pub fn provided_items(&self, name: &str) -> u64 {
         let environment = self.environment.as_ref();
         environment
@@ -165,34 +173,35 @@ impl<'a> Lowering<'a> {
             .unwrap_or(0)
     }
 
-    /// A number of things; 1 where the document is only read.
+    /// Evaluates an expression to a non-negative whole number; 1 while a document is loaded.
     pub fn count(&mut self, expr: &Expr) -> u64 {
         self.evaluate(1, |environment| eval::count(expr, environment))
     }
 
-    /// A number of things that 32 bits hold; 1 where the document is only read.
+    /// Evaluates an expression to a non-negative whole number of at most 32 bits; 1 while a
+    /// document is loaded.
     pub fn count32(&mut self, expr: &Expr) -> u32 {
         self.evaluate(1, |environment| eval::count32(expr, environment))
     }
 
-    /// A number; 0 where the document is only read.
+    /// Evaluates an expression to a number; 0 while a document is loaded.
     pub fn number(&mut self, expr: &Expr) -> f64 {
         self.evaluate(0.0, |environment| eval::number(expr, environment))
     }
 
-    /// True or false; false where the document is only read.
+    /// Evaluates an expression to true or false; false while a document is loaded.
     pub fn boolean(&mut self, expr: &Expr) -> bool {
         self.evaluate(false, |environment| eval::boolean(expr, environment))
     }
 
-    /// The word for the kind of something that is provided, where it has one; `None` where the
-    /// document is only read.
+    /// Returns the word for the kind of the provided resource `name`, such as the kind of `light`.
+    /// Returns `None` if the resource has no kind, and while a document is loaded.
     pub fn kind_of(&mut self, name: &str) -> Option<&'static str> {
         let environment = self.environment.as_mut()?;
         environment.kind(name).map(|kind| kind.word())
     }
 
-    /// One number, or several; none where the document is only read.
+    /// Evaluates an expression to one or several numbers; empty while a document is loaded.
     pub(crate) fn list(&mut self, expr: &Expr) -> Vec<Scalar> {
         self.evaluate(Vec::new(), |environment| {
             Ok(match eval::value(expr, environment)? {
@@ -202,13 +211,15 @@ impl<'a> Lowering<'a> {
         })
     }
 
-    /// Two or three edges, two equal ones of one number; of one texel where the document is only
-    /// read.
+    /// Evaluates an expression to the two or three edges of a size; one number stands for two equal
+    /// edges. Edges of 1 while a document is loaded.
     pub(crate) fn edges(&mut self, expr: &Expr) -> Vec<u64> {
         self.evaluate(vec![1, 1], |environment| eval::edges(expr, environment))
     }
 
-    /// A thread for each texel of a texture; one where the document is only read.
+    /// Returns one thread for each texel of a texture or of a part of it: of the first mip that it
+    /// selects, and of all slices of a 3D texture, but of one layer of an array. One thread while a
+    /// document is loaded.
     pub fn texels(&mut self, texture: &Reference) -> Threads {
         let of = Subject::Material(Box::new(texture.clone()));
         let size = ExprKind::Attribute(of, Attribute::Size);
@@ -217,8 +228,8 @@ impl<'a> Lowering<'a> {
         Threads::Texels([edge(0), edge(1), edge(2)])
     }
 
-    /// Returns the branch of an expression whose condition holds, before it is evaluated; the last
-    /// one where the document is only read.
+    /// Returns the branch that a conditional expression `condition ? yes : no` selects,
+    /// unevaluated; any other expression itself. The last branch while a document is loaded.
     pub(crate) fn branch<'e>(&mut self, expr: &'e Expr) -> &'e Expr {
         let mut expr = expr;
         while let ExprKind::Ternary(of) = &expr.kind {
@@ -228,9 +239,10 @@ impl<'a> Lowering<'a> {
         expr
     }
 
-    /// A word of the language that may be that of a `Choice` param, all of whose words must be in
-    /// `words`: a document must not fail on some of its params' values. The first where the
-    /// document is only read. `words` must not be empty.
+    /// Returns the value in `words` of the word that `chosen` is or evaluates to. If `chosen` is a
+    /// `Choice` param, all words of the param must be in `words`, so that a document fails for all
+    /// values of a param or for none. Returns the value of the first word while a document is
+    /// loaded, and after a mistake, which was reported. `words` must not be empty.
     pub fn word<T: Copy>(&mut self, chosen: &Chosen<T>, words: &[(&str, T)]) -> T {
         let whole = match chosen {
             Chosen::Word(word) => return *word,

@@ -1,4 +1,5 @@
-//! Pass kinds: the entries that `passes` may have, and their lowering. A kind is one file.
+//! Pass kinds: the kinds of entries that `passes` may have, and their lowering to steps. Each kind
+//! has its own file.
 
 mod clear;
 mod compute;

@@ -1,4 +1,4 @@
-//! The pass kinds that documents may use: an open set.
+//! Registry of the pass kinds that documents may use. Hosts can add kinds of their own.
 
 use super::{
     clear::Clear,
@@ -13,13 +13,13 @@ use serde::de::DeserializeOwned;
 use skiagraph_located_ron::reader::{Field, from_some_fields};
 use std::{fmt, sync::Arc};
 
-/// How an entry of a kind is read.
+/// Function that reads the fields of an entry as the body of a pass kind.
 type Parse = fn(&[Field], &Span) -> Result<Arc<dyn PassKind>, Diagnostic>;
 
 pub(crate) struct Kind {
     pub name: &'static str,
     pub parse: Parse,
-    /// Schema of its fields, where one was given.
+    /// Function that makes the schema of the kind's fields; `None` if none was given.
     #[cfg(feature = "schema")]
     pub schema: Option<Described>,
 }
@@ -28,14 +28,14 @@ pub(crate) struct Kind {
 #[cfg(feature = "schema")]
 type Described = fn(&mut schemars::SchemaGenerator) -> schemars::Schema;
 
-/// The pass kinds that documents may use.
+/// The pass kinds that documents may use, by tag.
 #[derive(Default)]
 pub struct Registry {
     kinds: Vec<Kind>,
 }
 
 impl Registry {
-    /// `Raster`, `Fullscreen`, `Compute`, `Copy` and `Clear`.
+    /// Creates a registry with the kinds `Raster`, `Fullscreen`, `Compute`, `Copy` and `Clear`.
     pub fn standard() -> Self {
         let mut registry = Self::default();
         macro_rules! register {
@@ -49,9 +49,9 @@ impl Registry {
         registry
     }
 
-    /// Adds a kind under the tag that documents write; a kind of that tag that is already there is
-    /// replaced. The language's own words (`Include`, `Group`, `Change`, `Remove`) stay what they
-    /// are.
+    /// Adds the pass kind `K`, which documents write as `tag(…)`. A kind that already has this tag
+    /// is replaced. The language's own entries (`Include`, `Group`, `Change`, `Remove`) cannot be
+    /// replaced.
     pub fn register<K: PassKind + DeserializeOwned + 'static>(&mut self, tag: &'static str) {
         self.kinds.retain(|kind| kind.name != tag);
         let parse: Parse =
@@ -64,8 +64,9 @@ impl Registry {
         });
     }
 
-    /// Says for [`schema`](crate::schema) what the fields of a registered kind may be; those of
-    /// others are anything there.
+    /// Adds the JSON schema of the fields of the registered kind `tag` to the result of
+    /// [`schema`](crate::schema). Without it the schema allows any fields. An unknown `tag` is
+    /// ignored.
     #[cfg(feature = "schema")]
     pub fn describe<K: schemars::JsonSchema>(&mut self, tag: &str) {
         if let Some(kind) = self.kinds.iter_mut().find(|kind| kind.name == tag) {

@@ -1,5 +1,6 @@
-//! Steps of passes: draws, dispatches, copies and clears. One type over names (as a pass kind
-//! lowers to them), ids (linked with resources and shaders) and handles (made on a device).
+//! Steps of passes: draws, dispatches, copies and clears. The types are generic over a [`Stage`]: a
+//! step refers to resources and shaders by name as a pass kind lowers it, by id once it is linked,
+//! and by GPU handle once it is made on a device.
 //!
 //! A pass kind of a host adds steps in [`PassKind::lower`](crate::PassKind::lower):
 //!
@@ -42,23 +43,25 @@
 use crate::{language::syntax::Reference, source::span::Located};
 use std::fmt::Debug;
 
-/// Form of the steps of a pass: [`Names`], ids or handles.
+/// Types by which a step refers to resources, shaders and sizes at one stage of processing. The
+/// stages are [`Names`], ids ([`Ids`](crate::Ids)) and the handles of an executor.
 pub trait Stage: Clone + Debug + PartialEq {
-    /// An attachment: one mip of one layer of a texture.
+    /// Attachment of a draw: one mip of one layer of a texture.
     type Attachment: Clone + Debug + PartialEq;
-    /// A texture, a buffer, or a part of one, that is copied or cleared.
+    /// Source or target of a copy or clear: a texture, a buffer, or a part of one.
     type Operand: Clone + Debug + PartialEq;
-    /// A buffer with the arguments of a draw or dispatch.
+    /// Buffer with the arguments of an indirect draw or dispatch.
     type Arguments: Clone + Debug + PartialEq;
-    /// A shader and how it is bound.
+    /// Shader of a draw or dispatch, with its bindings.
     type Program: Clone + Debug + PartialEq;
-    /// How many workgroups are dispatched.
+    /// Size of a direct dispatch.
     type Size: Clone + Debug + PartialEq;
-    /// The place of the attachments in a draw that has none.
+    /// Size of the target of a draw without attachments, or the texture that stands in for them.
     type Canvas: Clone + Debug + PartialEq;
 }
 
-/// The stage in which everything is a name of the document.
+/// The stage in which a pass kind lowers: resources and shaders are names of the document, and
+/// sizes are numbers of threads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Names;
 
@@ -71,16 +74,17 @@ impl Stage for Names {
     type Canvas = Located<[u64; 2]>;
 }
 
-/// A texture or buffer by name, or a pass's own buffer.
+/// A texture or buffer, by name, or a buffer that only this pass uses.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Operand {
-    /// One of the document, its inputs or the scene.
+    /// A material or input of the document, or a provided resource, or a part of one.
     Named(Reference),
     /// A buffer that only this pass uses.
     Scratch(Scratch),
 }
 
-/// A buffer that only one pass uses, from [`Lowering::scratch`](crate::Lowering::scratch).
+/// Handle of a buffer that only one pass uses, from
+/// [`Lowering::scratch`](crate::Lowering::scratch).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Scratch(pub(crate) usize);
 
@@ -96,44 +100,46 @@ impl From<Scratch> for Operand {
     }
 }
 
-/// How many threads a dispatch has.
+/// Number of threads or workgroups of a dispatch.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Threads {
-    /// One for each of so many items, rounded up to whole workgroups. More workgroups than one
-    /// dimension holds are folded to two: the item is
+    /// This many threads in one dimension, rounded up to whole workgroups. If one dimension does
+    /// not hold so many workgroups, they are folded to two. A thread's item is then
     /// `(workgroup.y * num_workgroups.x + workgroup.x) * workgroup_size + local index`.
     Items(u64),
-    /// One for each texel, rounded up to whole workgroups in each direction.
+    /// This many threads in x, y and z, rounded up to whole workgroups in each direction.
     Texels([u64; 3]),
-    /// So many workgroups.
+    /// This many workgroups in x, y and z.
     Groups([u32; 3]),
 }
 
-/// One piece of GPU work of a pass. The steps of a pass run in order and are timed together.
+/// One piece of GPU work of a pass, at stage `S`. The steps of a pass run in order and are timed
+/// together.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Step<S: Stage> {
     /// A render pass with one draw call.
     Draw(Draw<S>),
     /// A compute pass with one dispatch.
     Dispatch(Dispatch<S>),
-    /// A copy of a texture or buffer.
+    /// A copy of a texture, a buffer or a part of one.
     Copy {
-        /// Source.
+        /// Texture or buffer that is copied from.
         from: S::Operand,
-        /// Destination, of equal format and size.
+        /// Texture or buffer that is copied to, of the same format and size.
         to: S::Operand,
     },
-    /// A clear of a texture or buffer.
+    /// A clear of a texture, a buffer or a part of one.
     Clear {
-        /// Target of the clear.
+        /// Texture or buffer that is cleared.
         target: S::Operand,
-        /// Value per channel of a texture; buffers are cleared to zero.
+        /// Value of each channel of a colour texture; depth, then stencil, of a depth texture. Must
+        /// be all zero for a buffer.
         value: [f64; 4],
     },
 }
 
 impl<S: Stage> Step<S> {
-    /// Returns the program that the step runs.
+    /// Returns the program that a draw or dispatch runs; `None` for a copy or clear.
     pub fn program(&self) -> Option<&S::Program> {
         match self {
             Self::Draw(draw) => Some(&draw.program),
@@ -143,38 +149,41 @@ impl<S: Stage> Step<S> {
     }
 }
 
-/// A shader and how it is bound.
+/// A shader, by name, with its entry points, constants and bindings.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Program {
-    /// Name of the WGSL file without folder and ending.
+    /// Name of the WGSL file without folder and ending. A step whose program has `None` is refused.
     pub shader: Option<Located<String>>,
-    /// Modules that it imports in the place of others, `(of, is)`, as an `#import` names them.
+    /// Modules that replace others in the shader's imports: pairs `(of, is)` of the module that an
+    /// `#import` names and the module that is imported.
     pub imports: Vec<(String, String)>,
-    /// Vertex entry point, where the file has several.
+    /// Vertex entry point; `None` takes the file's only one.
     pub vertex: Option<Located<String>>,
-    /// Fragment entry point, where the file has several.
+    /// Fragment entry point; `None` takes the file's only one.
     pub fragment: Option<Located<String>>,
-    /// A draw without a fragment stage, whatever fragment entry points the file has.
+    /// True for a draw without a fragment stage, even if the file has fragment entry points.
     pub no_fragment: bool,
-    /// Compute entry point, where the file has several.
+    /// Compute entry point; `None` takes the file's only one.
     pub compute: Option<Located<String>>,
-    /// Values of pipeline-overridable constants, beside those named like params.
+    /// Values of pipeline-overridable constants by name. Constants that are not listed get the
+    /// value that the document has under their name.
     pub constants: Vec<(String, f64)>,
-    /// Shader globals that are bound to a resource of another name.
+    /// Shader globals and the resources that they are bound to. Globals that are not listed are
+    /// bound to the resource of their name.
     pub bind: Vec<(Located<String>, Operand)>,
 }
 
 /// A shader that a pass runs.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ShaderUse {
-    /// Its file without folder and ending.
+    /// Name of the WGSL file without folder and ending.
     pub name: Located<String>,
-    /// Modules that the pass kind has it import in the place of others.
+    /// Modules that replace others in the shader's imports: pairs `(of, is)`.
     pub imports: Vec<(String, String)>,
 }
 
 impl Program {
-    /// The shader with its modules, where one is named.
+    /// Returns the shader with its replaced modules; `None` if no shader is named.
     pub(crate) fn shader_use(&self) -> Option<ShaderUse> {
         let name = self.shader.clone()?;
         let imports = self.imports.clone();
@@ -182,50 +191,55 @@ impl Program {
     }
 }
 
-/// A draw call into attachments.
+/// A render pass with one draw call.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Draw<S: Stage> {
-    /// Vertex and fragment shader.
+    /// Vertex and fragment shaders.
     pub program: S::Program,
-    /// The vertex stage is the graph's own triangle over the whole target.
+    /// True if the vertex stage is the crate's own triangle over the whole target.
     pub fullscreen: bool,
-    /// Colour attachments, by location.
+    /// Colour attachments; the index is the location in the shader.
     pub colors: Vec<ColorTarget<S>>,
-    /// Depth attachment.
+    /// Depth attachment; `None` without a depth test.
     pub depth: Option<DepthTarget<S>>,
-    /// Stencil attachment: the same texture where there are both.
+    /// Stencil attachment; `None` without a stencil test. With a depth attachment it is the same
+    /// texture.
     pub stencil: Option<StencilTarget<S>>,
-    /// Width and height in texels of a draw without attachments, whose fragment shader writes
-    /// buffers or storage textures; linked, a texture of that size that is never read.
+    /// Target of a draw without attachments, whose fragment shader writes buffers or storage
+    /// textures: width and height in texels before linking, afterwards a texture of that size that
+    /// is never read. `None` for a draw with attachments.
     pub canvas: Option<S::Canvas>,
-    /// Viewport and scissor rectangle in texels: x, y, width, height. `None`: the whole target.
+    /// Viewport and scissor rectangle in texels: x, y, width, height. `None` draws the whole
+    /// target.
     pub area: Option<[u32; 4]>,
-    /// The draw call.
+    /// Numbers of vertices and instances.
     pub call: DrawCall<S>,
-    /// Culling, topology, winding.
+    /// Topology, winding and culling of triangles.
     pub primitive: wgt::PrimitiveState,
 }
 
-/// Draw call; vertices are pulled by `vertex_index`.
+/// Numbers of vertices and instances of a draw. There are no vertex buffers: shaders read vertices
+/// by `vertex_index`.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DrawCall<S: Stage> {
-    /// So many vertices for each of so many instances.
+    /// Numbers that are known when the graph is planned.
     Direct {
         /// Number of vertices.
         vertices: u32,
         /// Number of instances.
         instances: u32,
     },
-    /// The arguments (`vertex_count, instance_count, first_vertex, first_instance`, u32 each) stand
-    /// in a buffer.
+    /// Arguments in a buffer: `vertex_count, instance_count, first_vertex, first_instance`, a u32
+    /// each.
     Indirect(S::Arguments),
 }
 
 impl<S: Stage> DrawCall<S> {
-    /// The same call in another stage; `arguments` finds those of an indirect one there.
+    /// Converts the draw call to another stage. `arguments` converts the buffer of an indirect
+    /// call.
     ///
     /// # Errors
-    /// That of `arguments`.
+    /// The error that `arguments` returns.
     pub fn in_stage<T: Stage, E>(
         &self,
         arguments: impl FnOnce(&S::Arguments) -> Result<T::Arguments, E>,
@@ -243,63 +257,64 @@ impl<S: Stage> DrawCall<S> {
     }
 }
 
-/// A colour attachment.
+/// A colour attachment of a draw.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColorTarget<S: Stage> {
-    /// Texture, one mip and one layer.
+    /// Texture that is drawn to: one mip of one layer.
     pub target: S::Attachment,
-    /// Texture that a multisampled target is resolved into.
+    /// Texture that a multisampled target is resolved into; `None` without resolve.
     pub resolve: Option<S::Attachment>,
-    /// Value it is cleared to; `None` keeps what is there.
+    /// Red, green, blue and alpha that the target is cleared to before the draw; `None` keeps its
+    /// content.
     pub clear: Option<[f64; 4]>,
-    /// Blending; `None` overwrites.
+    /// Blending of the drawn colour with the stored one; `None` overwrites the stored one.
     pub blend: Option<wgt::BlendState>,
-    /// Channels that are written.
+    /// Colour channels that are written.
     pub write: wgt::ColorWrites,
 }
 
-/// A depth attachment.
+/// A depth attachment of a draw.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DepthTarget<S: Stage> {
-    /// Texture, one mip and one layer.
+    /// Texture that is drawn to: one mip of one layer.
     pub target: S::Attachment,
-    /// Value it is cleared to; `None` keeps what is there.
+    /// Depth that the target is cleared to before the draw; `None` keeps its content.
     pub clear: Option<f32>,
-    /// Depth test.
+    /// Comparison of a fragment's depth with the stored depth.
     pub compare: wgt::CompareFunction,
-    /// True if depth is written.
+    /// True if fragments that pass the test write their depth.
     pub write: bool,
-    /// Depth bias of the rasteriser.
+    /// Bias that the rasteriser adds to depth.
     pub bias: wgt::DepthBiasState,
 }
 
-/// A stencil attachment.
+/// A stencil attachment of a draw.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StencilTarget<S: Stage> {
-    /// Texture, one mip and one layer.
+    /// Texture that is drawn to: one mip of one layer.
     pub target: S::Attachment,
-    /// Value it is cleared to; `None` keeps what is there.
+    /// Stencil value that the target is cleared to before the draw; `None` keeps its content.
     pub clear: Option<u32>,
-    /// Tests and operations.
+    /// Stencil tests and operations of front and back faces.
     pub state: wgt::StencilState,
-    /// Value that the tests compare with.
+    /// Value that the stencil tests compare with, and that `Replace` writes.
     pub reference: u32,
 }
 
-/// A dispatch.
+/// A compute pass with one dispatch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dispatch<S: Stage> {
-    /// Compute shader.
+    /// Compute shader of the dispatch.
     pub program: S::Program,
-    /// How many workgroups.
+    /// Number of workgroups.
     pub groups: Groups<S>,
 }
 
-/// How many workgroups are dispatched.
+/// Number of workgroups of a dispatch.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Groups<S: Stage> {
-    /// So many.
+    /// A number that is known when the graph is planned.
     Direct(S::Size),
-    /// Three u32 in a buffer.
+    /// Numbers in x, y and z, three u32 in a buffer.
     Indirect(S::Arguments),
 }

@@ -1,11 +1,11 @@
-//! Formats of textures, by wgpu's names.
+//! Texture formats, by their names in wgpu.
 
 macro_rules! formats {
     ($($name:ident)*) => {
-        /// The names.
+        /// Names of the texture formats that a document can name.
         pub(crate) const FORMATS: &[&str] = &[$(stringify!($name)),*];
 
-        /// The format of a name.
+        /// Returns the texture format called `name`; `None` if there is no such format.
         pub(crate) fn format_named(name: &str) -> Option<wgt::TextureFormat> {
             match name {
                 $(stringify!($name) => Some(wgt::TextureFormat::$name),)*

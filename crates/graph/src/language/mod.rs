@@ -1,5 +1,5 @@
-//! The two small languages inside the strings of a document: references and expressions. They
-//! are read and evaluated in `expressions/`.
+//! The two small languages inside the strings of a document, references and expressions: their
+//! names, syntax trees and values. `expressions/` reads and evaluates them.
 
 pub(crate) mod formats;
 pub(crate) mod name;

@@ -1,21 +1,22 @@
-//! Names of what a document declares.
+//! Names of materials, params, passes and other declarations of a document.
 
 use std::{fmt, ops::Deref, sync::Arc};
 
 /// Most characters of a name.
 const LONGEST: usize = 64;
 
-/// Words that stand behind a dot, and so cannot name a material, group or include.
+/// Words that a name cannot be, because they have a meaning behind a dot: no material, group or
+/// include may be called so.
 pub(crate) const RESERVED: [&str; 13] = [
     "size", "width", "height", "layers", "mips", "samples", "count", "format", "kind", "index",
     "previous", "mip", "viewport",
 ];
 
-/// A name: `[a-z][a-z0-9_]*`, at most 64 characters, without `__`. Cheap to clone.
+/// A name in a document: `[a-z][a-z0-9_]*`, at most 64 characters, without `__`. Cheap to clone.
 #[derive(Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Name(Arc<str>);
 
-/// Why a text is no name.
+/// Reason why a text is not a valid [`Name`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub(crate) enum NameFault {
     #[error("it is empty")]
@@ -55,7 +56,7 @@ impl Name {
         Ok(Self(text.into()))
     }
 
-    /// The name as text.
+    /// Returns the name as text.
     pub fn as_str(&self) -> &str {
         &self.0
     }
@@ -86,7 +87,8 @@ impl fmt::Debug for Name {
     }
 }
 
-/// A full name as a WGSL identifier: `sample[3].rays` is `sample_3_rays`.
+/// Returns the WGSL identifier that stands for a full name: `sample[3].rays` becomes
+/// `sample_3_rays`.
 pub fn wgsl_identifier(name: &str) -> String {
     name.replace(['.', '@', '['], "_").replace(']', "")
 }

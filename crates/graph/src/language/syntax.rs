@@ -1,27 +1,27 @@
-//! Expressions and references as they were parsed.
+//! Syntax trees of expressions and references.
 
 use super::{name::Name, value::Value};
 use crate::source::span::{Located, Span};
 
-/// A number, size, bool or word of a document: written out, or made of params and attributes, as in
+/// A parsed expression, whose value is a number, size, vector, bool, word or format:
 /// `"ceil_div(viewport.size, 2)"`. docs/authoring.md has the grammar.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expr {
     pub(crate) kind: ExprKind,
-    /// Its place, without quotes.
+    /// Place of the expression in its document, without quotes.
     pub(crate) span: Span,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum ExprKind {
     Literal(Value),
-    /// A word of a `Choice`, or a param where one may stand: `front`.
+    /// A word of a `Choice`, or the name of a param where a word may stand: `front`.
     Word(Name),
     Tuple(Vec<Expr>),
-    /// A param, with a dot for one of a named include: `left.radius`.
+    /// Name of a param; `left.radius` is the param `radius` of the include `left`.
     Param(String),
     Attribute(Subject, Attribute),
-    /// A scalar `const` of the pass's shader.
+    /// Name of a scalar `const` of the pass's shader.
     Constant(String),
     Has(wgt::Features),
     Unary(Unary, Box<Expr>),
@@ -30,16 +30,18 @@ pub(crate) enum ExprKind {
     Call(Function, Vec<Expr>),
 }
 
-/// Subject of an attribute.
+/// Thing whose attribute an expression asks for.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Subject {
     Viewport,
-    /// The innermost repetition (`index` alone), or that of a group or include.
+    /// The repetition of the group or include called so, or the innermost one for `None` (`index`
+    /// alone).
     Repetition(Option<Name>),
     Material(Box<Reference>),
 }
 
-/// Declares words or signs, each with its spelling and with a number that goes with it.
+/// Declares an enum of words or signs: each variant with its spelling and, if a type is given, a
+/// number.
 macro_rules! spelt {
     ($(#[$doc:meta])+ $enum:ident $($number:ty)?:
         $($name:ident = $text:literal $($of:literal)?,)+) => {
@@ -48,7 +50,7 @@ macro_rules! spelt {
         pub(crate) enum $enum { $($name),+ }
 
         impl $enum {
-            /// Every one with its spelling and its number.
+            /// All variants, each with its spelling and its number.
             pub const ALL: &[(&str, Self $(, $number)?)] = &[$(($text, Self::$name $(, $of)?)),+];
 
             pub fn named(text: &str) -> Option<&'static (&'static str, Self $(, $number)?)> {
@@ -63,7 +65,7 @@ macro_rules! spelt {
 }
 
 spelt! {
-    /// Something that a subject can be asked for, with its word.
+    /// Attribute of the viewport, a material or a repetition, by its word.
     Attribute:
     Size = "size",
     Width = "width",
@@ -84,7 +86,8 @@ pub(crate) enum Unary {
 }
 
 spelt! {
-    /// An operator between two values, with its sign and how strongly it binds.
+    /// Binary operator, by its sign; its number says how strongly it binds (the greater, the
+    /// stronger).
     Binary u8:
     Or = "||" 0,
     And = "&&" 1,
@@ -102,7 +105,7 @@ spelt! {
 }
 
 spelt! {
-    /// A function, with its name and number of arguments.
+    /// Function, by its name; its number is the number of its arguments.
     Function usize:
     Min = "min" 2,
     Max = "max" 2,
@@ -115,28 +118,29 @@ spelt! {
     Sqrt = "sqrt" 1,
 }
 
-/// A material or a part of one: `maps[index].mip[0]`, `left.position`, `history.previous`; or one
-/// of two, `is_large ? many : few`.
+/// A parsed reference to a material or a part of one: `maps[index].mip[0]`, `left.position`,
+/// `history.previous`. It may choose between two by a condition: `is_large ? many : few`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reference {
     pub(crate) segments: Vec<Segment>,
-    /// True for its content at the end of the frame before.
+    /// True if the material's content at the end of the previous frame is meant.
     pub(crate) previous: bool,
     pub(crate) mips: Option<Selection>,
-    /// The condition under which it is meant, and the reference that is meant else.
+    /// Condition under which this reference holds, and the reference that holds otherwise; `None`
+    /// if this one always holds.
     pub(crate) otherwise: Option<Box<(Expr, Reference)>>,
-    /// Its place, without quotes.
+    /// Place of the reference in its document, without quotes.
     pub(crate) span: Span,
 }
 
-/// A name between two dots.
+/// One name of a dotted path, with the selection behind it in brackets.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Segment {
     pub name: Located<Name>,
     pub selection: Option<Selection>,
 }
 
-/// One of several (`[2]`), or some of them (`[0..2]`, the end excluded).
+/// Selection of one element (`[2]`), or of a range (`[0..2]`, the end excluded).
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Selection {
     One(Box<Expr>),
@@ -153,7 +157,7 @@ impl Selection {
 }
 
 impl Reference {
-    /// A whole material, by its name.
+    /// Creates a reference to the whole material called `name`.
     pub(crate) fn new(name: Located<Name>) -> Self {
         Self {
             span: name.span.clone(),
@@ -167,22 +171,23 @@ impl Reference {
         }
     }
 
-    /// The place of the reference in its document, without quotes.
+    /// Returns the place of the reference in its document, without quotes.
     pub fn span(&self) -> &Span {
         &self.span
     }
 
-    /// The reference as it is written.
+    /// Returns the text of the reference, as it is written in its document.
     pub fn text(&self) -> &str {
         self.span.text()
     }
 
-    /// The reference as it is written, with its place.
+    /// Returns the text of the reference, with its place in the document.
     pub(crate) fn located(&self) -> Located<String> {
         Located::new(self.text().to_owned(), self.span.clone())
     }
 
-    /// Its names with dots between them, without selections: the name for a provider.
+    /// Returns the reference's names with dots between them, without selections: the name that a
+    /// provider is asked for.
     pub(crate) fn path(&self) -> String {
         let names: Vec<&str> = self
             .segments
@@ -192,7 +197,7 @@ impl Reference {
         names.join(".")
     }
 
-    /// Calls `each` with it, and with everything that its selections and conditions are made of.
+    /// Calls `each` with this reference, and with every leaf of its selections and conditions.
     pub(crate) fn visit<'a>(&'a self, each: &mut dyn FnMut(Leaf<'a>)) {
         each(Leaf::Material(self));
         let segments = self
@@ -210,18 +215,18 @@ impl Reference {
     }
 }
 
-/// Leaves of an expression.
+/// Name, material or feature that an expression depends on.
 pub(crate) enum Leaf<'a> {
     Param(&'a str),
     Word(&'a Name),
     Material(&'a Reference),
-    /// A constant of the pass's shader.
+    /// Name of a constant of the pass's shader.
     Constant(&'a str),
     Has(wgt::Features),
 }
 
 impl<'a> Leaf<'a> {
-    /// The name of what may be a param or a value.
+    /// Returns the leaf's name if it may name a param or a value; `None` for other leaves.
     pub fn named(&self) -> Option<&'a str> {
         match self {
             Self::Param(name) => Some(name),
@@ -236,17 +241,17 @@ impl Expr {
         Self { kind, span }
     }
 
-    /// The place of the expression in its document, without quotes.
+    /// Returns the place of the expression in its document, without quotes.
     pub fn span(&self) -> &Span {
         &self.span
     }
 
-    /// The expression as it is written.
+    /// Returns the text of the expression, as it is written in its document.
     pub fn text(&self) -> &str {
         self.span.text()
     }
 
-    /// The param that the expression is, with nothing done to it.
+    /// Returns the param's name if the expression is a param alone; `None` otherwise.
     pub(crate) fn as_param(&self) -> Option<&str> {
         match &self.kind {
             ExprKind::Param(name) => Some(name),
@@ -254,14 +259,16 @@ impl Expr {
         }
     }
 
-    /// True if it is taken from another count, which may be 0 through no fault of the document.
+    /// True if the expression asks for an attribute of a material. A count of this kind may be 0
+    /// without a mistake of the document.
     pub(crate) fn is_taken(&self) -> bool {
         let mut is_taken = false;
         self.visit(&mut |leaf| is_taken |= matches!(leaf, Leaf::Material(_)));
         is_taken
     }
 
-    /// Calls `each` with everything that the expression is made of.
+    /// Calls `each` with every leaf of the expression: the params, words, constants, features and
+    /// materials in it.
     pub(crate) fn visit<'a>(&'a self, each: &mut dyn FnMut(Leaf<'a>)) {
         match &self.kind {
             ExprKind::Param(name) => each(Leaf::Param(name)),
@@ -279,8 +286,8 @@ impl Expr {
         }
     }
 
-    /// A text that is equal for equal expressions; `leaf` says what a param or an attribute is in
-    /// the whole graph.
+    /// Returns a text that is equal for equal expressions. `leaf` returns the text of a param or an
+    /// attribute, by its meaning in the whole graph.
     pub(crate) fn canonical(&self, leaf: &mut dyn FnMut(&Expr) -> String) -> String {
         let mut list = |list: &[Expr]| -> String {
             let list: Vec<String> = list.iter().map(|expr| expr.canonical(leaf)).collect();

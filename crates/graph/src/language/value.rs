@@ -4,17 +4,17 @@ use super::name::Name;
 use crate::provided_kind::ProvidedKind;
 use std::{fmt, sync::Arc};
 
-/// A number of an expression.
+/// A number in an expression: a 64-bit integer or a float.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Scalar {
-    /// A whole number.
+    /// An integer.
     Whole(i64),
-    /// Any number.
+    /// A floating-point number, which may be integral, too: `2.0`.
     Number(f64),
 }
 
 impl Scalar {
-    /// The number, whole or not.
+    /// Returns the number as a float.
     pub fn number(self) -> f64 {
         match self {
             Self::Whole(whole) => whole as f64,
@@ -22,7 +22,7 @@ impl Scalar {
         }
     }
 
-    /// A whole number that the type holds.
+    /// Returns the integer as a `T`; `None` if the number is a float, or `T` cannot hold it.
     pub(crate) fn whole<T: TryFrom<i64>>(self) -> Option<T> {
         match self {
             Self::Whole(whole) => T::try_from(whole).ok(),
@@ -41,12 +41,13 @@ impl fmt::Display for Scalar {
     }
 }
 
-/// A word, and those of its `Choice` where it is that of a param.
+/// A word of a `Choice` param, as the value of an expression. Two are equal if their words are.
 #[derive(Clone, Debug)]
 pub struct Word {
-    /// The word.
+    /// The word itself.
     pub word: Name,
-    /// All words of the param; `None` where it is written out.
+    /// All words of the param that the value comes from; `None` if the word is written in the
+    /// expression.
     pub of: Option<Arc<[Name]>>,
 }
 
@@ -59,9 +60,9 @@ impl PartialEq for Word {
 /// Value of an expression.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
-    /// A number.
+    /// An integer or a float.
     Scalar(Scalar),
-    /// True or false.
+    /// A boolean.
     Bool(bool),
     /// A word of a `Choice`.
     Word(Word),
@@ -72,12 +73,12 @@ pub enum Value {
 }
 
 impl Value {
-    /// A whole number.
+    /// Creates an integer value.
     pub(crate) fn whole(number: impl Into<i64>) -> Self {
         Self::Scalar(Scalar::Whole(number.into()))
     }
 
-    /// The word of a kind, among those of all its kinds.
+    /// Creates the word of a provided kind, with the words of all its kinds as its `Choice`.
     pub(crate) fn kind(kind: ProvidedKind) -> Self {
         // A provider's words are names: others cannot be written.
         let name = |word: &&str| Name::new(word).ok();
@@ -88,12 +89,12 @@ impl Value {
         }
     }
 
-    /// A count, which is far below what an `i64` holds or as good as that.
+    /// Creates an integer from a count; a count above `i64::MAX` becomes `i64::MAX`.
     pub(crate) fn count(count: u64) -> Self {
         Self::whole(i64::try_from(count).unwrap_or(i64::MAX))
     }
 
-    /// Its numbers; none of what has no numbers.
+    /// Returns the value's numbers; empty for values other than numbers and lists.
     pub(crate) fn scalars(&self) -> &[Scalar] {
         match self {
             Self::Scalar(scalar) => std::slice::from_ref(scalar),

@@ -184,7 +184,7 @@ fn link_color(color: &ColorTarget<Names>, scope: &mut PassScope<'_>) -> Reported
     })
 }
 
-/// The texture of one sample that a multisampled target ends in.
+/// Links the single-sampled texture that a multisampled target is resolved into.
 fn resolved(
     target: &Attachment,
     resolve: &Reference,
@@ -299,7 +299,7 @@ fn link_stencil(
     })
 }
 
-/// A clear value that the format can hold.
+/// Checks that a clear value fits into the format.
 pub(super) fn clear_value(
     name: &Located<String>,
     format: TextureFormat,
@@ -367,8 +367,8 @@ fn attachment(reference: &Reference, scope: &mut PassScope<'_>) -> Reported<Atta
     })
 }
 
-/// All attachments of a draw have one size and number of samples; the area lies in them; depth
-/// and stencil are one texture.
+/// Checks that all attachments of a draw have the same size and number of samples, that the area
+/// lies within them, and that depth and stencil are the same texture.
 fn alike(draw: &Draw<Ids>, scope: &PassScope<'_>) -> Result<(), LinkError> {
     let colors = draw.colors.iter().map(|color| &color.target);
     let resolved = draw
@@ -430,7 +430,8 @@ fn alike(draw: &Draw<Ids>, scope: &PassScope<'_>) -> Result<(), LinkError> {
     }
 }
 
-/// One aspect of a texture that has two.
+/// Returns the target for one aspect of a texture that has depth and stencil; any other target as
+/// it is.
 fn aspect_of(target: &Target, format: TextureFormat, aspect: TextureAspect) -> Target {
     let mut target = target.clone();
     if format.is_combined_depth_stencil_format() {

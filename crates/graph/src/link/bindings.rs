@@ -1,4 +1,4 @@
-//! Which resource a shader's global is, and whether it can be.
+//! Bindings: finds the resource for each global of a shader, and checks that it fits.
 
 use super::{
     params,
@@ -162,7 +162,8 @@ fn binding(
     }))
 }
 
-/// A uniform of `size` bytes in the shader, where `have` are there.
+/// Checks that a uniform of `size` bytes in the shader fits into a buffer of `have` bytes, and
+/// returns the binding.
 fn uniform_buffer(
     global: &Global,
     target: &Target,
@@ -195,8 +196,8 @@ fn uniform_buffer(
     ))
 }
 
-/// Items of a provided buffer begin where the device can bind; those of the document's own are
-/// looked at when their layout is known.
+/// Checks that items of a provided buffer begin at offsets that the device can bind. Those of the
+/// document's buffers are checked when their layout is known.
 fn aligned(global: &Global, target: &Target, scope: &mut PassScope<'_>) -> Reported<()> {
     let ResourceKind::Provided(provided) = &scope.get(target.id).kind else {
         return Ok(());
@@ -214,7 +215,7 @@ fn aligned(global: &Global, target: &Target, scope: &mut PassScope<'_>) -> Repor
     })
 }
 
-/// A storage buffer of which the shader needs `least` bytes.
+/// Returns the binding of a storage buffer of which the shader needs `least` bytes.
 fn storage_buffer(
     global: &Global,
     target: &Target,
@@ -244,13 +245,14 @@ fn storage_buffer(
     ))
 }
 
-/// True if a program reads number or time of the uniform `frame`, which differ in every frame.
+/// True if a program reads index or seconds of the uniform `frame`, which differ in every frame.
 fn reads_clock(linked: &LinkedProgram, global: &Global) -> bool {
     let mut entries = linked.entries.iter();
     entries.any(|entry| reads_below(&linked.shader, *entry, global.handle, CLOCK_BYTES))
 }
 
-/// How a sampler is bound, or what the shader needs instead.
+/// Returns the type of a sampler's binding, or as the error the sort of sampler that the shader
+/// needs.
 fn sampler_type(
     comparison: bool,
     sampler: &Sampler,

@@ -1,4 +1,5 @@
-//! Draws without attachments. wgpu has none: a texture that is never read stands in their place.
+//! Draws without attachments. wgpu does not allow them, so they draw into a texture that is never
+//! read.
 
 use super::{pass::LinkedProgram, scope::PassScope};
 use crate::{
@@ -16,7 +17,7 @@ use wgt::TextureFormat;
 /// Format of one byte that every device draws to.
 const FORMAT: TextureFormat = TextureFormat::R8Unorm;
 
-/// The stages of a draw, and whether its fragment shader is to be one without colour outputs.
+/// Returns the stages of a draw, and true if its fragment shader must have no colour outputs.
 pub(super) fn stages_of(
     draw: &Draw<Names>,
     shader: impl FnOnce() -> Reported<Arc<Shader>>,
@@ -38,7 +39,8 @@ pub(super) fn stages_of(
     (stages, depth_only)
 }
 
-/// The texture in the place of the attachments of a draw that has none.
+/// Returns the texture that stands in for the attachments of a draw without attachments; `None` for
+/// any other draw.
 pub(super) fn texture(
     draw: &Draw<Names>,
     program: Option<&LinkedProgram>,
@@ -72,7 +74,7 @@ pub(super) fn texture(
     }))
 }
 
-/// A fragment shader has to be there, and what it returns would be lost.
+/// Checks that a draw without attachments has a fragment shader, which must not return anything.
 fn returns_nothing(
     program: &LinkedProgram,
     canvas: &Located<[u64; 2]>,

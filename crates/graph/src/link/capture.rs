@@ -1,4 +1,4 @@
-//! Copies of materials as they stand after a pass.
+//! Captures: copies of materials as they stand after a pass.
 
 use super::{
     covered::{fully_overwrites, within},
@@ -17,8 +17,8 @@ use crate::{
     source::span::Located,
 };
 
-/// A copy of a material as it stands after the last of these passes: of as much of it as has
-/// been written by then.
+/// Creates the pass that copies a material as it stands after the last of `passes`: the part of it
+/// that has been written by then.
 pub(super) fn link(
     capture: &Capture,
     passes: &[LinkedPass],
@@ -52,7 +52,7 @@ pub(super) fn link(
     Ok(pass)
 }
 
-/// A texture or buffer that a part of a resource can be copied into.
+/// Returns a texture or buffer into which a part of a resource can be copied.
 fn copy_of(
     capture: &Capture,
     target: &Target,
@@ -85,9 +85,10 @@ fn copy_of(
     })
 }
 
-/// The part of a target that passes have written: all of it from the first mip, layer or item that
-/// was written to the last, or, where something between these was not, what the last pass has
-/// written itself. `None` if that is nothing, or all that can be.
+/// Returns the part of a target that passes have written: everything from the first to the last
+/// mip, layer or item that was written. If something between these was not written, returns only
+/// the part that the last pass has written. `None` if nothing was written, or if the resource has
+/// content before the first pass.
 fn written_part(
     resource: &Resource,
     target: &Target,

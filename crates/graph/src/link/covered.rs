@@ -1,9 +1,9 @@
-//! Which parts of a resource others cover together.
+//! Overlap and coverage of parts of a resource.
 
 use crate::resource::{Resource, ResourceKind, SubresourceRange};
 use std::ops::Range;
 
-/// The common part of two parts, in the aspect of the second.
+/// Returns the overlap of two parts, in the aspect of the second; `None` if they do not overlap.
 pub(super) fn within(part: &SubresourceRange, of: &SubresourceRange) -> Option<SubresourceRange> {
     let common = |a: &Range<u32>, b: &Range<u32>| a.start.max(b.start)..a.end.min(b.end);
     part.overlaps(of).then(|| SubresourceRange {
@@ -13,7 +13,7 @@ pub(super) fn within(part: &SubresourceRange, of: &SubresourceRange) -> Option<S
     })
 }
 
-/// True if parts cover another one together.
+/// True if `parts` together cover all of `whole`.
 pub(super) fn fully_overwrites(
     parts: &[SubresourceRange],
     whole: &SubresourceRange,

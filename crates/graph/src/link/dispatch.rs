@@ -34,7 +34,7 @@ pub(super) fn link(
     Ok(Dispatch { program, groups })
 }
 
-/// A buffer of indirect arguments of at least `bytes`.
+/// Resolves a buffer of indirect arguments, which must hold at least `bytes` bytes.
 pub(super) fn indirect(
     operand: &Operand,
     bytes: u64,
@@ -82,7 +82,7 @@ fn workgroup_size(program: &LinkedProgram, scope: &mut PassScope<'_>) -> Reporte
     Ok(size)
 }
 
-/// How many workgroups of a size are dispatched.
+/// Returns the numbers of workgroups to dispatch, for workgroups of this size.
 fn workgroups(threads: &Threads, size: [u32; 3], scope: &mut PassScope<'_>) -> Reported<[u32; 3]> {
     let most = scope.request().limits.max_compute_workgroups_per_dimension;
     let per_group: u64 = size.iter().map(|&edge| u64::from(edge)).product();

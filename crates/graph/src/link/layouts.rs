@@ -28,7 +28,7 @@ struct Seen {
     uniform: bool,
 }
 
-/// One end of a copy.
+/// Source or destination of a copy.
 struct Copied {
     id: ResourceId,
     part: SubresourceRange,
@@ -36,7 +36,7 @@ struct Copied {
 }
 
 impl Layouts {
-    /// A shader sees a part of the buffer through this global.
+    /// Notes that a shader sees a part of a buffer through this global.
     pub fn see(&mut self, id: ResourceId, part: &SubresourceRange, global: &Global) {
         let (fixed, stride, layout, uniform) = match &global.class {
             Class::Storage {
@@ -59,7 +59,8 @@ impl Layouts {
         });
     }
 
-    /// The buffer must hold so many bytes behind the begin of a part, whatever shaders say.
+    /// Notes that a buffer must hold at least `bytes` bytes behind the start of a part, whatever
+    /// shaders declare.
     pub fn at_least(&mut self, id: ResourceId, part: &SubresourceRange, bytes: u64, span: &Span) {
         // Items are as large as shaders say; that these are large enough is theirs to see.
         if *part == SubresourceRange::WHOLE {
@@ -68,7 +69,7 @@ impl Layouts {
         }
     }
 
-    /// The first buffer is copied onto the second: they have one size.
+    /// Notes that the first buffer is copied onto the second, so that both have the same size.
     pub fn same(
         &mut self,
         from: (ResourceId, &SubresourceRange, &Located<String>),
@@ -81,7 +82,7 @@ impl Layouts {
         }));
     }
 
-    /// Every buffer with its size, and the mistakes of those that can have none.
+    /// Returns every buffer with its size, and the mistakes of buffers whose size cannot be found.
     pub fn sized(
         self,
         symbols: &SymbolTable<'_>,
@@ -149,7 +150,7 @@ impl Layouts {
             .collect()
     }
 
-    /// A buffer of the document with its size and content.
+    /// Returns a buffer of the document with its size and content.
     fn size(
         &self,
         id: ResourceId,
@@ -225,8 +226,8 @@ impl Layouts {
         Ok(sized)
     }
 
-    /// Items that are bound alone: they must be as large as the shader's type, and begin where the
-    /// device can bind.
+    /// Checks items that are bound alone: each must be as large as the shader's type, and begin at
+    /// an offset that the device can bind.
     fn items(
         &self,
         sized: &Buffer,
@@ -266,8 +267,8 @@ impl Layouts {
         Ok(())
     }
 
-    /// A buffer that no shader sees has the size of what it is copied from or to; others must
-    /// agree.
+    /// Gives a buffer that no shader sees the size of the buffer that it is copied from or to.
+    /// Checks that all other copied buffers have the same size.
     fn equal_sizes(
         &self,
         symbols: &SymbolTable<'_>,
@@ -328,7 +329,7 @@ fn fits(view: &Seen, provided: crate::provider::Provided) -> bool {
     }
 }
 
-/// Two shaders that see one whole buffer differently.
+/// Returns the error for two shaders that declare the same buffer differently; `None` if all agree.
 fn disagreement(name: &str, seen: &[Seen]) -> Option<LayoutError> {
     let mut whole = seen
         .iter()
@@ -342,7 +343,7 @@ fn disagreement(name: &str, seen: &[Seen]) -> Option<LayoutError> {
     })
 }
 
-/// The bytes of constant items in the layout of the shader that sees them.
+/// Returns the bytes of the items in `data`, in the layout of the shader that sees them.
 fn content(
     name: &str,
     data: &[Vec<f64>],

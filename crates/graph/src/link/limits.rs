@@ -1,4 +1,4 @@
-//! Limits of a device that shaders meet beside their bindings: memory of workgroups and threads,
+//! Limits of a device on shaders, besides those on bindings: memory of workgroups and threads,
 //! values between stages, numbers of locations and bindings.
 
 use super::{pass::LinkedProgram, scope::PassScope};
@@ -17,16 +17,18 @@ use crate::{
 };
 use naga::ShaderStage;
 
-/// Bytes of private variables of an entry point, and of the variables of one function: as many as
-/// WGSL promises (its chapter of limits). No adapter tells how many it has.
+/// Greatest size in bytes of the private variables of an entry point, and of the variables of one
+/// function: the size that WGSL guarantees (its chapter of limits). Adapters do not tell how much
+/// they have.
 const MOST_OF_ONE: u64 = 8192;
 
-/// Bytes of the variables of all functions that an entry point runs. Drivers inline functions, so
-/// that all stand on one stack; those of software adapters are a thread's, once for each lane.
+/// Greatest size in bytes of the variables of all functions that an entry point runs. Drivers
+/// inline functions, so that all variables stand on one stack; that of a software adapter is a
+/// thread's stack, once for each lane.
 const MOST_OF_ALL: u64 = 65_536;
 
-/// Bytes of a value: an array as long as WGSL lets one write it, 2,047 vectors of four. A value
-/// that is indexed is put among the variables.
+/// Greatest size in bytes of a value: the longest array that WGSL allows, 2,047 vectors of four. A
+/// value that is indexed is stored like a variable.
 const MOST_OF_A_VALUE: u64 = 2048 * 16;
 
 /// Checks the memory that each entry point of a program takes.
@@ -89,7 +91,7 @@ fn check_footprint(entry: &Entry, of: &Footprint, scope: &mut PassScope<'_>) -> 
     Ok(())
 }
 
-/// Numbers of groups and bindings that the adapter does not have.
+/// Checks that the adapter has the numbers of groups and bindings that a shader uses.
 pub(super) fn binding_numbers(
     shader: &Shader,
     globals: &[Global],
@@ -233,7 +235,8 @@ fn beyond(memory: &Memory, most: u64, entry: &Entry) -> Option<Excess> {
     })
 }
 
-/// Why a fragment shader cannot take what the vertex shader gives.
+/// Returns the reason for which a fragment shader cannot take an output of the vertex shader;
+/// `None` if it can.
 fn misfit(taken: &Varying, given: &[Varying]) -> Option<String> {
     let Some(given) = given.iter().find(|given| given.location == taken.location) else {
         return Some("no vertex shader writes".to_owned());

@@ -1,4 +1,4 @@
-//! Links passes one after the other.
+//! Linking of all passes, one after the other.
 
 use super::{
     capture,
@@ -21,18 +21,18 @@ use crate::{
 };
 use std::collections::BTreeSet;
 
-/// All passes of a graph, linked with its resources.
+/// All passes of a graph after linking, with its resources.
 pub(crate) struct Linked<'a> {
     pub symbols: SymbolTable<'a>,
     pub passes: Vec<LinkedPass>,
-    /// Instance of the document that each pass stands in; none for a capture.
+    /// Instance of the document that each pass belongs to; `None` for a capture.
     pub instances: Vec<Option<InstanceId>>,
-    /// Number here of each pass, by its number before captures are put in.
+    /// Index in `passes` of each pass, by its index before captures were added.
     pub numbers: Vec<usize>,
-    /// Includes that others stand for.
+    /// Includes that are replaced by an earlier include of the same content.
     pub merged: Vec<Merge>,
-    /// How many of the passes stand above the first mistake, if there is one: writes below are not
-    /// known.
+    /// Number of passes above the first mistake, `None` without a mistake. Writes below the mistake
+    /// are not known.
     pub first_invalid: Option<usize>,
     pub interfaces: Vec<Interface>,
     pub plan_inputs: PlanInputs,
@@ -119,7 +119,7 @@ fn link_pass<'a>(mut pass: LoweredPass<'a>, scope: &mut PassScope<'a>) -> Report
     Ok(linked)
 }
 
-/// Holds what the author says that a pass reads against what it reads.
+/// Checks the `reads` of a document's entry against the resources that the pass reads.
 fn reads(pass: &LinkedPass, references: &[Reference], scope: &mut PassScope<'_>) -> Reported<()> {
     let mut stated = BTreeSet::new();
     for reference in references {
@@ -152,7 +152,8 @@ fn reads(pass: &LinkedPass, references: &[Reference], scope: &mut PassScope<'_>)
     }
 }
 
-/// Takes the author's word that a pass writes all of some resources.
+/// Marks the writes that a document's entry lists in `overwrites` as complete: the pass overwrites
+/// everything in these parts.
 fn overwrites(
     pass: &mut LinkedPass,
     references: &[Reference],
@@ -180,8 +181,8 @@ fn overwrites(
 }
 
 impl Linked<'_> {
-    /// The first include that another one cannot stand for, because something in between writes
-    /// what it reads or writes.
+    /// Returns the error for the first include that cannot be merged with the earlier one, because
+    /// a pass between them writes a resource that it reads or writes; `None` if all can.
     pub fn two_copies(&self) -> Option<InterfaceError> {
         self.merged.iter().find_map(|merge| {
             // After a mistake the last passes are not there.
@@ -205,7 +206,7 @@ impl Linked<'_> {
         })
     }
 
-    /// True if a pass writes some of a part.
+    /// True if the pass at index `pass` writes to a part of the resource `id`.
     pub fn writes(&self, pass: usize, id: ResourceId, part: &SubresourceRange) -> bool {
         let writes =
             |access: &Access| access.writes && access.resource == id && access.part.overlaps(part);

@@ -1,5 +1,5 @@
-//! Phase 4: shaders meet resources. Every reference of every step is resolved, every binding and
-//! attachment checked, and what each pass reads and writes is written down.
+//! Phase 4: links shaders with resources. Resolves every reference of every step, checks every
+//! binding and attachment, and lists the reads and writes of each pass.
 
 mod attachments;
 mod bindings;

@@ -1,4 +1,4 @@
-//! Params on their way into shaders: the `params` uniform and overridable constants.
+//! Values of params for shaders: the `params` uniform and overridable constants.
 
 use super::{
     pass::Block,
@@ -18,7 +18,8 @@ use crate::{
     source::span::{Located, Span},
 };
 
-/// A number as the bits of one of a class; `None` where it is none.
+/// Returns the bits of a number in a shader's scalar type; `None` if the type cannot hold the
+/// number.
 fn bits(class: ScalarClass, scalar: Scalar) -> Option<u32> {
     match (class, scalar) {
         (ScalarClass::Float, scalar) => {
@@ -46,7 +47,7 @@ pub(crate) fn words(param: &Param, value: &ParamValue) -> (ScalarClass, Vec<u32>
     }
 }
 
-/// The type of params whose values a member of this type holds.
+/// Returns the type of params whose values a member of this type holds.
 fn param_of((class, width): (ScalarClass, u32)) -> Option<String> {
     Some(match (class, width) {
         (ScalarClass::Float, 1) => "F32".to_owned(),
@@ -57,7 +58,7 @@ fn param_of((class, width): (ScalarClass, u32)) -> Option<String> {
     })
 }
 
-/// Values of overridable constants: from the pass kind, else found by name.
+/// Returns the values of overridable constants: from the pass kind, or else found by name.
 pub(super) fn constants(
     program: &Program,
     shader: &Shader,
@@ -96,7 +97,7 @@ pub(super) fn constants(
     Ok(constants)
 }
 
-/// A value as one number of the override's type; `span` is the override's place.
+/// Converts a value to a number of the override's type; `span` is the place of the override.
 fn number(
     name: &str,
     asked: &Asked,
@@ -135,8 +136,8 @@ fn number(
     })
 }
 
-/// The number of a word: its place among those of the document's param of that name, or the
-/// shader's constant.
+/// Returns the number of a word: its index among the words of the document's param of that name, or
+/// the shader's constant.
 fn word(
     name: &str,
     value: &Value,
@@ -175,7 +176,7 @@ fn wrong_value(name: &str, expected: &str, found: &Value, span: &Span) -> LinkEr
     }
 }
 
-/// Fills the `params` uniform member by member by name.
+/// Creates the bytes of the `params` uniform; each member gets the value of its name.
 pub(super) fn block(
     global: &Global,
     size: u64,
@@ -212,7 +213,8 @@ pub(super) fn block(
     wrong.map_or(Ok(block), Err)
 }
 
-/// The words of a member of `params`; the param of the root document that it is, unchanged.
+/// Returns the words of a member of `params`, and the name of the root document's param that it is
+/// unchanged (if any).
 fn member_words(
     global: &Global,
     member: &Member,
@@ -254,7 +256,7 @@ fn member_words(
     }))
 }
 
-/// The words of a member that the entry sets: the type is the member's.
+/// Returns the words of a member that the entry sets; the value is converted to the member's type.
 fn set_member(
     global: &Global,
     member: &Member,

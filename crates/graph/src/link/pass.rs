@@ -1,4 +1,4 @@
-//! Linked passes: steps over ids, with their reads and writes.
+//! Linked passes: their steps refer to resources by id, and list their reads and writes.
 
 use crate::{
     instantiate::flat::Run,
@@ -10,85 +10,89 @@ use crate::{
 use naga::ShaderStage;
 use std::sync::Arc;
 
-/// Number of a pass of a plan, in the order of the file.
+/// Index of a pass in [`Plan::all_passes`](crate::Plan::all_passes), which has the order of the
+/// documents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct PassId(pub(crate) usize);
 
 impl PassId {
-    /// The number: passes count from 0.
+    /// Returns the index, counted from 0.
     pub fn index(self) -> usize {
         self.0
     }
 }
 
-/// The kind of a pass that keeps a material as it stands after another pass.
+/// The [`LinkedPass::kind`] of passes that copy a material as it stands after another pass. They
+/// are added for [`Capture`](crate::Capture)s with `after`.
 pub const CAPTURE: &str = "Capture";
 
-/// A pass with its steps resolved.
+/// A pass whose steps refer to resources by id and to parsed shaders.
 #[derive(Clone, Debug)]
 pub struct LinkedPass {
-    /// Full name, with its place in the document.
+    /// Full name, with its place in the document; `material@pass` for a capture.
     pub name: Located<String>,
     /// Kind, as the document writes it, or [`CAPTURE`].
     pub kind: &'static str,
-    /// The GPU work.
+    /// GPU work of the pass, in order.
     pub steps: Vec<Step<Ids>>,
-    /// Reads and writes of the steps.
+    /// Every read and write of the steps, in the order of steps.
     pub accesses: Vec<Access>,
-    /// In which frames it runs.
+    /// Frames in which the pass runs.
     pub run: Run,
-    /// The value of the expression in [`Run::When`]; true without one.
+    /// Value of the expression in [`Run::When`]; true for every other [`Run`].
     pub enabled: bool,
 }
 
 impl LinkedPass {
-    /// True if it only keeps the result of another pass.
+    /// True if the pass only copies a material for a capture.
     pub fn is_capture(&self) -> bool {
         self.kind == CAPTURE
     }
 
-    /// The bytes of each step's `params` uniform.
+    /// Returns the bytes of the `params` uniform of each step; `None` for a step whose shader has
+    /// no such uniform, and for a copy or clear.
     pub fn params(&self) -> impl Iterator<Item = Option<&[u8]>> {
         self.steps.iter().map(|step| step.program()?.params())
     }
 }
 
-/// One use of a part of a resource by a step.
+/// One use of a resource, or of a part of it, by a step.
 #[derive(Clone, Debug)]
 pub struct Access {
-    /// The resource.
+    /// Id of the resource that is used.
     pub resource: ResourceId,
-    /// Its part.
+    /// The mips and layers, or items, that are used.
     pub part: SubresourceRange,
-    /// True if it is read.
+    /// True if the step reads the part.
     pub reads: bool,
-    /// True if it is written.
+    /// True if the step writes the part.
     pub writes: bool,
-    /// Everything in the part is overwritten.
+    /// True if the step overwrites everything in the part.
     pub fully_overwrites: bool,
-    /// True if other content is a change for [`Run::OnChange`]; false for flags of the uniform
-    /// `frame`.
+    /// True if a change of the content makes a pass with [`Run::OnChange`] run. False for a shader
+    /// that reads only the flags of the uniform `frame`.
     pub triggers: bool,
-    /// Usage that the resource must be made for.
+    /// Usage that the resource must be created with.
     pub usage: Usage,
-    /// Place in the document or the shader that causes it.
+    /// Place in the document or the shader that causes the use.
     pub span: Span,
-    /// Number of the step.
+    /// Index of the step in [`LinkedPass::steps`].
     pub step: usize,
 }
 
-/// How a resource is bound; decides the usages it is created with.
+/// Usage with which a resource must be created for one use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Usage {
-    /// A texture's.
+    /// Usage of a texture.
     Texture(wgt::TextureUsages),
-    /// A buffer's.
+    /// Usage of a buffer.
     Buffer(wgt::BufferUsages),
-    /// A sampler or an acceleration structure needs none.
+    /// No usage: the resource is a sampler or an acceleration structure.
     None,
 }
 
-/// The stage in which everything is a number of the plan.
+/// The [`Stage`] of linked passes: resources are ids, shaders are reflected, and sizes are numbers
+/// of workgroups.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ids;
 
@@ -101,39 +105,42 @@ impl Stage for Ids {
     type Canvas = Attachment;
 }
 
-/// An attachment.
+/// Texture that a draw renders into.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Attachment {
-    /// One mip of one layer.
+    /// Texture, with the one mip and layer that is drawn to.
     pub target: Target,
-    /// The texture's format.
+    /// Format of the texture.
     pub format: wgt::TextureFormat,
-    /// The texture's samples.
+    /// Number of samples of each texel.
     pub samples: u32,
 }
 
 /// A shader with its entry points, constants and bindings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinkedProgram {
-    /// The shader.
+    /// The shader, which holds the naga module and its reflection.
     pub shader: Arc<Shader>,
-    /// Numbers of the entry points in stage order (vertex, fragment; or compute).
+    /// Indices of the entry points in the module's `entry_points`: vertex, then fragment, as far as
+    /// the draw has them; or compute.
     pub entries: Vec<usize>,
-    /// Values of pipeline-overridable constants by the key that wgpu knows them by.
+    /// Values of pipeline-overridable constants by the key that wgpu expects: the constant's name,
+    /// or its `@id`.
     pub constants: Vec<(String, f64)>,
-    /// Bindings of the program.
+    /// Bindings of the globals that the entry points use.
     pub bindings: Vec<LinkedBinding>,
 }
 
 impl LinkedProgram {
-    /// The number of the entry point of a stage.
+    /// Returns the index in the module's `entry_points` of the program's entry point for a stage;
+    /// `None` if the program does not have the stage.
     pub fn entry(&self, stage: ShaderStage) -> Option<usize> {
         let points = &self.shader.module().entry_points;
         let mut entries = self.entries.iter().copied();
         entries.find(|entry| points[*entry].stage == stage)
     }
 
-    /// The bytes of the `params` uniform.
+    /// Returns the bytes of the `params` uniform; `None` if the shader has no such uniform.
     pub fn params(&self) -> Option<&[u8]> {
         self.bindings.iter().find_map(|it| match &it.target {
             BindTarget::Params(block) => Some(&block.bytes[..]),
@@ -142,53 +149,55 @@ impl LinkedProgram {
     }
 }
 
-/// One binding of a program.
+/// One binding of a program: its number, and the resource or bytes bound to it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinkedBinding {
-    /// Number of the bind group.
+    /// Index of the bind group.
     pub group: u32,
-    /// Number in the group.
+    /// Index of the binding in its group.
     pub binding: u32,
-    /// Target of the binding.
+    /// Resource or bytes that are bound.
     pub target: BindTarget,
-    /// As what.
+    /// Type of the binding in the bind group layout.
     pub ty: wgt::BindingType,
-    /// The stages that use it.
+    /// Shader stages that use the binding.
     pub visibility: wgt::ShaderStages,
 }
 
-/// Target of a binding.
+/// Resource or bytes that a binding refers to.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BindTarget {
-    /// A buffer or some of its items.
+    /// A buffer, or a range of its items.
     Buffer(Target),
     /// A texture or a part of one.
     Texture {
-        /// The part.
+        /// The texture, with the mips and layers that are bound.
         target: Target,
-        /// Dimension that the shader sees.
+        /// Dimension of the view, as the shader declares it.
         dimension: wgt::TextureViewDimension,
     },
-    /// A sampler.
+    /// A sampler, by id.
     Sampler(ResourceId),
-    /// An acceleration structure.
+    /// An acceleration structure, by id.
     AccelerationStructure(ResourceId),
-    /// The `params` uniform, already laid out.
+    /// The `params` uniform, whose bytes the executor uploads.
     Params(Block),
 }
 
-/// The bytes of a `params` uniform. Two of one size are equal: other bytes are an upload, not
-/// another binding.
+/// The bytes of a `params` uniform, laid out as the shader declares it. Two blocks of equal size
+/// compare as equal: different bytes need an upload, but not another binding.
 #[derive(Clone, Debug, Default)]
 pub struct Block {
-    /// Bytes that the shader reads.
+    /// Content of the uniform.
     pub bytes: Vec<u8>,
-    /// Members that are params of the root document, unchanged: their names and offsets in bytes.
+    /// Members whose value is a param of the root document, unchanged: the param's name, and the
+    /// member's offset in bytes.
     pub(crate) params: Vec<(String, usize)>,
 }
 
 impl Block {
-    /// Writes words at an offset. True if others stood there. Words beyond the end are left out.
+    /// Writes words at an offset in bytes, and returns true if any byte changed. Words beyond the
+    /// end are left out.
     pub(crate) fn write(&mut self, offset: usize, words: &[u32]) -> bool {
         let words = words.iter().flat_map(|word| word.to_le_bytes());
         let mut changed = false;
@@ -206,7 +215,7 @@ impl PartialEq for Block {
     }
 }
 
-/// The uniform `params` of a step's program.
+/// Returns the `params` uniform of a step's program; `None` if it has none.
 pub(crate) fn block_mut(step: &mut Step<Ids>) -> Option<&mut Block> {
     let program = match step {
         Step::Draw(draw) => &mut draw.program,

@@ -84,7 +84,7 @@ fn bound_globals(
     wrong.map_or(Ok(()), Err)
 }
 
-/// The numbers of bindings that wgpu limits per stage.
+/// Checks the numbers of bindings that wgpu limits for each stage.
 fn counts(bindings: &[LinkedBinding], scope: &mut PassScope<'_>) -> Reported<()> {
     let limits = &scope.request().limits;
     use wgt::{BindingType as Type, BufferBindingType::Storage, BufferBindingType::Uniform};

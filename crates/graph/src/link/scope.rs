@@ -1,4 +1,4 @@
-//! Meaning of the names of the pass that is linked.
+//! Names that the pass being linked can use.
 
 use super::{
     layouts::Layouts,
@@ -29,33 +29,34 @@ use crate::{
 };
 use std::{collections::BTreeSet, sync::Arc};
 
-/// The symbols of a graph, as one pass after the other sees them.
+/// Symbols of a graph as seen by the pass that is being linked, with the results of linking so far.
 pub(super) struct PassScope<'a> {
     symbols: SymbolTable<'a>,
     pub layouts: Layouts,
     /// The name of the pass.
     pub pass: Located<String>,
-    /// Its reads and writes so far.
+    /// Reads and writes of the pass so far.
     pub accesses: Vec<Access>,
     position: Position,
-    /// Its own buffers; of a capture, its source and destination.
+    /// Buffers that only the pass uses; for a capture, its source and destination.
     scratch: Vec<Target>,
     set: &'a [(Located<String>, Expr)],
     inherited_bind: Vec<Inherited<'a, Reference>>,
     inherited_set: Vec<Inherited<'a, Expr>>,
     /// The shader that has the pass's own bindings.
     pub own_shader: Option<Located<String>>,
-    /// The bindings and values that a shader of the pass has asked for.
+    /// Names of the bindings and values that shaders of the pass have asked for.
     asked: BTreeSet<String>,
 }
 
 /// A value that a shader asks for by name.
 pub(super) enum Asked {
-    /// A value from the entry or a group around it, or one of the document, with its place.
+    /// A value from the entry, from a group around it or from the document, with its place.
     Value(Value, Span),
-    /// A param of the document; which one of the root document it is, unchanged.
+    /// A param of the document, its value, and the name of the root document's param that it is
+    /// unchanged (if any).
     Param(Box<Param>, ParamValue, Option<String>),
-    /// The number of the repetition.
+    /// The index of the repetition.
     Index(u32),
 }
 
@@ -76,7 +77,7 @@ impl<'a> PassScope<'a> {
         }
     }
 
-    /// The next pass is linked.
+    /// Begins the linking of a pass.
     pub fn enter(&mut self, pass: &mut LoweredPass<'a>) {
         self.position = pass.flat.position;
         let scratch = pass.scratch.iter().map(|id| self.symbols.whole(*id));
@@ -88,7 +89,7 @@ impl<'a> PassScope<'a> {
         self.asked.clear();
     }
 
-    /// A capture is linked: both ends are known by number, neither is a name of a document.
+    /// Begins the linking of a capture, whose source and destination are known by id.
     pub fn enter_capture(&mut self, from: Target, to: Target) {
         self.scratch = vec![from, to];
     }
@@ -101,7 +102,7 @@ impl<'a> PassScope<'a> {
         &self.symbols
     }
 
-    /// The mistakes so far.
+    /// Returns the mistakes so far.
     pub fn reports(&mut self) -> &mut Reports {
         &mut self.symbols.reports
     }
@@ -110,17 +111,17 @@ impl<'a> PassScope<'a> {
         self.symbols.reports.report(mistake)
     }
 
-    /// Reports something that this adapter cannot do.
+    /// Reports a need of the graph that this adapter cannot meet.
     pub fn unsupported(&mut self, mistake: impl Into<Diagnostic>) -> Reported<()> {
         self.symbols.reports.unsupported(mistake)
     }
 
-    /// A result whose mistake is reported.
+    /// Reports the mistake of a result, if it has one.
     pub fn check<T>(&mut self, result: Result<T, impl Into<Diagnostic>>) -> Reported<T> {
         self.symbols.reports.check(result)
     }
 
-    /// Notes that a step reads or writes a whole part.
+    /// Adds a read or write of a part by a step.
     pub fn access(
         &mut self,
         target: &Target,
@@ -160,12 +161,13 @@ impl<'a> PassScope<'a> {
         self.symbols.resolve(reference, self.position)
     }
 
-    /// Resolves a name of a command.
+    /// Resolves a full name, or a reference of the root document, from a request; `None` if the
+    /// name is unknown.
     pub fn resolve_full(&mut self, name: &str) -> Option<Reported<Target>> {
         self.symbols.find_full(name)
     }
 
-    /// Resolves an operand of a step. Returns its name and place, too, for messages.
+    /// Resolves an operand of a step. Returns the target, and its name and place for messages.
     pub fn operand(&mut self, operand: &Operand) -> Reported<(Target, Located<String>)> {
         match operand {
             Operand::Named(reference) => Ok((self.resolve(reference)?, reference.located())),
@@ -177,7 +179,8 @@ impl<'a> PassScope<'a> {
         }
     }
 
-    /// Last frame's version of a resource is there to be read, and so is what the document holds.
+    /// Checks that a resource may be written: last frame's versions and content of the document are
+    /// read-only.
     pub fn writable(&mut self, id: ResourceId, span: &Span) -> Reported<()> {
         let Resource { name, origin, .. } = self.get(id);
         let span = span.clone();
@@ -195,7 +198,7 @@ impl<'a> PassScope<'a> {
         Err(self.report(error))
     }
 
-    /// The shader of a program; those that the document names were loaded with it.
+    /// Returns the shader of a program, which was loaded with the document.
     pub fn shader(&mut self, program: &Program) -> Reported<Arc<Shader>> {
         let Some(name) = &program.shader else {
             return Err(self.report(LinkError::NoShader));
@@ -217,7 +220,7 @@ impl<'a> PassScope<'a> {
         }
     }
 
-    /// Finds the target of a global: bound by a group, else of that name.
+    /// Finds the target of a shader's global: bound by a group, or else of the same name.
     pub fn target(&mut self, global: &Global) -> Reported<Target> {
         let mut said = self.inherited_bind.iter();
         if let Some(&said) = said.find(|said| said.name.value == global.name) {
@@ -254,7 +257,8 @@ impl<'a> PassScope<'a> {
         }))
     }
 
-    /// The sampler that a global of a program is, bound to an operand or found by its name.
+    /// Returns the sampler for a global of a program, bound by the pass or found by its name;
+    /// `None` if there is none.
     pub fn sampler(&mut self, program: &Program, global: &str) -> Option<&Sampler> {
         let mut bound = program.bind.iter();
         let bound = bound.find(|(name, _)| name.value == global);
@@ -269,8 +273,9 @@ impl<'a> PassScope<'a> {
         }
     }
 
-    /// The value that a shader asks for: set by the entry, else the index of a repetition, else the
-    /// param of that name.
+    /// Returns the value for a name that a shader asks for: set by the entry or a group, or else
+    /// the index of the repetition, the param or the value of that name. `None` for an unknown
+    /// name.
     pub fn asked(&mut self, name: &str) -> Option<Reported<Asked>> {
         self.asked.insert(name.to_owned());
         let own = self.set.iter().find(|(set, _)| **set == *name);
@@ -300,13 +305,14 @@ impl<'a> PassScope<'a> {
         Some(value.map(|value| Asked::Param(bound.param.clone().into(), value, bound.root.clone())))
     }
 
-    /// The document's param that a shader calls so.
+    /// Returns the document's param that a shader spells `name`.
     pub fn param(&self, name: &str) -> Option<&BoundParam> {
         let instance = self.symbols.scopes.document(self.position.scope);
         instance.params.wgsl_name(name)
     }
 
-    /// The words of the document's param that a shader calls so.
+    /// Returns the words of the document's `Choice` param that a shader spells `name`; `None` for
+    /// any other param.
     pub fn words(&self, name: &str) -> Option<&[Name]> {
         match &self.param(name)?.param.ty {
             ParamType::Choice(words) => Some(words),
@@ -314,19 +320,20 @@ impl<'a> PassScope<'a> {
         }
     }
 
-    /// Names of the document's params.
+    /// Returns the names of the document's params.
     pub fn params(&self) -> impl Iterator<Item = &str> {
         let instance = self.symbols.scopes.document(self.position.scope);
         instance.params.names()
     }
 
-    /// The kind of what is provided, under which the plan is made.
+    /// Returns the number of a provided resource's kind, for an overridable constant such as
+    /// `light_kind`.
     pub fn kind(&mut self, name: &str) -> Option<f64> {
         let kind = self.symbols.kind_of_wgsl_name(name, self.position.scope)?;
         Some(f64::from(kind.number))
     }
 
-    /// Reports what the entry binds or sets and no shader of it asks for.
+    /// Reports values that the entry sets and none of its shaders asks for.
     pub fn unasked(&mut self) -> Reported<()> {
         let mut wrong = None;
         for (name, _) in self.set {

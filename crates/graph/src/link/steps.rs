@@ -1,4 +1,4 @@
-//! The steps of a pass, linked one after the other.
+//! Linking of the steps of a pass, one after the other.
 
 use super::{
     attachments, dispatch,
@@ -14,7 +14,7 @@ use crate::{
     source::span::Located,
 };
 
-/// The pass of these steps.
+/// Links the steps of a pass.
 pub(super) fn link(
     name: Located<String>,
     kind: &'static str,
@@ -55,8 +55,8 @@ fn step(step: &Step<Names>, scope: &mut PassScope<'_>) -> Reported<Step<Ids>> {
     }
 }
 
-/// A step that uses one part of a resource in two ways of which one writes: wgpu forbids it.
-/// `first` is the number of its first access.
+/// Reports a step that uses a part of a resource in two ways, one of which writes: wgpu forbids it.
+/// `first` is the index of the step's first access.
 fn feedback(first: usize, scope: &mut PassScope<'_>) -> Reported<()> {
     let mut wrong = Vec::new();
     for (index, a) in scope.accesses[first..].iter().enumerate() {

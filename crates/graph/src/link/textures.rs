@@ -1,4 +1,4 @@
-//! Fit of a texture to a shader's declaration: format, dimension, filtering, storage access.
+//! Checks that a texture fits a shader's declaration: format, dimension, filtering, storage access.
 
 use super::{pass::LinkedProgram, scope::PassScope};
 use crate::{
@@ -12,7 +12,8 @@ use crate::{
 };
 use wgt::{TextureAspect, TextureFormat, TextureFormatFeatureFlags as Flags, TextureUsages};
 
-/// Returns the scalars that a shader sees in a format; of one aspect, if the format has two.
+/// Returns the scalar type that a shader reads from a format, or from one aspect of a format with
+/// two; `None` if it cannot be read.
 pub(super) fn scalar_of(format: TextureFormat, aspect: TextureAspect) -> Option<ScalarClass> {
     Some(match format.sample_type(Some(aspect), None)? {
         wgt::TextureSampleType::Float { .. } | wgt::TextureSampleType::Depth => ScalarClass::Float,
@@ -21,7 +22,7 @@ pub(super) fn scalar_of(format: TextureFormat, aspect: TextureAspect) -> Option<
     })
 }
 
-/// Binding, usage, and the aspect that is bound.
+/// Type of a binding, usage of its texture, and the aspect that is bound.
 type Bound = (wgt::BindingType, TextureUsages, TextureAspect);
 
 pub(super) fn texture(

@@ -12,7 +12,7 @@ use crate::{
     resource::{ResourceKind, Target, Texture},
 };
 
-/// Width, height, layers and mips of a part of a texture.
+/// Returns the width, height, number of layers and number of mips of a part of a texture.
 fn extent(texture: &Texture, target: &Target) -> [usize; 4] {
     let [width, height] = texture.mip_size(target.part.mips.start);
     let (layers, mips) = (target.part.layers.len(), target.part.mips.len());

@@ -1,8 +1,9 @@
-//! Graphs on a backend that gives less than WebGPU: refused unless proven there.
+//! Check for backends that lack part of WebGPU: a graph is refused unless it is proven there.
 
 use crate::{compose::loaded::Loaded, errors::plan::OutputError, request::PartialBackend};
 
-/// The mistake of planning the graph for a backend that it does not list in `proven_on`.
+/// Returns the error for a backend that the graph does not list in `proven_on`; `None` if it lists
+/// the backend.
 pub(super) fn not_proven(graph: &Loaded, backend: &PartialBackend) -> Option<OutputError> {
     let mut listed = graph.document.proven_on.iter();
     if listed.any(|word| word.as_str() == backend.name) {

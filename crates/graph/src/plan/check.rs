@@ -1,4 +1,4 @@
-//! Everything that is wrong with a graph, for all values that decide which entries are there.
+//! Finds all mistakes of a graph, for all values that decide which entries exist.
 
 use super::{
     make::{Outcome, plan_all},
@@ -20,7 +20,8 @@ use crate::{
 };
 use std::{collections::BTreeMap, sync::Arc};
 
-/// Formats that are tried where an input takes any: the shader's declaration decides which fits.
+/// Formats that are tried for an input that takes any format; the shader's declaration decides
+/// which fits.
 const TRIED: [wgt::TextureFormat; 5] = [
     wgt::TextureFormat::Rgba16Float,
     wgt::TextureFormat::Rgba32Uint,
@@ -29,8 +30,9 @@ const TRIED: [wgt::TextureFormat; 5] = [
     wgt::TextureFormat::R32Float,
 ];
 
-/// The plan of a document that was read with these errors, or these and all others: for each param
-/// and feature in an `if` changed alone, too.
+/// Plans a document that was read with the mistakes in `errors`. Returns the plan, or these
+/// mistakes and all others. Plans again for each other value of each param and feature in an `if`,
+/// changed one at a time.
 pub(crate) fn check(
     graph: &Arc<Loaded>,
     mut errors: Vec<Diagnostic>,
@@ -65,7 +67,8 @@ pub(crate) fn check(
     }
 }
 
-/// Plans with what the document asks for in place of imports that the request has not.
+/// Plans with stand-ins for the imports that the request lacks: resources as the document asks for
+/// them.
 fn plan_for_any(graph: &Arc<Loaded>, request: &PlanRequest<'_>) -> Outcome {
     let takes_any = graph.document.inputs.iter().any(|input| {
         matches!(input.kind, InputKind::Texture(None))
@@ -87,7 +90,7 @@ fn plan_for_any(graph: &Arc<Loaded>, request: &PlanRequest<'_>) -> Outcome {
     first.unwrap_or_else(|| plan_all(graph, request))
 }
 
-/// The request's imports, and what the document asks for besides.
+/// Returns the request's imports, and stand-ins for the inputs of the document without one.
 fn stand_ins(
     document: &Document,
     request: &PlanRequest<'_>,
@@ -122,8 +125,8 @@ fn stand_ins(
     imports
 }
 
-/// Returns the mistakes for other values of the things that decide which entries exist, each
-/// changed alone.
+/// Returns the mistakes for other values of the params and features that decide which entries
+/// exist, changed one at a time.
 fn sweep(
     graph: &Arc<Loaded>,
     request: &PlanRequest<'_>,
@@ -159,7 +162,8 @@ fn sweep(
     found
 }
 
-/// Returns the mistakes of one condition; the rest was looked at before.
+/// Returns the mistakes that a changed request causes; `condition` describes the change. Mistakes
+/// of limits, memory, features and lights are left out.
 fn wrong_with(graph: &Arc<Loaded>, request: &PlanRequest<'_>, condition: &str) -> Vec<Diagnostic> {
     let outcome = plan_for_any(graph, request);
     let errors = outcome
@@ -183,7 +187,8 @@ fn wrong_with(graph: &Arc<Loaded>, request: &PlanRequest<'_>, condition: &str) -
         .collect()
 }
 
-/// The values of a param that `check` looks at: every word, true and false, the ends of its range.
+/// Returns the values of a param that `check` tries: every word, true and false, or the ends of its
+/// range.
 fn ends(param: &Param) -> Vec<ParamValue> {
     match &param.ty {
         ParamType::Bool => [true, false].map(ParamValue::Bool).to_vec(),

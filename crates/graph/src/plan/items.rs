@@ -1,4 +1,5 @@
-//! Origin of the content of an output or capture: without it the content cannot be read.
+//! Origin, layout and extent of the content of an output or capture, which a reader of the content
+//! needs.
 
 use crate::{
     kinds::step::Step,
@@ -8,26 +9,26 @@ use crate::{
 };
 use std::{collections::BTreeSet, ops::Range};
 
-/// A part of a texture or buffer.
+/// Part of a texture or buffer, compared with the whole.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PartSummary {
-    /// Mip levels; `0..1` of a buffer.
+    /// Range of mip levels; `0..1` for a buffer.
     pub mips: Range<u32>,
-    /// Layers of an array, slices of a 3D texture, or items of a buffer.
+    /// Range of array layers, of slices of a 3D texture, or of items of a buffer.
     pub layers: Range<u32>,
-    /// How many mips, and layers or items, the whole has; `u32::MAX` items where no document counts
-    /// them.
+    /// Number of mips, and of layers or items, of the whole texture or buffer. The second is
+    /// `u32::MAX` for a buffer whose items the document does not count.
     pub of: [u32; 2],
 }
 
 impl PartSummary {
-    /// True if it is less than the whole.
+    /// True if the part is less than the whole texture or buffer.
     pub fn is_less(&self) -> bool {
         (self.mips.len(), self.layers.len()) != (self.of[0] as usize, self.of[1] as usize)
     }
 }
 
-/// The provided resources that are bound by the passes that write a target.
+/// Returns the names of the provided resources that are bound by the passes that write a target.
 pub(super) fn provided_behind<'p>(
     live: impl Iterator<Item = &'p LinkedPass> + Clone,
     target: &Target,
@@ -44,7 +45,8 @@ pub(super) fn provided_behind<'p>(
         .collect()
 }
 
-/// The items of a buffer that a live pass binds as an array of plain items or as a single one.
+/// Returns the layout of the items of a buffer that a live pass binds as an array of plain items or
+/// as a single item; `None` if no live pass does.
 pub(super) fn item_of<'p>(
     live: impl Iterator<Item = &'p LinkedPass> + Clone,
     target: &Target,
@@ -68,7 +70,7 @@ pub(super) fn item_of<'p>(
     item(module, global.ty)
 }
 
-/// Which mips and layers of a texture, or items of a buffer, a target holds.
+/// Returns the mips and layers of a texture, or items of a buffer, that a target holds.
 pub(super) fn part<'p>(
     live: impl Iterator<Item = &'p LinkedPass>,
     target: &Target,
@@ -99,7 +101,7 @@ pub(super) fn part<'p>(
     }
 }
 
-/// The resource that a target is a copy of, or is itself.
+/// Returns the resource that a target is a copy of, or else the resource of the target.
 fn origin<'p>(live: impl Iterator<Item = &'p LinkedPass>, target: &Target) -> ResourceId {
     let steps: Vec<&Step<Ids>> = live.flat_map(|pass| &pass.steps).collect();
     // The last copy onto it counts; its source was copied before.

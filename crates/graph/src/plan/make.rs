@@ -1,4 +1,4 @@
-//! From a graph to a plan: one phase after the other, each with what the one before has made.
+//! Planning: runs one phase after the other, each on the result of the phase before.
 
 use super::{
     backend::not_proven,
@@ -43,7 +43,7 @@ use std::{
     sync::Arc,
 };
 
-/// A plan, which [`Plan`](super::plan::Plan) shows to the host.
+/// Content of a [`Plan`](super::plan::Plan).
 #[derive(Debug)]
 pub(super) struct Planned {
     pub graph: Arc<Loaded>,
@@ -56,22 +56,22 @@ pub(super) struct Planned {
     pub readable: Vec<(String, Target)>,
     pub culled: Vec<CulledPass>,
     pub warnings: Vec<Diagnostic>,
-    /// The params of the root document that it depends on; of others, passes' uniforms alone hold
-    /// the values.
+    /// Params of the root document on which the plan depends. The values of all other params only
+    /// stand in uniforms.
     pub depends_on: BTreeSet<String>,
 }
 
-/// A pass that does not run.
+/// Name of a pass that does not run, with the reason.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CulledPass {
-    /// Name.
+    /// Full name of the pass.
     pub name: String,
-    /// Why.
+    /// Reason for which the pass does not run, as a clause: "it writes nothing".
     pub reason: String,
 }
 
-/// Result of planning: the plan, if nothing is wrong; the mistakes; the values that decide which
-/// entries exist.
+/// Result of planning: the plan if there are no mistakes, or else the mistakes; and the values that
+/// decide which entries exist.
 #[derive(Default)]
 pub(super) struct Outcome {
     pub plan: Option<Planned>,
@@ -79,7 +79,7 @@ pub(super) struct Outcome {
     pub plan_inputs: PlanInputs,
 }
 
-/// The plan, or everything that is wrong, even if some of the document could not be read.
+/// Plans a graph, and collects all mistakes, even if some of the document could not be read.
 pub(super) fn plan_all(graph: &Arc<Loaded>, request: &PlanRequest<'_>) -> Outcome {
     let mut reports = Reports::default();
     reports.any_adapter = request.any_adapter;
@@ -128,8 +128,8 @@ pub(super) fn plan_all(graph: &Arc<Loaded>, request: &PlanRequest<'_>) -> Outcom
     }
 }
 
-/// Orders and culls what was linked, unless something is wrong with it. The plan knows neither the
-/// warnings nor the params that it depends on yet.
+/// Orders and culls the linked passes; `None` after a mistake. Warnings, and the params that the
+/// plan depends on, are filled in later.
 fn schedule(
     graph: &Arc<Loaded>,
     mut linked: Linked<'_>,
@@ -259,7 +259,8 @@ impl Outcome {
         }
     }
 
-    /// On a device that cannot run the graph nothing else is worth knowing.
+    /// Keeps only the missing features: on a device that cannot run the graph, other mistakes do
+    /// not matter.
     fn lacking(reports: Reports, plan_inputs: PlanInputs) -> Self {
         let mut outcome = Self::failed(reports, plan_inputs);
         outcome.found.retain(is_lacking);
@@ -324,7 +325,7 @@ fn live(view: GraphView<'_>, readable: &[(String, Target)], order: &Order) -> Ve
     })
 }
 
-/// The passes that write a part of a resource, in whichever frame.
+/// Returns the passes that write a part of a resource, in whichever frame.
 fn writers(view: GraphView<'_>, target: &Target) -> BTreeSet<PassId> {
     let writes = |access: &Access| {
         access.writes && access.resource == target.id && access.part.overlaps(&target.part)
@@ -334,7 +335,8 @@ fn writers(view: GraphView<'_>, target: &Target) -> BTreeSet<PassId> {
     writers.map(|(id, _)| id).collect()
 }
 
-/// The resources that are last frame's version of another one, with that one.
+/// Returns the used resources that are last frame's version of another one, with that other
+/// resource.
 fn previous(lifetimes: &Lifetimes, view: GraphView<'_>) -> BTreeMap<ResourceId, ResourceId> {
     let of = |id: &ResourceId| match view.resource(*id).origin {
         Origin::Previous(base) => Some((*id, base)),
@@ -343,14 +345,14 @@ fn previous(lifetimes: &Lifetimes, view: GraphView<'_>) -> BTreeMap<ResourceId, 
     lifetimes.keys().filter_map(of).collect()
 }
 
-/// The buffers that count what growing resources would have needed.
+/// Returns the buffers that count the items or layers that growing resources would have needed.
 fn counters(lifetimes: &Lifetimes, view: GraphView<'_>) -> Vec<ResourceId> {
     let growing = growing(lifetimes.keys(), view.resources);
     growing.map(|(_, growth)| growth.counter.id).collect()
 }
 
-/// Adds what is done to resources besides the passes' work: reading back, filling with a pattern or
-/// with what stands in the document, two versions taking turns.
+/// Adds the usages for work besides the passes: reading back, filling with a pattern or with
+/// content from the document, and two versions that take turns.
 fn further_uses(
     lifetimes: &mut Lifetimes,
     readable: &[(String, Target)],
@@ -408,7 +410,8 @@ fn fillable(kind: &ResourceKind, lifetime: &mut Lifetime) {
     }
 }
 
-/// A buffer that is only cleared or copied has no size: no shader says what its items are.
+/// Reports buffers without a size: those that are only cleared or copied, so that no shader
+/// declares their items.
 fn unsized_buffers(lifetimes: &Lifetimes, view: GraphView<'_>, reports: &mut Reports) {
     for resource in lifetimes.keys().map(|id| view.resource(*id)) {
         if let ResourceKind::Buffer(Buffer { bytes: 0, .. }) = resource.kind
@@ -420,7 +423,7 @@ fn unsized_buffers(lifetimes: &Lifetimes, view: GraphView<'_>, reports: &mut Rep
     }
 }
 
-/// Reads of what is left of the frame before, where no frame writes it.
+/// Reports reads of content from the frame before that no pass writes in any frame.
 fn never_written(view: GraphView<'_>, order: &Order, reports: &mut Reports) {
     for pass in view.passes {
         for access in &pass.accesses {
@@ -446,7 +449,8 @@ fn never_written(view: GraphView<'_>, order: &Order, reports: &mut Reports) {
     }
 }
 
-/// Resources that grow by what no pass counts, or by items of a size that cannot be copied.
+/// Reports growing resources whose counter no pass writes, or whose counter is an item of a size
+/// that cannot be copied.
 fn check_counters(view: GraphView<'_>, order: &Order, reports: &mut Reports) {
     let ids: Vec<ResourceId> = (0..view.resources.len()).map(ResourceId).collect();
     for (id, Growth { counter, .. }) in growing(ids.iter(), view.resources) {

@@ -1,4 +1,4 @@
-//! Memory of a plan's own textures and buffers, and the limit on it.
+//! Memory that a plan's own textures and buffers take, and the limit on it.
 
 use super::text;
 use crate::{
@@ -8,30 +8,30 @@ use crate::{
     source::span::Span,
 };
 
-/// Rows of a memory table: the small ones rarely show what does not fit.
+/// Greatest number of allocations that a memory table lists; small ones rarely matter.
 const ROWS: usize = 12;
 
-/// One of the graph's own textures or buffers, and the memory it takes.
+/// Memory that one of the graph's own textures or buffers takes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MemoryEntry {
-    /// The material, or a pass's own buffer.
+    /// Full name of the material, or of a pass's own buffer.
     pub name: String,
     /// Format of a texture; `None` for a buffer.
     pub format: Option<wgt::TextureFormat>,
-    /// Width and height in texels of a texture's mip 0; `[bytes, 1]` of a buffer.
+    /// Width and height in texels of a texture's mip 0; `[bytes, 1]` for a buffer.
     pub size: [u32; 2],
     /// Mip levels of a texture; 1 for a buffer.
     pub mips: u32,
     /// Array layers of a texture; 1 for a buffer.
     pub layers: u32,
-    /// Bytes of its texels or items; drivers may add to it.
+    /// Size in bytes of all texels or items; a driver may add to it. Twice the size for a resource
+    /// that is also read as it was in the frame before.
     pub bytes: u64,
-    /// Materials that live in the same memory at other times of the frame; the memory is as large
-    /// as the largest of them.
+    /// Names of the other materials that use the same memory at other times of the frame.
     pub shared_with: Vec<String>,
 }
 
-/// A plan's own textures and buffers.
+/// Resources of a plan, and the schedule with their allocations.
 #[derive(Clone, Copy)]
 pub(super) struct Memory<'a> {
     pub resources: &'a [Resource],
@@ -138,7 +138,7 @@ impl Memory<'_> {
         rows.iter().map(line).collect::<Vec<_>>().join("\n")
     }
 
-    /// Name, size and format of an allocation.
+    /// Returns the names of the resources, the size and the format of an allocation, as text.
     fn row(&self, allocation: &Allocation) -> [String; 3] {
         let names: Vec<&str> = allocation
             .aliases
@@ -176,7 +176,7 @@ impl Memory<'_> {
         [text::cut(&names, 40), size + &versions, format]
     }
 
-    /// Reports a plan that takes more memory than there is.
+    /// Returns the error for a plan that takes more memory than `limit`.
     pub fn check(&self, limit: Option<u64>, place: Span) -> Option<OutputError> {
         let takes = self.bytes();
         let limit = limit.filter(|limit| takes > *limit)?;
@@ -210,7 +210,8 @@ impl Memory<'_> {
     }
 }
 
-/// Those of some resources that grow; last frame's version of one is no other.
+/// Returns the resources that grow, with their growth. Last frame's version of a growing resource
+/// is not listed.
 pub(super) fn growing<'a>(
     ids: impl Iterator<Item = &'a ResourceId>,
     resources: &'a [Resource],

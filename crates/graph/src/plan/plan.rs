@@ -1,5 +1,5 @@
-//! [`Plan`]: a graph on a viewport with values for its params, checked against an adapter's limits.
-//! Pure data.
+//! [`Plan`]: a graph for a viewport, with values for its params, checked against an adapter's
+//! limits. It holds no GPU objects.
 
 use super::{
     backend::not_proven,
@@ -32,62 +32,65 @@ use std::{
     sync::Arc,
 };
 
-/// A graph that is ready to be allocated: live passes in order, every resource with its size and
-/// uses.
+/// A graph that is ready to be allocated and run: the live passes in order, and every resource with
+/// its size and usages.
 #[derive(Debug)]
 pub struct Plan(pub(super) Planned);
 
 impl Plan {
-    /// The plan, or everything that is wrong.
+    /// Plans a graph; the error lists all mistakes.
     pub(crate) fn new(graph: &Arc<Loaded>, request: &PlanRequest<'_>) -> Result<Self, Diagnostics> {
         let outcome = plan_all(graph, request);
         let plan = outcome.plan.map(Self);
         plan.ok_or_else(|| graph.diagnostics(outcome.found))
     }
 
-    /// Every resource that a pass may name, by number. Only those with a lifetime are made.
+    /// Returns every resource that a pass may name; [`ResourceId::index`] is the index in this
+    /// list. Only resources that a live pass uses are created.
     pub fn resources(&self) -> &[Resource] {
         &self.0.resources
     }
 
-    /// The resource of a number.
+    /// Returns the resource with this id.
     pub fn resource(&self, id: ResourceId) -> &Resource {
         &self.0.resources[id.0]
     }
 
-    /// The resources that live passes use; only these are made.
+    /// Returns the resources that live passes use. Only these are created.
     pub fn used(&self) -> impl Iterator<Item = &Resource> {
         let used = self.0.schedule.lifetimes.keys();
         used.map(|id| self.resource(*id))
     }
 
-    /// Every pass in the order of the file, those that do not run included.
+    /// Returns every pass in the order of the document, with those that do not run.
+    /// [`PassId::index`] is the index in this list.
     pub fn all_passes(&self) -> &[LinkedPass] {
         &self.0.passes
     }
 
-    /// The pass of a number.
+    /// Returns the pass with this id.
     pub fn pass(&self, id: PassId) -> &LinkedPass {
         &self.0.passes[id.0]
     }
 
-    /// The live passes in the order in which they run.
+    /// Returns the live passes with their steps, in the order in which they run.
     pub fn live(&self) -> impl Iterator<Item = &LinkedPass> + Clone {
         self.0.schedule.passes.iter().map(|id| self.pass(*id))
     }
 
-    /// Which passes run, in which order, and what follows from that.
+    /// Returns the order of the live passes, with the lifetimes, run conditions and allocations
+    /// that follow from it.
     pub fn schedule(&self) -> &Schedule {
         &self.0.schedule
     }
 
-    /// Outputs and captures that can be read back, with what they are.
+    /// Returns the name of every output and capture that can be read back, with the resource or
+    /// part that holds it.
     pub fn readable(&self) -> &[(String, Target)] {
         &self.0.readable
     }
 
-    /// Finds the passes that passes depend on, and the resources that cause it, as if only those
-    /// ran of which `runs` is true.
+    /// Finds the dependences between the passes for which `runs` is true, as if no others existed.
     pub fn dependences(&self, runs: impl Fn(PassId) -> bool) -> Dependences {
         let view = GraphView {
             passes: &self.0.passes,
@@ -96,72 +99,75 @@ impl Plan {
         dependences(view, runs)
     }
 
-    /// The `values` of the documents that were computed for this plan, by full name, each with its
-    /// result as a document would write it. A value that no expression uses is not among them.
+    /// Returns the `values` of the documents as pairs of full name and result. The result is
+    /// written as in a document. A value that no expression uses is not listed.
     pub fn named_values(&self) -> &[(String, String)] {
         &self.0.named_values
     }
 
-    /// Returns the imports that the host announced, by name.
+    /// Returns the imports of the request, by name of the input.
     pub fn imports(&self) -> &BTreeMap<String, Import> {
         &self.0.request.imports
     }
 
-    /// Items of growing buffers, and layers of growing textures, that were known to be needed when
-    /// the plan was made, by full name.
+    /// Returns the [`grown`](crate::Request::grown) of the request: the number of items of growing
+    /// buffers, and of layers of growing textures, by full name of the material.
     pub fn grown(&self) -> &BTreeMap<String, u64> {
         &self.0.request.grown
     }
 
-    /// The byte that memory is filled with between uses, if it is.
+    /// Returns the byte that memory is filled with before a resource is first used in a frame;
+    /// `None` if memory is not filled.
     pub fn poison(&self) -> Option<u8> {
         self.0.request.poison
     }
 
-    /// True if the host imports or provides something under this name.
+    /// Returns true if the request imports a resource under this name, or the provider describes
+    /// one.
     pub fn offers(&self, name: &str) -> bool {
         let request = &self.0.request;
         request.imports.contains_key(name) || request.provider.0.contains_key(name)
     }
 
-    /// The graph's own textures and buffers with what they take, in the order of the document.
+    /// Returns an entry for each live texture and buffer of the graph's own, with its size in
+    /// memory, in the order of the document.
     pub fn memory(&self) -> Vec<MemoryEntry> {
         self.own_memory().entries()
     }
 
-    /// The live buffers and textures that may grow, each with where its frame counts the items or
-    /// layers that it would have needed, and the most that it may have: by the document, and by the
-    /// device's limits.
+    /// Returns the live buffers and textures that may grow, each with its counter and its greatest
+    /// number of items or layers. That number is limited by the document and by the device.
     pub fn growing(&self) -> Vec<(ResourceId, Growth)> {
         self.own_memory().growing(&self.0.request.limits)
     }
 
-    /// Bytes of the graph's own textures and buffers. One that is also read as it was in the frame
-    /// before takes its size twice.
+    /// Returns the size in bytes of the graph's own textures and buffers together; memory that
+    /// resources share counts once. A resource that is also read as it was in the frame before
+    /// counts twice.
     pub fn memory_bytes(&self) -> u64 {
         self.own_memory().bytes()
     }
 
-    /// Bytes that would be needed besides if no two resources shared memory.
+    /// Returns the number of bytes that sharing memory between resources saves.
     pub fn saved_bytes(&self) -> u64 {
         self.own_memory().saved_bytes()
     }
 
-    /// Returns a table of the largest uses of memory: a line per allocation, the largest first,
-    /// then the rest in one, then the sum. Materials that take turns in one allocation stand
-    /// together.
+    /// Returns the graph's largest allocations as a table of text, with names, size, format and
+    /// bytes. It has one line for each of the largest allocations, then one for all smaller ones
+    /// together, then the sum. Materials that share an allocation stand in one line.
     pub fn memory_table(&self) -> String {
         self.own_memory().table()
     }
 
-    /// How many textures or buffers a resource takes: two if it is also read as it was in the frame
-    /// before.
+    /// Returns the number of textures or buffers that a resource is made of: two if it is also read
+    /// as it was in the frame before, otherwise one.
     pub fn versions(&self, id: ResourceId) -> usize {
         self.own_memory().versions(id)
     }
 
-    /// Finds out if the plan may run on a backend that gives less than WebGPU, whichever it was
-    /// made for.
+    /// Checks that the plan may run on a backend that lacks part of WebGPU, whichever backend it
+    /// was made for.
     ///
     /// # Errors
     /// If the graph's document does not list the backend in `proven_on`.
@@ -174,9 +180,9 @@ impl Plan {
         Err(self.0.graph.diagnostics(reports.into_list()))
     }
 
-    /// Params that the request sets and that change nothing in this plan: with their defaults a
-    /// frame would run the same passes, and shaders read the same values. For example the `fit` of
-    /// a shadow map changes nothing under a light whose map has one fit alone.
+    /// Returns the names of the params that the request sets without effect: with its default, each
+    /// would give the same passes, and shaders would read the same values. For example, the `fit`
+    /// of a shadow map has no effect under a light whose map has only one fit.
     pub fn idle_params(&self) -> Vec<&str> {
         let by_default = |name: &&String| {
             let others = self.with(|request| {
@@ -191,8 +197,8 @@ impl Plan {
         asked.filter(by_default).map(String::as_str).collect()
     }
 
-    /// True if a frame would do the same with another value of a param. False for a value that it
-    /// cannot have.
+    /// Returns true if a frame would do the same work with another value of the param `name`.
+    /// Returns false if the param cannot have this value.
     pub fn is_same_with(&self, name: &str, value: ParamValue) -> bool {
         self.with_param(name, value)
             .is_ok_and(|other| self.does_the_same_as(&other))
@@ -208,35 +214,40 @@ impl Plan {
                 .eq(other.used().map(|it| &it.kind))
     }
 
-    /// The provided resources that are bound by the passes that write an output or capture: depths
-    /// that are written with a `camera` bound are that camera's.
+    /// Returns the names of the provided resources that are bound by the passes that write an
+    /// output or capture. For example, if these passes bind a `camera`, depths in the output are
+    /// that camera's. Empty for an unknown name.
     pub fn provided_behind(&self, output: &str) -> BTreeSet<&str> {
         let target = self.readable_target(output);
         let behind = |target| items::provided_behind(self.live(), target, &self.0.resources);
         target.map_or_else(BTreeSet::new, behind)
     }
 
-    /// The layout of an item of an output or capture that is a buffer; `None` of a texture, or if
-    /// no live pass binds it as an array of plain items or as a single one.
+    /// Returns the layout of one item of the buffer behind an output or capture. Returns `None` for
+    /// a texture or an unknown name, or if no live pass binds the buffer as an array of plain items
+    /// or as a single item.
     pub fn item(&self, output: &str) -> Option<Item> {
         items::item_of(self.live(), self.readable_target(output)?)
     }
 
-    /// Which mips and layers of a texture, or items of a buffer, an output or capture holds. A
-    /// capture after a pass holds what has been written by then, which may be less than was named.
+    /// Returns the mips and layers of a texture, or the items of a buffer, that an output or
+    /// capture holds; `None` for an unknown name. A capture after a pass holds only the part that
+    /// has been written by then.
     pub fn part(&self, output: &str) -> Option<PartSummary> {
         let target = self.readable_target(output)?;
         Some(items::part(self.live(), target, &self.0.resources))
     }
 
-    /// The resource or part that an output or capture is.
+    /// Returns the resource, or part of one, that holds an output or capture; `None` for an unknown
+    /// name.
     pub fn readable_target(&self, output: &str) -> Option<&Target> {
         let (_, target) = self.0.readable.iter().find(|(name, _)| name == output)?;
         Some(target)
     }
 
-    /// True if a param may have this value without planning anew: it has the type and lies in the
-    /// range, and nothing but members of `var<uniform> params` follows from it.
+    /// Returns true if the param `name` can be set to this value without planning again: the value
+    /// has the right type and range, and it affects nothing but the content of `params` uniforms.
+    /// Always false for a `Choice` param.
     pub fn is_in_uniforms(&self, name: &str, value: &ParamValue) -> bool {
         self.0.graph.param(name).is_ok_and(|param| {
             // A document that is included may count its words in another order.
@@ -245,9 +256,10 @@ impl Plan {
         })
     }
 
-    /// Gives a param that [`is_in_uniforms`](Self::is_in_uniforms) another value. Returns the
-    /// positions in the schedule of the passes that read other bytes now. Other params are left as
-    /// they are.
+    /// Sets a param to another value without planning again, if
+    /// [`is_in_uniforms`](Self::is_in_uniforms) allows it; otherwise changes nothing and returns an
+    /// empty list. Returns the positions in [`Schedule::passes`] of the passes whose uniforms have
+    /// other bytes now.
     pub fn set_in_uniforms(&mut self, name: &str, value: ParamValue) -> Vec<usize> {
         let Ok(param) = self.0.graph.param(name) else {
             return Vec::new();
@@ -265,7 +277,7 @@ impl Plan {
             .collect()
     }
 
-    /// The live passes in the order in which they run.
+    /// Returns name and kind of each live pass, in the order in which they run.
     pub fn passes(&self) -> Vec<PassSummary> {
         let summary = |pass: &LinkedPass| PassSummary {
             name: pass.name.value.clone(),
@@ -274,12 +286,13 @@ impl Plan {
         self.live().map(summary).collect()
     }
 
-    /// The passes that do not run.
+    /// Returns the passes that do not run, each with the reason.
     pub fn culled(&self) -> &[CulledPass] {
         &self.0.culled
     }
 
-    /// The provided resources that live passes bind; only these are built.
+    /// Returns the names of the provided resources that live passes bind. Only these need to be
+    /// built.
     pub fn provided(&self) -> Vec<&str> {
         let is_provided = |resource: &&Resource| {
             matches!(
@@ -291,8 +304,9 @@ impl Plan {
         provided.map(|resource| resource.name.as_str()).collect()
     }
 
-    /// True if a frame may depend on those before it though the host changes nothing: live passes
-    /// read what the graph left in the frame before, or the frame's number.
+    /// Returns true if a frame may depend on frames before it although the host changes nothing: a
+    /// live pass reads content that the graph left in the frame before, or binds the uniform
+    /// `frame`.
     pub fn remembers(&self) -> bool {
         self.used().any(|resource| match resource.kind {
             _ if resource.keep => true,
@@ -302,7 +316,8 @@ impl Plan {
         })
     }
 
-    /// Returns the outputs that can be read back after a frame.
+    /// Returns name, format and size of the outputs and captures that can be read back after a
+    /// frame.
     pub fn outputs(&self) -> Vec<OutputSummary> {
         let summary = |(name, target): &(String, Target)| {
             OutputSummary::new(name, target, &self.resource(target.id).kind)
@@ -310,39 +325,40 @@ impl Plan {
         self.0.readable.iter().map(summary).collect()
     }
 
-    /// Width and height of the viewport in pixels.
+    /// Returns the width and height of the viewport in pixels.
     pub fn viewport(&self) -> [u32; 2] {
         self.0.request.viewport
     }
 
-    /// The value of a param in this plan.
+    /// Returns the value of a param in this plan; `None` for an unknown name.
     pub fn param(&self, name: &str) -> Option<&ParamValue> {
         self.0.values.get(name)
     }
 
-    /// This plan for another viewport.
+    /// Plans again for another viewport: width and height in pixels.
     ///
     /// # Errors
-    /// Everything that is wrong then.
+    /// All mistakes of the graph with this viewport.
     pub fn with_viewport(&self, viewport: [u32; 2]) -> Result<Self, Diagnostics> {
         self.with(|request| request.viewport = viewport)
     }
 
-    /// This plan with another value of a param.
+    /// Plans again with another value of one param.
     ///
     /// # Errors
-    /// Everything that is wrong then.
+    /// All mistakes of the graph with this value.
     pub fn with_param(&self, name: &str, value: ParamValue) -> Result<Self, Diagnostics> {
         self.with(|request| {
             request.params.insert(name.to_owned(), value);
         })
     }
 
-    /// Plans anew with several parts of the request changed at once, such as the viewport and the
-    /// imports that follow it. The provider's descriptions stay, unless another provider is put in.
+    /// Plans again with a changed request. `change` may change several parts at once, such as the
+    /// viewport and the imports that follow it. The descriptions of the provider stay, unless
+    /// `change` sets another provider.
     ///
     /// # Errors
-    /// Everything that is wrong then.
+    /// All mistakes of the graph with the changed request.
     pub fn with<'a>(
         &'a self,
         change: impl FnOnce(&mut PlanRequest<'a>),
@@ -352,7 +368,7 @@ impl Plan {
         Self::new(&self.0.graph, &request)
     }
 
-    /// Returns the warnings.
+    /// Returns the warnings that planning gave.
     pub fn warnings(&self) -> &[Diagnostic] {
         &self.0.warnings
     }

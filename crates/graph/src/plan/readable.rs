@@ -1,4 +1,4 @@
-//! Outputs and captures that can be read back, and why some cannot.
+//! Finds the outputs and captures that can be read back, and reports the others with a reason.
 
 use crate::{
     compose::loaded::Loaded,
@@ -13,7 +13,8 @@ use crate::{
     resource::{ResourceKind, Target},
 };
 
-/// The targets of all outputs and captures that are wanted.
+/// Returns names and targets of all outputs and captures that the request wants. `written` tells if
+/// a pass writes a target.
 pub(super) fn readable(
     graph: &Loaded,
     request: &PlanRequest<'_>,
@@ -101,7 +102,7 @@ pub(super) fn readable(
     readable
 }
 
-/// Captures must be after passes that there are.
+/// Reports captures after passes that do not exist.
 pub(super) fn check_captures(
     request: &PlanRequest<'_>,
     lowered: &[LoweredPass<'_>],
@@ -122,7 +123,7 @@ pub(super) fn check_captures(
     }
 }
 
-/// Why the content of a resource cannot come back to the host.
+/// Describes a resource whose content cannot be read back; `None` for one whose content can.
 fn unreadable(symbols: &SymbolTable<'_>, target: &Target) -> Option<String> {
     match &symbols.get(target.id).kind {
         ResourceKind::Texture(texture) if texture.samples > 1 => {

@@ -1,4 +1,4 @@
-//! Summaries of a plan.
+//! Summaries of a plan's passes and outputs, for lists that people read.
 
 use crate::{
     document::typed::Document,
@@ -7,25 +7,26 @@ use crate::{
     resource::{Resource, ResourceKind, Target},
 };
 
-/// A live pass.
+/// Name and kind of a pass that runs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PassSummary {
-    /// Name.
+    /// Full name.
     pub name: String,
     /// Kind, as the document writes it.
     pub kind: String,
 }
 
-/// Something that can be read back.
+/// Name, format and size of an output or capture that can be read back.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OutputSummary {
     /// Name of the output or capture.
     pub name: String,
     /// Format of a texture; `None` for a buffer.
     pub format: Option<wgt::TextureFormat>,
-    /// Texels of a texture; `[bytes, 1]` of a buffer.
+    /// Width and height in texels of a texture's first mip that is read back; `[bytes, 1]` for a
+    /// buffer.
     pub size: [u32; 2],
-    /// Layers of a texture; 1 of a buffer.
+    /// Number of layers of a texture; 1 for a buffer.
     pub layers: u32,
 }
 
@@ -57,8 +58,8 @@ impl OutputSummary {
     }
 }
 
-/// The light that is bound, if it is of a kind that the document does not take: of those that there
-/// are it takes the first, unless it says otherwise.
+/// Returns an error if a bound light is of a kind that the document does not take. A document takes
+/// the first kind, unless its section `lights` lists others.
 pub(super) fn refused_light<'p>(
     document: &Document,
     bound: impl Iterator<Item = &'p Resource>,
@@ -97,7 +98,7 @@ pub(super) fn refused_light<'p>(
     })
 }
 
-/// `light`, and those of `lights`.
+/// True for the name `light`, and for names of items of `lights`.
 fn is_light(name: &str) -> bool {
     name == "light" || name.starts_with("lights.")
 }

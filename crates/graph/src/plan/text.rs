@@ -1,4 +1,4 @@
-//! Numbers and names as people read them.
+//! Formatting of numbers and names for readers.
 //!
 //! ```
 //! use skiagraph_graph::text::{bytes, cut};
@@ -7,8 +7,8 @@
 //! assert_eq!(cut("create_shadow_map.outer", 13), "create_s…uter");
 //! ```
 
-/// The text, cut to at most `characters`, with an ellipsis where something is missing. The end of a
-/// name often tells more than its middle, so the middle goes.
+/// Shortens a text to at most `characters` characters: an ellipsis replaces the middle, because the
+/// end of a name often tells more than its middle. A short text is returned as it is.
 pub fn cut(text: &str, characters: usize) -> String {
     let all: Vec<char> = text.chars().collect();
     if all.len() <= characters {
@@ -23,7 +23,7 @@ pub fn cut(text: &str, characters: usize) -> String {
         .collect()
 }
 
-/// Bytes in the unit that fits.
+/// Formats a number of bytes in the unit that fits: `B`, `KiB`, `MiB` or `GiB`.
 pub fn bytes(bytes: u64) -> String {
     match bytes {
         0..1024 => format!("{bytes} B"),

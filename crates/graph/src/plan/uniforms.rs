@@ -1,8 +1,9 @@
-//! Params whose values stand in uniforms alone: another value is other bytes, and the same plan.
+//! Changes of params that affect only uniforms: another value needs other bytes, but no other plan.
 
 use crate::link::pass::{Block, LinkedPass, block_mut};
 
-/// Writes the words into the uniforms of all passes; true for those that read other bytes now.
+/// Writes the value of a param, as words, into the `params` uniforms of all passes. Returns an
+/// entry for each pass: true if its bytes changed.
 pub(super) fn write(passes: &mut [LinkedPass], name: &str, words: &[u32]) -> Vec<bool> {
     let mut changed = vec![false; passes.len()];
     for (pass, changed) in passes.iter_mut().zip(&mut changed) {
@@ -13,7 +14,8 @@ pub(super) fn write(passes: &mut [LinkedPass], name: &str, words: &[u32]) -> Vec
     changed
 }
 
-/// Writes the words wherever the param stands. True if any byte has changed.
+/// Writes the value of a param, as words, to every place that it has in the uniform. Returns true
+/// if any byte changed.
 fn set(block: &mut Block, name: &str, words: &[u32]) -> bool {
     let offsets = block.params.iter().filter(|(param, _)| param == name);
     let offsets: Vec<usize> = offsets.map(|(_, offset)| *offset).collect();

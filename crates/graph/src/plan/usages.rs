@@ -11,7 +11,7 @@ use crate::{
     source::span::Located,
 };
 
-/// Checks that the host's imports are made for the uses of passes.
+/// Checks that the host's imports were created with the usages that passes need.
 pub(super) fn check(
     view: GraphView<'_>,
     sequence: &[PassId],

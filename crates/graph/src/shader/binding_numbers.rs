@@ -1,10 +1,11 @@
-//! Numbers for the resource globals that have none of their own.
+//! Gives binding numbers to the resource globals that are declared without `@group` and `@binding`.
 
 use naga::AddressSpace;
 use std::collections::BTreeSet;
 
-/// Gives every resource global without numbers the next free ones of its group. `is_imported` is
-/// asked about places in the text.
+/// Gives every resource global without binding numbers the next free ones of its group: group 0 for
+/// imported modules, group 1 for the shader's own file. `is_imported` tells, for a byte offset in
+/// the text, if it belongs to an imported module.
 pub(super) fn assign_bindings(module: &mut naga::Module, is_imported: &dyn Fn(usize) -> bool) {
     let mut next = [0; 2];
     let mut taken: BTreeSet<(u32, u32)> = module

@@ -1,6 +1,6 @@
-//! Which part of a text a library panics on: the first declaration, those that it names before it,
-//! and in a function the first statement, up to which it panics. Both by bisection, so that a long
-//! text is read a few dozen times.
+//! Finds the part of a WGSL text on which a library panics: the first declaration that brings the
+//! panic about and, in a function, the first statement. Both are found by bisection, so a long text
+//! is parsed only a few dozen times.
 
 use super::text::{next, tokens};
 use std::{
@@ -19,7 +19,8 @@ struct Declaration<'t> {
     body: Option<(Range<usize>, String)>,
 }
 
-/// The part of a WGSL text that `panics` is true of, as far as it can be told apart.
+/// Returns the byte range of the first declaration, or of the first statement in it, for which
+/// `panics` is true of the text so far. `None` if `panics` is true of no part.
 pub(super) fn blamed_range(text: &str, panics: &dyn Fn(&str) -> bool) -> Option<Range<usize>> {
     let declarations = declarations(text);
     let order = in_order_of_need(&declarations);

@@ -1,9 +1,10 @@
-//! Class of a resource global: a uniform, a storage buffer of some layout, a texture, a sampler.
+//! Class of a resource global: a uniform, a storage buffer, a texture, a sampler, each with its
+//! layout.
 
 use crate::scalar_class::ScalarClass;
 use naga::{AddressSpace, Handle, ImageClass, TypeInner, proc::Layouter};
 
-/// Class of a global.
+/// Class of a resource global, with the layout that a resource must have to be bound to it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Class {
     Uniform {
@@ -11,8 +12,8 @@ pub(crate) enum Class {
         members: Vec<Member>,
         layout: String,
     },
-    /// `fixed`: bytes before the runtime-sized array (or of the whole type); `stride`: bytes per
-    /// item of that array.
+    /// A storage buffer. `fixed`: bytes before the runtime-sized array, or of the whole type if it
+    /// has none. `stride`: bytes per item of that array; `None` if there is none.
     Storage {
         fixed: u64,
         stride: Option<u64>,
@@ -60,7 +61,8 @@ pub(crate) struct Member {
     pub vector: Option<(ScalarClass, u32)>,
 }
 
-/// Scalar class and number of components of a scalar or vector.
+/// Returns scalar class and number of components of a scalar or vector type; `None` for other
+/// types.
 pub(super) fn vector(module: &naga::Module, ty: Handle<naga::Type>) -> Option<(ScalarClass, u32)> {
     match module.types[ty].inner {
         TypeInner::Scalar(scalar) | TypeInner::Atomic(scalar) => {

@@ -1,6 +1,6 @@
-//! naga at the border: parsing, validation and the writing of SPIR-V, each of which panics on some
-//! valid texts. A panic is an error of ours that names the declaration, and in a function the
-//! statement, that brings it about.
+//! The border to naga: parses, validates and writes SPIR-V, each of which panics on some valid
+//! texts. A panic becomes an error that names the declaration and, in a function, the statement
+//! that brings it about.
 
 use super::{
     binding_numbers::assign_bindings,
@@ -21,10 +21,10 @@ use naga::{
 use skiagraph_located_ron::panics::{Panicked, caught};
 use std::borrow::Cow;
 
-/// A module with what validation found of it.
+/// A valid module, with the facts that validation found and the layout of its types.
 pub(super) type Valid = (Module, ModuleInfo, Layouter);
 
-/// Parses and validates.
+/// Parses and validates a shader with its imports in place.
 pub(super) fn compiled(source: &Expanded) -> Result<Valid, ShaderError> {
     let read = caught(|| parsed_and_valid(source));
     read.unwrap_or_else(|panicked| Err(fault(source, panicked, "is read", None)))
@@ -73,14 +73,15 @@ fn validator() -> Validator {
     Validator::new(ValidationFlags::all(), Capabilities::all())
 }
 
-/// An entry point with the values of its overrides put in, as a device compiles it.
+/// A module with the values of an entry point's overrides put in, as a device compiles it.
 pub(super) struct Specialised<'a> {
     pub module: Cow<'a, Module>,
     pub info: Cow<'a, ModuleInfo>,
 }
 
-/// Puts the values of overrides in and writes the entry point as SPIR-V, which Vulkan devices are
-/// handed. So naga's own gaps are found before there is a device. The words are thrown away.
+/// Puts the values of the overrides in, and writes the entry point as SPIR-V, as wgpu does for
+/// Vulkan devices. Errors and panics of naga are so found before there is a device; the SPIR-V is
+/// thrown away.
 pub(super) fn specialised<'a>(
     (module, info): (&'a Module, &'a ModuleInfo),
     (stage, name): (ShaderStage, &str),

@@ -1,5 +1,5 @@
-//! Words of `Choice` params as constants of the shaders of their document: `cull` brings
-//! `const CULL_NONE: u32 = 0u;` and so on.
+//! Constants for the words of `Choice` params, in the shaders of their document: the param `cull`
+//! with the word `none` gives `const CULL_NONE: u32 = 0u;`.
 
 use super::{expand::Expanded, reflect::Shader, text::identifiers};
 use crate::{
@@ -9,7 +9,7 @@ use crate::{
 };
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-/// The constants of a document's words, by name.
+/// Constants for the words of a document's `Choice` params, by name.
 #[derive(Debug, Default)]
 pub(crate) struct ChoiceConstants(BTreeMap<String, ChoiceConstant>);
 
@@ -21,7 +21,8 @@ struct ChoiceConstant {
 }
 
 impl ChoiceConstants {
-    /// Those of these params, and the words that give one constant.
+    /// Creates the constants of `params`. Also returns an error for each two words that give one
+    /// constant.
     pub fn new(params: &[Param]) -> (Self, Vec<ShaderError>) {
         let (mut constants, mut clashes) = (BTreeMap::<String, ChoiceConstant>::new(), Vec::new());
         for param in params {
@@ -46,7 +47,8 @@ impl ChoiceConstants {
         (Self(constants), clashes)
     }
 
-    /// Appends those that the text uses and does not declare; returns those that it declares.
+    /// Appends the constants that the shader's text uses without declaring them. Returns the names
+    /// of the constants that the text declares itself.
     pub fn append(&self, source: &mut Expanded) -> Vec<&str> {
         let mut used: HashMap<&str, bool> = HashMap::new();
         for (word, before, is_outside) in identifiers(&source.text) {
@@ -64,7 +66,8 @@ impl ChoiceConstants {
         declared.into_iter().map(|(name, _)| name).collect()
     }
 
-    /// The first of the declared constants that is another number than its word.
+    /// Returns an error for the first constant in `declared` whose number is not the index of its
+    /// word; `None` if all agree.
     pub fn disagreement(&self, shader: &Shader, declared: &[&str]) -> Option<ShaderError> {
         declared.iter().find_map(|name| {
             let constant = self.0.get(*name)?;

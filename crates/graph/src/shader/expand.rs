@@ -1,7 +1,8 @@
-//! `#import "path"`: a textual, once-only line, with a map from the expanded text back to the
-//! files. `#import "path" instead "other"` also leaves out `other` where it is imported later.
+//! Replaces each `#import "path"` line by the text of the module, once per module, and maps the
+//! expanded text back to its files. `#import "path" instead "other"` also leaves out `other` where
+//! it is imported later.
 //!
-//! Names stay as written, so that errors, captures and bindings speak the author's language.
+//! Names stay as written, so that errors, captures and bindings use the author's names.
 
 use super::text::{BREAKS, Comments};
 use crate::{
@@ -19,39 +20,40 @@ use std::{
     sync::Arc,
 };
 
-/// Modules that stand in for others: paths, by the path that is replaced.
+/// Modules that stand in for others: path of the replaced module, to path of the one imported
+/// instead.
 pub(crate) type Replaced = BTreeMap<String, String>;
 
 /// Deepest chain of imports; far above any sensible house, far below the stack.
 const DEEPEST_IMPORT: usize = 64;
 
-/// A shader with its imports in place.
+/// Text of a shader with its imports in place.
 #[derive(Clone, Debug)]
 pub(crate) struct Expanded {
     pub text: String,
-    /// The shader's own file.
+    /// File of the shader itself.
     pub file: SourceFile,
     /// Consecutive pieces of `text`: where each begins, and the file and offset it came from.
     pieces: Vec<(usize, SourceFile, usize)>,
-    /// The imports of all files.
+    /// All `#import` lines of the shader and its modules.
     pub imports: Vec<ImportLine>,
 }
 
-/// An `#import` of a shader or of a module of it.
+/// An `#import` line of a shader, or of a module that it imports.
 #[derive(Clone, Debug)]
 pub(crate) struct ImportLine {
-    /// The path as it is written, at the place of the import.
+    /// Path as it is written in the line.
     pub asked: Located<String>,
-    /// The path of the file that was asked for.
+    /// Path of the module that the line names.
     pub path: Arc<str>,
-    /// The file that stands there.
+    /// File that is imported; another one if a module stands in for it.
     pub file: SourceFile,
-    /// It leaves out another one.
+    /// True for a line with `instead`, which leaves out another module.
     pub replaces: bool,
 }
 
 impl Expanded {
-    /// The place in the author's file of a place in the expanded text.
+    /// Maps a byte range of the expanded text to its place in the author's file.
     pub fn locate(&self, range: Range<usize>) -> Span {
         let index = self
             .pieces
@@ -66,25 +68,25 @@ impl Expanded {
         }
     }
 
-    /// The place of what naga has read; the begin where it gives none.
+    /// Maps a span of naga's to its place in the author's file; the begin if naga gives none.
     pub fn place(&self, span: naga::Span) -> Span {
         self.locate(span.to_range().unwrap_or(0..0))
     }
 
-    /// Appends a generated piece; mistakes in it are told at `origin`.
+    /// Appends generated text; mistakes in it are reported at `origin`.
     pub fn push(&mut self, text: &str, origin: &Span) {
         let (file, at) = (origin.file.clone(), origin.range.start);
         self.pieces.push((self.text.len(), file, at));
         self.text.push_str(text);
     }
 
-    /// True if a place in the expanded text belongs to an imported module.
+    /// True if the byte offset `at` of the expanded text belongs to an imported module.
     pub fn is_imported(&self, at: usize) -> bool {
         self.locate(at..at).file != self.file
     }
 }
 
-/// Reads shaders for a document and those that it includes, each file once.
+/// Reads shaders and modules for a document and its includes, each file once.
 pub(crate) struct ShaderFiles<'a> {
     sources: &'a dyn Sources,
     read: HashMap<String, Option<SourceFile>>,
@@ -113,8 +115,9 @@ impl<'a> ShaderFiles<'a> {
         Ok(None)
     }
 
-    /// The shader that a document names, with its imports in place. It is looked for beside the
-    /// file in which the name is written; of modules, those in `replaced` stand in for others.
+    /// Returns the shader that a document names, with its imports in place. The file is looked for
+    /// beside the document in which the name is written. `replaced` holds modules to import in the
+    /// place of others.
     pub fn expand(
         &mut self,
         name: &Located<String>,
@@ -137,7 +140,7 @@ impl<'a> ShaderFiles<'a> {
         Ok(expanded)
     }
 
-    /// The module that a document names, as an `#import` would.
+    /// Returns the file of a module that a document names in `imports`.
     pub fn module(&mut self, name: &Located<String>) -> Result<SourceFile, ImportError> {
         let candidates = module_candidates(folder_of(&name.span.file.name), name);
         self.imported(name, candidates)

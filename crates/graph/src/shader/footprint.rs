@@ -1,5 +1,5 @@
-//! Memory and values that an entry point takes of a device: the memory that its workgroups share,
-//! and what each of its threads keeps for itself. Sizes are sums in 64 bits; nothing is allocated.
+//! Memory that an entry point takes of a device: shared memory of a workgroup, and the variables
+//! and values of each thread. Sizes are sums in 64 bits; nothing is allocated.
 
 use super::{compiled::Specialised, expand::Expanded};
 use crate::source::span::{Located, Span};
@@ -9,7 +9,7 @@ use naga::{
 };
 use std::collections::BTreeSet;
 
-/// Bytes of some variables, and the largest of them.
+/// Size of some variables in bytes, and the largest of them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Memory {
     pub bytes: u64,
@@ -24,23 +24,25 @@ impl Memory {
         }
     }
 
-    /// The largest variable with its bytes; `otherwise` where there is none.
+    /// Returns the largest variable: its bytes, and its name at its place. Without a variable: 0
+    /// bytes, an empty name, and the place `otherwise`.
     pub fn largest(&self, otherwise: &Span) -> (u64, Located<String>) {
         let none = || (0, Located::new(String::new(), otherwise.clone()));
         self.largest.clone().unwrap_or_else(none)
     }
 }
 
-/// Memory that an entry point takes, with the functions that it calls.
+/// Memory that an entry point takes, including the functions that it calls.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Footprint {
-    /// Bytes of a workgroup, each variable rounded up to sixteen, as WebGPU counts.
+    /// Memory of a workgroup; each variable is rounded up to 16 bytes, as WebGPU counts.
     pub workgroup: Memory,
-    /// `var<private>`, of a thread.
+    /// Memory of one thread's `var<private>` variables.
     pub private: Memory,
-    /// The variables of each function, of a thread.
+    /// Names of the functions that run, each with the memory of its local variables, per thread.
     pub functions: Vec<(String, Memory)>,
-    /// The largest array or struct that is a value and no variable.
+    /// Memory of the largest array or struct that is a value, not a variable; named after its
+    /// function.
     pub value: Memory,
 }
 
@@ -121,7 +123,7 @@ fn located(name: Option<&str>, span: naga::Span, source: &Expanded) -> Located<S
     Located::new(name.unwrap_or_default().to_owned(), source.place(span))
 }
 
-/// The functions that one calls, and those that these call, each once.
+/// Returns the functions that `first` calls, directly or not, each once.
 pub(super) fn called(module: &Module, first: &Function) -> BTreeSet<Handle<Function>> {
     let mut found = BTreeSet::new();
     let mut open: Vec<&Block> = vec![&first.body];

@@ -40,10 +40,10 @@ impl Level {
     }
 }
 
-/// Refuses what naga cannot read in bounded stack and time.
+/// Refuses a text that naga cannot read in bounded stack and time.
 ///
 /// # Errors
-/// The construct that is too much, with its place and the way out.
+/// The construct that is too large, with its place and a hint how to mend it.
 pub(super) fn check(source: &Expanded) -> Result<(), ShaderError> {
     let file = source.file.name.to_string();
     let text = source.text.as_str();

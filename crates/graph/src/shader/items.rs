@@ -1,20 +1,20 @@
-//! The items of a buffer, scalar by scalar, as a shader that binds it declares them.
+//! Item layouts of buffers, scalar by scalar, as the shaders that bind the buffers declare them.
 
 use naga::{Handle, ScalarKind, TypeInner};
 
-/// One scalar of a buffer's items.
+/// One scalar in the items of a buffer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Field {
-    /// As WGSL spells it, from the item on: `origin.x`, `indices[2]`; empty if the item is a single
-    /// scalar.
+    /// Path of the scalar in the item, as in WGSL: `origin.x`, `indices[2]`. Empty if the item is a
+    /// single scalar.
     pub name: String,
-    /// Bytes from the begin of the item.
+    /// Offset of the scalar from the begin of the item, in bytes.
     pub offset: usize,
     /// Type of the scalar.
     pub scalar: ItemScalar,
 }
 
-/// A scalar of 32 bits.
+/// Type of a 32-bit scalar in a buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ItemScalar {
     /// `f32`.
@@ -26,7 +26,7 @@ pub enum ItemScalar {
 }
 
 impl ItemScalar {
-    /// The bits of a number of this type; `None` if it cannot hold it.
+    /// Returns the bits of `number` as this type; `None` if the type cannot hold it.
     pub(crate) fn bits(self, number: f64) -> Option<u32> {
         let whole = number.fract() == 0.0;
         match self {
@@ -42,12 +42,12 @@ impl ItemScalar {
     }
 }
 
-/// The items of a buffer, as a shader that binds it declares them.
+/// Layout of one item of a buffer, as a shader that binds the buffer declares it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Item {
-    /// Bytes from one item to the next.
+    /// Distance from one item to the next, in bytes.
     pub stride: usize,
-    /// Its scalars; bytes between them are padding.
+    /// All scalars of the item, in order of their offsets; bytes between them are padding.
     pub fields: Vec<Field>,
 }
 

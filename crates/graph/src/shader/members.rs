@@ -1,10 +1,11 @@
-//! Which part of a uniform an entry point reads.
+//! Finds the members of a uniform that an entry point reads.
 
 use super::{footprint::called, reflect::Shader};
 use naga::{Expression, Function, GlobalVariable, Handle, TypeInner};
 
-/// True if an entry point reads a member of a uniform that begins in its first `bytes`, or all
-/// of it at once.
+/// True if an entry point, or a function that it calls, reads a member of the uniform `global` that
+/// begins in its first `bytes` bytes, or reads the whole uniform at once. `entry` is the entry
+/// point's index in the module.
 pub(crate) fn reads_below(
     shader: &Shader,
     entry: usize,

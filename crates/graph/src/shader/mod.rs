@@ -1,4 +1,4 @@
-//! Phase 2: WGSL is put together from its imports, parsed and validated, and asked what it binds.
+//! Phase 2: puts WGSL together from its imports, parses and validates it, and finds its bindings.
 
 mod binding_numbers;
 mod blame;

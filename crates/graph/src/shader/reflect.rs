@@ -1,4 +1,4 @@
-//! Bindings of a WGSL module: every resource global with its type, place, binding number and use
+//! Reflection of a WGSL module: every resource global with its type, place, binding number and use
 //! per entry point.
 
 use super::{
@@ -28,7 +28,8 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 
-/// A parsed, validated shader whose resource globals all have binding numbers.
+/// A parsed and validated WGSL shader with its imports in place. Each of its resource globals has a
+/// binding number. Two shaders are equal if their expanded texts are.
 #[derive(Debug)]
 pub struct Shader {
     pub(crate) source: Expanded,
@@ -56,7 +57,7 @@ impl PartialEq for Shader {
 
 impl Eq for Shader {}
 
-/// A resource global.
+/// A resource global, with its use by some entry points.
 #[derive(Clone, Debug)]
 pub(crate) struct Global {
     pub handle: Handle<naga::GlobalVariable>,
@@ -67,15 +68,16 @@ pub(crate) struct Global {
     pub class: Class,
     pub reads: bool,
     pub writes: bool,
-    /// An item, where its scalars are plain numbers.
+    /// Layout of the global's items; `None` if it has members other than 32-bit numbers, or too
+    /// many.
     pub item: Option<Item>,
-    /// The stages of the entry points that use it.
+    /// Stages of the entry points that use the global.
     pub stages: wgt::ShaderStages,
 }
 
 impl Shader {
-    /// Parses and validates. Globals without `@group`/`@binding` get free numbers: group 0 those of
-    /// imported modules, group 1 the shader's own.
+    /// Parses and validates a shader. Globals without `@group` and `@binding` get free numbers: in
+    /// group 0 if an imported module declares them, in group 1 if the shader's own file does.
     pub(crate) fn new(source: Expanded) -> Result<Self, ShaderError> {
         guard::check(&source)?;
         let (module, info, layouter) = compiled(&source)?;
@@ -88,8 +90,8 @@ impl Shader {
         })
     }
 
-    /// Footprint of an entry point with these values of its overrides. It is compiled as
-    /// a device would.
+    /// Returns the memory that an entry point takes, compiled as on a device. `constants` holds the
+    /// values of overrides by key.
     pub(crate) fn footprint(
         &self,
         entry: usize,
@@ -119,7 +121,7 @@ impl Shader {
         found
     }
 
-    /// Fragment entry points without colour outputs.
+    /// Iterates over the indices of the fragment entry points without colour outputs.
     pub(crate) fn colourless_fragments(&self) -> impl Iterator<Item = usize> {
         let entries = self.module.entry_points.iter().enumerate();
         entries
@@ -133,9 +135,9 @@ impl Shader {
         Varyings::outputs(&self.module, entry).locations.is_empty()
     }
 
-    /// The entry point of `stage`: the one called `name`, or the only one of the stage, of those
-    /// without colour outputs in a fragment stage that draws `depth_only`. `wanted` is where it is
-    /// asked for.
+    /// Returns the index of the entry point of `stage` that is called `name`, or, without a name,
+    /// of the only one of the stage. With `depth_only`, only fragment entry points without colour
+    /// outputs count then. `wanted` is the place for errors.
     pub(crate) fn entry(
         &self,
         stage: ShaderStage,
@@ -180,22 +182,25 @@ impl Shader {
         }
     }
 
-    /// The module, with a binding number for every resource global.
+    /// Returns the naga module, in which every resource global has a binding number.
     pub fn module(&self) -> &naga::Module {
         &self.module
     }
 
-    /// The shader's own file.
+    /// Returns the path of the shader's own file; imported modules have files of their own.
     pub fn file(&self) -> &str {
         &self.source.file.name
     }
 
-    /// The name of an entry point.
+    /// Returns the name of the entry point with the index `entry` in `module().entry_points`.
+    ///
+    /// # Panics
+    /// If there is no such entry point.
     pub fn entry_name(&self, entry: usize) -> &str {
         &self.module.entry_points[entry].name
     }
 
-    /// `None` if it depends on an override.
+    /// Returns the entry point's workgroup size; `None` if it depends on an override.
     pub(crate) fn workgroup_size(&self, entry: usize) -> Option<[u32; 3]> {
         let entry = &self.module.entry_points[entry];
         entry
@@ -204,13 +209,13 @@ impl Shader {
             .then_some(entry.workgroup_size)
     }
 
-    /// The place of an entry point's name; naga keeps none.
+    /// Returns the place of an entry point's name, which naga does not keep.
     pub(crate) fn entry_span(&self, entry: usize) -> Span {
         function_span(&self.source, self.entry_name(entry))
     }
 
-    /// Resource globals that the entry points use, in declaration order, with their use in any of
-    /// them.
+    /// Returns the resource globals that any of `entries` uses, in declaration order, with their
+    /// use by these entry points together.
     pub(crate) fn globals(&self, entries: &[usize]) -> Vec<Global> {
         let mut globals = Vec::with_capacity(self.module.global_variables.len());
         for (handle, variable) in self.module.global_variables.iter() {
@@ -257,7 +262,7 @@ impl Shader {
         globals
     }
 
-    /// The group of every resource global, used or not, with its name and place.
+    /// Iterates over all resource globals, used or not: name, group, and place.
     pub(crate) fn groups(&self) -> impl Iterator<Item = (&str, u32, Span)> {
         let globals = self.module.global_variables.iter();
         globals.filter_map(|(handle, variable)| {
@@ -283,8 +288,8 @@ impl Shader {
         self.source.locate(at..at + name.len())
     }
 
-    /// Names of the sampler globals (but those that compare) through which the entry points sample
-    /// a texture global.
+    /// Returns the names of the sampler globals through which `entries` sample the global
+    /// `texture`, without comparison samplers.
     pub(crate) fn samplers_of(
         &self,
         entries: &[usize],
@@ -305,8 +310,8 @@ impl Shader {
             .collect()
     }
 
-    /// Overridable constants: name, the key that wgpu knows it by (its `@id` if it has one),
-    /// whether it has a value of its own, and its place.
+    /// Iterates over the overrides with a name: the name; the key by which wgpu knows it, which is
+    /// its `@id` if it has one; true if it has a default value; and its place.
     pub(crate) fn overrides(&self) -> impl Iterator<Item = (&str, String, bool, Span)> {
         let overrides = self.module.overrides.iter();
         overrides.filter_map(|(handle, constant)| {
@@ -319,7 +324,8 @@ impl Shader {
         })
     }
 
-    /// The numbers that an override holds; `None` of a `bool`.
+    /// Returns the scalar class of an override; `None` for a `bool`, and if there is no such
+    /// override.
     pub(crate) fn override_class(&self, name: &str) -> Option<ScalarClass> {
         let mut overrides = self.module.overrides.iter();
         let (_, found) = overrides.find(|(_, found)| found.name.as_deref() == Some(name))?;
@@ -327,7 +333,8 @@ impl Shader {
         ScalarClass::from_kind(scalar.kind)
     }
 
-    /// The value of a scalar module-scope constant.
+    /// Returns the value of a scalar constant at module scope; `None` if there is no such constant,
+    /// or it is a `bool` or not a literal.
     pub(crate) fn constant(&self, name: &str) -> Option<Scalar> {
         let mut constants = self.module.constants.iter();
         let (_, constant) = constants.find(|(_, known)| known.name.as_deref() == Some(name))?;
@@ -355,7 +362,7 @@ impl Shader {
         constants.filter_map(|(_, constant)| constant.name.as_deref())
     }
 
-    /// The place of a module-scope constant.
+    /// Returns the place of the name of a constant at module scope.
     pub(crate) fn constant_span(&self, name: &str) -> Span {
         let text = &self.source.text;
         let declared = |at: &usize| text[..*at].trim_end().ends_with("const");
@@ -363,7 +370,8 @@ impl Shader {
         self.source.locate(at..at + name.len())
     }
 
-    /// Names of what the module asks for: members of the uniform `params`, and overrides.
+    /// Iterates over the names of the params that the module takes: members of the uniform
+    /// `params`, and overrides.
     pub(crate) fn params(&self) -> impl Iterator<Item = &str> {
         let members = self
             .uniform_params()
@@ -373,7 +381,7 @@ impl Shader {
         members.chain(overrides.filter_map(|(_, constant)| constant.name.as_deref()))
     }
 
-    /// The uniform `params` with its members.
+    /// Returns the uniform `params` with its members; `None` if the module has none.
     pub(super) fn uniform_params(
         &self,
     ) -> Option<(Handle<naga::GlobalVariable>, &[naga::StructMember])> {
@@ -385,7 +393,7 @@ impl Shader {
         }
     }
 
-    /// True if an entry point uses a global.
+    /// True if the entry point with the index `entry` uses a global.
     pub(super) fn uses(&self, entry: usize, global: Handle<naga::GlobalVariable>) -> bool {
         self.info.get_entry_point(entry)[global] != GlobalUse::empty()
     }

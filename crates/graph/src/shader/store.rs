@@ -1,4 +1,4 @@
-//! The shaders of all documents, each with the modules that its document has it import.
+//! The shaders of all documents, each compiled with the modules that its document has it import.
 
 use super::{
     constants::ChoiceConstants,
@@ -23,13 +23,13 @@ use std::{
 /// Most conditions of `imports` around one document: a shader is compiled for all their values.
 const MOST_CONDITIONS: usize = 6;
 
-/// The shaders of all documents.
+/// The compiled shaders of all documents.
 #[derive(Debug, Default)]
 pub(crate) struct Shaders {
     shaders: HashMap<ShaderKey, Vec<Variant>>,
     /// Paths of modules, by the folder of the document that names one, and its name there.
     modules: HashMap<(String, String), String>,
-    /// Some are not read, which was reported.
+    /// Set if some modules or shaders were not read, which was reported.
     pub incomplete: Option<ErrorGuaranteed>,
 }
 
@@ -46,8 +46,8 @@ impl Shaders {
         (Arc::clone(&document.file.name), folder, name)
     }
 
-    /// The shader that a pass of a document names, where these modules stand in for others; `None`
-    /// if it was not there when the document was read.
+    /// Returns the shader that a pass of a document names. `around` holds the modules that stand in
+    /// for others there. `None` if the shader was not read with the document.
     pub fn get(
         &self,
         document: &Document,
@@ -60,7 +60,8 @@ impl Shaders {
         found.map(|(_, shader)| shader)
     }
 
-    /// The shader that a pass of a document names, with any modules.
+    /// Iterates over the valid variants of the shader that a pass of a document names: one per set
+    /// of modules that stand in for others.
     pub fn variants(
         &self,
         document: &Document,
@@ -71,7 +72,7 @@ impl Shaders {
         variants.filter_map(|(_, shader)| shader.as_ref().ok())
     }
 
-    /// Paths of the modules that any shader imports.
+    /// Returns the paths of all modules that any shader imports.
     pub fn imported(&self) -> BTreeSet<&str> {
         let read = self.shaders.values().flatten();
         read.filter_map(|(_, shader)| shader.as_ref().ok())
@@ -80,7 +81,7 @@ impl Shaders {
             .collect()
     }
 
-    /// The path of a module that a document names.
+    /// Returns the path of a module that a document names; `None` if the module was not found.
     pub fn module(&self, name: &Located<String>) -> Option<&String> {
         self.modules.get(&Self::module_key(name))
     }
@@ -90,7 +91,8 @@ impl Shaders {
         (folder, name.value.clone())
     }
 
-    /// `around`, where a module that a document names stands in for another one.
+    /// Notes in `around` that the module `is` stands in for the module `of`. Does nothing if one of
+    /// them was not found.
     pub fn replace(&self, around: &mut Replaced, of: &Located<String>, is: &Located<String>) {
         // One that is not there was reported.
         if let (Some(of), Some(is)) = (self.module(of), self.module(is)) {
@@ -118,7 +120,7 @@ struct Rule {
     condition: Option<(Arc<str>, String)>,
 }
 
-/// Reads the shaders of documents.
+/// Reads and compiles the shaders of documents.
 pub(crate) struct Loader<'a> {
     files: ShaderFiles<'a>,
     shaders: Shaders,
@@ -130,7 +132,7 @@ pub(crate) struct Loader<'a> {
     reports: &'a mut Reports,
 }
 
-/// Reads every shader that a document and those that it includes name.
+/// Reads and compiles every shader that a document and its includes name.
 pub(crate) fn load(root: &Document, files: ShaderFiles<'_>, reports: &mut Reports) -> Shaders {
     let mut loader = Loader {
         files,

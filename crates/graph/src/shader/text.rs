@@ -1,11 +1,11 @@
-//! WGSL as text, for questions that naga does not answer, or must not be asked before.
+//! WGSL as text: answers questions that naga does not answer, or that come before it is called.
 
 use std::ops::Range;
 
 /// WGSL's line breaks besides `\n`: a comment ends at any of them.
 pub(super) const BREAKS: [char; 6] = ['\r', '\u{b}', '\u{c}', '\u{85}', '\u{2028}', '\u{2029}'];
 
-/// Block comments that are open at the end of what was read so far.
+/// Counts the block comments that are open at the end of the text read so far.
 #[derive(Default)]
 pub(super) struct Comments {
     depth: usize,
@@ -16,7 +16,7 @@ impl Comments {
         self.depth > 0
     }
 
-    /// Reads on.
+    /// Reads the next piece of the text.
     pub fn read(&mut self, text: &str) {
         let mut at = 0;
         while at < text.len() {
@@ -44,8 +44,8 @@ impl Comments {
     }
 }
 
-/// The next token that is no comment and no space, and how far it reaches from the start of `text`:
-/// a word, or one sign.
+/// Returns the next token that is not a comment or space, with the byte offset of its end in
+/// `text`. A token is a word or one sign. `None` at the end of the text.
 pub(super) fn next(text: &str) -> Option<(usize, &str)> {
     let is_word = |c: char| c.is_alphanumeric() || c == '_';
     let mut at = 0;
@@ -66,7 +66,7 @@ pub(super) fn next(text: &str) -> Option<(usize, &str)> {
     }
 }
 
-/// All tokens of a text, each with its place.
+/// Iterates over all tokens of a text, each with its byte range.
 pub(super) fn tokens(text: &str) -> impl Iterator<Item = (Range<usize>, &str)> {
     let mut at = 0;
     std::iter::from_fn(move || {
@@ -86,12 +86,12 @@ fn comment(text: &str) -> usize {
     at
 }
 
-/// Declarations of a text.
+/// Names that a text declares.
 #[derive(Default)]
 pub(super) struct Declared<'t> {
-    /// Fields of its structs.
+    /// Names of struct members.
     pub fields: Vec<&'t str>,
-    /// Functions, variables, constants, types, arguments.
+    /// Names of functions, variables, constants, types and arguments.
     pub names: Vec<&'t str>,
 }
 
@@ -120,7 +120,7 @@ impl<'t> Declared<'t> {
     }
 }
 
-/// Where `word` stands in `text` as a whole word.
+/// Iterates over the byte offsets at which `word` stands in `text` as a whole word.
 pub(super) fn words<'a>(text: &'a str, word: &'a str) -> impl Iterator<Item = usize> + 'a {
     let is_part = |c: char| c.is_alphanumeric() || c == '_';
     text.match_indices(word)
@@ -130,8 +130,8 @@ pub(super) fn words<'a>(text: &'a str, word: &'a str) -> impl Iterator<Item = us
         })
 }
 
-/// The words of a text outside comments, each with the token before it, `var` behind its `<…>`, and
-/// whether it stands at module scope, outside of brackets.
+/// Iterates over the words of a text outside of comments: the word; the token before it (`var` also
+/// where a `<…>` stands between); and true if the word stands at module scope.
 pub(super) fn identifiers(text: &str) -> impl Iterator<Item = (&str, &str, bool)> {
     let (mut depth, mut before) = (0usize, "");
     // Inside `<…>` behind `var`.

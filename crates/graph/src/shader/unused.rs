@@ -1,4 +1,4 @@
-//! Imports, params and globals of a shader that nothing in it uses.
+//! Finds the imports, params and globals of a shader that it does not use.
 
 use super::{
     expand::{Expanded, ImportLine},
@@ -10,7 +10,7 @@ use crate::source::span::{Located, SourceFile};
 use naga::Expression;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Something that is not used: its kind, and its name where it stands.
+/// Something unused in a shader: its kind in words, and its name at its place.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Unused {
     pub what: &'static str,
@@ -43,15 +43,15 @@ impl<'t> Words<'t> {
     }
 }
 
-/// Looks for what nothing uses; each file is read once.
+/// Finds unused items of shaders; each file is split into words once.
 #[derive(Default)]
 pub(crate) struct UnusedFinder<'s> {
     words: BTreeMap<&'s str, Words<'s>>,
 }
 
 impl<'s> UnusedFinder<'s> {
-    /// Returns the unused items of a shader: imports of all files, params and globals that its own
-    /// file declares. The document names those in `constants`.
+    /// Returns the unused items of a shader: imports of all its files, and params and globals of
+    /// its own file. `constants` holds the shader constants that the document uses.
     pub fn find(&mut self, shader: &'s Shader, constants: &BTreeSet<&str>) -> Vec<Unused> {
         let mut unused = self.imports(&shader.source, constants);
         unused.extend(unused_params(shader));

@@ -1,11 +1,11 @@
-//! Values that pass from one stage to the next: locations, with their types and how they are
-//! interpolated, and what of the limit built-in values take.
+//! Values that pass from one shader stage to the next: their locations, types and interpolation,
+//! and the share of the device's limit that built-in values take.
 
 use super::class::vector;
 use crate::scalar_class::ScalarClass;
 use naga::{Binding, BuiltIn, Handle, Module, Type, TypeInner};
 
-/// A value at a location.
+/// A value that passes between stages at a location.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Varying {
     pub location: u32,
@@ -15,16 +15,16 @@ pub(crate) struct Varying {
     pub sampling: Option<naga::Sampling>,
 }
 
-/// Values that an entry point takes or gives.
+/// Values that an entry point takes from the stage before, or gives to the next one.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Varyings {
     pub locations: Vec<Varying>,
-    /// How many of a device's variables between stages its built-in values take.
+    /// Number of the device's inter-stage variables that the entry point's built-in values take.
     pub builtins: u32,
 }
 
 impl Varyings {
-    /// The arguments of an entry point.
+    /// Returns the values that an entry point takes as arguments.
     pub fn inputs(module: &Module, entry: usize) -> Self {
         let mut inputs = Self::default();
         for argument in &module.entry_points[entry].function.arguments {
@@ -33,7 +33,7 @@ impl Varyings {
         inputs
     }
 
-    /// The result of an entry point.
+    /// Returns the values that an entry point gives as its result.
     pub fn outputs(module: &Module, entry: usize) -> Self {
         let mut outputs = Self::default();
         if let Some(result) = &module.entry_points[entry].function.result {

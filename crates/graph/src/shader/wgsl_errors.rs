@@ -1,4 +1,4 @@
-//! naga's errors as ours, at the author's places.
+//! Turns naga's errors into the crate's, at their places in the author's files.
 
 use super::{
     expand::Expanded,
@@ -17,7 +17,7 @@ use naga::{
 };
 use std::ops::Range;
 
-/// Where the name of a function stands.
+/// Returns the byte range of a function's name in the expanded text.
 pub(super) fn function_range(source: &Expanded, name: &str) -> Range<usize> {
     let text = &source.text;
     let at = words(text, name)
@@ -26,7 +26,7 @@ pub(super) fn function_range(source: &Expanded, name: &str) -> Range<usize> {
     at..at + name.len()
 }
 
-/// The place of the name of a function.
+/// Returns the place of a function's name in the author's file.
 pub(super) fn function_span(source: &Expanded, name: &str) -> Span {
     source.locate(function_range(source, name))
 }
@@ -182,7 +182,7 @@ fn plainly(error: &ValidationError, module: &naga::Module) -> Option<String> {
     }
 }
 
-/// All functions of a module, its entry points among them.
+/// Iterates over all functions of a module, including its entry points.
 pub(super) fn functions(module: &naga::Module) -> impl Iterator<Item = &naga::Function> {
     let functions = module.functions.iter().map(|(_, function)| function);
     functions.chain(module.entry_points.iter().map(|entry| &entry.function))
@@ -254,7 +254,7 @@ pub(super) fn validation_error(
     ShaderError::Naga(blamed(&places, source), what, places, Vec::new())
 }
 
-/// An entry point that is not valid with the values of its overrides.
+/// Returns the error for an entry point that is not valid with the values of its overrides.
 pub(super) fn specialisation_error(
     error: &PipelineConstantError,
     entry: &str,

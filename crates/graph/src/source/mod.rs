@@ -1,4 +1,4 @@
-//! Texts and pictures: where they come from, and places in them.
+//! Sources of documents, shaders and pictures, and places in their texts.
 
 pub(crate) mod paths;
 pub(crate) mod sources;

@@ -1,15 +1,16 @@
-//! Where a name in a document or shader is looked for.
+//! Paths at which a name in a document or shader is looked for.
 
 use std::path::Path;
 
-/// Where the shader called `name` may stand for a document in `folder`, in the order in which it is
-/// looked for: beside the document, in the `shaders` folder beside the document's folder, in the
-/// store's `shaders` folder.
+/// Returns the paths of the shader called `name` for a document in `folder`, in the order in which
+/// they are tried: beside the document, in the `shaders` folders beside its folder and one level
+/// above, and in the store's `shaders` folder.
 pub(crate) fn shader_candidates(folder: &str, name: &str) -> Vec<String> {
     module_candidates(folder, &format!("{name}.wgsl"))
 }
 
-/// The same of a module that a document names with its ending.
+/// Returns the paths of the module `file`, a name with its ending, for a document in `folder`: the
+/// same folders as for shaders.
 pub(crate) fn module_candidates(folder: &str, file: &str) -> Vec<String> {
     let folder = Path::new(folder);
     let mut candidates = vec![join(folder, file)];
@@ -26,8 +27,8 @@ pub(crate) fn module_candidates(folder: &str, file: &str) -> Vec<String> {
     candidates
 }
 
-/// Where `#import "path"` of the file `importer` may stand: beside the importer, above it, and in
-/// the store's `shaders`.
+/// Returns the paths that `#import "path"` in the file `importer` may mean, in the order in which
+/// they are tried: beside the importer, one folder above, and in the store's `shaders` folder.
 pub(crate) fn import_candidates(importer: &str, path: &str) -> Vec<String> {
     let folder = Path::new(importer).parent().unwrap_or(Path::new(""));
     let mut candidates = vec![join(folder, path)];
@@ -39,8 +40,8 @@ pub(crate) fn import_candidates(importer: &str, path: &str) -> Vec<String> {
     candidates
 }
 
-/// Where `Include(graph: "path")` of the document `includer` may stand: beside it, and in the
-/// store's `pipelines`.
+/// Returns the paths that `Include(graph: "path")` in the document `includer` may mean, in the
+/// order in which they are tried: beside the includer, and in the store's `pipelines` folder.
 pub(crate) fn include_candidates(includer: &str, path: &str) -> Vec<String> {
     // One file under one name, or a cycle would not be seen as one.
     let parts: Vec<&str> = path
@@ -56,14 +57,14 @@ pub(crate) fn include_candidates(includer: &str, path: &str) -> Vec<String> {
     candidates
 }
 
-/// The folder of a path, empty for a bare name.
+/// Returns the folder of a path; empty for a bare file name.
 pub(crate) fn folder_of(path: &str) -> &str {
     let folder = Path::new(path).parent();
     folder.and_then(Path::to_str).unwrap_or("")
 }
 
-/// True if a path leads out of the folder that it is looked for in (backslashes and drives: on
-/// Windows).
+/// True if a path can lead out of the folder that it is looked for in: it has a `..`, begins with
+/// `/`, or contains a backslash or a colon, which Windows takes for a folder or a drive.
 pub(crate) fn escapes(path: &str) -> bool {
     path.split('/').any(|part| part == "..") || path.starts_with('/') || path.contains(['\\', ':'])
 }

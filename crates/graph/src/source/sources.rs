@@ -1,4 +1,4 @@
-//! Where documents, shaders and pictures come from.
+//! Stores that documents, shaders and pictures are read from.
 
 use crate::picture::Picture;
 use std::{io::Read, path::PathBuf, sync::Arc};
@@ -8,21 +8,21 @@ use std::{io::Read, path::PathBuf, sync::Arc};
 /// Paths have forward slashes and are relative to the store (`pipelines/nsm.ron`,
 /// `shaders/shared/camera.wgsl`), or absolute.
 pub trait Sources: Send + Sync {
-    /// The text at `path`; `Ok(None)` if the store has no such file.
+    /// Reads the text at `path`; `Ok(None)` if the store has no such file.
     ///
     /// # Errors
     /// The reason, if the file is there but cannot be read.
     fn read(&self, path: &str) -> Result<Option<Arc<str>>, String>;
 
-    /// Names of the files that stand directly in `folder`, sorted; for listings and for suggestions
-    /// on misspelt names.
+    /// Returns the names of the files directly in `folder`, sorted, without their folder. Empty if
+    /// there is no such folder. Used for listings and for suggestions on misspelt names.
     fn list(&self, folder: &str) -> Vec<String>;
 
-    /// The picture at `path`, for a `Texture` with a `file`; `Ok(None)` if the store has no such
-    /// file. Which formats it decodes is the store's affair.
+    /// Reads the picture at `path`, for a `Texture` with a `file`; `Ok(None)` if the store has no
+    /// such file. Each store decides which picture formats it decodes; by default it decodes none.
     ///
     /// # Errors
-    /// The reason, if the file is there but is no picture that the store can decode.
+    /// The reason, if the file is there but cannot be decoded.
     fn picture(&self, path: &str) -> Result<Option<Picture>, String> {
         match self.read(path) {
             Ok(None) => Ok(None),
@@ -35,10 +35,10 @@ pub trait Sources: Send + Sync {
 /// what memory holds.
 const LONGEST_FILE: u64 = 8 << 20;
 
-/// Reads a text from a store.
+/// Reads a text from a store; `Ok(None)` if the store has no such file.
 ///
 /// # Errors
-/// Why it cannot be read; it may be too long.
+/// The reason, if the file cannot be read or is longer than 8 MiB.
 pub(crate) fn read(sources: &dyn Sources, path: &str) -> Result<Option<Arc<str>>, String> {
     match sources.read(path)? {
         Some(text) if text.len() as u64 > LONGEST_FILE => {
@@ -56,10 +56,10 @@ fn too_long(length: &str) -> String {
     )
 }
 
-/// Files below a folder on disk. Absolute paths are read as they are.
+/// A store that reads the files of a folder on disk. Absolute paths are read as they are.
 #[derive(Clone, Debug)]
 pub struct FolderSources {
-    /// The folder that relative paths start from.
+    /// Folder that relative paths start from.
     pub root: PathBuf,
 }
 
@@ -108,10 +108,10 @@ impl Sources for FolderSources {
     }
 }
 
-/// Several stores; the first that has a file wins.
+/// Several stores as one: each file comes from the first store that has it.
 #[derive(Default)]
 pub struct LayeredSources(
-    /// The stores, in order of precedence.
+    /// Stores, in the order in which they are asked.
     pub Vec<Box<dyn Sources>>,
 );
 

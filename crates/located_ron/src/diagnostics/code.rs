@@ -1,4 +1,4 @@
-//! Kinds of mistakes.
+//! Kinds of mistakes, each with a stable name.
 
 macro_rules! codes {
     ($($(#[doc = $doc:literal])+ $name:ident = $text:literal, $remedy:literal;)+) => {
@@ -9,20 +9,22 @@ macro_rules! codes {
         pub enum Code { $($(#[doc = $doc])+ $name,)+ }
 
         impl Code {
-            /// Every kind there is.
+            /// All kinds of mistakes, in the order of their declaration.
             pub const ALL: &[Self] = &[$(Self::$name),+];
 
-            /// The kebab-case name that is printed and written to machine-readable output.
+            /// Returns the kind's kebab-case name, as it is printed and written to machine-readable
+            /// output.
             pub fn as_str(self) -> &'static str {
                 match self { $(Code::$name => $text,)+ }
             }
 
-            /// Describes the kind of mistake in a sentence.
+            /// Returns a sentence that describes this kind of mistake.
             pub fn description(self) -> &'static str {
                 match self { $(Code::$name => concat!($($doc),+).trim_ascii(),)+ }
             }
 
-            /// The usual way out, in a sentence; a diagnostic's own help is more exact.
+            /// Returns a sentence that says how to mend this kind of mistake. The `help` of a
+            /// diagnostic is more exact.
             pub fn remedy(self) -> &'static str {
                 match self { $(Code::$name => $remedy,)+ }
             }

@@ -1,9 +1,9 @@
-//! One mistake: its message, its places, and the way out.
+//! One diagnostic: a mistake with its message, its places, and a hint how to mend it.
 
 use super::{code::Code, suggest::suggestion};
 use crate::span::Span;
 
-/// How bad it is.
+/// Severity of a diagnostic. Errors sort before warnings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
     /// The document cannot be used.
@@ -12,32 +12,33 @@ pub enum Severity {
     Warning,
 }
 
-/// A place and what is to be said about it.
+/// A place in a file, with the text that a diagnostic prints beside it.
 #[derive(Clone, Debug)]
 pub struct Label {
-    /// The place.
+    /// Place in the source.
     pub span: Span,
-    /// Text of the label; may be empty.
+    /// Text beside the place; may be empty.
     pub text: String,
 }
 
-/// One mistake.
+/// A mistake in a file: its kind, its message, and the places that it is about.
 #[derive(Clone, Debug)]
 pub struct Diagnostic {
-    /// Its kind.
+    /// Kind of the mistake.
     pub code: Code,
-    /// Error or warning.
+    /// Severity: error or warning.
     pub severity: Severity,
-    /// The mistake, with the name of the thing.
+    /// Message, which names the thing that is wrong.
     pub message: String,
-    /// Where; the first label is the place itself, others explain.
+    /// Places that the mistake is about. The first is the mistake's own place; the others explain
+    /// it. Empty if the mistake has no place.
     pub labels: Vec<Label>,
-    /// The way out, if there is one.
+    /// Hint how to mend the mistake; `None` if there is none.
     pub help: Option<String>,
 }
 
 impl Diagnostic {
-    /// An error without a place yet.
+    /// Creates an error without a place; [`at`](Self::at) adds one.
     pub fn error(code: Code, message: impl Into<String>) -> Self {
         Self {
             code,
@@ -48,7 +49,7 @@ impl Diagnostic {
         }
     }
 
-    /// A warning without a place yet.
+    /// Creates a warning without a place; [`at`](Self::at) adds one.
     pub fn warning(code: Code, message: impl Into<String>) -> Self {
         Self {
             severity: Severity::Warning,
@@ -56,7 +57,7 @@ impl Diagnostic {
         }
     }
 
-    /// Adds a place; the first one added is the mistake's own.
+    /// Adds a place with a text beside it. The first place that is added is the mistake's own.
     #[must_use]
     pub fn at(mut self, place: impl Into<Span>, text: impl Into<String>) -> Self {
         self.labels.push(Label {
@@ -66,13 +67,13 @@ impl Diagnostic {
         self
     }
 
-    /// Adds a place that may not be known.
+    /// Adds a place with a text beside it, if the place is known; `None` adds nothing.
     #[must_use]
     pub fn at_any(self, place: Option<impl Into<Span>>, text: impl Into<String>) -> Self {
         self.at_all(place.map(|place| (place, text)))
     }
 
-    /// Adds several places.
+    /// Adds several places, each with a text beside it.
     #[must_use]
     pub fn at_all<P: Into<Span>, T: Into<String>>(
         self,
@@ -82,7 +83,8 @@ impl Diagnostic {
         places.fold(self, |diagnostic, (place, text)| diagnostic.at(place, text))
     }
 
-    /// Adds the reason, which is a mistake of its own: its kind is this one's.
+    /// Adds another diagnostic as the reason of this one: its message as a label at `place`, and
+    /// its help. The kind of `reason` replaces the kind of this diagnostic.
     #[must_use]
     pub fn because(self, place: impl Into<Span>, reason: impl Into<Self>) -> Self {
         let reason = reason.into();
@@ -92,7 +94,7 @@ impl Diagnostic {
         }
     }
 
-    /// Says what to do, after what was said before.
+    /// Adds a hint how to mend the mistake, on a new line after earlier hints.
     #[must_use]
     pub fn help(mut self, text: impl Into<String>) -> Self {
         let text = text.into();
@@ -103,19 +105,20 @@ impl Diagnostic {
         self
     }
 
-    /// Says what to do in some cases.
+    /// Adds a hint how to mend the mistake, if there is one; `None` adds nothing.
     #[must_use]
     pub fn help_any(self, text: Option<impl Into<String>>) -> Self {
         text.into_iter().fold(self, Self::help)
     }
 
-    /// Adds "did you mean …" if one of `known` is close to `word`, else a list of what there is.
+    /// Adds the hint "did you mean …?" if a name in `known` is close to `word`, else a list of the
+    /// known names. An empty `known` adds nothing.
     #[must_use]
     pub fn suggest<S: AsRef<str>>(self, word: &str, known: impl IntoIterator<Item = S>) -> Self {
         self.help_any(suggestion(word, known))
     }
 
-    /// Place and message in a line.
+    /// Returns the first place and the message as `PLACE: MESSAGE`, without the help.
     pub fn brief(&self) -> String {
         match self.labels.first() {
             Some(label) => format!("{}: {}", label.span, self.message),

@@ -1,4 +1,4 @@
-//! All mistakes of a document, in the order in which they are read.
+//! The list of all diagnostics of a document, sorted for printing.
 
 use super::diagnostic::{Diagnostic, Label, Severity};
 use std::fmt;
@@ -6,12 +6,13 @@ use std::fmt;
 /// Most diagnostics that are printed, each with a piece of its file.
 const MOST_SHOWN: usize = 200;
 
-/// A non-empty list of diagnostics, errors first, in source order.
+/// A list of diagnostics: errors before warnings, and each of these by file name and place.
 #[derive(Clone, Debug)]
 pub struct Diagnostics(Vec<Diagnostic>);
 
 impl Diagnostics {
-    /// Sorts mistakes, and drops those that are told twice or too many.
+    /// Sorts `list`, and drops duplicates. Of more than 200 diagnostics, the rest becomes one that
+    /// counts them.
     pub fn new(mut list: Vec<Diagnostic>) -> Self {
         list.sort_by(|a, b| a.key().cmp(&b.key()));
         list.dedup_by(|a, b| a.message == b.message && a.key() == b.key());
@@ -29,19 +30,21 @@ impl Diagnostics {
         Self(list)
     }
 
-    /// The diagnostics, in the order in which they are printed.
+    /// Iterates over the diagnostics, in the order in which they are printed.
     pub fn iter(&self) -> std::slice::Iter<'_, Diagnostic> {
         self.0.iter()
     }
 
-    /// All of them with the lines that they are about, coloured for a terminal or not.
+    /// Renders all diagnostics as text, each with the source lines that it is about. `colour` adds
+    /// ANSI colours for a terminal.
     #[cfg(feature = "render")]
     pub fn render(&self, colour: bool) -> String {
         super::render::render(&self.0, colour)
     }
 }
 
-/// In plain words, a line per place; the feature `render` shows the places themselves.
+/// Prints each diagnostic as plain text: severity, kind and message, then a line per place, then
+/// the help. The feature `render` prints the source lines, too.
 impl fmt::Display for Diagnostics {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (index, found) in self.0.iter().enumerate() {

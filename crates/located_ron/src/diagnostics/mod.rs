@@ -1,4 +1,4 @@
-//! Mistakes in files: collected, located, printed in source order.
+//! Diagnostics of mistakes in files: collected, located, printed in source order.
 
 pub mod code;
 pub mod diagnostic;

@@ -1,4 +1,5 @@
-//! Mistakes with the lines that they are about, for a terminal (feature `render`).
+//! Renders diagnostics for a terminal, with the source lines that they are about (feature
+//! `render`).
 
 use super::diagnostic::{Diagnostic, Label, Severity};
 use crate::{
@@ -11,7 +12,8 @@ use std::{fmt, ops::Range};
 /// Longest line of which a piece is printed, in bytes: there is no pointing at a word in one that
 /// fills a screen, and miette cannot count beyond 65,535 columns.
 const LONGEST_LINE: usize = 2000;
-/// Renders a list of diagnostics, one after the other.
+/// Renders diagnostics one after the other, each with the source lines that it is about. `colour`
+/// adds ANSI colours for a terminal.
 pub fn render(list: &[Diagnostic], colour: bool) -> String {
     let theme = if colour {
         GraphicalTheme::unicode()

@@ -1,4 +1,4 @@
-//! "Did you mean …?"
+//! Suggestions for misspelt names: "did you mean …?"
 
 /// Names that a misspelt one is compared with: a document may hold thousands, and as many mistakes.
 const COMPARED: usize = 1024;
@@ -10,7 +10,8 @@ const LONGEST: usize = 80;
 /// Names in a list.
 const SHOWN: usize = 16;
 
-/// The name that a misspelt `word` is most like, if it is like one at all.
+/// Returns the name in `known` that is most like `word`; `None` if no name is close enough. Names
+/// of more than 80 bytes, and those after the first 1,024, are not compared.
 pub fn closest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
     if word.len() > LONGEST {
         return None;
@@ -38,7 +39,8 @@ pub fn closest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Opti
     best.map(|(.., name)| name)
 }
 
-/// "did you mean …" for a misspelt `word`, or the list of what is known.
+/// Returns "did you mean …?" for a misspelt `word`, or else a list of the names in `known`, of
+/// which 16 are shown. `None` if `known` is empty.
 pub fn suggestion<S: AsRef<str>>(word: &str, known: impl IntoIterator<Item = S>) -> Option<String> {
     let known: Vec<S> = known.into_iter().collect();
     let count = known.len();
@@ -63,7 +65,7 @@ pub fn suggestion<S: AsRef<str>>(word: &str, known: impl IntoIterator<Item = S>)
     Some(format!("known here: {list}"))
 }
 
-/// "did you mean …" alone, without a list of what there is.
+/// Returns "did you mean …?" for a misspelt `word`; `None` if no name in `known` is close enough.
 pub fn likeness<S: AsRef<str>>(word: &str, known: impl IntoIterator<Item = S>) -> Option<String> {
     suggestion(word, known).filter(|hint| hint.starts_with("did"))
 }

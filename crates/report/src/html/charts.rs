@@ -1,4 +1,4 @@
-//! Charts of the page, one for each choice that it offers.
+//! Charts of the page, one for each choice that the page offers.
 
 use crate::charts::path_panels;
 use crate::html::shown::{Shown, part, times};
@@ -29,7 +29,7 @@ fn drawn(svg: Result<String, Error>) -> String {
     svg.unwrap_or_else(|why| format!("<p class=\"quiet\">{}</p>", xml(&why.to_string())))
 }
 
-/// Time against error, of each table and time.
+/// Returns the charts of time against error as HTML, for each table and kind of time.
 pub fn fronts(tables: &[Shown]) -> String {
     let mut html = String::new();
     for (index, table) in tables.iter().enumerate() {
@@ -44,7 +44,8 @@ pub fn fronts(tables: &[Shown]) -> String {
     html
 }
 
-/// Errors over the frames of the camera paths of each table. Lines look as their methods do.
+/// Returns the charts of errors over the frames of camera paths as HTML, for each table. Lines look
+/// as their methods do in other charts.
 pub fn paths(tables: &[Shown]) -> String {
     let of_table = |(index, table): (usize, &Shown)| {
         let runs = table.summary.rows.iter().flat_map(Row::runs);
@@ -101,7 +102,7 @@ fn about(table: &Shown, index: usize) -> String {
     table.summary.rows[index].label.clone() + &told.collect::<String>()
 }
 
-/// Buttons for the methods of each table, which show a method or not.
+/// Returns buttons as HTML that show or hide the methods of each table.
 pub fn legends(tables: &[Shown]) -> String {
     let figure = figure(tables, Vec::new());
     let button = |name: &String| {
@@ -120,7 +121,8 @@ pub fn legends(tables: &[Shown]) -> String {
     tables.iter().enumerate().map(legend).collect()
 }
 
-/// How time grows with the viewport and with the map, where several were measured.
+/// Returns charts as HTML that show how time grows with the viewport and with the map size, where
+/// several were measured.
 pub fn growths(tables: &[Shown]) -> String {
     let mut html = String::new();
     for (index, table) in tables.iter().enumerate() {

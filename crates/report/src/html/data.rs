@@ -57,7 +57,7 @@ struct Line<'a> {
     wrong: u64,
 }
 
-/// As text that may stand in a script element.
+/// Returns the words and pictures of the page as JSON that may stand in a script element.
 pub fn text(sources: &[Source], tables: &[Shown], pictures: &Pictures) -> String {
     let data = Data {
         program: PROGRAM,

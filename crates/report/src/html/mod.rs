@@ -1,6 +1,6 @@
-//! `report.html`: everything that `compare` and `stress` kept, in one file that needs no network.
-//! Every figure is worked out here, by the same rules as the tables, and the charts and tables are
-//! written here; the page's script shows what is chosen of them.
+//! Writes `report.html`: everything that `compare` and `stress` kept, in one file that works
+//! without a network. All figures, charts and tables are made here by the same rules as the
+//! terminal's; the page's script only shows the chosen ones.
 //!
 //! | | |
 //! |-|-|
@@ -28,7 +28,7 @@ use pictures::Pictures;
 use shown::shown;
 use skiagraph_compare::records::stress::Report;
 
-/// The most that a page may have: more is slow to open, and too large for a mail.
+/// Greatest size of a page in bytes. A larger one would be slow to open and too large for a mail.
 pub const LIMIT: usize = 30_000_000;
 
 /// In the order in which they need each other.
@@ -41,15 +41,15 @@ const SCRIPTS: [&str; 6] = [
     include_str!("report.js"),
 ];
 
-/// A page, and what it has no room for.
+/// A page, and the list of what did not fit into it.
 pub struct Page {
-    /// The file's contents.
+    /// Content of the HTML file.
     pub html: String,
-    /// Things that were left out, a line each; the page says so, too.
+    /// Lines that name the pictures left out. The page shows them as well.
     pub left_out: Vec<String>,
 }
 
-/// The page of these sources, and of these matrices of hard cases.
+/// Returns the page of these sources and of these reports of `stress`.
 pub fn page(sources: &[Source], reports: &[Report]) -> Page {
     page_within(sources, reports, LIMIT)
 }

@@ -10,21 +10,21 @@ use skiagraph_compare::records::results::{Images, Run};
 use skiagraph_compare::wording::plural;
 use std::{collections::BTreeMap, fs};
 
-/// Embedded files. Pictures are named by their index in `files`.
+/// Embedded files of a page. Other structs refer to a file by its index in `files`.
 #[derive(Debug, Default, Serialize)]
 pub struct Pictures {
-    /// One for each run that has any.
+    /// Pictures of each run that has any, and of the references.
     pub sets: Vec<Set>,
-    /// Charts of graphs, by source and method.
+    /// Drawings of graphs, one for each source and method.
     pub graphs: Vec<Graph>,
     /// The files, in Base64.
     pub files: Vec<String>,
-    /// Pictures that there is no room for, a line each.
+    /// Lines that name the pictures left out because the page is full.
     #[serde(skip)]
     pub left_out: Vec<String>,
 }
 
-/// The pictures of a run, or of the reference.
+/// Pictures of one run, or of the reference, as indices of files.
 #[derive(Debug, Default, Serialize)]
 pub struct Set {
     source: usize,
@@ -47,7 +47,7 @@ pub struct Set {
     graded: bool,
 }
 
-/// The chart of a method's graph.
+/// Drawing of a method's graph.
 #[derive(Debug, Serialize)]
 pub struct Graph {
     source: usize,
@@ -96,8 +96,8 @@ struct EmbedCandidate {
 }
 
 impl Pictures {
-    /// Embeds the pictures in the sources' folders, in `room` bytes of the page at most. Files that
-    /// have gone are left out in silence: the page shows what there is.
+    /// Embeds the pictures in the sources' folders, using at most `room` bytes of the page. Files
+    /// that are missing are skipped without a message.
     pub fn embed(sources: &[Source], room: usize) -> Self {
         let mut pictures = Self::default();
         let mut room = room;

@@ -9,7 +9,7 @@ use skiagraph_chart::xml;
 use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::size;
 
-/// A table of all rows.
+/// Returns one HTML table with the rows of all tables.
 pub fn tables(tables: &[Shown]) -> String {
     let each = tables.iter().map(|of| &of.table);
     // Tables of paths have columns that others lack.
@@ -44,7 +44,8 @@ pub fn tables(tables: &[Shown]) -> String {
     part("rows", &all, None, &table)
 }
 
-/// Each method under each light, of the sources and viewports with several lights.
+/// Returns HTML tables of each method under each light, for the sources and viewports with several
+/// lights.
 pub fn lights(sources: &[Source]) -> String {
     let of_source = |source: &Source| {
         let tables = by_light(&source.results).into_iter();

@@ -1,5 +1,5 @@
-//! Tables of the page, and the parts of the page that are of some of them: each stands in the page,
-//! and its script shows those that are chosen.
+//! Tables of the page, and parts of the page that belong to some of them. Every part stands in the
+//! page; its script shows those of the chosen tables.
 
 use crate::html::sources::Source;
 use crate::summary::{Row, by_wall};
@@ -9,21 +9,21 @@ use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::size;
 use std::collections::BTreeSet;
 
-/// All rows of one source and viewport.
+/// A table of the page: all rows of one source and viewport.
 pub struct Shown<'a> {
-    /// Index of its source.
+    /// Index of the table's source.
     pub source: usize,
-    /// All of the source in that viewport.
+    /// Summary of the source in that viewport.
     pub summary: &'a Summary<'a>,
-    /// The same as the terminal shows them.
+    /// The rows as the terminal shows them.
     pub table: Table,
-    /// True if times are the wall clock's.
+    /// True if the times are wall times.
     pub by_wall: bool,
     /// Source and viewport in words.
     pub title: String,
 }
 
-/// All tables of the summaries, each of which comes with the index of its source.
+/// Returns a table for each summary. Each summary comes with the index of its source.
 pub fn shown<'a>(sources: &[Source], all: &'a [(usize, Summary<'a>)]) -> Vec<Shown<'a>> {
     let adapters = sources.iter().map(|source| &source.results.adapter);
     let adapters: BTreeSet<String> = adapters.map(ToString::to_string).collect();
@@ -53,8 +53,9 @@ pub fn shown<'a>(sources: &[Source], all: &'a [(usize, Summary<'a>)]) -> Vec<Sho
 }
 
 impl Shown<'_> {
-    /// The error of a row that was judged: the percentage of wrong pixels outside the band of those
-    /// that face the light; under a light with extent the root mean square error of shares.
+    /// Returns the error of a row: wrong pixels outside the band, in percent of the pixels that
+    /// face the light. Under a light with an extent it is the root mean square error of the shares
+    /// of light. `None` if the row was not judged.
     pub fn error(&self, row: &Row) -> Option<f64> {
         if self.summary.is_soft() {
             return row.rmse();
@@ -66,8 +67,8 @@ impl Shown<'_> {
         (wrong.facing_light > 0).then(|| 100.0 * pixels / wrong.facing_light as f64)
     }
 
-    /// Milliseconds of a frame of a row that may stand on an axis; if `kept` of one in which only
-    /// the camera has moved.
+    /// Returns the milliseconds of a row's frame; `None` if they cannot be drawn on an axis. `kept`
+    /// selects a frame in which only the camera has moved, if the row has one.
     pub fn ms(&self, row: &Row, kept: bool) -> Option<f64> {
         let kept = row.kept_ms(self.by_wall).filter(|_| kept);
         let ms = kept.or(row.frame_ms(self.by_wall));
@@ -75,7 +76,8 @@ impl Shown<'_> {
     }
 }
 
-/// Which times the tables' rows have: true stands for those with what is kept.
+/// Returns the values of `kept` that the tables' times can be shown with: false for every pass run,
+/// true for only the camera moved. True is missing if no row keeps anything.
 pub fn times(tables: &[Shown]) -> &'static [bool] {
     let keeps = |table: &Shown| {
         let mut rows = table.summary.rows.iter();
@@ -88,7 +90,8 @@ pub fn times(tables: &[Shown]) -> &'static [bool] {
     }
 }
 
-/// An element that the script shows while one of these tables is chosen, and that time, if any.
+/// Returns an HTML element that the script shows while one of the tables with these indices is
+/// chosen and, unless `kept` is `None`, while that kind of time is.
 pub fn part(class: &str, tables: &[usize], kept: Option<bool>, content: &str) -> String {
     let time = kept.map_or(String::new(), |kept| format!(" data-kept=\"{kept}\""));
 

@@ -1,22 +1,22 @@
-//! Folders that were measured alike become one source.
+//! Combines folders that were measured under the same conditions into one source.
 
 use crate::charts::Kept;
 use skiagraph_compare::lists::unique;
 use skiagraph_compare::records::results::{Results, Run};
 use std::path::{Path, PathBuf};
 
-/// Measurements on one adapter, of one scene, under the same conditions.
+/// Measurements of one scene on one adapter under the same conditions.
 pub struct Source {
-    /// All its runs.
+    /// All runs of the source, with their conditions.
     pub results: Results,
-    /// Folders that it is from.
+    /// The folders that the runs come from.
     pub folders: Vec<PathBuf>,
     /// Index of each run's folder.
     places: Vec<usize>,
 }
 
 impl Source {
-    /// Where the pictures of a run are, by its index.
+    /// Returns the folder with the pictures of the run with this index in the results.
     pub fn folder_of(&self, run: usize) -> &Path {
         &self.folders[self.places[run]]
     }
@@ -57,7 +57,8 @@ fn without_runs(results: &Results) -> Results {
     }
 }
 
-/// One source for each adapter, scene and set of conditions, in the order of the folders.
+/// Combines kept results into sources, one for each adapter, scene and set of conditions, in the
+/// order of the folders.
 pub fn sources(kept: Vec<Kept>) -> Vec<Source> {
     let mut sources: Vec<Source> = Vec::new();
     for Kept { folder, results } in kept {

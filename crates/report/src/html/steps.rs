@@ -1,4 +1,4 @@
-//! Where the time goes: a bar for each row, in parts for its steps.
+//! Bars of GPU time: one for each row, divided into its steps.
 
 use crate::html::shown::{Shown, part};
 use skiagraph_chart::xml;
@@ -8,7 +8,7 @@ use skiagraph_compare::wording::ms;
 /// Steps that have a colour of their own: those that take the longest, over all rows.
 const COLOURS: usize = 7;
 
-/// The bars of each table with GPU times.
+/// Returns the bars of each table with GPU times as HTML.
 pub fn bars(tables: &[Shown]) -> String {
     let of_table = |(index, table): (usize, &Shown)| {
         let rows = table.summary.rows.iter().map(|row| (row, row.steps()));

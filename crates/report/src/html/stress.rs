@@ -1,4 +1,4 @@
-//! Matrices of hard cases, as the terminal has them.
+//! Matrices of `stress` as HTML, with the content of the terminal's.
 
 use crate::stress_matrix::{failures, heading, matrix, remarks};
 use crate::table::html;
@@ -6,7 +6,7 @@ use skiagraph_chart::xml;
 use skiagraph_compare::records::stress::{Report, Verdict};
 use skiagraph_compare::wording::percent;
 
-/// All matrices, each with its remarks.
+/// Returns the matrices of all reports as HTML, each with its remarks.
 pub fn matrices(reports: &[Report]) -> String {
     reports.iter().map(of_report).collect()
 }

@@ -15,36 +15,38 @@ use obvhs::triangle::Triangle;
 /// 5.5, 56 and 5.1, 76 and 6.1).
 const DEPTH: f64 = 0.01;
 
-/// One node, 32 bytes, laid out as the trace shader reads it. All is relative to
-/// [`LightSpace::centre`], rounded outwards.
+/// Node of a hierarchy over light space: 32 bytes, laid out as the trace shader reads it. All
+/// coordinates are relative to [`LightSpace::centre`], in scene units, and rounded outwards.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct LightSpaceNode {
-    /// Low corner of what the node covers, seen along the rays.
+    /// Low corner of the node's box, in the two coordinates across the rays.
     pub low: [f32; 2],
-    /// High corner.
+    /// High corner of the node's box, in the two coordinates across the rays.
     pub high: [f32; 2],
-    /// The sides of the node's box in world space by which rays leave it, axes permuted, and
-    /// mirrored so that rays go up: a ray that begins beyond one of them misses. Kept beside depth
-    /// because a floor is flat along an axis, and deep along a ray.
+    /// Far sides of the node's box, by which rays leave it, along the three permuted world axes.
+    /// Axes are mirrored so that all rays go up. A ray that begins beyond any of these sides misses
+    /// the node. Three sides are stored instead of one depth along the ray because a floor is flat
+    /// along an axis, but deep along a ray.
     pub farthest: [f32; 3],
-    /// [`LEAF_BITS`](Self::LEAF_BITS) low bits: number of primitives of a leaf, 0 of an inner node.
-    /// Above them: the first slot in the hierarchy's primitives, or the first child, which the
-    /// second follows.
+    /// Packed count and index. The [`LEAF_BITS`](Self::LEAF_BITS) low bits hold the number of
+    /// primitives of a leaf, or 0 for an inner node. The bits above hold an index: for a leaf its
+    /// first slot in the hierarchy's primitives, for an inner node its first child, which the
+    /// second child follows.
     pub link: u32,
 }
 
 impl LightSpaceNode {
-    /// Bits of the number of a leaf's primitives.
+    /// Number of low bits of `link` that hold a leaf's number of primitives.
     pub const LEAF_BITS: u32 = 6;
 }
 
-/// The space in which parallel rays are points.
+/// Coordinates for rays that are all parallel: seen along `direction`, each ray is a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightSpace {
-    /// Direction of the rays, not zero.
+    /// Direction of the rays in world space, of any length but zero.
     pub direction: Vec3,
-    /// The origin, world space.
+    /// Origin of the light space, in world space.
     pub centre: Vec3,
 }
 
@@ -61,7 +63,8 @@ impl LightSpace {
         }
     }
 
-    /// A position as seen along the rays, and mirrored along each axis so that they go up.
+    /// Returns a world position in light space: its two coordinates across the rays, and its three
+    /// permuted world coordinates, mirrored so that rays go up.
     pub fn place(&self, position: Vec3) -> (DVec2, DVec3) {
         let d = self.permute(self.direction.as_dvec3());
         let p = self.permute(position.as_dvec3() - self.centre.as_dvec3());
@@ -69,10 +72,10 @@ impl LightSpace {
         (p.truncate() - d.truncate() / d.z * p.z, up)
     }
 
-    /// Builds the hierarchy of `most` nodes at most: nodes, of which the first is the root, and the
-    /// tree that they are of, its boxes in this space. An empty mesh has none. `None` where a
-    /// [`LightSpaceNode::link`] is too small: for more than 67 million triangles, or leaves of more
-    /// than 63.
+    /// Builds a hierarchy over a mesh with at most `most` nodes. Returns its nodes, root first, and
+    /// the [`Bvh`] that they belong to, whose boxes are in light space. Both are empty for an empty
+    /// mesh. Returns `None` if a [`LightSpaceNode::link`] is too small: with more than 67 million
+    /// triangles, or with more than 63 in a leaf.
     pub fn build(&self, mesh: &Mesh, most: usize) -> Option<(Vec<LightSpaceNode>, Bvh)> {
         let bvh = self.tree(mesh);
         // Nothing is merged in an empty one.
@@ -100,7 +103,9 @@ impl LightSpace {
         Bvh::by_ploc(&triangles).unwrap_or_else(|| Bvh::build(mesh))
     }
 
-    /// The nodes of a hierarchy of the mesh in this space; `None` as of [`build`](Self::build).
+    /// Returns the nodes of a hierarchy, fitted to the mesh in this light space, root first. `bvh`
+    /// is a tree over the triangles of the mesh, as [`build`](Self::build) returns it. Returns
+    /// `None` if a [`LightSpaceNode::link`] is too small.
     pub fn refit(&self, bvh: &Bvh, mesh: &Mesh) -> Option<Vec<LightSpaceNode>> {
         let places = mesh.positions.iter().map(|&p| Bounds::at(self.place(p)));
         let places: Vec<Bounds> = places.collect();

@@ -9,21 +9,23 @@ use crate::mesh::{Mesh, bounds};
 use glam::Vec3;
 use obvhs::triangle::Triangle;
 
-/// No tree is deeper, whatever the mesh: a traversal's stack of this many entries never overflows.
-/// Real scenes stay below 45 (Sponza: 38).
+/// Greatest depth of a [`Bvh`] over any mesh, in nodes. A traversal stack of this many entries
+/// never overflows. Real scenes stay below 45 (Sponza: 38).
 pub const MAX_DEPTH: u32 = 64;
 
 /// Cost of a box beside a triangle: as where the tree is built.
 const BOX: f64 = 1.5;
 
-/// The hierarchy. Node 0 is the root; an empty mesh has no nodes.
+/// Binary bounding volume hierarchy over a mesh's triangles. Node 0 is the root; an empty mesh has
+/// no nodes.
 #[derive(Clone, Debug, Default)]
 pub struct Bvh {
-    /// Nodes, children in pairs.
+    /// Nodes of the tree. The two children of an inner node follow each other.
     pub nodes: Vec<BvhNode>,
-    /// Primitive ids in leaf order.
+    /// Primitive ids in the order of the leaves. A leaf names a range of this list.
     pub primitives: Vec<u32>,
-    /// Longest path from the root, in nodes: what a traversal's stack must hold.
+    /// Number of nodes on the longest path from the root: the entries that a traversal's stack
+    /// needs.
     pub depth: u32,
 }
 
@@ -38,8 +40,8 @@ impl Bvh {
         }
     }
 
-    /// Builds the hierarchy with all cores; the same mesh always gives the same tree. Boxes contain
-    /// their triangles exactly (f32 min and max of f32 corners).
+    /// Builds the hierarchy of a mesh on all cores. The same mesh always gives the same tree. Boxes
+    /// contain their triangles exactly (f32 minima and maxima of f32 corners).
     pub fn build(mesh: &Mesh) -> Self {
         let triangles: Vec<Triangle> = mesh
             .triangles
@@ -72,9 +74,9 @@ impl Bvh {
         (bvh.depth <= MAX_DEPTH).then_some(bvh)
     }
 
-    /// The same boxes, as many of them as `most` allows (1 at least): each subtree of so few
-    /// triangles becomes one leaf, be it larger than a leaf that [`build`](Self::build) makes. The
-    /// tree stays as it is where it is small enough.
+    /// Returns the tree reduced to at most `most` nodes (1 at least). Each subtree of few enough
+    /// triangles becomes one leaf, which may be larger than the leaves that [`build`](Self::build)
+    /// makes. A tree that is small enough already is returned as it is.
     pub fn merged(self, most: usize) -> Self {
         if self.nodes.len() <= most.max(1) {
             return self;
@@ -145,8 +147,8 @@ impl Bvh {
         }
     }
 
-    /// Fits all boxes to the mesh, which has the triangles that the tree was built of, at other
-    /// places.
+    /// Fits all boxes to a deformed mesh: the triangles that the tree was built from, with their
+    /// corners at other positions.
     ///
     /// # Panics
     /// If the mesh has fewer triangles.
@@ -172,8 +174,8 @@ impl Bvh {
         }
     }
 
-    /// Returns the cost of a ray through the root's box, in triangle tests: the surface area
-    /// heuristic (MacDonald and Booth 1990).
+    /// Returns the expected cost of a ray that enters the root's box, in triangle tests: the
+    /// surface area heuristic (MacDonald and Booth 1990). It is 0 for an empty tree.
     pub fn cost(&self) -> f64 {
         let Some(root) = self.nodes.first() else {
             return 0.0;

@@ -4,11 +4,11 @@ use super::{avenue, city, forest, level, park};
 use crate::mesh::Mesh;
 use std::{fmt, ops::RangeInclusive, str::FromStr};
 
-/// How many triangles a city or a forest can have.
+/// Range of the number of triangles that a generated city or forest can have.
 pub const TRIANGLES: RangeInclusive<u32> = 10_000..=10_000_000;
 
-/// A mesh that this crate makes: `park`, `avenue`, `level`, `city:100000` or
-/// `forest:100000`.
+/// Mesh that this crate generates. Its name as text is `park`, `avenue`, `level`, `city:100000` or
+/// `forest:100000`; the number is the number of triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Generator {
     /// A bench, flowers, a lamp and trees on a lawn: closed parts of about 55,000 triangles.
@@ -19,23 +19,22 @@ pub enum Generator {
     /// Storeys of rooms whose floors and walls are sheets of large triangles: open parts of 3,168
     /// triangles.
     Level,
-    /// Blocks of houses on a square kilometre; what grows are the details of their walls and
-    /// roofs.
+    /// Blocks of houses on a square kilometre. More triangles mean more details on walls and roofs.
     City {
-        /// About how many triangles there are, within [`TRIANGLES`].
+        /// Approximate number of triangles, within [`TRIANGLES`].
         triangles: u32,
     },
-    /// Trees on both sides of a ride; what grows are their number, half as fast (by the square
-    /// root), and the leaves of each.
+    /// Trees on both sides of a straight ride. The number of trees and the number of leaves of a
+    /// tree both grow with the square root of the number of triangles.
     Forest {
-        /// About how many triangles there are, within [`TRIANGLES`].
+        /// Approximate number of triangles, within [`TRIANGLES`].
         triangles: u32,
     },
 }
 
 impl Generator {
-    /// Makes the mesh: 10⁷ triangles take seconds and less than a GB. A city or forest
-    /// is off its number of triangles by 3 % at most.
+    /// Generates the mesh. 10⁷ triangles take seconds and less than a GB. The number of triangles
+    /// of a city or forest is off by 3 % at most.
     pub fn build(self) -> Mesh {
         match self {
             Self::Park => park::build(),
@@ -46,10 +45,11 @@ impl Generator {
         }
     }
 
-    /// The same with another number of triangles, written as in `1000000` or `1_000_000`.
+    /// Returns this generator with another number of triangles, which is given as text, such as
+    /// `1000000` or `1_000_000`.
     ///
     /// # Errors
-    /// Text that is no number in [`TRIANGLES`], a mesh that has but one size.
+    /// The text is not a number within [`TRIANGLES`], or the mesh has only one size.
     pub fn with_triangles(self, text: &str) -> Result<Self, String> {
         let (least, most) = TRIANGLES.into_inner();
         let number = text.replace('_', "").parse().ok();

@@ -1,13 +1,14 @@
-//! Random numbers and angles that are the same everywhere.
+//! Random numbers, and cosines and sines, with the same bits on every machine.
 
 use glam::DVec3;
 
-/// SplitMix64 (Steele, Lea and Flood 2014): one addition and three multiply-xorshifts per number.
+/// Random number generator SplitMix64 (Steele, Lea and Flood 2014): one addition and three
+/// multiply-xorshifts per number.
 #[derive(Clone, Debug)]
 pub struct Random(u64);
 
 impl Random {
-    /// The sequence that belongs to `seed`.
+    /// Creates the sequence that belongs to `seed`.
     pub fn new(seed: u64) -> Self {
         Self(seed)
     }
@@ -20,14 +21,14 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// Uniform in `low..high`.
+    /// Returns a uniformly distributed number in `low..high`.
     pub fn range(&mut self, low: f64, high: f64) -> f64 {
         // The upper 53 bits fill the mantissa exactly.
         let unit = (self.next() >> 11) as f64 / (1u64 << 53) as f64;
         low + unit * (high - low)
     }
 
-    /// A point inside the unit ball, uniform.
+    /// Returns a uniformly distributed point inside the unit ball.
     pub fn in_ball(&mut self) -> DVec3 {
         loop {
             let point = DVec3::new(
@@ -41,7 +42,7 @@ impl Random {
         }
     }
 
-    /// A unit vector, uniform.
+    /// Returns a unit vector, uniformly distributed over all directions.
     pub fn direction(&mut self) -> DVec3 {
         loop {
             let point = self.in_ball();
@@ -52,7 +53,7 @@ impl Random {
     }
 }
 
-/// Cosine and sine of a fraction of a full turn.
+/// Returns the cosine and the sine of an angle, given as a fraction of a full turn.
 pub fn turn(fraction: f64) -> (f64, f64) {
     // A quarter turn at most goes through the series: 12 terms are exact to the last bit of an f32
     // many times over.

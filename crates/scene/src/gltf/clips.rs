@@ -29,10 +29,10 @@ const MOST_KEYS: f64 = 1e6;
 const NEARLY_RIGID: f64 = 1e-3;
 const NEARLY_UPRIGHT: f64 = 1.0;
 
-/// An animation of a glTF file, frame by frame.
+/// Animation of a glTF file: positions of cameras, lights and parts, 30 times per second.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clip {
-    /// Small letters, digits and `_`, unlike those of the others.
+    /// Name of small letters, digits and `_`, unique among the clips of the file.
     pub name: String,
     frames: u32,
     /// The view that moves, and its direction up.
@@ -42,11 +42,12 @@ pub struct Clip {
 }
 
 impl Clip {
-    /// The paths of an animation, of a scene with these views and lights: one for each camera that
-    /// moves, or of `standing` if none does; where lights move, one under each light.
+    /// Returns the camera paths of this animation: one for each camera that moves, or one for the
+    /// view `standing` if no camera moves. If lights move, there is one such path under each moving
+    /// light. `views` and `lights` are those of the animation's own scene.
     ///
     /// # Errors
-    /// For each that is none, why.
+    /// An entry of the list is an error if its path is not valid; the text says why.
     pub fn paths(
         &self,
         views: &[View],

@@ -30,19 +30,19 @@ use std::path::Path;
 /// Most corners of all triangles together: a small file may place one mesh any number of times.
 const MOST_CORNERS: usize = 1 << 28;
 
-/// Reads a `.gltf` or `.glb` file with what it names.
+/// Reads a `.gltf` or `.glb` file, and the files that it names.
 ///
 /// # Errors
-/// [`SceneError`]: what cannot be read, or is damaged; what the file requires and this program does
-/// not know; a file without triangles.
+/// [`SceneError`]: a file that cannot be read, is damaged, requires an extension that this program
+/// does not know, or has no triangles.
 pub fn load_gltf(path: &Path, materials: MaterialUse) -> Result<(Mesh, ImportReport), SceneError> {
     parse_gltf(&read(path)?, path, materials)
 }
 
-/// Reads such a file with its cameras and lights.
+/// Reads a `.gltf` or `.glb` file with its cameras, lights and animations.
 ///
 /// # Errors
-/// As [`load_gltf`].
+/// Those of [`load_gltf`].
 pub fn load_gltf_scene(
     path: &Path,
     materials: MaterialUse,
@@ -57,11 +57,11 @@ fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
     })
 }
 
-/// Reads the bytes of a `.gltf` or `.glb` file; other files that it names are looked for beside
+/// Reads the bytes of a `.gltf` or `.glb` file. Other files that it names are searched beside
 /// `path`.
 ///
 /// # Errors
-/// As [`load_gltf`], but for reading.
+/// Those of [`load_gltf`], except for reading the file itself.
 pub fn parse_gltf(
     bytes: &[u8],
     path: &Path,
@@ -70,10 +70,11 @@ pub fn parse_gltf(
     parse_gltf_scene(bytes, path, materials).map(|(mesh, _, report)| (mesh, report))
 }
 
-/// Reads the bytes of such a file with its cameras and lights.
+/// Reads the bytes of a `.gltf` or `.glb` file with its cameras, lights and animations. Other files
+/// that it names are searched beside `path`.
 ///
 /// # Errors
-/// As [`parse_gltf`].
+/// Those of [`parse_gltf`].
 pub fn parse_gltf_scene(
     bytes: &[u8],
     path: &Path,

@@ -1,11 +1,12 @@
 //! glTF 2.0 files, parsed by the `gltf` crate and welded into a [`Mesh`](crate::Mesh).
 //!
-//! The mesh is made of the triangles of its default scene (of the first one, else of all meshes)
-//! with the transforms of their nodes and instances, morph targets by their weights, skins in the
-//! pose of their joints' nodes, all of it at rest. `alphaMode: MASK` is a mask, which the
-//! alpha of vertices is a part of; `BLEND` counts as opaque. Primitives without normals are flat.
-//! Parts that are passed over stand in the report. Cameras, lights (KHR_lights_punctual) and
-//! animations of nodes are a [`GltfScene`].
+//! The mesh holds the triangles of the file's default scene; without a default scene those of the
+//! first scene, and without scenes those of all meshes. Transforms of nodes and instances are
+//! applied, morph targets by their weights, and skins in the pose of their joints' nodes, all at
+//! rest. A material with `alphaMode: MASK` gets a mask, which includes the alpha of vertices;
+//! `BLEND` counts as opaque. Primitives without normals are flat-shaded. The import report lists
+//! parts that are left out. Cameras, lights (KHR_lights_punctual) and animations of nodes form a
+//! [`GltfScene`].
 
 mod accessor;
 mod animations;

@@ -16,20 +16,23 @@ use crate::{
 use glam::{DMat3, DMat4, DVec3, Vec3};
 use serde_json::Value;
 
-/// Views and lights of a glTF file, in the order of its scene's nodes.
+/// Views, lights and animations of a glTF file. Views and lights are in the order of its scene's
+/// nodes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GltfScene {
-    /// One of each perspective camera that a node of the scene places. Names are those of nodes,
-    /// else of cameras, in small letters, digits and `_`, no two alike.
+    /// One view for each perspective camera that a node of the scene places. Its name is that of
+    /// the node, or else of the camera, in small letters, digits and `_`; no two views have the
+    /// same name.
     pub views: Vec<View>,
-    /// Those that light anything, named likewise.
+    /// Lights that nodes of the scene place and that light anything. Names are formed like those of
+    /// `views`.
     pub lights: Vec<Light>,
-    /// Its animations of nodes.
+    /// Animations of the file's nodes.
     pub clips: Vec<Clip>,
     /// The node of each view, and of each light.
     nodes_of_views: Vec<usize>,
     nodes_of_lights: Vec<usize>,
-    /// Cameras and lights that were left out, and values that were chosen: a sentence each.
+    /// One sentence for each camera or light that was left out, and for each value that was chosen.
     pub remarks: Vec<String>,
 }
 

@@ -63,15 +63,15 @@ impl From<MaterialUse> for ObjMaterials {
     }
 }
 
-/// How an OBJ file becomes a mesh.
+/// Options for reading an OBJ file.
 #[derive(Clone, Debug, Default)]
 pub struct ObjOptions {
     /// Names of groups or objects that are left out (the whole text after `g` or `o`).
     pub leave_out: Vec<String>,
-    /// How polygons are split.
+    /// Diagonal that splits a quad.
     pub quads: QuadDiagonal,
-    /// Treatment of concave ones.
+    /// Treatment of concave polygons.
     pub concave: Concave,
-    /// Parts of its materials that are read.
+    /// Parts of the file's materials that are read.
     pub materials: ObjMaterials,
 }

@@ -36,10 +36,11 @@ pub fn load_obj(path: &Path, options: &ObjOptions) -> Result<(Mesh, ImportReport
     parse_obj(&bytes, path, options)
 }
 
-/// Reads the bytes of an OBJ file; `path` only serves messages.
+/// Reads the bytes of an OBJ file. Messages name `path`, and files of materials are searched beside
+/// it.
 ///
 /// # Errors
-/// As [`load_obj`], but for reading.
+/// Those of [`load_obj`], except for reading the file itself.
 pub fn parse_obj(
     bytes: &[u8],
     path: &Path,

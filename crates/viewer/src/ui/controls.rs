@@ -39,7 +39,7 @@ pub fn show(ui: &mut Ui, viewer: &mut Viewer) {
     }
 }
 
-/// A choice among names; returns the new one.
+/// Draws a choice among names; returns the newly chosen name, or `None` if it stays the same.
 pub fn names(ui: &mut Ui, label: &str, now: &str, all: &[String]) -> Option<String> {
     let mut chosen = now.to_owned();
     ComboBox::from_label(label)

@@ -1,8 +1,8 @@
-//! The mistakes of a method, shown where its params are.
+//! Shows the errors of a method above its params.
 
 use egui::{RichText, ScrollArea, Ui};
 
-/// An error, as it was printed.
+/// Draws an error text in a scrolling area.
 pub fn show(ui: &mut Ui, text: &str) {
     let colour = ui.visuals().error_fg_color;
     ScrollArea::both()

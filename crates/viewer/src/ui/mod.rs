@@ -1,4 +1,4 @@
-//! The drawing: the state as panels, plots and pictures of egui.
+//! Draws the state with egui: panels, plots and pictures.
 
 mod controls;
 mod fault;
@@ -10,13 +10,13 @@ mod picture;
 use crate::state::Viewer;
 use egui::{CentralPanel, Panel, RichText, ScrollArea, Ui};
 
-/// The toolkit's textures of the pictures.
+/// Textures of the two pictures on the window's GPU.
 #[derive(Default)]
 pub struct Surface {
     pictures: [picture::Held; 2],
 }
 
-/// Draws everything, and does what the input says.
+/// Draws the window and applies the user's input to the state.
 pub fn show(ui: &mut Ui, viewer: &mut Viewer, surface: &mut Surface) {
     viewer.update();
     Panel::left("controls").default_size(300.0).show(ui, |ui| {

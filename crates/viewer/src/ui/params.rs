@@ -1,4 +1,4 @@
-//! The params of a method, by type: sliders within bounds, words, ticks.
+//! Draws the controls of a method's params, by type: sliders, lists of words, checkboxes.
 
 use crate::state::Viewer;
 use egui::emath::Numeric;
@@ -29,7 +29,7 @@ pub fn show(ui: &mut Ui, viewer: &mut Viewer, index: usize) {
     }
 }
 
-/// A widget for a param; returns the new value.
+/// Draws the control of a param; returns the new value, or `None` if it stays the same.
 fn edited(ui: &mut Ui, param: &Param, now: &ParamValue) -> Option<ParamValue> {
     let mut value = now.clone();
     let name = param.name.value.as_str();

@@ -1,4 +1,5 @@
-//! The panel below: what each pass took, what memory there is, the times of the last frames.
+//! Draws the panel below the pictures: times and counts of passes, memory, and times of the last
+//! frames.
 
 use crate::desired_state::MethodSnapshot;
 use crate::drawn::Show;

@@ -1,4 +1,4 @@
-//! A picture with what is chosen of it, its legend, its numbers, and the pointer in it.
+//! Draws a picture with its choices, legend and numbers, and handles the pointer in it.
 
 use crate::drawn::{Reading, Show, of_pixels};
 use crate::heat;
@@ -10,7 +10,7 @@ use egui::{
 };
 use glam::DVec3;
 
-/// A picture on the GPU of the window.
+/// Texture of a picture on the window's GPU.
 #[derive(Default)]
 pub struct Held {
     texture: Option<TextureHandle>,
@@ -192,7 +192,7 @@ fn point(ui: &Ui, viewer: &mut Viewer, response: &Response) {
     }
 }
 
-/// Keys that fly, while no text is written.
+/// Moves the camera by the keys held down, unless a text field has the focus.
 pub fn keys(ui: &Ui, viewer: &mut Viewer) {
     if ui.ctx().egui_wants_keyboard_input() {
         return;

@@ -152,10 +152,11 @@ impl Image {
         })
     }
 
-    /// Draws how many shadow-map texels each pixel's receiver covers. The heat scale goes from dark
-    /// red (1/64 and fewer) over pale yellow (1) to dark blue (64 and more). `texels` has an entry
-    /// for each pixel: 0 is outside the map and dark grey; `None` is pale in the background and
-    /// grey elsewhere.
+    /// Draws a value for each pixel on a heat scale, from dark red (1/64 and less) over pale yellow
+    /// (1) to dark blue (64 and more): the texels of a shadow map that the pixel covers, or one of
+    /// the factors of its [`Footprint`](crate::Footprint). 0 stands for a pixel outside the map and
+    /// is dark grey; `None`, for one that does not face the light or whose triangle is seen
+    /// edge-on, is pale in the background and grey elsewhere.
     ///
     /// # Errors
     /// [`Error::PixelCount`] if `texels` does not fit the reference.

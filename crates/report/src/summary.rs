@@ -199,10 +199,13 @@ impl<'a> Row<'a> {
         self.mean(|_, of| of.ms_without_gbuffer())
     }
 
-    /// True if the frames of two rows on the same views differ in speed beyond the noise. `is_kept`
-    /// compares frames in which only the camera moved, otherwise frames in which every pass ran;
-    /// `by_wall` selects wall time. Frames in which every pass ran are compared turn by turn if the
-    /// methods took turns; otherwise times differ if their quartiles do not overlap.
+    /// True if the frame times of two rows differ by more than chance. Both rows have the same
+    /// views in the same order. `is_kept` compares frames in which only the camera moved (all
+    /// frames of a row that keeps nothing), otherwise frames in which every pass ran; `by_wall`
+    /// selects wall time. Frames in which every pass ran are compared one by one ([`PairedRatio`])
+    /// if the methods took turns in one session, or followed the same camera path in one; all other
+    /// times differ if their quartiles do not overlap. False also where times are missing, or fewer
+    /// than eight pairs of frames.
     pub fn is_told_apart(&self, other: &Self, by_wall: bool, is_kept: bool) -> bool {
         let pair = || self.runs.iter().zip(&other.runs);
         let is_pair = |((one, of), (other, of_other)): (&Measurement, &Measurement)| {

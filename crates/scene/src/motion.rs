@@ -230,11 +230,13 @@ fn folds(axis: DVec3, up: DVec3, degrees: f64) -> bool {
     2.0 * degrees.abs().to_radians().tan() * along >= 1.0
 }
 
-/// Returns the mesh of `movable` with its parts moved. Part number n follows `motions[n]`; `at` is
-/// the time in seconds.
+/// Returns the mesh of `movable` with its parts moved to their places at the time `at`, in seconds.
+/// Part number n follows `motions[n]`, whatever part that motion names.
+///
 /// # Errors
-/// [`MoveError`]: a part that cannot be moved to where it is at that time.
+/// Other than one motion for each part, or a part that its motion cannot move at that time.
 pub fn moved(movable: &Movable, motions: &[PartMotion], at: f64) -> Result<Mesh, MoveError> {
+    movable.check_count(motions.len())?;
     let parts = motions.iter().enumerate();
     let maps = parts.map(|(part, motion)| motion.map(movable.span(part, motion.up()), at));
     let maps: Vec<_> = maps.collect();

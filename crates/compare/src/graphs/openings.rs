@@ -28,14 +28,15 @@ use itertools::Itertools;
 use skiagraph_graph::Sources;
 use std::collections::BTreeSet;
 
-/// Parses methods of a command line and resolves their open includes. An assignment whose name is
-/// an open include of the method's graph chooses the document to include, and becomes part of the
-/// graph's name; a list of documents gives a method for each. Assignments of `params` apply to all
-/// methods, unless a method has its own. Returns the methods, and the assignments of `params` that
-/// choose no document.
+/// Parses methods of a command line, and chooses documents for their *open includes*: includes
+/// whose document a run may exchange (`Include(open: "over")`). An assignment whose name is that of
+/// an open include, a method's own or else one of `params`, chooses its document, and becomes part
+/// of the graph's name: `step@over=pcf`. A list of documents gives a method for each. Returns the
+/// methods, and those of `params` that name no open include of any method, which the caller
+/// applies.
 ///
 /// # Errors
-/// A graph that does not exist.
+/// A graph that does not exist, of a method with assignments or where there are `params`.
 pub fn arguments(
     words: impl IntoIterator<Item = impl AsRef<str>>,
     params: &[Assignment],

@@ -75,10 +75,11 @@ fn one_frame(
 
 /// Runs frames of several executors in turns: `warmup` turns, then `frames` timed ones. Each turn
 /// begins with another of them, so that none always follows the same one. `done` hears how many
-/// turns are over. An executor that fails takes no further part.
+/// turns are over. Returns an entry per executor, in the same order: its timed frames, or the error
+/// that ended it. An executor that fails takes no further part, and its times are dropped.
 ///
 /// # Errors
-/// Ctrl-C.
+/// Ctrl-C; all times are dropped then.
 pub fn in_turns(
     session: Session,
     executors: &mut [&mut Executor],
@@ -164,9 +165,11 @@ impl Times {
     }
 }
 
-/// Times frames in which only the camera moves, the executors taking turns. An executor that skips
-/// no pass in such a frame has `None`: its times would be those of any frame. All have none if
-/// `frames` is 0. What ended an executor stands in its place.
+/// Times frames in which only the camera moves: one frame of each executor to find out if it skips
+/// a pass, then `frames` timed ones, the executors taking turns. Returns an entry per executor, in
+/// the same order: its times, or the error that ended it. `None` for an executor that skips no pass
+/// in such a frame, as its times would be those of any frame, and for all executors if `frames` is
+/// 0.
 ///
 /// # Errors
 /// Ctrl-C.

@@ -170,7 +170,7 @@ pub struct Run {
     /// Name of the preset, or path of the graph, with what tells one setting of it from its others:
     /// `crsm@n=1,depth=plane`.
     pub preset: String,
-    /// Name of the view.
+    /// Name of the view or camera path.
     pub view: String,
     /// Name of the light, where the view is compared under several; absent elsewhere.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -40,9 +40,9 @@ const CALLBACK: Duration = Duration::from_secs(10);
 ///
 /// For each frame call [`encode`](Self::encode), then submit the encoder. If the frame asked for
 /// times, statistics or readbacks, collect its report with [`poll`](Self::poll), which does not
-/// wait, in this frame or a later one, or with [`finish`](Self::finish), which waits. Submit every
-/// such encoder, in the order of encoding: later frames use the results of earlier ones, in skipped
-/// passes and as `.previous`.
+/// wait, in this frame or a later one, or with [`finish`](Self::finish), which waits. Submit the
+/// encoders of all frames, in the order of encoding: later frames use the results of earlier ones,
+/// in skipped passes and as `.previous`.
 pub struct Executor {
     device: wgpu::Device,
     presence: Presence,
@@ -393,9 +393,10 @@ impl Executor {
         Ok(())
     }
 
-    /// Rebuilds the provided resources whose [version](Provider::version) has changed since the
-    /// last request, and those that the provider could not build then. Frames that are already
-    /// encoded keep their resources.
+    /// Asks the provider again for each resource whose [version](Provider::version) has changed
+    /// since the executor last got it, and for those that it could not build then. Call it before
+    /// [`encode`](Self::encode) when the provider may have changed. Frames that are already encoded
+    /// keep their resources.
     ///
     /// # Errors
     /// If a resource cannot be built or its description differs from the one that the graph was

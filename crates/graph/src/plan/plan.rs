@@ -180,9 +180,11 @@ impl Plan {
         Err(self.0.graph.diagnostics(reports.into_list()))
     }
 
-    /// Returns the names of the params that the request sets without effect: with its default, each
-    /// would give the same passes, and shaders would read the same values. For example, the `fit`
-    /// of a shadow map has no effect under a light whose map has only one fit.
+    /// Returns the names of the params whose values in the request have no effect: they differ from
+    /// their defaults, but with the default in place of that one value the plan would have the same
+    /// passes, and shaders would read the same values. A param that is set to its default is not
+    /// among them. For example, the `fit` of a shadow map has no effect under a light whose map has
+    /// only one fit.
     pub fn idle_params(&self) -> Vec<&str> {
         let by_default = |name: &&String| {
             let others = self.with(|request| {

@@ -73,9 +73,10 @@ impl LightSpace {
     }
 
     /// Builds a hierarchy over a mesh with at most `most` nodes. Returns its nodes, root first, and
-    /// the [`Bvh`] that they belong to, whose boxes are in light space. Both are empty for an empty
-    /// mesh. Returns `None` if a [`LightSpaceNode::link`] is too small: with more than 67 million
-    /// triangles, or with more than 63 in a leaf.
+    /// the [`Bvh`] that they were made from, for its `primitives` and for [`refit`](Self::refit);
+    /// its own boxes serve to build it only. Both are empty for an empty mesh. Returns `None` if a
+    /// [`LightSpaceNode::link`] is too small: with more than 67 million triangles, or with more
+    /// than 63 in a leaf.
     pub fn build(&self, mesh: &Mesh, most: usize) -> Option<(Vec<LightSpaceNode>, Bvh)> {
         let bvh = self.tree(mesh);
         // Nothing is merged in an empty one.

@@ -16,7 +16,7 @@ cd "$(dirname "$0")"
 # Without a session (a container, say) Mesa asks for this folder and complains on stderr.
 export XDG_RUNTIME_DIR="${XDG_RUNTIME_DIR:-${TMPDIR:-/tmp}}"
 
-size=512x512 frames=3
+size=512x512 frames=8 # as many as two times need to be told apart
 if [ "${1:-}" = --all ] || { [ $# -gt 0 ] && [ "${1#-}" = "$1" ]; }; then
     size='' frames='' # all, or they are named
 fi

@@ -1,5 +1,5 @@
-//! Opens an adapter and a device as the command line and the tests do. A host program may pass its
-//! own device and queue to [`Executor::new`](crate::Executor::new) instead.
+//! Opens a wgpu adapter and device, chosen by name, backend and features. A host program may pass
+//! its own device and queue to [`Executor::new`](crate::Executor::new) instead.
 //!
 //! ```no_run
 //! use skiagraph_gpu::device::{self, Wanted};
@@ -27,34 +27,38 @@ pub struct Gpu {
     /// The device. It has all limits of the adapter. Its features are those of [`useful_features`]
     /// and of [`Wanted::features`] that the adapter offers.
     pub device: wgpu::Device,
-    /// The queue of the device.
+    /// The queue that work for the device is submitted to.
     pub queue: wgpu::Queue,
-    /// Bytes that the textures and buffers of a graph may take, for
-    /// [`PlanRequest::memory_limit`](skiagraph_graph::PlanRequest::memory_limit). `None` if
-    /// unknown; [`open`] and [`open_with`] leave it so.
+    /// Most bytes that the textures and buffers of a graph may take together, for
+    /// [`PlanRequest::memory_limit`](skiagraph_graph::PlanRequest::memory_limit). `None` for no
+    /// limit, as [`open`] and [`open_with`] set it; wgpu does not tell how much memory a device
+    /// has.
     pub memory: Option<u64>,
     /// Longest time that a frame may take, for
-    /// [`Executor::finish_within`](crate::Executor::finish_within). `None` for no limit; [`open`]
-    /// and [`open_with`] leave it so.
+    /// [`Executor::finish_within`](crate::Executor::finish_within). `None` for no limit, as
+    /// [`open`] and [`open_with`] set it.
     pub timeout: Option<Duration>,
 }
 
-/// Choice of the device that [`open_with`] opens. [`Default`] leaves every choice to it.
+/// Choice of the device that [`open_with`] opens. The [`Default`] accepts any adapter of
+/// [`BACKENDS`], unless the environment variables named below say otherwise.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Wanted<'a> {
-    /// Part of the adapter's name, in any case. `None`: `WGPU_ADAPTER_NAME` if set, else any name.
+    /// Text that the adapter's name must contain; upper and lower case are the same. `None` takes
+    /// the text from the environment variable `WGPU_ADAPTER_NAME`, or accepts any name if that is
+    /// not set.
     pub adapter: Option<&'a str>,
-    /// The backends to search. `None`: those that `WGPU_BACKEND` lists if it is set, else
-    /// [`BACKENDS`].
+    /// The backends to search. `None` searches those that the environment variable `WGPU_BACKEND`
+    /// lists, separated by commas, or [`BACKENDS`] if that is not set.
     pub backends: Option<wgpu::Backends>,
     /// Features that the device gets besides [`useful_features`] if the adapter offers them;
-    /// usually `Graph::features`. Experimental features of wgpu stay off, except
-    /// `EXPERIMENTAL_RAY_QUERY`, whose use here was reviewed.
+    /// usually the features that the graph names (`Graph::features`). Experimental features of wgpu
+    /// stay off, except `EXPERIMENTAL_RAY_QUERY`, whose use here was reviewed.
     pub features: wgpu::Features,
 }
 
-/// The backends that are searched by default. GL is left out: it would list the same GPU a second
-/// time with fewer features, and not every graph is proven on it.
+/// The backends that are searched by default: Vulkan, Metal and Direct3D 12. GL is left out: it
+/// would list the same GPU a second time with fewer features, and not every graph is tested on it.
 pub const BACKENDS: wgpu::Backends = wgpu::Backends::VULKAN
     .union(wgpu::Backends::METAL)
     .union(wgpu::Backends::DX12);
@@ -63,7 +67,8 @@ pub const BACKENDS: wgpu::Backends = wgpu::Backends::VULKAN
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum GpuError {
-    /// No adapter was found on any backend.
+    /// No adapter was found: none on [`BACKENDS`] if no backends were requested, or else none on
+    /// any backend.
     #[error(
         "no usable GPU adapter was found (Vulkan, Metal and Direct3D 12 were tried).\n\
          Install a driver; without a GPU, a software one: \
@@ -72,7 +77,7 @@ pub enum GpuError {
          `pacman -S vulkan-swrast vulkan-icd-loader` on Arch"
     )]
     NoAdapter,
-    /// The requested backends have no adapter.
+    /// The requested backends have no adapter, but others have.
     #[error(
         "no GPU adapter of the backend {wanted} was found; there are: {seen}.\n\
          GL needs the driver's EGL: `apt-get install libegl1 libgles2 libgl1-mesa-dri` on Debian \
@@ -81,15 +86,15 @@ pub enum GpuError {
     NoSuchBackend {
         /// Names of the requested backends, or the text of `WGPU_BACKEND`.
         wanted: String,
-        /// Names and backends of all adapters found.
+        /// Names and backends of the adapters of all backends, as text.
         seen: String,
     },
-    /// No adapter has the requested name.
+    /// No adapter of the searched backends has a name that contains the requested text.
     #[error("no adapter is called `{name}`; there are: {seen}")]
     NoSuchAdapter {
-        /// The name that was asked for.
+        /// The requested text: [`Wanted::adapter`], or else `WGPU_ADAPTER_NAME`.
         name: String,
-        /// Names and backends of the adapters found.
+        /// Names and backends of the adapters of the searched backends, as text.
         seen: String,
     },
     /// The adapter refused to open a device.
@@ -102,7 +107,9 @@ pub enum GpuError {
     },
 }
 
-/// Returns the optional features that graphs and their timing use where an adapter has them.
+/// Returns the optional wgpu features that graphs and their timing use where an adapter has them:
+/// timestamp and pipeline-statistics queries, filtering of 32-bit floats, subgroups, and unclipped
+/// depth.
 pub fn useful_features() -> wgpu::Features {
     wgpu::Features::TIMESTAMP_QUERY
         | wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS
@@ -149,8 +156,9 @@ fn enumerate(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {
     adapters
 }
 
-/// Lists the adapters of all backends, in the order in which [`open`] prefers them. GL adapters,
-/// which [`open`] skips by default, stand behind the other adapters of their device type.
+/// Lists the adapters of all backends in the order in which [`open`] prefers them: discrete GPUs,
+/// integrated ones, virtual ones, software adapters, others. GL adapters, which [`open`] skips by
+/// default, stand behind the other adapters of their device type.
 pub fn adapters() -> Vec<wgpu::AdapterInfo> {
     enumerate(&instance(wgpu::Backends::all()))
         .iter()
@@ -158,10 +166,10 @@ pub fn adapters() -> Vec<wgpu::AdapterInfo> {
         .collect()
 }
 
-/// Opens the adapter whose name contains `name`, in any case. `None` stands for
-/// `WGPU_ADAPTER_NAME`, and for any name if that is not set. Of several matches it takes a discrete
-/// GPU before an integrated one before a software adapter. It searches the backends that
-/// `WGPU_BACKEND` lists, or [`BACKENDS`].
+/// Opens a device on the first adapter of [`adapters`] whose name contains `name`; upper and lower
+/// case are the same. `None` takes the text from the environment variable `WGPU_ADAPTER_NAME`, or
+/// accepts any name if that is not set. The search covers the backends that `WGPU_BACKEND` lists,
+/// or [`BACKENDS`] if that is not set.
 ///
 /// # Errors
 /// See [`GpuError`].
@@ -172,7 +180,7 @@ pub fn open(name: Option<&str>) -> Result<Gpu, GpuError> {
     })
 }
 
-/// Opens a device as [`open`] does, with a choice of backends and features as well.
+/// Opens a device as [`open`] does, on the chosen backends and with additional features.
 ///
 /// # Errors
 /// See [`GpuError`].

@@ -3,21 +3,22 @@
 use skiagraph_graph::{Diagnostics, Panicked, Plan, Provided, caught};
 use std::time::Duration;
 
-/// Reasons why a plan could not be put on a device or a frame could not be run.
+/// Reasons why an [`Executor`](crate::Executor) could not create the resources or pipelines of a
+/// plan, or could not encode, run or read back a frame.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExecuteError {
-    /// wgpu refused something that a pass needs.
+    /// wgpu refused a pipeline, bind group or command of a pass.
     #[error("{place}: pass `{pass}` was refused by the device: {message}")]
     Gpu {
         /// Name of the pass.
         pass: String,
-        /// Place of the pass in the graph document.
+        /// File, line and column of the pass in the graph document, as text.
         place: String,
         /// Message of wgpu.
         message: String,
     },
-    /// wgpu refused to create a resource.
+    /// wgpu refused to create a texture, buffer, sampler or query set.
     #[error("`{name}` could not be made: {message}")]
     Resource {
         /// Name of the resource.
@@ -33,7 +34,7 @@ pub enum ExecuteError {
     Panicked {
         /// Name of the resource, or of the pass with its place in the graph document.
         name: String,
-        /// The panic.
+        /// Message and source position of the panic.
         panicked: Panicked,
     },
     /// The device has too little memory for a resource or pass.
@@ -41,7 +42,8 @@ pub enum ExecuteError {
     OutOfMemory {
         /// Name of the resource or pass.
         name: String,
-        /// The largest resources of the graph as text: [`Plan::memory_table`].
+        /// The largest resources of the graph as text ([`Plan::memory_table`]); empty if no plan
+        /// was at hand.
         table: String,
     },
     /// The provider failed to build a resource.
@@ -52,8 +54,8 @@ pub enum ExecuteError {
         /// Message of the provider.
         why: String,
     },
-    /// A provided resource differs from the description that the graph was planned for: in its
-    /// binding, its number of items, its bytes per item or its kind of light.
+    /// The provider now describes a resource in another way than when the graph was planned: with
+    /// another binding, number of items, bytes per item or kind of light.
     #[error(
         "{}: plan the graph anew (`executor.plan().with(|request| request.provider = …)`) and hand \
          the plan to `replace_graph`",
@@ -67,24 +69,25 @@ pub enum ExecuteError {
         /// The provider's description now.
         given: Provided,
     },
-    /// A pass reads a provided resource that the provider cannot build yet.
+    /// A pass that runs reads a provided resource that the provider cannot build yet.
     #[error("{place}: pass `{pass}` reads `{name}`, which is not there yet: {why}")]
     NotProvided {
         /// Name of the resource.
         name: String,
         /// Name of the first pass that reads the resource.
         pass: String,
-        /// Place of the pass in the graph document.
+        /// File, line and column of the pass in the graph document, as text.
         place: String,
         /// The missing part, as [`Provider::missing`](crate::Provider::missing) names it.
         why: String,
     },
-    /// The plan has no import of this name.
+    /// The plan has no import of this name. An import is a texture, buffer or sampler of the host,
+    /// named in [`PlanRequest::imports`](skiagraph_graph::PlanRequest).
     #[error("the plan has no import `{name}`; it has {known}")]
     NoSuchImport {
-        /// Name that was given.
+        /// Name that the host gave.
         name: String,
-        /// Names of the plan's imports, for the message.
+        /// Names of the plan's imports, separated by commas; `none` if there are none.
         known: String,
     },
     /// The name given to [`Executor::touch`](crate::Executor::touch) is neither an import nor a
@@ -93,9 +96,10 @@ pub enum ExecuteError {
         "neither an import nor a provided resource is called `{name}`; live passes use {known}"
     )]
     NotOfHost {
-        /// Name that was given.
+        /// Name that the host gave.
         name: String,
-        /// Names of the imports and provided resources that live passes use, for the message.
+        /// Names of the imports and provided resources that live passes use, separated by commas;
+        /// `none` if there are none.
         known: String,
     },
     /// An imported texture, buffer or sampler differs from the import that the plan was made for.
@@ -106,7 +110,7 @@ pub enum ExecuteError {
     Import {
         /// Name of the import.
         name: String,
-        /// Differences between the planned and the given import.
+        /// Differences between the planned and the given import, as text.
         why: String,
     },
     /// A pass uses an import that the host has not set yet.
@@ -119,49 +123,54 @@ pub enum ExecuteError {
         name: String,
         /// Name of the first pass that uses the import.
         pass: String,
-        /// Place of the pass in the graph document.
+        /// File, line and column of the pass in the graph document, as text.
         place: String,
     },
-    /// The graph cannot be planned for the changed request.
+    /// The graph cannot be planned for the new viewport or param value, or is not proven on the
+    /// device's backend.
     #[error("{0}")]
     Plan(Box<Diagnostics>),
     /// The plan has no output or capture of this name.
     #[error("the plan has no output `{name}`; it has {known}")]
     NoSuchOutput {
-        /// Name that was given.
+        /// Name that the host gave.
         name: String,
-        /// Names of the plan's outputs and captures, for the message.
+        /// Names of the plan's outputs and captures, separated by commas.
         known: String,
     },
-    /// An output lies in a texture or buffer of the host that was created without `COPY_SRC`.
+    /// An output that was to be read back is a texture or buffer of the host that was created
+    /// without the usage `COPY_SRC`.
     #[error("`{name}` cannot be read back: the host must make it with {usage}")]
     NotReadable {
         /// Name of the output.
         name: String,
-        /// The usage that the texture or buffer lacks.
+        /// The usage that the texture or buffer lacks, as wgpu writes it: `TextureUsages::COPY_SRC`
+        /// or `BufferUsages::COPY_SRC`.
         usage: &'static str,
     },
-    /// The content of an output could not be read back.
+    /// The content of an output or capture, or the pipeline statistics, could not be read back.
     #[error("the content of `{name}` could not be read back")]
     Readback {
-        /// Name of the output.
+        /// Name of the output or capture, or `pipeline statistics`.
         name: String,
     },
-    /// The device was lost or did not answer; the text says how that showed.
+    /// The device was lost or did not answer; the text is the symptom.
     #[error("the device was lost: {0}")]
     DeviceLost(String),
-    /// The GPU had not finished a frame within the given time. It may never finish.
+    /// The GPU had not finished its work within the timeout of
+    /// [`Executor::finish_within`](crate::Executor::finish_within). It may never finish.
     #[error(
         "the GPU was not done with the frame after {:.1} s; in it ran {passes}",
         after.as_secs_f64()
     )]
     Unfinished {
-        /// Time that was waited.
+        /// Time that the call waited.
         after: Duration,
-        /// Names of the passes that ran in the frame.
+        /// Names of the passes that ran in the last encoded frame, separated by commas.
         passes: String,
     },
-    /// The host waits for a frame whose encoder it has not submitted.
+    /// The host called [`Executor::finish`](crate::Executor::finish) for a frame whose encoder it
+    /// has not submitted.
     #[error("the frame that is waited for was encoded, but not submitted")]
     NotSubmitted,
     /// GPU timestamps could not be taken; the text is the reason.

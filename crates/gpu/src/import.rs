@@ -20,7 +20,9 @@
 
 use skiagraph_graph::Import;
 
-/// Returns the description of a texture that the host will import.
+/// Returns the description of a texture that the host will hand over with
+/// [`Executor::import_texture`](crate::Executor::import_texture): its format, size, mips, layers,
+/// samples and usages.
 pub fn texture(texture: &wgpu::Texture) -> Import {
     Import::Texture {
         format: texture.format(),
@@ -33,8 +35,9 @@ pub fn texture(texture: &wgpu::Texture) -> Import {
     }
 }
 
-/// Returns the description of a buffer that the host will import. `items` is the number of its
-/// items; `None` is enough unless a pass is dispatched over the items or counts them.
+/// Returns the description of a buffer that the host will hand over with
+/// [`Executor::import_buffer`](crate::Executor::import_buffer). `items` is the number of array
+/// items that it holds; `None` is enough unless a pass is dispatched over the items or counts them.
 pub fn buffer(buffer: &wgpu::Buffer, items: Option<u64>) -> Import {
     Import::Buffer {
         bytes: buffer.size(),

@@ -4,6 +4,7 @@ use skiagraph_graph::{Describe, NoProvider};
 
 /// Builds the resources that a graph expects from its host: scene buffers, camera and light
 /// uniforms, acceleration structures. The supertrait [`Describe`] describes them without a device.
+/// An [`Executor`](crate::Executor) calls these methods with names that [`Describe::names`] lists.
 pub trait Provider: Describe {
     /// Returns the version of a resource: a number that changes whenever its content or buffer
     /// does. [`Executor::refresh`](crate::Executor::refresh) rebuilds the resources whose version
@@ -13,25 +14,27 @@ pub trait Provider: Describe {
         0
     }
 
-    /// Names the part that the host must set before a resource can be built; `None` if it can be
-    /// built now. An executor is created without missing resources, and
-    /// [`refresh`](crate::Executor::refresh) asks for them again. Until then `encode` fails with
-    /// the returned text if a pass that reads the resource runs.
+    /// Returns the reason, as text, why a resource cannot be built before the host has set
+    /// something; `None`, the default, if it can be built now. An executor is created without
+    /// missing resources, and [`refresh`](crate::Executor::refresh) asks for them again. Until then
+    /// [`encode`](crate::Executor::encode) fails with the returned text if a pass that reads the
+    /// resource runs.
     fn missing(&self, name: &str) -> Option<String> {
         let _ = name;
         None
     }
 
-    /// Builds the buffer of a resource, or returns the buffer built before. It is called only for
-    /// names that a live pass binds. The buffer needs the
-    /// [usages](skiagraph_graph::ProvidedBinding::usages) of its description, and `COPY_SRC` if it
-    /// may be saved or is read as `.previous`.
+    /// Builds the buffer of the resource `name`, or returns the buffer built before. It is called
+    /// only for names that a live pass binds. The buffer needs the
+    /// [usages](skiagraph_graph::ProvidedBinding::usages) of its description's binding, and
+    /// `COPY_SRC` if it may be read back or is read as `.previous` (as it was in the frame before).
     ///
     /// A frame reads the content that the buffer has when the frame is submitted. A provider that
     /// changes a content while encoded frames wait for submission must return a new buffer for it.
     ///
     /// # Errors
-    /// If the resource cannot be built.
+    /// If the resource cannot be built; the executor reports
+    /// [`ExecuteError::Provider`](crate::ExecuteError::Provider).
     fn build(
         &mut self,
         name: &str,
@@ -39,10 +42,11 @@ pub trait Provider: Describe {
         queue: &wgpu::Queue,
     ) -> Result<wgpu::Buffer, ProviderError>;
 
-    /// Builds a resource that is described as
+    /// Builds the top-level acceleration structure of a resource that is described as
     /// [`ACCELERATION_STRUCTURE`](skiagraph_graph::Provided::ACCELERATION_STRUCTURE), or returns
-    /// the structure built before. Its build must be submitted to `queue` before this returns. It
-    /// is called only for names that a live pass binds, on devices with `EXPERIMENTAL_RAY_QUERY`.
+    /// the structure built before. The commands that build it must be submitted to `queue` before
+    /// this method returns. It is called only for names that a live pass binds, on devices with
+    /// `EXPERIMENTAL_RAY_QUERY`.
     ///
     /// # Errors
     /// If the structure cannot be built. The default implementation always fails.
@@ -59,7 +63,7 @@ pub trait Provider: Describe {
     }
 }
 
-/// Reason why a provider could not build a resource.
+/// Reason why a provider could not build a resource, as text for the user.
 #[derive(Clone, Debug, thiserror::Error)]
 #[error("{0}")]
 pub struct ProviderError(pub String);

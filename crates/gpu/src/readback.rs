@@ -1,25 +1,27 @@
 //! Contents of outputs and captures that were read back from the GPU.
 
-/// Content of an output or capture, read back to the host.
+/// Content of an output or capture, read back to the host: an entry of
+/// [`FrameReport::readbacks`](crate::FrameReport::readbacks).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Readback {
-    /// Name of the output or capture.
+    /// Name of the output or capture, as in [`Frame::read`](crate::Frame::read).
     pub name: String,
     /// Content of the output or capture.
     pub content: Content,
 }
 
-/// Bytes of a texture or buffer that was read back.
+/// Bytes of a texture or buffer, or of the part that belongs to the output, that was read back.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Content {
     /// The mips and layers of a texture that belong to the output.
     Texture {
-        /// Format of the texels.
+        /// Format of the texels in `bytes`.
         format: wgpu::TextureFormat,
         /// Width and height in texels of each part. A part is one mip of one layer (or slice). All
         /// layers of the first mip come first, then all layers of the second mip, and so on.
         parts: Vec<[u32; 2]>,
-        /// Texels of all parts in the order of `parts`: rows from the top, without padding.
+        /// Texels of all parts, one part behind the other in the order of `parts`: rows from the
+        /// top, without padding.
         bytes: Vec<u8>,
     },
     /// Bytes of a buffer, or of its items that belong to the output.
@@ -61,15 +63,16 @@ impl Content {
         parts.iter().map(part).collect()
     }
 
-    /// Returns the raw bytes of all parts or of the buffer.
+    /// Returns the raw bytes of the buffer, or of all parts of the texture in the order of `parts`.
     pub fn bytes(&self) -> &[u8] {
         match self {
             Self::Texture { bytes, .. } | Self::Buffer(bytes) => bytes,
         }
     }
 
-    /// Returns the channels of a `Uint` texture, texel after texel, or the 32-bit words of a
-    /// buffer. `None` for a texture of any other format, and for packed formats.
+    /// Returns the channels of a `Uint` or `Stencil8` texture, texel after texel, or the
+    /// little-endian 32-bit words of a buffer. `None` for a texture of any other format, packed
+    /// formats included.
     pub fn as_u32(&self) -> Option<Vec<u32>> {
         match self {
             Self::Buffer(bytes) => Some(bytes.chunks_exact(4).map(unsigned).collect()),
@@ -85,7 +88,8 @@ impl Content {
 
     /// Returns the channels of a texture of floats, depths or normalised integers, texel after
     /// texel, in the order red, green, blue, alpha. Values of an sRGB texture are returned as
-    /// stored, not linear. `None` for a buffer and for integer, packed or compressed formats.
+    /// stored, not linear. `None` for a buffer, and for a texture of an integer, packed or
+    /// compressed format.
     pub fn as_f32(&self) -> Option<Vec<f32>> {
         let float = |bytes: &[u8]| match *bytes {
             [a, b] => half::f16::from_le_bytes([a, b]).to_f32(),

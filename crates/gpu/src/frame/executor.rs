@@ -36,13 +36,21 @@ use std::{
 /// Longest wait for another thread that polls the device to signal finished work.
 const CALLBACK: Duration = Duration::from_secs(10);
 
-/// Runs a plan on a device: creates its resources and pipelines, and encodes its frames.
+/// Runs a [`Plan`] on a wgpu device: creates its resources and pipelines, and encodes its frames
+/// into the host's command encoders.
 ///
-/// For each frame call [`encode`](Self::encode), then submit the encoder. If the frame asked for
+/// For each frame call [`encode`](Self::encode), then submit the encoder. If the [`Frame`] requests
 /// times, statistics or readbacks, collect its report with [`poll`](Self::poll), which does not
 /// wait, in this frame or a later one, or with [`finish`](Self::finish), which waits. Submit the
 /// encoders of all frames, in the order of encoding: later frames use the results of earlier ones,
 /// in skipped passes and as `.previous`.
+///
+/// Terms: a pass is *live* if an output, a capture or the next frame needs its results. *Outputs*
+/// are the results that the graph document lists, *captures* are further contents that
+/// [`PlanRequest::captures`](skiagraph_graph::PlanRequest) names. *Imports* are textures, buffers
+/// and samplers that the host sets; *provided resources* are buffers and acceleration structures
+/// that a [`Provider`] builds. A material's `.previous` is its content at the end of the frame
+/// before.
 pub struct Executor {
     device: wgpu::Device,
     presence: Presence,
@@ -61,8 +69,8 @@ pub struct Executor {
 }
 
 impl Executor {
-    /// Creates an executor for a plan. It creates what the plan needs on the device and asks the
-    /// provider for the resources that live passes bind. It encodes every pass once into a
+    /// Creates an executor for a plan. It creates the plan's textures, buffers and pipelines and
+    /// asks the provider for the resources that live passes bind. It encodes every pass once into a
     /// throw-away encoder, so that errors of the device are found here. A pass that uses an import,
     /// or a resource that the provider cannot build yet, is tried only in [`Executor::encode`],
     /// before the host's encoder is touched.
@@ -107,14 +115,16 @@ impl Executor {
         &self.state.plan
     }
 
-    /// Encodes a frame, which the host submits, and returns the frame's number. It never waits; any
-    /// number of frames may be in flight. Resources with `grow` that proved too small for an
-    /// earlier, submitted frame are larger from this frame on: see [`Plan::grown`].
+    /// Encodes the passes of a frame into `encoder`, which the host then submits, and returns the
+    /// frame's number, counted from 0. It never waits; any number of frames may be in flight.
+    /// Textures and buffers with `grow` in the document that proved too small for an earlier,
+    /// submitted frame are larger from this frame on: see [`Plan::grown`].
     ///
     /// # Errors
-    /// If the plan lacks a requested output; an import or a provided resource is missing; the
-    /// device is lost, has too little memory for a readback, or refuses a pass that is bound for
-    /// the first time. After an error nothing has been encoded.
+    /// If the plan lacks an output of [`Frame::read`] or the output cannot be copied; an import or
+    /// a provided resource of a pass that runs is missing; the device is lost, has too little
+    /// memory, or refuses a pass that is bound for the first time. After an error nothing has been
+    /// encoded.
     pub fn encode(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -207,10 +217,10 @@ impl Executor {
         state.contents.copies(&mut copy_host);
     }
 
-    /// Returns the report of the oldest frame that asked for times, statistics or readbacks and has
-    /// not been reported yet. `None` if the GPU has not finished that frame, or if there is none.
-    /// It never waits. Each such frame brings one report, in the order of encoding; frames whose
-    /// encoder was dropped without being submitted bring none.
+    /// Returns the report of the oldest frame that requested times, statistics or readbacks and has
+    /// not been reported yet. `None` if the GPU has not finished that frame, or if no such frame is
+    /// left. It never waits. Each frame with a request brings one report, in the order of encoding;
+    /// frames whose encoder was dropped without being submitted bring none.
     ///
     /// # Errors
     /// If the device was lost, or a readback or the times of the frame failed. The failed frame
@@ -223,19 +233,21 @@ impl Executor {
         self.frames_in_flight.report(&self.device, &self.presence)
     }
 
-    /// Returns the number of frames that asked for times, statistics or readbacks and have not been
-    /// reported yet. It grows without bound if a host asks in every frame but does not call
-    /// [`poll`](Self::poll).
+    /// Returns the number of encoded frames that requested times, statistics or readbacks and have
+    /// not been reported yet. It grows without bound if a host makes a request in every frame but
+    /// does not call [`poll`](Self::poll).
     pub fn under_way(&self) -> usize {
         self.frames_in_flight.asked()
     }
 
     /// Waits until the GPU has finished all submitted work, and returns the report that
-    /// [`poll`](Self::poll) would. If no report is due, it returns one for the last encoded frame
-    /// that holds only the frame's number and its skipped passes.
+    /// [`poll`](Self::poll) would. If no frame waits for its report, it returns a report of the
+    /// last encoded frame that holds only the frame's number and its skipped passes; the number is
+    /// `u32::MAX` if no frame was encoded.
     ///
     /// # Errors
-    /// Those of [`poll`](Self::poll), and [`ExecuteError::NotSubmitted`].
+    /// Those of [`poll`](Self::poll), and [`ExecuteError::NotSubmitted`] if the frame to report was
+    /// not submitted.
     pub fn finish(&mut self) -> Result<FrameReport, ExecuteError> {
         self.finish_within(None)
     }
@@ -299,13 +311,15 @@ impl Executor {
         }
     }
 
-    /// Sets the texture of an import that
+    /// Sets the texture of the import `name`, which
     /// [`PlanRequest::imports`](skiagraph_graph::PlanRequest::imports) describes. Its content
-    /// counts as changed, even if the texture is the one set before.
+    /// counts as changed, even if the texture is the one set before: passes that read it run in the
+    /// next frame. It may have more usages than described.
     ///
     /// # Errors
-    /// If the plan has no import of this name, the texture differs from its description, or the
-    /// device is lost.
+    /// [`ExecuteError::NoSuchImport`] if the plan has no import of this name,
+    /// [`ExecuteError::Import`] if the texture differs from its description,
+    /// [`ExecuteError::DeviceLost`].
     pub fn import_texture(
         &mut self,
         name: &str,
@@ -366,14 +380,14 @@ impl Executor {
         Ok(())
     }
 
-    /// Marks the content of an import or provided resource as changed. In the next frame, passes
-    /// with `run: OnChange` that read it run; the frame after that finds this content as
-    /// `.previous`. With a provider that counts [`versions`](Provider::version), call
-    /// [`refresh`](Self::refresh) instead.
+    /// Marks the content of an import or provided resource as changed, after the host has written
+    /// it. In the next frame, passes with `run: OnChange` that read it run; the frame after that
+    /// finds this content as `.previous`. With a provider that counts
+    /// [`versions`](Provider::version), call [`refresh`](Self::refresh) instead.
     ///
     /// # Errors
-    /// If the plan has neither an import nor a provided resource of this name. A name that no live
-    /// pass uses is accepted.
+    /// [`ExecuteError::NotOfHost`] if the plan has neither an import nor a provided resource of
+    /// this name. A name that no live pass uses is accepted.
     pub fn touch(&mut self, name: &str) -> Result<(), ExecuteError> {
         let of_host = |resource: &Resource| resource.origin == Origin::Host;
         if !self.plan().imports().contains_key(name) {
@@ -394,9 +408,9 @@ impl Executor {
     }
 
     /// Asks the provider again for each resource whose [version](Provider::version) has changed
-    /// since the executor last got it, and for those that it could not build then. Call it before
-    /// [`encode`](Self::encode) when the provider may have changed. Frames that are already encoded
-    /// keep their resources.
+    /// since the executor last got it, and for each that was [missing](Provider::missing) then.
+    /// Call it before [`encode`](Self::encode) when the provider may have changed. Frames that are
+    /// already encoded keep their resources.
     ///
     /// # Errors
     /// If a resource cannot be built or its description differs from the one that the graph was
@@ -452,10 +466,12 @@ impl Executor {
         Ok(())
     }
 
-    /// Returns a view of an output or capture with the content of the last encoded frame, for the
-    /// host to bind. `None` if the plan has no texture of this name among them. Fetch it anew in
-    /// every frame if the resource is also read as `.previous`, and after [`resize`](Self::resize)
-    /// or another change of the plan.
+    /// Returns a view of the output or capture `name` with the content of the last encoded frame,
+    /// for the host to bind. It covers the mips and layers that belong to the output; its dimension
+    /// is `D3` for a 3D texture, `D2` for a single layer, `D2Array` for several. `None` if no
+    /// texture is an output or capture of this name, or it is an import that is not set. Fetch the
+    /// view anew in every frame if the resource is also read as `.previous`, and after
+    /// [`resize`](Self::resize) or another change of the plan.
     pub fn output_view(&self, name: &str) -> Option<wgpu::TextureView> {
         let target = self.plan().readable_target(name)?;
         let dimension = match &self.plan().resource(target.id).kind {
@@ -469,8 +485,10 @@ impl Executor {
             .ok()
     }
 
-    /// Returns the buffer of an output or capture with the content of the last encoded frame.
-    /// `None` if the plan has no buffer of this name among them.
+    /// Returns the buffer of the output or capture `name` with the content of the last encoded
+    /// frame; the whole buffer, even if only some of its items belong to the output. `None` if no
+    /// buffer is an output or capture of this name, or it is an import that is not set. Fetch it
+    /// anew when [`output_view`](Self::output_view) says so.
     pub fn output_buffer(&self, name: &str) -> Option<wgpu::Buffer> {
         let target = self.plan().readable_target(name)?;
         self.state
@@ -480,8 +498,9 @@ impl Executor {
             .cloned()
     }
 
-    /// Changes the viewport, in pixels. Textures whose size follows it are recreated: their
-    /// `.previous` contents are zero, and passes that keep their outputs run again.
+    /// Changes the viewport to a width and height in pixels and plans the graph again. Textures
+    /// whose size follows the viewport are recreated: their contents are lost, `.previous` contents
+    /// are zero, and the passes that write them run again.
     ///
     /// # Errors
     /// If the graph cannot be planned for this viewport, a provided resource cannot be built, or
@@ -495,8 +514,9 @@ impl Executor {
         self.replace_graph(plan, provider)
     }
 
-    /// Changes the value of a param. A param that only `var<uniform> params` reads costs an upload.
-    /// For every other param the graph is planned again, and the cost depends on its use:
+    /// Changes the value of a param of the root document. If shaders read the param only in
+    /// `var<uniform> params`, the change costs an upload. For every other param the graph is
+    /// planned again, and the cost depends on the param's use:
     ///
     /// - an `override` constant, a culling mode, a depth bias or the like: new pipelines for the
     ///   passes that use it;
@@ -546,8 +566,8 @@ impl Executor {
     }
 
     /// Replaces the plan by another, of the same graph or of a different one. It keeps the
-    /// pipelines, textures and buffers that both plans have in common, with the imports and the
-    /// provided resources.
+    /// pipelines, textures and buffers that both plans have in common (matched by name), the
+    /// imports, and the provided resources whose version is unchanged.
     ///
     /// # Errors
     /// If a provided resource cannot be built or the device refuses something. After an error the
@@ -644,8 +664,8 @@ impl Executor {
         uploads
     }
 
-    /// Returns a [`Preparer`], which can [`prepare`](Preparer::prepare) the next plan on another
-    /// thread while this executor draws.
+    /// Returns a [`Preparer`], which can create the pipelines of the next plan on another thread
+    /// ([`Preparer::prepare`]) while this executor draws.
     pub fn preparer(&self) -> Preparer {
         let steps = |pass: &LinkedPass| (pass.name.value.clone(), pass.steps.clone());
         Preparer {
@@ -655,8 +675,8 @@ impl Executor {
         }
     }
 
-    /// Replaces the plan by one whose pipelines a [`Preparer`] has created; otherwise like
-    /// [`replace_graph`](Self::replace_graph). If the executor's plan has changed since
+    /// Replaces the plan, as [`replace_graph`](Self::replace_graph) does, by one whose pipelines a
+    /// [`Preparer`] has created. If the executor's plan has changed since
     /// [`preparer`](Self::preparer) was called, pipelines that are missing are created now.
     ///
     /// # Errors
@@ -676,11 +696,11 @@ impl Executor {
 
     /// Enlarges the buffers and textures with `grow` that were too small for a finished frame.
     /// [`encode`](Self::encode) does this by itself; call `grow` to choose the time or to get the
-    /// report. `None` if nothing had to grow or could. It never waits: a counter that has not
-    /// arrived is read by a later call.
+    /// report. `None` if no resource had to grow, or the larger size was refused. It never waits: a
+    /// counter that the GPU has not delivered yet is read by a later call.
     ///
     /// If the memory limit or the device refuses a larger size, the resources keep their size, and
-    /// growth stops until the plan changes otherwise. Items that do not fit are then handled as the
+    /// growth stops until the plan is changed. Items that do not fit are then handled as the
     /// document says.
     ///
     /// # Errors

@@ -9,8 +9,8 @@ use crate::{
 use skiagraph_graph::{Ids, Plan, step::Step};
 use std::collections::HashMap;
 
-/// Creates the pipelines of an executor's next plan on another thread.
-/// [`Executor::preparer`](super::Executor::preparer) returns one.
+/// Creates the pipelines of an executor's next plan. It can be sent to another thread, so that the
+/// executor goes on drawing. [`Executor::preparer`](super::Executor::preparer) returns one.
 pub struct Preparer {
     pub(super) device: wgpu::Device,
     pub(super) pipelines: Pipelines,
@@ -18,7 +18,7 @@ pub struct Preparer {
     pub(super) known: HashMap<String, Vec<Step<Ids>>>,
 }
 
-/// A plan with its pipelines, created by [`Preparer::prepare`], for
+/// A plan and its finished pipelines: the result of [`Preparer::prepare`], to be passed to
 /// [`Executor::replace`](super::Executor::replace).
 pub struct Prepared {
     pub(super) plan: Plan,
@@ -26,10 +26,12 @@ pub struct Prepared {
 }
 
 impl Preparer {
-    /// Creates the shader modules and pipelines of a plan that the executor does not have yet.
+    /// Creates those shader modules and pipelines of `plan` that the executor did not have when
+    /// [`Executor::preparer`](super::Executor::preparer) was called.
     ///
     /// # Errors
-    /// If the device refuses a step, with its pass and the pass's place, or the device is lost.
+    /// If the device refuses a shader or pipeline; the error names the pass and its place in the
+    /// document. If the device is lost.
     pub fn prepare(self, plan: Plan) -> Result<Prepared, ExecuteError> {
         let Self {
             device,

@@ -20,15 +20,17 @@ use crate::{
 use skiagraph_graph::{Ids, LinkedPass, Plan, ResourceId, ResourceKind, step::Step};
 use std::collections::{BTreeMap, HashMap};
 
-/// Work that a change of an executor's plan took.
+/// Work that a change of an executor's plan took. Names stand in the order in which the passes run,
+/// or in which the document lists the resources.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ReplanReport {
-    /// Names of the passes whose params were uploaded.
+    /// Names of the passes whose uniform `params` got other values; new passes are not listed.
     pub uploads: Vec<String>,
     /// Names of the passes that got new pipelines: new passes, and passes with another shader,
     /// format, constant or state.
     pub pipelines: Vec<String>,
-    /// Names of the textures and buffers that were created anew; their content is lost.
+    /// Names of the graph's own textures and buffers that were created anew without their former
+    /// content.
     pub resources: Vec<String>,
 }
 

@@ -3,36 +3,43 @@
 use super::{statistics::PassStatistics, times::FrameTiming};
 use crate::readback::Readback;
 
-/// Settings of one frame, for [`Executor::encode`](crate::Executor::encode).
+/// Settings of one frame, for [`Executor::encode`](crate::Executor::encode). The [`Default`]
+/// requests no report and runs only the passes that have to run.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Frame<'a> {
-    /// Take GPU timestamps of every pass.
+    /// Measures the GPU and CPU time of every pass; the times come in [`FrameReport::timing`].
     pub timing: bool,
-    /// Count how often the shaders of each pass run, if the device has `PIPELINE_STATISTICS_QUERY`.
+    /// Counts how often the shaders of each pass run, if the device has the feature
+    /// `PIPELINE_STATISTICS_QUERY`; the counts come in [`FrameReport::statistics`].
     pub statistics: bool,
-    /// Run every pass, even if nothing that it reads has changed. Passes whose `run: When(…)`
+    /// Runs every live pass, even if nothing that it reads has changed. Passes whose `run: When(…)`
     /// condition is false are still skipped.
     pub all: bool,
-    /// Names of the outputs and captures to read back.
+    /// Names of the outputs and captures to copy to the host; their contents come in
+    /// [`FrameReport::readbacks`]. A capture is named as `Capture::name` returns it.
     pub read: &'a [&'a str],
-    /// Time of the shown moment in seconds: `frame.seconds` in the shaders.
+    /// Time in seconds that shaders read as `frame.seconds`, for animation; the host chooses its
+    /// zero.
     pub seconds: f32,
 }
 
-/// Times, statistics, skipped passes and readbacks of one frame.
+/// Times, statistics, skipped passes and readbacks of one frame, from
+/// [`Executor::poll`](crate::Executor::poll) or [`finish`](crate::Executor::finish).
 #[derive(Clone, Debug, Default)]
 pub struct FrameReport {
-    /// Number of the frame: `frame.index` in the shaders, and the result of
+    /// Number of the frame, counted from 0: `frame.index` in the shaders, and the result of
     /// [`encode`](crate::Executor::encode).
     pub index: u32,
     /// Times of the passes; `None` if [`Frame::timing`] was not set.
     pub timing: Option<FrameTiming>,
-    /// Shader runs of the passes that ran, in schedule order. `None` if [`Frame::statistics`] was
-    /// not set, the device cannot count, or the plan has no draws and dispatches.
+    /// Counts of shader runs, one entry for each pass that ran, in the order in which they ran.
+    /// `None` if [`Frame::statistics`] was not set, the device cannot count, or the plan has no
+    /// draws and dispatches.
     pub statistics: Option<Vec<PassStatistics>>,
-    /// Names of the passes that did not run because their run condition was not met, in schedule
-    /// order.
+    /// Names of the live passes that did not run, because their inputs were unchanged or their
+    /// `run: When(…)` condition was false, in schedule order.
     pub skipped: Vec<String>,
-    /// Contents of the outputs and captures, in the order of [`Frame::read`].
+    /// Contents of the requested outputs and captures: one entry for each name in [`Frame::read`],
+    /// in that order.
     pub readbacks: Vec<Readback>,
 }

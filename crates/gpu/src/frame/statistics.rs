@@ -8,7 +8,8 @@ use crate::{
 use skiagraph_graph::{Plan, step::Step};
 use std::{cell::Cell, mem::size_of, ops::Range, sync::Arc};
 
-/// Number of shader runs of a pass in one frame, as the device counted them.
+/// Number of shader runs of a pass in one frame, as the device counted them. Only the first 4096
+/// draws and dispatches of a frame are counted.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct PassStatistics {
     /// Name of the pass.

@@ -14,11 +14,11 @@ pub struct FrameTiming {
 pub struct PassTiming {
     /// Name of the pass.
     pub name: String,
-    /// Begin of the pass's first step on the GPU, counted from the earliest begin in the frame.
-    /// `None` if `gpu` is `None`.
+    /// Time on the GPU at which the pass began, counted from the earliest begin of a pass in the
+    /// frame. `None` if `gpu` is `None`.
     pub begin: Option<Duration>,
-    /// GPU time from the begin of the pass's first step to the end of its last. `None` if there are
-    /// no valid timestamps, for example because the adapter has none.
+    /// GPU time from the begin of the pass's first draw, dispatch or copy to the end of its last.
+    /// `None` if there are no valid timestamps, for example because the adapter has none.
     pub gpu: Option<Duration>,
     /// CPU time that encoding the pass took.
     pub cpu: Duration,
@@ -38,7 +38,7 @@ impl FrameTiming {
         Some(end - begin)
     }
 
-    /// Returns the CPU time that encoding all passes took.
+    /// Returns the CPU time that encoding took: the sum over all passes that ran.
     pub fn cpu(&self) -> Duration {
         self.passes.iter().map(|pass| pass.cpu).sum()
     }

@@ -12,10 +12,10 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Result of the check of an adapter's timestamps.
+/// Result of [`check`]: whether an adapter's GPU timestamps can be believed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Trust {
-    /// The timestamps agree with wall time.
+    /// The timestamps agree with the wall time measured on the CPU.
     Trusted,
     /// The timestamps disagree with wall time, are missing, or cannot be checked on this backend.
     Untrusted {
@@ -31,8 +31,9 @@ const LONG: Duration = Duration::from_millis(30);
 /// Number of frames that are run for a comparison; the first one only warms up.
 const FRAMES: usize = 5;
 
-/// Compares the GPU time of a long dispatch after a raster pass with its wall time. The dispatch is
-/// timed by an [`Executor`], as the passes of any graph are.
+/// Checks a device's timestamps: runs a long dispatch after a raster pass and compares its GPU time
+/// with the wall time of the frame. An [`Executor`] times the dispatch as it times the passes of
+/// any graph. Call it once per device; it waits for the GPU.
 ///
 /// # Errors
 /// If the check's own small graph fails on this device.

@@ -4,14 +4,14 @@ use crate::error::Error;
 use skiagraph_scene::{Surfaces, texture::SourceKey};
 use std::collections::HashMap;
 
-/// Material as shaders read it: an item of `scene.materials`, 32 bytes.
+/// Material of a triangle as shaders read it: an item of the buffer `scene.materials`, 32 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct MaterialRecord {
-    /// Linear red, green and blue; shaders multiply them by the texture.
+    /// Base colour: linear red, green and blue. Shaders multiply it by the texture.
     pub base_color: [f32; 3],
-    /// Index of the texture's first texel in `scene.texels`, row by row; without meaning if the
-    /// material has no texture.
+    /// Index in the buffer `scene.texels` of the texture's first texel; the others follow row by
+    /// row from the top left. 0 if the material has no texture.
     pub first_texel: u32,
     /// Width and height of the texture in texels; 0 if the material has no texture.
     pub size: [u32; 2],

@@ -2,24 +2,26 @@
 
 use std::time::Duration;
 
-/// Record of the last time that a resource was made.
+/// Record of the last time that a [`SceneProvider`](crate::SceneProvider) built a resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Built {
-    /// Name of the resource.
+    /// Name of the resource, such as `scene.bvh_nodes`; `lights` also for a single light
+    /// `lights[2]`.
     pub name: &'static str,
-    /// Kind of work that made the resource.
+    /// Kind of work that built the resource.
     pub how: How,
-    /// CPU time that the work took, uploads included.
+    /// CPU time that the last build took, with its upload.
     pub time: Duration,
-    /// Number of times that the resource was made, this time included.
+    /// Number of times that the provider has built the resource so far.
     pub times: u32,
 }
 
-/// Kind of work that makes a resource.
+/// Kind of work that builds a resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum How {
-    /// The resource was made from the scene as it is set.
+    /// The resource was built from scratch.
     Made,
-    /// The boxes of a hierarchy were fitted to a deformed mesh; its tree stayed as it was.
+    /// The boxes of a bounding-volume hierarchy were fitted to a deformed mesh; its tree stayed as
+    /// it was.
     Refitted,
 }

@@ -1,7 +1,8 @@
 //! Why a scene cannot be brought to the GPU.
 
-/// Error of bringing a scene to the GPU. While a graph is executed, its text is that of the graph's
-/// provider error.
+/// Reason why a [`SceneProvider`](crate::SceneProvider) cannot take a change of its scene, or
+/// cannot build a resource. An executor passes the text of the latter on in
+/// [`ExecuteError::Provider`](skiagraph_gpu::ExecuteError::Provider).
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -24,7 +25,8 @@ pub enum Error {
         /// Number of triangles that the device takes at most.
         most: u32,
     },
-    /// The mesh has more triangles than the hierarchy in light space holds.
+    /// The mesh has more triangles than the hierarchy in light space
+    /// ([`LightSpaceNode`](skiagraph_scene::LightSpaceNode)) can hold.
     #[error(
         "`scene.light_space_nodes` cannot hold {triangles} triangles on this device: trace with \
          `engine: Hierarchy`"
@@ -33,7 +35,8 @@ pub enum Error {
         /// Number of triangles of the mesh.
         triangles: usize,
     },
-    /// The hierarchy in light space needs a directional light, but the light has this kind.
+    /// The hierarchy in light space needs a directional light, but the light is of this kind:
+    /// `spot` or `point`.
     #[error(
         "`scene.light_space_nodes` is made for a directional light, not for a {0} light: trace \
          with `engine: Hierarchy`"
@@ -45,15 +48,15 @@ pub enum Error {
         /// Name of the texture, and the reason.
         String,
     ),
-    /// A triangle has a corner beyond the mesh's positions.
+    /// A triangle of the mesh refers to a position that the mesh does not have.
     #[error("a triangle of the mesh has the corner {index}, but it has only {corners} positions")]
     Corner {
-        /// Index of the corner.
+        /// Index of the position that the triangle refers to.
         index: u32,
         /// Number of positions of the mesh.
         corners: usize,
     },
-    /// The light cannot be used.
+    /// The light cannot be used, for example because a number is not finite.
     #[error("{0}")]
     Light(
         /// Reason why the light cannot be used.
@@ -62,19 +65,20 @@ pub enum Error {
     /// The camera has numbers that are infinite or NaN.
     #[error("the camera has numbers that are infinite or none: {0:?}")]
     Camera(
-        /// Camera in the layout that shaders read.
+        /// Camera that was set, in the layout that shaders read.
         crate::uniforms::CameraUniform,
     ),
-    /// A deformed mesh has another number of positions or normals than the mesh.
+    /// [`SceneProvider::deform`](crate::SceneProvider::deform) was given another number of
+    /// positions or normals than the mesh has.
     #[error(
         "a deformed mesh has {} positions and {} normals, as before; given were {} and {}: for \
          another mesh there is `set_mesh`",
         expected[0], expected[1], given[0], given[1]
     )]
     Deformed {
-        /// Numbers of positions and normals of the mesh.
+        /// Number of positions and number of normals of the mesh.
         expected: [usize; 2],
-        /// Numbers of positions and normals that were given.
+        /// Number of positions and number of normals that were given.
         given: [usize; 2],
     },
     /// A position or normal of a deformed mesh is infinite or NaN.
@@ -82,18 +86,19 @@ pub enum Error {
     NotFinite {
         /// `position` or `normal`.
         what: &'static str,
-        /// Index of the position or normal, from 0.
+        /// Index in the given list of positions or normals.
         index: usize,
         /// Position or normal that was given.
         value: glam::Vec3,
     },
-    /// Transforms were set for a mesh without parts.
+    /// Transforms were set, but the mesh was not given in parts.
     #[error(
         "the provider's mesh has no parts to be moved: make it with `SceneProvider::from_parts`, \
          or give it parts with `set_parts`"
     )]
     NoParts,
-    /// A part cannot be moved by its map.
+    /// A part of the mesh cannot be moved by the affine transform that was set for it, or the
+    /// number of transforms is not the number of parts.
     #[error(transparent)]
     Move(#[from] skiagraph_scene::MoveError),
     /// A resource needs a larger buffer than the device can bind.
@@ -103,8 +108,8 @@ pub enum Error {
         name: String,
         /// Number of bytes that the resource needs.
         bytes: u64,
-        /// Number of bytes that the device binds at most: the smaller of its buffer size and
-        /// binding size limits.
+        /// Number of bytes that the device binds at most: the smaller of its limits
+        /// `max_buffer_size` and `max_storage_buffer_binding_size`.
         limit: u64,
     },
 }

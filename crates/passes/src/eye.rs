@@ -7,7 +7,7 @@ use crate::{
 use glam::{DMat4, DVec2, DVec3};
 use skiagraph_scene::{Camera, LEAST_DEPTH};
 
-/// Direction of a depth buffer: the end that is near.
+/// Direction of a depth buffer: the end of 0 to 1 that belongs to the near plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Depth {
     /// Depth 0 is near, depth 1 is far.
@@ -24,16 +24,16 @@ const FARTHEST: f64 = 65536.0;
 ///
 /// Positions reconstructed from a depth buffer (`shared/from_depth.ron`) are right for any such
 /// camera. Fits to the eye's frustum (`fit: camera`, `pssm`) use a symmetric frustum that holds the
-/// camera's own. A camera without a far plane counts as ending at 65,536 times its near plane.
-/// `shared/gbuffer.ron` draws the symmetric frustum, too, in reversed depth whatever the host's
-/// depth is.
+/// camera's own. That frustum ends at 65,536 times the distance of its near plane if the camera has
+/// no far plane. `shared/gbuffer.ron` draws the symmetric frustum, too, in reversed depth whatever
+/// the host's depth is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Eye {
     pub(crate) camera: CameraUniform,
     pub(crate) unprojection: UnprojectionUniform,
 }
 
-/// Reason why matrices do not form a camera.
+/// Reason why the matrices given to [`Eye::new`] do not form a camera.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EyeError {
@@ -49,23 +49,25 @@ pub enum EyeError {
         /// Name of the matrix: `view` or `projection`.
         &'static str,
     ),
-    /// The frustum of the projection does not fit f32.
+    /// The frustum of the projection is empty, or its numbers do not fit f32.
     #[error("the frustum of the projection is none that f32 can hold: near {near}, far {far}")]
     Frustum {
-        /// Distance of the near plane.
+        /// Distance of the near plane, in scene units: from the eye, or for an orthographic camera
+        /// from the apex of a pyramid around its box.
         near: f64,
-        /// Distance of the far plane.
+        /// Distance of the far plane, in scene units, from the same point.
         far: f64,
     },
-    /// The depth of the projection does not grow in the direction that was given.
+    /// The plane that this [`Depth`] takes for the near one is not the nearer one, or is not before
+    /// the eye.
     #[error("the depth of the projection is not {0:?}: its near plane is not before the eye")]
     Depth(Depth),
 }
 
 impl Eye {
-    /// Creates an eye from a camera's matrices for column vectors, as glam and shaders have them:
-    /// `view` from the world to the eye, `projection` (with its jitter) from the eye to wgpu's clip
-    /// space.
+    /// Creates an eye from a camera's matrices, which multiply column vectors, as in glam and WGSL:
+    /// `view` maps world space to eye space, `projection` (with its jitter) maps eye space to
+    /// wgpu's clip space (y up, depth 0 to 1). `depth` says which depth is near.
     ///
     /// # Errors
     /// [`EyeError`] for matrices that do not form a camera.

@@ -3,27 +3,30 @@
 use skiagraph_scene::{Indexed, IndexedError, Mesh};
 use std::sync::mpsc;
 
-/// Mesh in vertex and index buffers of a host program.
+/// Triangle mesh in the vertex and index buffers of a host program, which [`GpuMesh::read`] copies
+/// back to the CPU.
 ///
 /// Presets need the positions on the CPU, too: light space is laid around them, and hierarchies and
 /// adjacency are built from them.
 #[derive(Clone, Copy, Debug)]
 pub struct GpuMesh<'a> {
-    /// Vertices one behind the other, in a buffer with the usage `COPY_SRC`.
+    /// Vertices, each [`stride`](Self::stride) bytes behind the last, in a buffer with the usage
+    /// `COPY_SRC`.
     pub vertices: wgpu::BufferSlice<'a>,
     /// Distance from one vertex to the next, in bytes.
     pub stride: usize,
     /// Offset of the position within a vertex, in bytes; it is three f32.
     pub position: usize,
-    /// Offset of the normal within a vertex, in bytes; it is three f32. `None` makes faces flat.
+    /// Offset of the normal within a vertex, in bytes; it is three f32. `None` if vertices have
+    /// none; triangles then get the normals of their planes.
     pub normal: Option<usize>,
-    /// Three indices for each triangle, in a buffer with the usage `COPY_SRC`.
+    /// Three indices into `vertices` for each triangle, in a buffer with the usage `COPY_SRC`.
     pub indices: wgpu::BufferSlice<'a>,
     /// Type of the indices: 16 or 32 bits.
     pub format: wgpu::IndexFormat,
 }
 
-/// Reason why a [`GpuMesh`] cannot be read.
+/// Reason why [`GpuMesh::read`] failed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum GpuMeshError {
@@ -33,7 +36,8 @@ pub enum GpuMeshError {
         /// Content of the buffer: `vertices` or `indices`.
         &'static str,
     ),
-    /// A buffer cannot be copied: its size, or an offset in it, is not divisible by 4.
+    /// A slice cannot be copied: its offset is not divisible by 4, or its size is not and the
+    /// buffer ends before the next multiple.
     #[error("the {0} lie at an offset, or in a buffer, that is not divisible by 4")]
     Alignment(
         /// Content of the buffer: `vertices` or `indices`.
@@ -52,7 +56,7 @@ pub enum GpuMeshError {
     /// The numbers in the buffers do not form a mesh.
     #[error(transparent)]
     Mesh(#[from] IndexedError),
-    /// The device could not read a buffer back.
+    /// The device could not copy a buffer back.
     #[error("the {what} could not be read back: {why}")]
     Device {
         /// Content of the buffer: `vertices` or `indices`.
@@ -63,8 +67,8 @@ pub enum GpuMeshError {
 }
 
 impl GpuMesh<'_> {
-    /// Copies the buffers back from the GPU and welds them into a mesh. Waits for the GPU, so call
-    /// it when a mesh is loaded, not in each frame.
+    /// Copies the buffers back from the GPU and makes a mesh of them, in which equal positions are
+    /// one. Waits for the GPU, so call it when a mesh is loaded, not in each frame.
     ///
     /// # Errors
     /// [`GpuMeshError`]: buffers that cannot be read, or numbers that do not form a mesh.

@@ -42,7 +42,7 @@ names! {
     pub(crate) LIGHT_SPACE_PRIMITIVES = "scene.light_space_primitives";
     pub(crate) TLAS = "scene.tlas";
     /// Name of the buffer that `shared/masks.wgsl` reads. It has no items if no triangle of the
-    /// scene is masked or double-sided.
+    /// scene is masked (cut out by the alpha of its texture) or double-sided.
     pub MASKS = "scene.masks";
     pub(crate) UVS = "scene.uvs";
     pub(crate) UV_INDICES = "scene.uv_indices";

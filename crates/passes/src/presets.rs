@@ -8,8 +8,9 @@ use std::sync::Arc;
 static PIPELINES: Dir = include_dir!("$CARGO_MANIFEST_DIR/pipelines");
 static SHADERS: Dir = include_dir!("$CARGO_MANIFEST_DIR/shaders");
 
-/// Source of the files `pipelines/…` and `shaders/…` as they were when the crate was compiled. Put
-/// it below a `FolderSources` in a `LayeredSources` to let files on disk win.
+/// The presets' documents (`pipelines/…`) and shaders (`shaders/…`), embedded in the crate when it
+/// was compiled. In a `LayeredSources` behind a `FolderSources` it supplies the files that the
+/// folder lacks.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct EmbeddedSources;
 
@@ -51,17 +52,18 @@ impl Sources for EmbeddedSources {
     }
 }
 
-/// Preset: a pipeline document that can be named without its path.
+/// Preset: a shadow method that ships with Skiagraph, as a graph document with a short name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Preset {
-    /// Name of the preset on the command line: the file's name without `.ron`.
+    /// Name of the preset on the command line: the document's file name without `.ron`, such as
+    /// `rt`.
     pub name: String,
-    /// Path of the document. Hand it to `Graph::load` with [`EmbeddedSources`] or a folder that
-    /// holds the same files.
+    /// Path of the document, such as `pipelines/rt.ron`. Pass it to `Graph::load` with
+    /// [`EmbeddedSources`] or a folder that holds the same files.
     pub path: String,
 }
 
-/// Lists the embedded presets, sorted by name: every document directly in `pipelines/`.
+/// Lists the embedded presets, sorted by name: one for every document directly in `pipelines/`.
 pub fn presets() -> Vec<Preset> {
     let mut presets: Vec<Preset> = EmbeddedSources
         .list("pipelines")
@@ -76,7 +78,8 @@ pub fn presets() -> Vec<Preset> {
     presets
 }
 
-/// Creates a registry of the standard pass kinds and [`Trace`].
+/// Creates a registry of the standard pass kinds and [`Trace`], with which `Graph::load` reads the
+/// presets.
 pub fn registry() -> Registry {
     let mut registry = Registry::standard();
     registry.register::<Trace>("Trace");

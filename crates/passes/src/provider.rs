@@ -22,7 +22,8 @@ use skiagraph_scene::{
 };
 use std::{sync::Arc, time::Instant};
 
-/// Provider of a scene's resources to graphs: one scene under one view, on one device.
+/// Provider of a scene's resources to graphs: the buffers of one mesh, one camera and the lights,
+/// on one device. It builds each resource when a graph's pass first binds it.
 ///
 /// | resource | content |
 /// |---|---|
@@ -41,7 +42,7 @@ use std::{sync::Arc, time::Instant};
 /// | `scene.uv_indices` | `array<u32>`, three per primitive |
 /// | `scene.materials` | 32-byte [`MaterialRecord`](crate::MaterialRecord)s |
 /// | `scene.material_indices` | `array<u32>`, one per primitive |
-/// | `scene.texels` | `array<u32>`, the base colours' textures, sRGB and alpha, red lowest |
+/// | `scene.texels` | `array<u32>`, RGBA8 texels of all base-colour textures, red in the lowest byte; sRGB
 /// | `camera` | [`CameraUniform`] |
 /// | `unprojection` | [`UnprojectionUniform`] |
 /// | `light` | [`LightUniform`] |
@@ -50,9 +51,9 @@ use std::{sync::Arc, time::Instant};
 ///
 /// Resources that are built stay, and are shared by all graphs that are executed with the same
 /// provider. A provider therefore belongs to the device that it was first used with. Executors that
-/// are made after a camera, light or mesh was set see it at once. Others see it after their next
-/// [`refresh`](skiagraph_gpu::Executor::refresh), which makes those resources anew that depend on
-/// the change and that a live pass reads.
+/// are created after a camera, light or mesh was set use it at once. Others use it after their next
+/// [`refresh`](skiagraph_gpu::Executor::refresh), which rebuilds those resources that depend on the
+/// change and that a pass of the plan reads.
 ///
 /// A buffer is never written again after it was handed out. So any number of executors may be
 /// refreshed and encoded for one submission, each with a light, a camera and a mesh of its own.
@@ -76,8 +77,8 @@ pub struct SceneProvider {
 
 impl SceneProvider {
     /// Creates a provider of `scene` without building any resource. Until a view or a camera is
-    /// set, the `camera` is all zeros. Until a view or a light is set, the light is the scene's
-    /// default light.
+    /// set, the resource `camera` is all zeros. Until a view or a light is set, the resource
+    /// `light` is the scene's default light.
     pub fn new(scene: Arc<Scene>) -> Self {
         let lights = lights::from_scene(&scene);
         Self {
@@ -93,15 +94,17 @@ impl SceneProvider {
     }
 
     /// Creates a second provider of the same scene that shares all built resources. It can be
-    /// changed and [prepared](Self::prepare) on another thread while frames are made with this one,
-    /// and then be passed to `refresh` in its place. Both can also be used side by side. The new
-    /// provider starts with the scene as it is now; later changes of one do not show in the other.
+    /// changed and [prepared](Self::prepare) on another thread while frames are encoded with this
+    /// provider, and then be passed to [`refresh`](skiagraph_gpu::Executor::refresh) in its place.
+    /// Both can also be used side by side. The new provider starts with the scene, camera and
+    /// lights of this one; later changes of either do not show in the other.
     pub fn branch(&self) -> Self {
         self.clone()
     }
 
     /// Builds the resources that a plan's live passes read and that are missing or out of date, so
-    /// that `refresh` has nothing left to build. Resources that cannot be built yet are skipped.
+    /// that [`refresh`](skiagraph_gpu::Executor::refresh) has nothing left to build. Resources of a
+    /// mesh whose parts have no transforms yet are skipped.
     ///
     /// # Errors
     /// Those of [`Provider::build`].
@@ -124,8 +127,8 @@ impl SceneProvider {
         Ok(())
     }
 
-    /// Lists the resources that were built, in the order of their first build. Each entry describes
-    /// the last build.
+    /// Lists the resources that this provider has built: an entry for each, in the order of their
+    /// first build. An entry describes the last build of its resource.
     pub fn built(&self) -> &[Built] {
         &self.built
     }
@@ -264,8 +267,8 @@ impl SceneProvider {
         }
     }
 
-    /// Creates a provider of a mesh under a light. Both can be changed later, and a camera must be
-    /// set.
+    /// Creates a provider of a mesh under a light. Both can be changed later. A camera must be set
+    /// before frames are encoded; until then it is all zeros.
     pub fn from_mesh(mesh: Mesh, light: impl Into<LightKind>) -> Self {
         Self::new(Arc::new(Scene {
             name: String::new(),
@@ -275,24 +278,24 @@ impl SceneProvider {
         }))
     }
 
-    /// Creates a provider of a mesh under a light, with parts that
+    /// Creates a provider of a mesh under a light; the mesh is cut into parts that
     /// [`set_transforms`](Self::set_transforms) moves. Mesh and light can be changed later, and a
-    /// camera must be set. Parts that were [joined](Movable::joined) have no places until they are
-    /// given transforms, before or after executors are made.
+    /// camera must be set. Parts that were [joined](Movable::joined) from several meshes need
+    /// transforms before a frame is encoded.
     pub fn from_parts(parts: impl Into<Arc<Movable>>, light: impl Into<LightKind>) -> Self {
         let mut provider = Self::from_mesh(Mesh::default(), light);
         provider.set_parts(parts);
         provider
     }
 
-    /// Returns the scene, with the mesh that was set last.
+    /// Returns the scene, with the mesh that was set last and in its current shape.
     pub fn scene(&self) -> &Arc<Scene> {
         &self.scene
     }
 
     /// Sets the camera of a view on a viewport of `[width, height]` pixels, and the view's light:
-    /// its own, or else the scene's default light. [`lights`](Self::lights) becomes the list of the
-    /// scene's lights, or the view's light alone if that is not in the list.
+    /// the one that the view names, or else the scene's default light. [`lights`](Self::lights)
+    /// becomes the list of the scene's lights, or the view's light alone if it is none of these.
     pub fn set_view(&mut self, view: &View, viewport: [u32; 2]) {
         self.set_camera(&view.camera(viewport));
         let light = self.scene.light_of(view);
@@ -305,43 +308,48 @@ impl SceneProvider {
         self.set_light(light);
     }
 
-    /// Sets the camera, for depths as `shared/gbuffer.ron` draws them: 1 near, 0 far. For depths
-    /// that a host draws itself use [`set_eye`](Self::set_eye), which is told the near end.
+    /// Sets the camera, for depth buffers in which 1 is near and 0 is far, as `shared/gbuffer.ron`
+    /// draws them. For a host's own depth buffer use [`set_eye`](Self::set_eye): an [`Eye`] says
+    /// which depth is near.
     pub fn set_camera(&mut self, camera: &Camera) {
         self.set_eye(&Eye::from(camera));
     }
 
-    /// Sets the camera by its matrices.
+    /// Sets the camera of a host program, which is given by its matrices.
     pub fn set_eye(&mut self, eye: &Eye) {
         self.versions.eye.set(*eye);
     }
 
-    /// Returns the light that is set.
+    /// Returns the light that the resources `light` and `light_area` describe.
     pub fn light(&self) -> LightKind {
         self.versions.light.now
     }
 
-    /// Returns the index of the light in [`lights`](Self::lights); 0 if it is not in that list.
+    /// Returns the index of [`light`](Self::light) in [`lights`](Self::lights); 0 if it is not in
+    /// that list.
     pub fn light_number(&self) -> usize {
         let mut lights = self.lights().iter();
         let number = lights.position(|light| *light == self.light());
         number.unwrap_or_default()
     }
 
-    /// Returns all lights of the scene, or the view's own light alone.
+    /// Returns the lights that the resources `lights` and `light_areas` describe: all lights of the
+    /// scene in its order (its default light if it has none), or the light of the view alone, as
+    /// [`set_view`](Self::set_view) chose.
     pub fn lights(&self) -> &[LightKind] {
         &self.versions.lights.now
     }
 
-    /// Sets the light. A plan depends on the light's kind: after a change of kind, graphs must be
-    /// planned anew. Until then their `refresh` fails with
+    /// Sets the light of the resources `light` and `light_area`; [`lights`](Self::lights) stay as
+    /// they are. A plan depends on the kind of its light: after a change of kind, graphs must be
+    /// planned anew. Until then [`refresh`](skiagraph_gpu::Executor::refresh) fails with
     /// [`ExecuteError::OtherThanPlanned`](skiagraph_gpu::ExecuteError::OtherThanPlanned).
     pub fn set_light(&mut self, light: LightKind) {
         self.versions.set_light(light);
     }
 
-    /// Sets another mesh, in one piece. A plan depends on the numbers of positions, triangles and
-    /// other items: if they change, graphs must be planned anew
+    /// Sets another mesh, which has no parts to move. A plan depends on the numbers of positions,
+    /// triangles and other items: if they change, graphs must be planned anew
     /// ([`replace_graph`](skiagraph_gpu::Executor::replace_graph)).
     pub fn set_mesh(&mut self, mesh: Mesh) {
         self.masks = mask_words(&mesh);
@@ -351,10 +359,10 @@ impl SceneProvider {
         self.versions.change_mesh();
     }
 
-    /// Sets another mesh, in parts that [`set_transforms`](Self::set_transforms) moves. Plans
-    /// depend on it as described at [`set_mesh`](Self::set_mesh). Parts that were
-    /// [joined](Movable::joined) have no places until they are given transforms. Executors may be
-    /// made before that, but `encode` is then an error.
+    /// Sets another mesh, cut into parts that [`set_transforms`](Self::set_transforms) moves. Plans
+    /// depend on the mesh as described at [`set_mesh`](Self::set_mesh). Parts that were
+    /// [joined](Movable::joined) from several meshes need transforms; executors may be created
+    /// before these are set, but [`encode`](skiagraph_gpu::Executor::encode) then returns an error.
     pub fn set_parts(&mut self, parts: impl Into<Arc<Movable>>) {
         let parts = parts.into();
         self.set_mesh(parts.rest.clone());
@@ -372,15 +380,16 @@ impl SceneProvider {
         };
     }
 
-    /// Moves the corners of the mesh: replaces positions and normals by as many others in the same
-    /// order. Hierarchies are refitted (or built, the first time, or when refitting has made them
-    /// bad); adjacency and all else is kept. Triangles keep their winding: for a mirrored mesh use
-    /// [`set_mesh`](Self::set_mesh) or [`set_transforms`](Self::set_transforms). Equal positions
-    /// and normals are no change.
+    /// Deforms the mesh: replaces its positions (scene units) and unit normals by as many others in
+    /// the same order. The next refresh of an executor refits the hierarchies, or rebuilds them if
+    /// refitting has made them bad; adjacency and all else is kept. Triangles keep their winding:
+    /// for a mirrored mesh use [`set_mesh`](Self::set_mesh) or
+    /// [`set_transforms`](Self::set_transforms). Nothing is rebuilt for equal positions and
+    /// normals.
     ///
     /// # Errors
-    /// Another number of positions or normals, or one that is not finite. The mesh then stays as it
-    /// was.
+    /// [`Error::Deformed`] for another number of positions or normals, [`Error::NotFinite`] for a
+    /// number that is not finite. The mesh then stays as it was.
     pub fn deform(&mut self, positions: Vec<Vec3>, normals: Vec<Vec3>) -> Result<(), Error> {
         let mesh = &self.scene.mesh;
         let expected = [mesh.positions.len(), mesh.normals.len()];
@@ -407,16 +416,16 @@ impl SceneProvider {
         Ok(())
     }
 
-    /// Moves part number n of the mesh from its place at rest by `maps[n]`, for each part. The
-    /// parts are those given to [`set_parts`](Self::set_parts) or [`from_parts`](Self::from_parts).
-    /// Only parts with another map than before are moved, and equal maps cost nothing. The
+    /// Moves each part of the mesh: `maps[n]` takes part number n from its original place, as given
+    /// to [`set_parts`](Self::set_parts) or [`from_parts`](Self::from_parts), to its new place in
+    /// world space. Only parts whose map has changed are moved, and equal maps cost nothing. The
     /// triangles of a part that its map mirrors are wound the other way, as in glTF, so that its
     /// outside stays outside.
     ///
     /// # Errors
-    /// The provider has no parts, the number of maps is not the number of parts, or a part cannot
-    /// be moved by its map (not finite, singular); the error names the part. The mesh then stays as
-    /// it was.
+    /// [`Error::NoParts`] if the mesh has no parts; [`Error::Move`] if the number of maps is not
+    /// the number of parts, or a map is singular, not finite, or moves a position beyond f32; the
+    /// error names the part. The mesh then stays as it was.
     pub fn set_transforms(&mut self, maps: &[DAffine3]) -> Result<(), Error> {
         let parts = self.shape.parts.clone().ok_or(Error::NoParts)?;
         parts.check_count(maps.len())?;

@@ -50,7 +50,7 @@ const MASKED: [(&str, &str); 2] = [
 ];
 
 impl Engine {
-    /// Words by which a `Choice` in a document selects an engine, each with its engine.
+    /// Words by which a `Choice` param of a document selects an engine, each with its engine.
     pub const WORDS: [(&str, Self); 3] = [
         ("hierarchy", Self::Hierarchy),
         ("ray_query", Self::RayQuery),
@@ -79,7 +79,8 @@ fn hierarchy() -> Chosen<Engine> {
     Chosen::Word(Engine::Hierarchy)
 }
 
-/// Follows rays through the scene:
+/// Pass kind of graph documents, in the [`registry`](crate::registry), that traces a buffer of rays
+/// through the scene of a [`SceneProvider`](crate::SceneProvider) and writes a buffer of hits:
 ///
 /// ```ron
 /// Trace(

@@ -22,18 +22,19 @@
 use glam::{DMat4, DVec3, Mat3, Mat4, Vec2, Vec3};
 use skiagraph_scene::{Camera, DirectionalLight, LightKind, Mesh, SpotLight, light::across};
 
-/// WGSL's `Camera`: a perspective camera, 96 bytes.
+/// The struct `Camera` of `shaders/shared/camera.wgsl`: a perspective camera, 96 bytes. Distances
+/// are in scene units.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct CameraUniform {
     /// Eye position, world space, rounded to f32.
     pub eye: Vec3,
-    /// Near plane distance.
+    /// Distance of the near plane from the eye, along `forward`.
     pub near: f32,
-    /// Remainder of rounding `eye`, so that corners far from the origin keep their distance to the
-    /// eye.
+    /// Exact eye position minus `eye`, so that corners far from the origin keep their distance to
+    /// the eye.
     pub eye_low: Vec3,
-    /// Far plane distance.
+    /// Distance of the far plane from the eye, along `forward`.
     pub far: f32,
     /// Unit vector to the right of the image.
     pub right: Vec3,
@@ -45,11 +46,11 @@ pub struct CameraUniform {
     pub half_height: f32,
     /// Unit viewing direction.
     pub forward: Vec3,
-    /// near / (far − near): clip z per unit of distance before the far plane.
+    /// near / (far − near): clip z per unit of distance before the far plane, where clip z is 0.
     pub depth_scale: f32,
-    /// Offset of each pixel's ray from the pixel's centre, in pixels, y down.
+    /// Offset of each pixel's ray from the pixel's centre, in pixels, y down; 0 without jitter.
     pub jitter: Vec2,
-    /// Jitter in clip space, y up.
+    /// The offset `jitter` in clip space, y up.
     pub jitter_clip: Vec2,
 }
 
@@ -73,68 +74,72 @@ impl From<&Camera> for CameraUniform {
     }
 }
 
-/// WGSL's `Unprojection`: data to reconstruct positions from a depth buffer, 96 bytes.
+/// The struct `Unprojection` of `shaders/shared/unprojection.wgsl`, with which shaders reconstruct
+/// positions from a depth buffer, 96 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct UnprojectionUniform {
-    /// Matrix from clip space to world space relative to `origin`; the result is to be divided by
+    /// Matrix from clip space to world space relative to the eye; the shader divides the result by
     /// w.
     pub relative_from_clip: Mat4,
     /// Eye position, world space, rounded to f32.
     pub origin: Vec3,
     /// 1 if depth 1 of the depth buffer is near, 0 if depth 0 is near.
     pub is_reversed: u32,
-    /// Remainder of rounding `origin`.
+    /// Exact eye position minus `origin`.
     pub origin_low: Vec3,
     /// Unused filler at the end of the struct.
     pub padding: f32,
 }
 
-/// WGSL's `Light`: a light and its light space, 144 bytes. The light space of a directional light
-/// is fitted to the scene's corners.
+/// The struct `Light` of `shaders/shared/light.wgsl`: a light and its light space, the space of its
+/// shadow map, 144 bytes. The light space of a directional light is fitted to the corners of the
+/// scene's triangles.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct LightUniform {
-    /// Matrix to the light's clip space, in which z in 0..1 grows away from the light. For a
+    /// Matrix to the light's clip space, in which z grows from 0 to 1 away from the light. For a
     /// directional light it maps positions relative to `centre`, and w stays 1. For a spot light it
     /// maps positions relative to the light: w is the distance along the axis, x and y reach from
-    /// −w to w across the map, and z is w as a share of `range`. For a point light it is 0.
+    /// −w to w across the map, and z is w as a share of `range`. For a point light the matrix is 0.
     pub clip_from_relative: Mat4,
     /// Unit vector towards a directional light; for a spot light, the reverse of its axis; for a
     /// point light, 0.
     pub to_light: Vec3,
     /// Upper bound on the distance between two points of the scene, in scene units.
     pub max_distance: f32,
-    /// Centre of the scene's box, world space: a matrix on absolute positions would lose the detail
-    /// of a far-off scene.
+    /// Centre of the scene's bounding box, world space. The matrix takes positions relative to it,
+    /// because absolute ones would lose the detail of a far-off scene.
     pub centre: Vec3,
     /// Largest sum of the magnitudes that are added up for clip x or y of a point in the scene's
-    /// box. The rounding error of clip x and y is a share of this sum. Only for a directional
-    /// light.
+    /// box. The rounding error of clip x and y is a share of this sum. 0 for other lights than
+    /// directional ones.
     pub corner_across: f32,
-    /// World units per unit of light-space clip x, y and z; for a spot or point light, at distance
-    /// `range`.
+    /// World units per unit of the light's clip x, y and z; for a spot light, at the distance
+    /// `range`. For a point light each is `range`.
     pub extent: Vec3,
-    /// Largest sum of the magnitudes that are added up for clip z of a point in the scene's box.
-    /// Only for a directional light.
+    /// Largest sum of the magnitudes that are added up for clip z of a point in the scene's box. 0
+    /// for other lights than directional ones.
     pub corner_along: f32,
-    /// Position of a spot or point light, world space, rounded to f32.
+    /// Position of a spot or point light, world space, rounded to f32; 0 for a directional light.
     pub position: Vec3,
-    /// Cosine of the angle between a spot light's axis and the edge of its cone.
+    /// Cosine of the angle between a spot light's axis and the edge of its cone; 0 for other
+    /// lights.
     pub edge_cosine: f32,
-    /// Remainder of rounding `position`.
+    /// Exact light position minus `position`.
     pub position_low: Vec3,
-    /// Upper bound on the distance from a spot or point light to any point of the scene.
+    /// Upper bound on the distance from a spot or point light to any point of the scene, in scene
+    /// units; 0 for a directional light.
     pub range: f32,
 }
 
-/// Words for the kinds of lights in documents and scene files. The index of a word is the kind's
-/// number in shaders.
+/// Words for the kinds of lights in documents and scene files. The index of a word in this list is
+/// the number that stands for the kind in shaders.
 pub const LIGHT_KINDS: [&str; 3] = ["directional", "spot", "point"];
 
 impl LightUniform {
-    /// Creates the uniform of a light over all corners of a mesh. An empty mesh counts as a point
-    /// at the origin.
+    /// Creates the uniform of a light whose light space and bounds enclose a mesh. An empty mesh
+    /// counts as a point at the origin.
     pub fn new(light: impl Into<LightKind>, mesh: &Mesh) -> Self {
         match light.into() {
             LightKind::Directional(light) => Self::directional(&light, mesh),
@@ -215,14 +220,16 @@ impl LightUniform {
     }
 }
 
-/// WGSL's `LightArea`: extent of a light around its centre, 32 bytes.
+/// The struct `LightArea` of `shaders/shared/light_area.wgsl`: the disk that an area light is,
+/// around its centre, 32 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct LightAreaUniform {
-    /// Vector from the light's centre to its rim, for a directional light at distance 1; 0 for a
-    /// point light, whose disk faces each receiver.
+    /// Vector from the light's centre to its rim, in scene units; for a directional light, on a
+    /// disk at distance 1. 0 for a point light, whose disk faces each receiver.
     pub right: Vec3,
-    /// Radius of the disk that `right` and `up` span; 0 for a light without extent.
+    /// Radius of the light's disk in scene units; for a directional light, of its disk at distance
+    /// 1. 0 for a light without extent.
     pub radius: f32,
     /// Second vector from the light's centre to its rim, at a right angle to `right`.
     pub up: Vec3,

@@ -42,7 +42,7 @@ use std::{sync::Arc, time::Instant};
 /// | `scene.uv_indices` | `array<u32>`, three per primitive |
 /// | `scene.materials` | 32-byte [`MaterialRecord`](crate::MaterialRecord)s |
 /// | `scene.material_indices` | `array<u32>`, one per primitive |
-/// | `scene.texels` | `array<u32>`, RGBA8 texels of all base-colour textures, red in the lowest byte; sRGB
+/// | `scene.texels` | `array<u32>`, RGBA8 texels of all base-colour textures, sRGB, red lowest
 /// | `camera` | [`CameraUniform`] |
 /// | `unprojection` | [`UnprojectionUniform`] |
 /// | `light` | [`LightUniform`] |

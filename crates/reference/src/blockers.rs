@@ -1,4 +1,5 @@
-//! Counts what blocks the light at pixels that a method calls certain and gets wrong.
+//! Counts what blocks the light at given pixels, such as those that a method calls certain and gets
+//! wrong.
 //!
 //! A method that culls front faces knows a caster by its back faces. A closed part has one behind
 //! each front face; an open part, such as a leaf or a curtain, may have none, and what it shadows
@@ -15,23 +16,26 @@ use serde::{Deserialize, Serialize};
 use skiagraph_scene::{Camera, LightKind, Parts, Towards};
 use std::ops::ControlFlow;
 
-/// Number of pixels that a method calls certain and gets wrong, by the parts of the mesh that block
-/// their light ([`Parts`] says which parts are open).
+/// Number of pixels by the connected parts of the mesh that block their light ([`Parts`] says which
+/// parts are open): the result of [`blockers`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct BlockerCounts {
-    /// Pixels in the shadow of open parts alone.
+    /// Pixels whose shadow ray meets open parts only.
     pub open_part: u64,
-    /// Pixels in the shadow of a closed part, whatever else stands in the way.
+    /// Pixels whose shadow ray meets a closed part, whatever else it meets.
     pub closed_part: u64,
-    /// Pixels with nothing in the way: wrongly in shadow, or facing away from the light.
+    /// Pixels whose shadow ray meets nothing, which face away from the light, or which show the
+    /// background.
     pub none: u64,
 }
 
-/// Counts the blockers of some pixels. `pixels` holds their indices in the buffer `primitives`. The
-/// other arguments are those of [`Oracle::shade`].
+/// Counts, for some pixels of a G-buffer, which parts of the mesh block the ray to the light's
+/// centre. `pixels` holds indices into the buffer `primitives`, for example those of
+/// [`Statistics::certain_wrong_pixels`](crate::Statistics::certain_wrong_pixels). The other
+/// arguments are those of [`Oracle::shade`].
 ///
 /// # Errors
-/// [`Error::UnknownPrimitive`].
+/// [`Error::UnknownPrimitive`] if a pixel names a triangle that the mesh does not have.
 ///
 /// # Panics
 /// If an index in `pixels` lies outside the viewport.

@@ -18,13 +18,13 @@ use serde::{Deserialize, Serialize};
 const NEAR: f64 = 2.0;
 
 /// Distances of a method's wrong pixels from the nearest shadow edge of the reference.
-/// Indeterminate pixels are left out. A pixel is at an edge if it and a pixel beside it face the
-/// light, and one of the two is lit and the other in shadow.
+/// Indeterminate pixels are left out. A pixel is at a shadow edge if it and one of its four
+/// neighbours face the light, and one of the two is lit and the other in shadow.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct EdgeDistances {
-    /// Distances of the wrongly lit pixels.
+    /// Distances of the pixels that the method wrongly shows lit.
     pub lit: Distances,
-    /// Distances of the pixels wrongly in shadow.
+    /// Distances of the pixels that the method wrongly shows in shadow.
     pub shadow: Distances,
 }
 
@@ -33,18 +33,20 @@ pub struct EdgeDistances {
 pub struct Distances {
     /// Number of pixels that have a distance.
     pub count: u64,
-    /// Number of pixels that lie within two pixels of an edge.
+    /// Number of pixels whose distance is at most two pixels.
     pub near: u64,
-    /// Mean distance in pixels; 0 if the pixel is at the edge itself.
+    /// Mean distance on the screen in pixels, between pixel centres; a pixel at an edge has the
+    /// distance 0. 0 if `count` is 0.
     pub mean_pixels: f64,
-    /// Greatest distance in pixels.
+    /// Greatest distance on the screen in pixels.
     pub max_pixels: f64,
-    /// Mean distance in scene units, from the pixel's receiver to the nearest receiver at an edge.
+    /// Mean distance in the scene, in scene units, from the point that a pixel shows to the nearest
+    /// point that a pixel at an edge shows.
     pub mean_world: f64,
-    /// Greatest distance in scene units.
+    /// Greatest distance in the scene, in scene units.
     pub max_world: f64,
-    /// Number of pixels without a distance: no shadow edge is in the picture, or the pixel's
-    /// primitive is seen edge-on.
+    /// Number of pixels that have no distance, because no shadow edge is in the picture or the
+    /// pixel's primitive is seen edge-on.
     pub without: u64,
 }
 
@@ -71,7 +73,7 @@ impl Distances {
         all
     }
 
-    /// Returns the distances of two sets of pixels together.
+    /// Returns the distances of the union of two sets of pixels.
     pub fn with(self, other: Self) -> Self {
         let count = self.count + other.count;
         let mean = |one: f64, another: f64| {
@@ -91,13 +93,13 @@ impl Distances {
 }
 
 impl EdgeDistances {
-    /// Measures the distances of the wrong pixels of a method's picture. `seen` is the frame of the
-    /// picture. `visibility`, `status` and `truth` are as for
+    /// Measures the distances of the wrong pixels of a method's picture. `seen` is the mesh, camera
+    /// and G-buffer of the picture. `visibility`, `status` and `truth` are as for
     /// [`Statistics::judged`](crate::Statistics::judged).
     ///
     /// # Errors
-    /// Those of [`Statistics::judged`](crate::Statistics::judged); [`Error::PixelCount`] if
-    /// `seen.primitives` does not fit the reference.
+    /// Those of [`Statistics::judged`](crate::Statistics::judged); [`Error::PixelCount`] also if
+    /// `seen.primitives` does not have one entry per pixel.
     pub fn measured(
         seen: Seen,
         visibility: &[impl Copy + Into<u32>],
@@ -123,7 +125,7 @@ impl EdgeDistances {
         Ok(Self { lit, shadow })
     }
 
-    /// Returns the distances of the wrong pixels of two pictures together.
+    /// Returns the distances of the wrong pixels of two pictures, taken together.
     pub fn with(self, other: Self) -> Self {
         Self {
             lit: self.lit.with(other.lit),
@@ -131,7 +133,7 @@ impl EdgeDistances {
         }
     }
 
-    /// Returns the distances of all wrong pixels, wrongly lit and wrongly in shadow.
+    /// Returns the distances of all wrong pixels: those wrongly lit and those wrongly in shadow.
     pub fn all(self) -> Distances {
         self.lit.with(self.shadow)
     }

@@ -2,14 +2,15 @@
 
 use thiserror::Error;
 
-/// Reason why an oracle run, a count or an image could not be made.
+/// Reason why the reference could not trace a view, judge a method's picture, or draw an image.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// The caller's interruption flag was raised; no partial result is kept.
+    /// The caller set [`Progress::interrupted`](crate::Progress::interrupted); no partial result is
+    /// returned.
     #[error("interrupted before the reference was finished")]
     Interrupted,
-    /// A buffer does not hold one value per viewport pixel.
+    /// A buffer does not hold one value for each pixel of the viewport.
     #[error(
         "{name} holds {actual} values, but a viewport of {}x{} has {expected} pixels",
         viewport[0],
@@ -18,7 +19,7 @@ pub enum Error {
     PixelCount {
         /// Name of the buffer, such as `primitives`, `visibility` or `status`.
         name: &'static str,
-        /// Viewport width and height.
+        /// Width and height of the viewport in pixels.
         viewport: [u32; 2],
         /// Number of pixels in the viewport.
         expected: u64,
@@ -67,7 +68,8 @@ pub enum Error {
         /// Row of the first pixel without an answer.
         y: u32,
     },
-    /// The light is not valid: its direction has no length, or a number is not finite.
+    /// The light is not valid; the text is the reason, for example that its direction has no length
+    /// or a number is not finite.
     #[error("{0}")]
     Light(String),
     /// The offset of [`OracleMode::Offset`](crate::OracleMode::Offset) is negative or not finite.
@@ -85,7 +87,8 @@ pub enum Error {
         /// Longest offset for this mesh: a million times the diagonal of its box.
         most: f64,
     },
-    /// A text is neither `exact` nor `offset:LENGTH`.
+    /// This text was to be read as an [`OracleMode`](crate::OracleMode), but is neither `exact` nor
+    /// `offset:LENGTH`.
     #[error(
         "`{0}` is no oracle mode; expected `exact` or `offset:LENGTH` with a length of at least 0 \
          in scene units, such as `offset:0.03`"

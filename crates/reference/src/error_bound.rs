@@ -19,8 +19,8 @@ const POSITIONAL_CASTER_ROUNDINGS: f64 = CASTER_ROUNDINGS + 4.0;
 /// the length (4) and of the distance at which a caster is met (8).
 const END_ROUNDINGS: f64 = 16.0;
 
-/// Region in which f32 arithmetic may put a receiver: its exact position, plus −1 to 1 times each
-/// segment, plus a vector in a ball.
+/// Region in which f32 arithmetic may put a receiver (the point that a pixel shows): its exact
+/// position, plus −1 to 1 times each segment, plus a vector in a ball.
 #[derive(Clone, Copy, Debug)]
 pub struct Uncertainty {
     /// Displacements in the receiver's plane that errors of its barycentrics cause, in scene units.
@@ -30,8 +30,8 @@ pub struct Uncertainty {
 }
 
 impl Uncertainty {
-    /// Returns half the extent of the segments' displacements along `normal`, times the length of
-    /// `normal`. The ball is left out.
+    /// Returns how far the segments can displace the receiver along `normal` to either side, in
+    /// scene units times the length of `normal`. The ball is left out.
     pub fn along(&self, normal: DVec3) -> f64 {
         self.segments
             .iter()

@@ -42,8 +42,8 @@ const WIDEST: f64 = 0.04;
 
 type Colour = [f64; 3];
 
-/// Returns the FLIP error of a picture against a reference: the mean over all pixels, from 0
-/// (alike) to 1.
+/// Returns the FLIP error of the picture `test` against `reference`: the mean over all pixels, from
+/// 0 (alike) to 1, for an observer who sees 67 pixels per degree. 0 for pictures without pixels.
 ///
 /// # Errors
 /// [`Error::PixelCount`] if the pictures differ in size.

@@ -10,44 +10,51 @@ use crate::{
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
-/// Comparison of a picture of shares of light, 0 in shadow to 1 in light, with the reference.
+/// Comparison with the reference of a soft-shadow method's picture, whose visibility at each pixel
+/// is the share of the light that arrives, 0 in shadow to 1 in light.
 ///
 /// Only pixels that face the light by the reference (PFL) are judged; no light arrives at other
-/// pixels, whatever their visibility. `invalid` counts values outside of 0 to 1. Such values,
-/// infinities included, are clamped and then judged, as a texture of 0 to 1 would hold them. NaN
-/// counts as 1 off.
+/// pixels, whatever their visibility. `invalid` counts values outside of 0 to 1. The *error* of a
+/// pixel is its visibility minus the reference's share. Such values, infinities included, are
+/// clamped and then judged, as a texture of 0 to 1 would hold them. NaN counts as an error of size
+/// 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Graded {
-    /// Root of the mean squared error over PFL.
+    /// Root mean squared error over the PFL pixels, 0 to 1.
     pub rmse: f64,
-    /// Root mean squared error over the pixels of PFL that are not indeterminate. At an
-    /// indeterminate pixel f32 may find another receiver than the reference does.
+    /// Root mean squared error over the PFL pixels that are not indeterminate
+    /// ([`GroundTruthPixels::indeterminate`]). At an indeterminate pixel f32 may find another
+    /// answer than the reference does.
     pub rmse_outside_band: f64,
-    /// Mean absolute error over PFL.
+    /// Mean absolute error over the PFL pixels, 0 to 1.
     pub mean_absolute_error: f64,
-    /// Number of PFL pixels whose errors exceed some bounds.
+    /// Number of PFL pixels whose error exceeds each of three bounds.
     pub off: OffBy,
-    /// FLIP of the shaded picture against the reference's, the mean over the whole picture.
+    /// [FLIP](crate::flip) error of the shaded picture against the reference's shaded picture, 0 to
+    /// 1: the mean over all pixels.
     pub flip: f64,
-    /// Number of PFL pixels whose value is not a share.
+    /// Number of PFL pixels whose visibility is not a share: NaN, infinite, or outside of 0 to 1.
     pub invalid: Invalid,
     /// Errors in the umbra, in the penumbra and in the light of the reference.
     pub soft: SoftErrors,
 }
 
-/// Errors of shares of light, apart by the share that the reference shows. Light in the umbra is
-/// seen as a leak, dark in the light as a stain, and an error in the penumbra hardly at all. Covers
-/// pixels that face the light (PFL) and are not indeterminate.
+/// Errors of a soft-shadow picture, separately for the reference's umbra, penumbra and light. Light
+/// in the umbra is seen as a leak, dark in the light as a stain, and an error in the penumbra
+/// hardly at all. Covers pixels that face the light (PFL) and are not indeterminate. A mean over no
+/// pixels is 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SoftErrors {
     /// Number of pixels in the umbra: by the reference they see less than a tenth of the light.
     pub umbra: u64,
-    /// Mean excess of the shown share over the reference's, for pixels in the umbra.
+    /// Mean over the umbra pixels of the excess of the shown share over the reference's; a share
+    /// that is too small counts as 0.
     pub light_in_umbra: f64,
     /// Number of pixels in the light: by the reference they see more than nine tenths of it.
     pub light: u64,
-    /// Mean lack of the shown share below the reference's, for pixels in the light.
+    /// Mean over the pixels in the light of the lack of the shown share below the reference's; a
+    /// share that is too large counts as 0.
     pub dark_in_light: f64,
     /// Number of pixels in the penumbra: by the reference they see a tenth to nine tenths of the
     /// light.
@@ -96,10 +103,11 @@ impl SoftErrors {
     }
 }
 
-/// Number of PFL pixels with an error above a bound. Each count contains those of larger bounds.
+/// Number of pixels that face the light (PFL) and whose error of the share has a size above a
+/// bound. Each count includes the counts for larger bounds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct OffBy {
-    /// Pixels with an error above 1/255, which 8 bits can show.
+    /// Pixels with an error above 1/255, the smallest step that 8 bits can show.
     pub over_1_255: u64,
     /// Pixels with an error above 1/16.
     pub over_1_16: u64,
@@ -107,7 +115,8 @@ pub struct OffBy {
     pub over_1_4: u64,
 }
 
-/// Number of PFL pixels whose visibility is not a share, by the kind of its value.
+/// Number of pixels that face the light (PFL) and whose visibility is not a share of light, by kind
+/// of value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Invalid {
     /// Pixels with the value NaN.
@@ -131,7 +140,8 @@ impl Invalid {
     }
 }
 
-/// Number of pixels over which the errors of a picture are averaged.
+/// Numbers of pixels over which the errors of a picture are averaged; [`Graded::together`] weights
+/// pictures by them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct JudgedPixels {
     /// Number of pixels that face the light (PFL).
@@ -141,12 +151,13 @@ pub struct JudgedPixels {
 }
 
 impl Graded {
-    /// Judges a method's `visibility` against the reference's `shares`, both one value per pixel,
-    /// row by row from the top left. `truth` says which pixels face the light, and which of them
-    /// are indeterminate.
+    /// Judges a method's `visibility` against the reference's `shares`
+    /// ([`GroundTruth::shares`](crate::GroundTruth::shares)), both one value per pixel, row by row
+    /// from the top left. `truth` says which pixels face the light, and which of them are
+    /// indeterminate.
     ///
     /// # Errors
-    /// [`Error::PixelCount`] if a buffer is not as large as the reference.
+    /// [`Error::PixelCount`] if a buffer does not have one value per pixel of `truth`.
     pub fn judged(
         visibility: &[f32],
         shares: &[f32],
@@ -191,8 +202,8 @@ impl Graded {
         Ok(graded)
     }
 
-    /// Returns the errors of several pictures together, each given with the number of its pixels.
-    /// FLIP is the mean over the pictures.
+    /// Returns the errors of several pictures together, each given with the numbers of its pixels:
+    /// counts are added, means are taken over all their pixels. FLIP is the mean over the pictures.
     pub fn together(pictures: impl IntoIterator<Item = (Self, JudgedPixels)>) -> Self {
         let mut all = Self::default();
         let (mut count, mut facing, mut outside) = (0.0, 0.0, 0.0);

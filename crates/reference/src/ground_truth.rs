@@ -10,41 +10,44 @@ use rayon::prelude::*;
 use skiagraph_scene::{Camera, LightKind, Mesh};
 use std::borrow::Cow;
 
-/// The oracle's answer for a pixel.
+/// The oracle's answer for a pixel: if light reaches its receiver, the point that the pixel shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
     /// The pixel shows no geometry.
     Background,
-    /// The pixel faces away from the light, dot(interpolated normal, l) ≤ 0, whatever stands in
-    /// between; or it lies outside of a spot light's cone.
+    /// The receiver faces away from the light, dot(interpolated normal, vector to the light) ≤ 0,
+    /// whether or not a caster is in between; or it lies outside of a spot light's cone.
     FacingAway,
-    /// The pixel faces the light and sees it.
+    /// The receiver faces the light and sees it; of a light with extent, at least half.
     Lit,
-    /// The pixel faces the light and does not see it.
+    /// The receiver faces the light and does not see it; of a light with extent, less than half.
     Shadow,
 }
 
 impl Class {
-    /// Returns true if the pixel is one of the *pixels facing the light* (PFL), the denominator of
-    /// all shares.
+    /// Returns true for [`Lit`](Self::Lit) and [`Shadow`](Self::Shadow): the pixel is one of the
+    /// *pixels facing the light* (PFL), of which error counts are given as shares.
     pub fn faces_light(self) -> bool {
         matches!(self, Self::Lit | Self::Shadow)
     }
 }
 
-/// Exact answers for one view. Every list has one entry per pixel, row by row from the top left.
+/// The oracle's answers for one view. Every list has one entry per pixel, row by row from the top
+/// left.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroundTruthPixels {
     /// Width and height in pixels.
     pub viewport: [u32; 2],
     /// Answer for each pixel.
     pub classes: Vec<Class>,
-    /// True where the answer flips when receiver or casters move within their f32 error bounds: no
-    /// f32 method can be blamed for it.
+    /// True where the answer flips when receiver or casters move within their f32 error bounds, so
+    /// that an error of an f32 method there is excused.
     pub indeterminate: Vec<bool>,
-    /// dot(interpolated vertex normal, unit vector towards the light); 0 in the background.
+    /// dot(interpolated vertex normal, unit vector towards the light); 0 in the background, at most
+    /// 0 outside of a spot light's cone.
     pub n_dot_l: Vec<f32>,
-    /// Linear base colour of each pixel, for pictures; empty if the mesh has no materials.
+    /// Linear red, green and blue of each pixel's base colour, for pictures; black in the
+    /// background. Empty if the mesh has no materials.
     pub base_colors: Vec<[f32; 3]>,
 }
 
@@ -79,12 +82,14 @@ impl GroundTruthPixels {
     }
 
     /// Returns the share of a light without extent that each pixel sees: 1 where lit, 0 elsewhere.
+    /// For a light with extent see [`GroundTruth::shares`].
     pub fn shares(&self) -> Vec<f32> {
         let share = |&class: &Class| f32::from(u8::from(class == Class::Lit));
         self.classes.iter().map(share).collect()
     }
 
-    /// Returns the reference's visibility, as a method would output it: 1 where lit, 0 elsewhere.
+    /// Returns the reference's visibility of each pixel, as a method would output it: 1 where lit,
+    /// 0 elsewhere.
     pub fn visibility(&self) -> Vec<u8> {
         self.classes
             .iter()
@@ -92,7 +97,8 @@ impl GroundTruthPixels {
             .collect()
     }
 
-    /// Returns the reference's status, as a method would output it; it is never uncertain.
+    /// Returns the reference's status of each pixel, a value of [`status`](crate::status), as a
+    /// method would output it; it is never uncertain.
     pub fn status(&self) -> Vec<u8> {
         let status = |class: &Class| match class {
             Class::Background => status::BACKGROUND,
@@ -126,24 +132,26 @@ fn base_colors(mesh: &Mesh, camera: &Camera, primitives: &[u32]) -> Vec<[f32; 3]
     primitives.par_iter().enumerate().map(colour).collect()
 }
 
-/// Share of an area light that each pixel sees. Lists are row by row from the top left.
+/// Share of an area light that each pixel sees. Lists have one entry per pixel, row by row from the
+/// top left.
 ///
-/// The samples are two independent sets of as many strata of equal area. Half the difference of the
-/// two sets' means estimates the standard error of the share.
+/// The shadow rays of a pixel go to two independent sets of points on the light, each set
+/// stratified into parts of equal area. Half the difference of the two sets' means estimates the
+/// standard error of the share.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AreaVisibility {
     /// Number of shadow rays for each pixel that faces the light.
     pub samples: u32,
-    /// Share of the light that each pixel sees: 0 in the umbra, 1 where it sees all of the light, 0
-    /// where it faces away from the light.
+    /// Share of the light that each pixel sees, 0 in the umbra to 1 where it sees all of the light.
+    /// 0 also where it faces away from the light, and in the background.
     pub shares: Vec<f32>,
-    /// Estimated standard error of each pixel's share.
+    /// Estimated standard error of each pixel's share; 0 where no ray was traced.
     pub standard_errors: Vec<f32>,
 }
 
 impl AreaVisibility {
-    /// Returns the root mean square and the maximum of the standard errors, over the pixels that
-    /// face the light.
+    /// Returns `[root mean square, maximum]` of the standard errors, over the pixels that face the
+    /// light; 0 if no pixel does. `truth` says which pixels those are.
     pub fn standard_error(&self, truth: &GroundTruthPixels) -> [f64; 2] {
         let classes = truth.classes.iter().zip(&self.standard_errors);
         let facing = classes.filter(|(class, _)| class.faces_light());
@@ -162,7 +170,8 @@ impl AreaVisibility {
 pub struct GroundTruth {
     /// Answer for each pixel.
     pub pixels: GroundTruthPixels,
-    /// Share of the light that each pixel sees; `None` for a light without extent.
+    /// Share of the light that each pixel sees; `None` for a light without extent, of which a pixel
+    /// sees all or nothing.
     pub area: Option<AreaVisibility>,
 }
 

@@ -40,16 +40,18 @@ const TEXELS: [Colour; 7] = [
 const OUTSIDE_MAP: Colour = [64, 64, 64];
 
 const NO_NUMBER: Colour = [255, 0, 255];
-/// Error from which on [`Image::difference`] shows its colours in full.
+/// Size of the error of a share of light, 0 to 1, from which on [`Image::difference`] shows its
+/// colours at full strength.
 pub const FULL_COLOUR: f64 = 0.25;
 
 /// Ambient light of [`Image::shaded`], as a share of the light's own at normal incidence.
 const AMBIENT: f32 = 0.2;
 
-/// Visibility value of a pixel, which can be read as a share of light.
+/// Visibility value of a pixel that can be read as a share of light: an `f32`, or a `u8` or `u32`
+/// of a method with hard shadows.
 pub trait Shown: Copy {
-    /// Returns the share of light, 0 in shadow to 1 in light. Values outside are clamped; NaN is
-    /// shadow.
+    /// Returns the share of light, 0 in shadow to 1 in light. An `f32` is clamped, and NaN is
+    /// shadow. An integer is light unless it is 0 or [`UNANSWERED`].
     fn share(self) -> f32;
 }
 
@@ -76,7 +78,7 @@ impl Shown for f32 {
     }
 }
 
-/// An RGB picture, 8 bits per channel.
+/// An RGB picture in memory, 8 bits per channel.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Image {
     /// Width and height in pixels.
@@ -87,8 +89,9 @@ pub struct Image {
 
 impl Image {
     /// Draws where a method is wrong: blue = wrongly lit, red = wrongly in shadow, both paler where
-    /// indeterminate, over the reference's shadows in pale grey. Exactly the wrong pixels are
-    /// coloured. [`Statistics`](crate::Statistics) defines wrong pixels.
+    /// indeterminate, over the reference's shadows in pale colours.
+    /// [`Statistics`](crate::Statistics) defines which pixels are wrong. The arguments are those of
+    /// [`Statistics::judged`](crate::Statistics::judged).
     ///
     /// # Errors
     /// Those of [`Statistics::judged`](crate::Statistics::judged).
@@ -117,9 +120,10 @@ impl Image {
         })
     }
 
-    /// Draws where shares of light are off: blue = too light, red = too dark, over the reference's
-    /// shares in pale grey; magenta = NaN. Colours are stronger for larger errors, up to
-    /// [`FULL_COLOUR`].
+    /// Draws where a method's shares of light (`visibility`) differ from the reference's `shares`:
+    /// blue = too light, red = too dark, over the reference's shares in pale grey; magenta = NaN.
+    /// Colours are stronger for larger errors, up to [`FULL_COLOUR`]. Both lists have one value per
+    /// pixel, row by row from the top left.
     ///
     /// # Errors
     /// [`Error::PixelCount`] if a buffer does not fit the reference.
@@ -153,13 +157,13 @@ impl Image {
     }
 
     /// Draws a value for each pixel on a heat scale, from dark red (1/64 and less) over pale yellow
-    /// (1) to dark blue (64 and more): the texels of a shadow map that the pixel covers, or one of
-    /// the factors of its [`Footprint`](crate::Footprint). 0 stands for a pixel outside the map and
-    /// is dark grey; `None`, for one that does not face the light or whose triangle is seen
-    /// edge-on, is pale in the background and grey elsewhere.
+    /// (1) to dark blue (64 and more): the number of shadow-map texels that the pixel covers, or
+    /// one of the factors of its [`Footprint`](crate::Footprint). The value 0, for a pixel outside
+    /// the map, is dark grey. `None`, for a pixel that does not face the light or whose triangle is
+    /// seen edge-on, is pale in the background and grey elsewhere.
     ///
     /// # Errors
-    /// [`Error::PixelCount`] if `texels` does not fit the reference.
+    /// [`Error::PixelCount`] if `texels` does not have one value per pixel of `truth`.
     pub fn texels(texels: &[Option<f64>], truth: &GroundTruthPixels) -> Result<Self, Error> {
         check_pixel_count("texels", truth.viewport, texels.len())?;
         let colour = |(texels, class): (&Option<f64>, &Class)| match (texels, class) {
@@ -175,8 +179,9 @@ impl Image {
         })
     }
 
-    /// Draws a method's shadows: white = lit, black = shadow, grey in between, green = facing away,
-    /// grey-blue = background.
+    /// Draws a method's output alone: white = lit, black = shadow, grey for shares in between,
+    /// green = facing away, grey-blue = background. `status` holds values of
+    /// [`status`](crate::status), which say where a pixel faces away or shows the background.
     ///
     /// # Errors
     /// [`Error::PixelCount`] if a buffer does not fit `viewport`.
@@ -223,7 +228,8 @@ impl Image {
     }
 
     /// Draws the scene in its base colours, or in grey without materials, under Lambert's law:
-    /// max(n · l, 0) × visibility + ambient, with the reference's n · l and the given visibility.
+    /// max(n · l, 0) × visibility + ambient, with n · l of `truth` and the given visibility, one
+    /// value per pixel.
     ///
     /// # Errors
     /// [`Error::PixelCount`] if `visibility` does not fit the reference.

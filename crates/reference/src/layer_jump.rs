@@ -10,34 +10,37 @@ use crate::{
 };
 use serde::{Deserialize, Serialize};
 
-/// Differences in error between neighbouring pixels, across the border of two layers and elsewhere.
+/// Differences in error between neighbouring pixels, where two layers of a shadow map meet and
+/// elsewhere. They show if a cascade or cube map has visible seams.
 ///
 /// A *pair* is two pixels beside or below each other that face the light, are not indeterminate,
 /// and show one surface: the receiver of each lies within a pixel's width of the plane of the
 /// other's primitive. An object before a far wall thus makes no pair with the wall. A pair lies
-/// *across* if its pixels ask different layers of the map, else *elsewhere*. The error of a pixel
-/// is the share of light that it shows minus the reference's. The difference of a pair is the size
-/// of the difference of its two errors, 0 to 2; of hard answers it is 1 where one of the two is
-/// wrong.
+/// *across* a border if the method looks its pixels up in different layers of the map, else
+/// *elsewhere*. The error of a pixel is the share of light that it shows minus the reference's. The
+/// difference of a pair is the size of the difference of its two errors, 0 to 2; for hard shadows
+/// it is 1 where one of the two pixels is wrong.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LayerJump {
     /// Number of pairs across a border.
     pub pairs: u64,
-    /// Mean difference of the pairs across a border.
+    /// Mean difference of the pairs across a border, 0 to 2.
     pub across: f64,
     /// Number of pairs elsewhere, within one layer.
     pub pairs_elsewhere: u64,
-    /// Mean difference of the pairs elsewhere.
+    /// Mean difference of the pairs elsewhere, 0 to 2; 0 if there are none.
     pub elsewhere: f64,
 }
 
 impl LayerJump {
-    /// Measures the jump in a picture. The first argument is the frame. The two lists are the
-    /// shares of light that the method shows, and those of the reference. `layers` holds the layer
-    /// of the map that each pixel asks. Returns `None` if no pair lies across a border.
+    /// Measures the jump in a picture. `seen` is the picture's mesh, camera and G-buffer. `shown`
+    /// and `shares` are the shares of light that the method shows and those of the reference;
+    /// `layers` is the index of the map layer in which the method looks each pixel up. Each list
+    /// has one entry per pixel, row by row from the top left. Returns `None` if no pair lies across
+    /// a border.
     ///
     /// # Errors
-    /// [`Error::PixelCount`] if a buffer does not fit the reference.
+    /// [`Error::PixelCount`] if a list does not have one entry per pixel of `truth`.
     pub fn measured(
         seen: Seen,
         [shown, shares]: [&[f32]; 2],
@@ -87,7 +90,8 @@ impl LayerJump {
         Ok((of.pairs > 0).then_some(of))
     }
 
-    /// Returns by how much more pairs differ across a border than elsewhere.
+    /// Returns by how much the mean difference across a border exceeds that elsewhere: `across −
+    /// elsewhere`. About 0 if the borders do not show.
     pub fn jump(&self) -> f64 {
         self.across - self.elsewhere
     }

@@ -15,7 +15,8 @@ use rayon::prelude::*;
 use skiagraph_scene::{Camera, LIGHT_GAP, LightKind, Mesh, Parts, Towards};
 use std::{fmt, ops::ControlFlow, str::FromStr, sync::OnceLock};
 
-/// Rule by which a shadow ray leaves its receiver.
+/// Rule by which a shadow ray leaves its receiver (the point that a pixel shows) without hitting
+/// the receiver's own surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum OracleMode {
     /// The ray begins at the receiver itself; the pixel's own primitive is not a caster.
@@ -75,8 +76,8 @@ impl fmt::Display for OracleMode {
 /// The longest offset in extents of the mesh: far beyond it rays miss by rounding alone.
 const MOST_EXTENTS: f64 = 1e6;
 
-/// Ray tracer in f64 with error bounds, which finds the ground truth of a mesh. Methods are judged
-/// against it.
+/// Ray tracer in f64 with error bounds over one mesh. It finds the ground truth against which
+/// shadow methods are judged.
 pub struct Oracle<'a> {
     pub(crate) mesh: &'a Mesh,
     pub(crate) tree: Tree<'a>,
@@ -84,7 +85,7 @@ pub struct Oracle<'a> {
     pub(crate) parts: OnceLock<Parts>,
 }
 
-/// The oracle's answer for a ray.
+/// The oracle's answer for a ray: the result of [`Oracle::occlusion`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Occlusion {
     /// True if a triangle stands in the ray's way.
@@ -109,10 +110,11 @@ impl<'a> Oracle<'a> {
         self.mesh
     }
 
-    /// Finds the primitive that each pixel's centre shows, row by row from the top left;
-    /// [`BACKGROUND`] where it shows none. It is the nearest front face (counter-clockwise) between
-    /// the near and the far plane. Of equally near faces it is the one with the lowest id, as a
-    /// depth test with *less* keeps the first one drawn.
+    /// Finds the primitive that each pixel's centre shows: one primitive id (index of a triangle of
+    /// the mesh) per pixel, row by row from the top left; [`BACKGROUND`] where a pixel shows none.
+    /// It is the nearest front face (counter-clockwise) or double-sided face between the near and
+    /// the far plane. Of equally near faces it is the one with the lowest id, as a depth test with
+    /// *less* keeps the first one drawn.
     ///
     /// # Errors
     /// [`Error::Interrupted`].
@@ -144,12 +146,13 @@ impl<'a> Oracle<'a> {
         nearest.1
     }
 
-    /// Classifies every pixel of a G-buffer under a light. `primitives` holds the primitive id that
-    /// each pixel shows, row by row from the top left; [`BACKGROUND`] for a pixel without geometry.
-    /// The receiver is the point where the ray through the pixel's centre meets that primitive. At
-    /// a triangle's edge a rasteriser, which snaps corners, may name a primitive that the centre
-    /// lies slightly outside of; the receiver is within the primitive's edges all the same
-    /// ([`Receiver::new`]). Casters are two-sided and count at t > 0 by more than f64 rounding.
+    /// Classifies every pixel of a G-buffer as lit, in shadow, facing away or background, with one
+    /// ray to the light's centre. `primitives` holds the primitive id that each pixel shows, row by
+    /// row from the top left; [`BACKGROUND`] for a pixel without geometry. The receiver is the
+    /// point where the ray through the pixel's centre meets that primitive. At a triangle's edge a
+    /// rasteriser, which snaps corners, may name a primitive that the centre lies slightly outside
+    /// of; the receiver is within the primitive's edges all the same ([`Receiver::new`]). Casters
+    /// are two-sided and count if they lie before the ray's origin by more than f64 rounding.
     ///
     /// # Errors
     /// [`Error::PixelCount`], [`Error::UnknownPrimitive`], [`Error::Light`], [`Error::Offset`],
@@ -186,9 +189,10 @@ impl<'a> Oracle<'a> {
         Ok(())
     }
 
-    /// Traces rays of an origin and a direction (any length but zero), and returns an answer for
-    /// each. Tracers in f32 are tested against it. Origin and direction count as exact, hits count
-    /// at t > 0, and triangles are two-sided.
+    /// Traces rays, each given by its origin and direction (any length but zero), and returns an
+    /// answer for each, in their order. A ray has no end. Tracers in f32 are tested against the
+    /// result. Origin and direction count as exact, hits count at t > 0, and triangles are
+    /// two-sided.
     pub fn occlusion(&self, rays: &[(Vec3, Vec3)]) -> Vec<Occlusion> {
         let exact = Uncertainty {
             segments: [DVec3::ZERO; 3],
@@ -299,8 +303,9 @@ impl<'a> Oracle<'a> {
     }
 }
 
-/// Shades each pixel of a G-buffer as if nothing cast shadows: every receiver that faces the light
-/// is lit. Needs no hierarchy. `primitives` is as for [`Oracle::shade`].
+/// Classifies each pixel of a G-buffer as if nothing cast shadows: every receiver that faces the
+/// light is lit. It is fast, because it traces no rays and builds no hierarchy. `primitives` is as
+/// for [`Oracle::shade`].
 ///
 /// # Errors
 /// [`Error::PixelCount`], [`Error::UnknownPrimitive`], [`Error::Light`], [`Error::Interrupted`].

@@ -7,7 +7,8 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 /// Primitive id of a pixel that shows no geometry.
 pub const BACKGROUND: u32 = u32::MAX;
 
-/// Callback that reports a run's progress, and flag that stops the run.
+/// Callback that reports how far a run over a viewport is, and flag that stops the run. The
+/// [`Default`] reports nothing and never stops.
 #[derive(Clone, Copy)]
 pub struct Progress<'a> {
     /// Function that is called from any thread whenever a row of pixels is done, with the number of
@@ -30,9 +31,10 @@ impl Default for Progress<'_> {
     }
 }
 
-/// Computes one value per pixel, rows in parallel, and returns them row by row from the top left.
-/// `pixel` gets column, row and a stack that its thread reuses. The first error, in no particular
-/// order, ends the run.
+/// Computes one value per pixel, rows in parallel, and returns the values row by row from the top
+/// left. `pixel` gets the column, the row, and a list that it may use as scratch memory: each
+/// thread has its own and leaves in it the content of the last call. An error of any pixel ends the
+/// run.
 ///
 /// # Errors
 /// Those of `pixel`, and [`Error::Interrupted`].
@@ -81,7 +83,7 @@ pub(crate) fn shown(
     }
 }
 
-/// Checks that the buffer `name` holds one value per pixel.
+/// Checks that the buffer `name`, which has `actual` values, holds one value per pixel.
 ///
 /// # Errors
 /// [`Error::PixelCount`].

@@ -40,20 +40,20 @@ pub const INSET: f64 = 1.0 / 64.0;
 /// Share of the determinant beyond which the edge functions' error makes the hit meaningless.
 const INDETERMINATE: f64 = 0.25;
 
-/// Receiver of a pixel: the point of the visible surface at which light arrives or not.
+/// Receiver of a pixel: the point of the visible surface whose shadow the pixel shows.
 pub struct Receiver {
     /// Primitive id of the surface.
     pub primitive: u32,
     /// Position of the receiver on its primitive, world space.
     pub position: DVec3,
-    /// Direction and distance from the receiver to the light.
+    /// Direction and distance from the receiver to the light's centre.
     pub towards: Towards,
-    /// True if the receiver lies outside of a spot light's cone.
+    /// True if the receiver lies outside of a spot light's cone; false for other lights.
     pub outside_cone: bool,
-    /// True if f32 may compute the contrary of `outside_cone`.
+    /// True if f32 arithmetic may find the opposite of `outside_cone`.
     pub on_cone_edge: bool,
     /// Dot product of the interpolated, unnormalised vertex normal and the unit vector towards the
-    /// light.
+    /// light. The normal is turned round for the back of a double-sided primitive.
     pub n_dot_l: f64,
     /// Bound on the f32 error of `n_dot_l`.
     pub n_dot_l_error: f64,
@@ -63,8 +63,9 @@ pub struct Receiver {
 }
 
 impl Receiver {
-    /// Finds the receiver of a pixel (column and row) of a G-buffer. Returns `None` in the
-    /// background. `primitives` is as for [`Oracle::shade`](crate::Oracle::shade).
+    /// Finds the receiver of a pixel (column and row, from the top left) of a G-buffer. Returns
+    /// `None` if the pixel shows the background. `primitives` is as for
+    /// [`Oracle::shade`](crate::Oracle::shade).
     ///
     /// # Errors
     /// [`Error::UnknownPrimitive`].
@@ -80,7 +81,8 @@ impl Receiver {
         Ok(primitive.map(|primitive| Self::new(mesh, primitive, camera, pixel, light)))
     }
 
-    /// Finds the point where the ray through a pixel's centre meets `primitive`.
+    /// Finds the point where the ray through a pixel's centre meets `primitive`. The pixel is given
+    /// by its column and row.
     ///
     /// A rasteriser snaps corners to a grid within the pixel. The centre may therefore lie a little
     /// outside of the primitive that covers it, where a neighbour may stand before it or beneath

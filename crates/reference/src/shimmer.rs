@@ -15,22 +15,25 @@ const CHANGE: f32 = 1.0 / 16.0;
 /// A change of the right share of light that is none: what 8 bits cannot show.
 const SAME: f32 = 1.0 / 255.0;
 
-/// Number of receivers that two successive frames show, and of those whose answer changed.
+/// Number of receivers (points of surfaces) that two successive frames both show, and number of
+/// those whose visibility the method changed without cause.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Shimmer {
-    /// Number of pixels whose receiver faces the light and had the same ground truth in the frame
-    /// before (to 1/255 of an area light), both times outside the band of indeterminate pixels.
+    /// Number of pixels of the later frame whose receiver faces the light and has the same ground
+    /// truth in both frames (shares of an area light may differ by 1/255), and is indeterminate in
+    /// neither.
     pub compared: u64,
-    /// Number of compared pixels whose visibility the method changed by more than 1/16.
+    /// Number of compared pixels whose visibility, 0 to 1, the method changed by more than 1/16, or
+    /// to or from NaN.
     pub changed: u64,
 }
 
-/// One frame: mesh, camera, and the primitive at each pixel.
+/// Scene content of one frame: its mesh, its camera, and the primitive at each pixel.
 #[derive(Clone, Copy)]
 pub struct Seen<'a> {
-    /// Mesh as it is in this frame; all frames have the same triangles.
+    /// Mesh in its shape of this frame; frames that are compared have the same triangles.
     pub mesh: &'a Mesh,
-    /// Camera of the frame.
+    /// Camera of the frame, with its viewport.
     pub camera: &'a Camera,
     /// Primitive id that each pixel shows, as for [`Oracle::shade`](crate::Oracle::shade).
     pub primitives: &'a [u32],
@@ -72,10 +75,11 @@ impl Seen<'_> {
     }
 }
 
-/// Finds, for each pixel of `now`, the pixel of the frame `before` that shows the same receiver.
-/// The result holds indices into the earlier frame's pixels, [`BACKGROUND`] where no pixel shows
-/// it. The receiver keeps its place on its primitive, which may have moved. The earlier pixel is
-/// the one where that place was seen, if it showed this primitive.
+/// Finds, for each pixel of the frame `now`, the pixel of the frame `before` that shows the same
+/// receiver. The result has an entry for each pixel of `now`: the index of a pixel of `before`, row
+/// by row from the top left, or [`BACKGROUND`] if no pixel shows the receiver. The receiver keeps
+/// its place on its primitive, which may have moved. The earlier pixel is the one in which that
+/// place was, if that pixel showed the same primitive.
 ///
 /// # Errors
 /// [`Error::PixelCount`], [`Error::UnknownPrimitive`], [`Error::Interrupted`].
@@ -128,9 +132,9 @@ fn earlier(place: DVec3, primitive: u32, before: &Mesh, now: &Mesh) -> DVec3 {
     a + (b - a) * v + (c - a) * w
 }
 
-/// Counts the answers that changed between two frames. `same` is the result of [`same_receivers`].
-/// The pairs hold for the earlier and the later frame: the share of the light that the method shows
-/// at each pixel, and the ground truth.
+/// Counts the receivers whose visibility changed between two frames. `same` is the result of
+/// [`same_receivers`]. The first pair holds the shares of light that the method shows at each pixel
+/// of the earlier and of the later frame, the second pair the ground truths of these frames.
 ///
 /// # Errors
 /// [`Error::PixelCount`] for buffers that are not as large as their frame.

@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 /// First surface on a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sight {
-    /// Distance from the ray's origin, in lengths of the ray's direction.
+    /// Distance from the ray's origin, in multiples of the length of the ray's direction vector.
     pub distance: f64,
     /// Primitive id of the surface.
     pub primitive: u32,
@@ -17,8 +17,8 @@ pub struct Sight {
     pub is_front: bool,
 }
 
-/// Finds the first surface on each ray, given by its origin and direction (any length but zero). An
-/// entry is `None` for a ray that meets nothing.
+/// Finds the first surface on each ray, given by its origin and direction (any length but zero).
+/// The result has an entry for each ray, in their order: `None` for a ray that meets nothing.
 pub fn sights(oracle: &Oracle<'_>, rays: &[(DVec3, DVec3)]) -> Vec<Option<Sight>> {
     let tree = &oracle.tree;
     let sight = |stack: &mut Vec<u32>, &(origin, direction): &(DVec3, DVec3)| {

@@ -9,8 +9,9 @@ use serde::{Deserialize, Serialize};
 
 pub use crate::status;
 
-/// Value of `visibility` for a pixel whose ray the driver broke off. Pictures show the pixel in
-/// shadow; frames with such pixels are not judged.
+/// Value of the output `visibility` for a pixel without an answer, because the driver ended the
+/// shader before its shadow ray was traced. Pictures show the pixel in shadow;
+/// [`Statistics::judged`] refuses frames with such pixels.
 pub const UNANSWERED: u32 = 2;
 
 /// Number of pixels by the reference's answer. `background + facing_away + facing_light` is the
@@ -30,7 +31,7 @@ pub struct PixelCounts {
 }
 
 /// Number of PFL pixels (facing the light by the reference) that the method calls certain, right or
-/// wrong.
+/// wrong: those with the [status](crate::status) *certain light* or *certain shadow*.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CertainCounts {
     /// Pixels with the status *certain light*.
@@ -42,21 +43,22 @@ pub struct CertainCounts {
 /// Number of pixels whose visibility differs from the reference's.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WrongCounts {
-    /// Pixels that are lit by the method, but not by the reference.
+    /// Pixels that the method shows lit, but the reference does not.
     pub lit: u64,
-    /// Pixels that are in shadow by the method, but lit by the reference.
+    /// Pixels that the method shows in shadow, but the reference lights.
     pub shadow: u64,
     /// `lit + shadow`, indeterminate pixels included.
     pub total: u64,
     /// Pixels of `total` that the method called certain, and that are not indeterminate.
     pub certain: u64,
-    /// Pixels of `total` that are indeterminate, the answer being within the f32 error bound.
+    /// Pixels of `total` that are indeterminate: the reference's answer flips within the f32 error
+    /// bounds.
     pub in_band: u64,
 }
 
-/// Number of PFL pixels of one class of the reference, by the method's status.
-/// `certain_right + certain_wrong + uncertain` is the class, but for pixels that the method does
-/// not take for facing the light. Indeterminate pixels are included.
+/// Number of the pixels that the reference lights, or of those in its shadow, by the method's
+/// [status](crate::status). `certain_right + certain_wrong + uncertain` is their number less the
+/// pixels whose status is background or facing away. Indeterminate pixels are included.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ClassSplit {
     /// Pixels that the method calls certain and gets right.
@@ -71,7 +73,8 @@ pub struct ClassSplit {
     pub uncertain_wrong: u64,
 }
 
-/// Number of PFL pixels by the method's status, apart for lit and shadowed pixels of the reference.
+/// Number of PFL pixels (facing the light by the reference) by the method's status, separately for
+/// the reference's lit and shadowed pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Split {
     /// Pixels that the reference lights.
@@ -113,19 +116,21 @@ impl Split {
 
 /// Comparison of one method's picture with the reference.
 ///
-/// Fields are those of `results.json`, where the indeterminate pixels are called the *band*.
+/// The fields are those of `results.json`. The *band* is the set of indeterminate pixels, whose
+/// answer flips within the f32 error bounds. *PFL* are the pixels that face the light by the
+/// reference.
 ///
-/// *Which pixels are judged.* Every PFL pixel of the reference, by the visibility it shows (0 is
-/// shadow): one that the method calls background or facing away (status 0 or 1) is wrong if it
-/// shows shadow where the reference is lit, or light where it is not. A pixel that the reference
-/// calls facing away but the method does not (status 2 to 4) is wrong, as `lit`, if it shows light;
-/// shown in shadow it looks the same and is right. Pixels facing away by both, and background, are
-/// not judged, whatever their visibility. `facing_mismatch` counts the disagreements about facing,
-/// wrong or not.
+/// *Which pixels are judged.* Every PFL pixel, by the visibility that the method shows (0 is
+/// shadow, 1 is light), even if the method calls it background or facing away (status 0 or 1): it
+/// is wrong if it shows shadow where the reference is lit, or light where the reference is in
+/// shadow. A pixel that the reference calls facing away but the method does not (status 2 to 4) is
+/// wrong, as `lit`, if it shows light; shown in shadow it looks the same and is right. Pixels
+/// facing away by both, and background, are not judged, whatever their visibility.
+/// `facing_mismatch` counts the disagreements about facing, wrong or not.
 ///
-/// `certain` and `uncertain` count PFL pixels of the reference, so that `certain.lit +
-/// certain.shadow + uncertain` is `pixels.facing_light` but for PFL pixels that the method does not
-/// take for such.
+/// `certain` and `uncertain` count PFL pixels only, so that `certain.lit + certain.shadow +
+/// uncertain` is `pixels.facing_light` less the PFL pixels that the method calls background or
+/// facing away.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Statistics {
     /// Number of pixels by the reference's answer.
@@ -134,8 +139,7 @@ pub struct Statistics {
     pub certain: CertainCounts,
     /// Number of PFL pixels that the method calls uncertain.
     pub uncertain: u64,
-    /// Number of PFL pixels by the reference's class and the method's status, and of those that are
-    /// wrong.
+    /// Number of PFL pixels by the reference's answer (lit or shadow) and the method's status.
     pub split: Split,
     /// Number of wrong pixels.
     pub wrong: WrongCounts,
@@ -152,8 +156,9 @@ impl Statistics {
     /// is one of [`status`].
     ///
     /// # Errors
-    /// [`Error::PixelCount`] if a buffer is not as large as the reference, [`Error::Unanswered`]
-    /// for pixels without an answer, [`Error::Value`] for any other value that is not allowed.
+    /// [`Error::PixelCount`] if a buffer does not have one value per pixel of `truth`,
+    /// [`Error::Unanswered`] for pixels with the visibility [`UNANSWERED`], [`Error::Value`] for
+    /// any other value that is not allowed.
     pub fn judged(
         visibility: &[impl Copy + Into<u32>],
         status: &[impl Copy + Into<u32>],
@@ -200,7 +205,8 @@ impl Statistics {
         self.wrong.certain += u64::from(pixel.is_certain_wrong());
     }
 
-    /// Finds the pixels that [`WrongCounts::certain`] counts, as indices into the buffers.
+    /// Finds the pixels that [`WrongCounts::certain`] counts, as ascending indices into the
+    /// buffers. The arguments are those of [`judged`](Self::judged).
     ///
     /// # Errors
     /// Those of [`judged`](Self::judged).
@@ -218,7 +224,8 @@ impl Statistics {
         Ok(pixels)
     }
 
-    /// Returns a count as a share of the pixels that face the light, 0 to 1; 0 if no pixel does.
+    /// Returns a count of pixels divided by the number of pixels that face the light (PFL); 0 if no
+    /// pixel does.
     pub fn share(&self, count: u64) -> f64 {
         if self.pixels.facing_light == 0 {
             0.0

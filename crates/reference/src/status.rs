@@ -8,5 +8,6 @@ pub const FACING_AWAY: u32 = 1;
 pub const CERTAIN_LIGHT: u32 = 2;
 /// The method is certain that the pixel is in shadow.
 pub const CERTAIN_SHADOW: u32 = 3;
-/// The method could not tell if the pixel is lit, and asked a tracer or guessed.
+/// The method could not decide from its shadow map if the pixel is lit, and traced a ray or
+/// guessed.
 pub const UNCERTAIN: u32 = 4;

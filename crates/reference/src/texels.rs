@@ -30,9 +30,10 @@ impl Footprint {
     }
 }
 
-/// Finds how many texels of a shadow map each pixel covers. `density` holds the map's texels per
-/// unit of area across the light's ray, at each pixel's receiver; 0 is outside the map. An entry of
-/// the result is `None` for a pixel that does not face the light, and for a primitive seen edge-on.
+/// Finds how many texels of a shadow map each pixel covers. `density` has an entry for each pixel:
+/// the map's texels per square scene unit at right angles to the light's ray, at the point that the
+/// pixel shows; 0 outside the map. The result has an entry for each pixel, row by row from the top
+/// left: `None` if the pixel does not face the light or its primitive is seen edge-on.
 ///
 /// # Errors
 /// [`Error::PixelCount`] if a buffer does not fit the reference.
@@ -70,7 +71,8 @@ pub fn footprints(
     Ok(footprints.collect())
 }
 
-/// Statistics of map texels per pixel, over the pixels that face the light and lie in the map.
+/// Statistics of the shadow-map texels that a pixel covers, over the pixels that face the light and
+/// lie in the map.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct TexelsPerPixel {
     /// Number of pixels that face the light and lie in the map.
@@ -81,15 +83,14 @@ pub struct TexelsPerPixel {
     pub outside_map: u64,
     /// Quantiles of the texels per pixel.
     pub texels: Quantiles,
-    /// Quantiles of the perspective part of texels per pixel, from distance and map: the value for
-    /// surfaces that face the eye and the light.
+    /// Quantiles of [`Footprint::perspective`]: the texels per pixel if all surfaces faced the eye
+    /// and the light.
     pub perspective: Quantiles,
-    /// Quantiles of the projection part of texels per pixel, from angles: the cosine to the light
-    /// divided by the cosine to the eye.
+    /// Quantiles of [`Footprint::projection`], the factor of the surfaces' angles.
     pub projection: Quantiles,
 }
 
-/// Values that 5, 50 and 95 % of the pixels do not exceed; 0 if there are no pixels.
+/// Values that 5, 50 and 95 % of the pixels do not exceed; all 0 if there are no pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Quantiles {
     /// 5th percentile.
@@ -101,7 +102,7 @@ pub struct Quantiles {
 }
 
 impl TexelsPerPixel {
-    /// Summarises the [`footprints`] of a picture.
+    /// Summarises the [`footprints`] of a picture. Entries that are `None` are left out.
     pub fn new(footprints: &[Option<Footprint>]) -> Self {
         let all = footprints.iter().flatten();
         let (inside, outside): (Vec<&Footprint>, Vec<_>) = all.partition(|of| of.perspective > 0.0);

@@ -8,19 +8,21 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use skiagraph_scene::{LightKind, Scene};
 
-/// Case of the catalogue: a small scene on which shadow methods go wrong.
+/// Stress case of the catalogue: a small scene on which shadow methods go wrong, with the
+/// conditions that its ground truth must meet.
 #[derive(Clone, Copy, Debug)]
 pub struct HardCase {
     /// Name of the case on the command line: lower case, words joined by `_`.
     pub name: &'static str,
-    /// Error that the case provokes, in one line.
+    /// Difficulty of the scene, or the error that it provokes in shadow methods, as one line of
+    /// text.
     pub reason: &'static str,
-    /// Kind of the scene's casters, which decides how methods that cull front faces are tested.
+    /// Kind of the scene's casters, which decides if methods that cull front faces are held to it.
     pub casters: Casters,
-    /// Largest allowed number of indeterminate pixels, as a share of the pixels that face the
-    /// light.
+    /// Largest allowed share, 0 to 1, of indeterminate pixels among those that face the light. A
+    /// pixel is indeterminate if rounding to f32 may flip its answer.
     pub indeterminate_cap: f64,
-    /// Answers that occur in the picture of the case.
+    /// Answers, lit or in shadow, that occur in the picture of the case.
     pub shows: Shows,
     seen: Seen,
     geometry: Geometry,
@@ -48,10 +50,10 @@ pub enum Casters {
     Open,
 }
 
-/// Answers that occur among the pixels of a case's picture.
+/// Answers of the ground truth that occur among the pixels of a case's picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shows {
-    /// Some pixels are lit, some are in shadow.
+    /// Of the pixels that face the light, some are lit and some are in shadow.
     Both,
     /// All pixels that face the light are lit.
     LitOnly,
@@ -138,7 +140,7 @@ impl HardCase {
         self
     }
 
-    /// Builds the scene of the case.
+    /// Builds the scene of the case: its mesh, its view `main` and its light.
     pub fn scene(&self) -> Scene {
         let shape = match self.geometry {
             Geometry::Drawn(draw) => draw(),
@@ -150,8 +152,9 @@ impl HardCase {
         scene
     }
 
-    /// Tells from the geometry if light reaches a point of a surface that faces the light. Returns
-    /// `None` where it is too close to call, or if the case has no such answer.
+    /// Tells from the geometry, without tracing rays, if light reaches a point of a surface (world
+    /// space) that faces the light. Returns `None` for a point too close to a shadow edge to call,
+    /// or if the case is not [analytic](Self::is_analytic).
     pub fn lit(&self, point: DVec3) -> Option<bool> {
         match (self.lit, self.geometry, self.seen.light) {
             (Some(lit), ..) => lit(point),
@@ -165,7 +168,8 @@ impl HardCase {
         }
     }
 
-    /// Returns true if [`HardCase::lit`] has answers for this case.
+    /// Returns true if the case tells from its geometry which points are lit: [`HardCase::lit`]
+    /// then has answers.
     pub fn is_analytic(&self) -> bool {
         self.lit.is_some() || matches!(self.geometry, Geometry::Boxes(..))
     }

@@ -5,7 +5,7 @@ use crate::{
     topology,
 };
 
-/// Returns all cases of the catalogue, in the order in which they are shown.
+/// Returns all cases of the catalogue, in the order in which `skiagraph stress` lists them.
 pub fn cases() -> Vec<HardCase> {
     [
         plain::CASES,

@@ -1,8 +1,8 @@
 //! Scenes on which shadow methods go wrong: the catalogue of `skiagraph stress`.
 //!
-//! Every case is a function that builds a small scene with one view named `main`, with the same
-//! bits on every machine. One line of text says which error the case provokes. Some cases also tell
-//! from the geometry alone which points are lit, so that the oracle is tested, too.
+//! Every case builds a small scene with one view named `main` and one light, with the same bits on
+//! every machine. One line of text says which error the case provokes. Some cases also tell from
+//! the geometry alone which points are lit, so that the ray tracer of the reference is tested, too.
 
 mod answer;
 mod case;

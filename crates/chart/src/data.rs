@@ -1,7 +1,7 @@
 //! Input of a chart: panels, series and marks.
 
-/// A chart with one pair of axes. The axes are logarithmic, or linear in [`Kind::Bars`] and
-/// [`Kind::Frames`].
+/// A chart with one pair of axes, part of a [`Figure`](crate::Figure). The axes are logarithmic, or
+/// linear in [`Kind::Bars`] and [`Kind::Frames`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
     /// Heading above the axes.
@@ -12,7 +12,8 @@ pub struct Panel {
     pub x: String,
     /// Label of the vertical axis, with its unit.
     pub y: String,
-    /// Series in the order of the legend.
+    /// Series of marks. The legend of the figure lists series in the order in which they first
+    /// occur in its panels.
     pub series: Vec<Series>,
 }
 
@@ -20,34 +21,37 @@ pub struct Panel {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Two costs, of which less is better: the Pareto front is drawn. The vertical value may be 0;
-    /// zero has a strip of its own.
+    /// such marks stand in a strip below the logarithmic axis.
     Front,
-    /// Growth of a value: the marks of a series are joined, and a dashed line shows slope 1.
+    /// Growth of a value: the marks of a series are joined, and a dashed line shows growth in
+    /// proportion (slope 1 on the logarithmic axes).
     Growth,
     /// A bar for each mark, upwards from 0 on a linear axis. The list holds the names of the groups
-    /// of bars.
+    /// of bars from left to right; [`Mark::x`] is an index into it.
     Bars(Vec<String>),
     /// A value for each frame of a camera path, on linear axes from 0. The marks of a series are
     /// joined.
     Frames,
 }
 
-/// Marks with the same name, colour and shape.
+/// Marks with one name, colour and shape, for example the measurements of one method.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
-    /// Name in the legend. It identifies the series: the same name has the same look in all panels.
+    /// Name in the legend. It identifies the series: series with the same name in several panels
+    /// have the same colour and shape.
     pub name: String,
-    /// The marks; lines join them in this order.
+    /// The marks, in the order in which lines join them in [`Kind::Growth`] and [`Kind::Frames`].
     pub marks: Vec<Mark>,
 }
 
 /// A measurement, drawn as one mark.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mark {
-    /// Horizontal value: finite and above 0. In [`Kind::Bars`] it is the index of the group, in
-    /// [`Kind::Frames`] the index of the frame, both from 0.
+    /// Horizontal value in the unit of [`Panel::x`]: finite and above 0. In [`Kind::Bars`] it is
+    /// the index of the mark's group, in [`Kind::Frames`] the index of the frame, both from 0.
     pub x: f64,
-    /// Vertical value: finite and above 0. It may be 0 in all kinds but [`Kind::Growth`].
+    /// Vertical value in the unit of [`Panel::y`]: finite and above 0. It may be 0 in all kinds but
+    /// [`Kind::Growth`].
     pub y: f64,
     /// Size of the mark: an index into [`Figure::sizes`](crate::Figure::sizes); 0 if that list is
     /// empty.

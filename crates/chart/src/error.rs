@@ -12,14 +12,15 @@ pub enum Error {
         /// Title of the panel.
         panel: String,
     },
-    /// A mark lies outside its panel's axes, or its size is not in the list of sizes.
+    /// A mark has a value that its panel's axes cannot show (infinite, negative, or 0 on a
+    /// logarithmic axis), or an unknown size.
     #[error("panel {panel:?}, series {series:?}: {why}")]
     Mark {
         /// Title of the panel.
         panel: String,
         /// Name of the series.
         series: String,
-        /// Value or size of the mark, and the expected ones.
+        /// Value or size of the mark and the expected ones, as text.
         why: String,
     },
     /// The drawing library failed; the text is its message.

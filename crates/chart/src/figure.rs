@@ -18,7 +18,7 @@ const LEFT: i32 = 12;
 /// Height of the title, of a line of the notes, and below the legend.
 const LINES: [i32; 3] = [34, 18, 8];
 
-/// A picture of one or several panels under one title and one legend.
+/// A picture of one or several charts ([`Panel`]) under one title and one legend.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Figure {
     /// Title, the first line of the picture.
@@ -26,28 +26,31 @@ pub struct Figure {
     /// Lines below the title, for example the conditions of the measurement. Long lines are
     /// wrapped.
     pub notes: Vec<String>,
-    /// Meanings of the sizes of marks, smallest first; empty if all marks have the same size.
+    /// Meanings of the sizes of marks, for the legend, smallest first; [`Mark::size`] is an index
+    /// into this list. Empty if all marks have the same size.
     pub sizes: Vec<String>,
-    /// Names of series whose colours and shapes are fixed by their position in this list. Figures
-    /// with the same list give them the same look, even if some are not drawn.
+    /// Names of series whose colours and shapes are fixed by their position in this list, so that
+    /// figures with the same list draw them alike, even if some are not in a figure. Other series
+    /// get the looks that follow.
     pub looks: Vec<String>,
-    /// Labels of logarithmic horizontal axes: values with their text. If empty, decades are
+    /// Labels of logarithmic horizontal axes: pairs of a value and its text. If empty, decades are
     /// labelled.
     pub ticks: Vec<(f64, String)>,
-    /// Panels, row by row. A series with the same name in several panels has the same colour and
-    /// shape.
+    /// Panels, row by row from the top left.
     pub panels: Vec<Panel>,
     /// Number of panels side by side in a row; 0 counts as 1.
     pub columns: usize,
-    /// True if the panels of a row have the same ranges of axes, so that heights can be compared.
+    /// True if the axes of all panels of a row cover the same ranges, so that heights can be
+    /// compared.
     pub shared_axes: bool,
 }
 
 impl Figure {
-    /// Returns the figure as SVG, 800 pixels wide.
+    /// Returns the figure as the text of an SVG file, 800 pixels wide.
     ///
     /// # Errors
-    /// If a panel has no marks, or a mark has a value that its axes cannot show or an unknown size.
+    /// [`Error::Empty`] if a panel has no marks; [`Error::Mark`] if a mark has a value that its
+    /// axes cannot show, or an unknown size.
     pub fn to_svg(&self) -> Result<String, Error> {
         self.check()?;
         let names = self.names();
@@ -76,8 +79,8 @@ impl Figure {
     /// Returns the panels without title and legend as SVG for a web page, `width` pixels wide.
     /// Colours are the variables `--s0` to `--s6`, `--ink`, `--quiet`, `--front`, `--line`,
     /// `--faint`, `--strip` and `--card` of the page's style. Elements of a series carry its name
-    /// in `data-series`. A mark is a `g` of class `mark`, with its name in `data-name` and its text
-    /// in `aria-label`.
+    /// in `data-series`. A mark is a `g` of class `mark`; `aria-label` holds its text
+    /// [`Mark::about`], `data-name` the first line of that.
     ///
     /// # Errors
     /// Those of [`Figure::to_svg`].
@@ -89,8 +92,9 @@ impl Figure {
         Ok(canvas.svg())
     }
 
-    /// Returns the sign of the series with this name for the legend of a web page, as SVG of 18 ×
-    /// 18 pixels.
+    /// Returns the mark of the series with this name, in its colour and shape, as SVG of 18 × 18
+    /// pixels for the legend of a web page. A name that no panel and no list has gets a neutral
+    /// mark.
     ///
     /// # Errors
     /// If the drawing library fails.

@@ -1,8 +1,8 @@
 //! The Pareto front of points whose coordinates are both costs.
 
-/// Returns the indices of the Pareto front: the points for which no other point is at most as large
-/// in both coordinates and smaller in one. They are sorted by x. Of equal points only the first is
-/// included.
+/// Returns the indices into `points` of the Pareto front: the points for which no other point is at
+/// most as large in both coordinates and smaller in one. The indices are sorted by the x of their
+/// points. Of equal points only the first is included.
 pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..points.len()).collect();
     order.sort_by(|&a, &b| {

@@ -1,5 +1,5 @@
-//! Draws charts of measurements: takes plain values and returns SVG. It knows nothing about the
-//! quantities.
+//! Draws charts of measurements: takes plain values and returns SVG. The crate does not depend on
+//! the kind of measurement.
 //!
 //! A [`Figure`] is one picture of one or several [`Panel`]s that share a legend. Both axes of a
 //! panel are logarithmic, except in [`Kind::Bars`] and [`Kind::Frames`].

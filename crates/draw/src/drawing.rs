@@ -4,30 +4,34 @@ use serde::Serialize;
 use skiagraph_graph::Hazard;
 use std::{collections::HashMap, ops::Range};
 
-/// A plan as plain values, for display and serialisation. Passes and materials refer to each other
-/// by name.
+/// A graph's plan as plain values, for display and serialisation. Passes and materials (textures,
+/// buffers, samplers, acceleration structures) refer to each other by name.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Drawing {
-    /// Heading, for example the graph's path and the viewport. [`from_plan`](crate::from_plan)
-    /// leaves it empty.
+    /// Heading of the picture, for example the graph's path and the viewport.
+    /// [`from_plan`](crate::from_plan) leaves it empty.
     pub title: String,
-    /// All passes in the order of the document, including those that do not run.
+    /// All passes in the order of the document, including those that do not run and the copy passes
+    /// of captures.
     pub passes: Vec<Pass>,
-    /// All materials: declared, provided, imported, and those made for passes and captures.
+    /// All materials: declared, provided, imported, and those made for passes and captures. They
+    /// have the order of [`Plan::resources`](skiagraph_graph::Plan::resources).
     pub materials: Vec<Material>,
-    /// Reads and writes of materials by passes: an entry for each pass, material and part.
+    /// Reads and writes of materials by passes: an entry for each pass, material and part, in the
+    /// order of `passes`.
     pub accesses: Vec<Access>,
-    /// Pairs of passes that must run in a given order. For a pass that does not run there are only
-    /// edges from the passes whose results it would read.
+    /// Pairs of passes that must run in a given order, each pair once. For a pass that does not run
+    /// there are only edges from the passes whose results it would read.
     pub edges: Vec<Edge>,
-    /// Bytes of the textures and buffers that the graph makes.
+    /// Bytes of the textures and buffers that the graph allocates; memory that materials share
+    /// counts once.
     pub memory_bytes: u64,
     /// Bytes saved by sharing memory between materials.
     pub saved_bytes: u64,
 }
 
 impl Drawing {
-    /// Returns the drawing with this heading.
+    /// Returns the drawing with `title` as its heading.
     #[must_use]
     pub fn titled(mut self, title: impl Into<String>) -> Self {
         self.title = title.into();
@@ -43,24 +47,28 @@ impl Drawing {
     }
 }
 
-/// A pass of the document, or the copy pass of a capture.
+/// A pass of the document, or the copy pass of a capture, which keeps the content that a material
+/// has after another pass.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Pass {
     /// Full name, for example `sample[3].trace_rays`.
     pub name: String,
-    /// Kind, as the document writes it; `Capture` for the copy pass of a capture.
+    /// Kind of the pass, as the document writes it, for example `Fullscreen`; `Capture` for the
+    /// copy pass of a capture.
     pub kind: String,
-    /// Shader files that the pass uses, each once.
+    /// Paths of the shader files that the pass uses, each once.
     pub shaders: Vec<String>,
     /// Path of the document that declares the pass.
     pub file: String,
     /// Line of the pass's name in the document, counted from 1.
     pub line: usize,
-    /// Position in the schedule, counted from 0; `None` if the pass does not run.
+    /// Position among the passes that run, in the order in which they run, counted from 0; `None`
+    /// if the pass does not run.
     pub position: Option<usize>,
-    /// Reason why the pass does not run; `None` if it runs.
+    /// Reason why the plan leaves the pass out, as text; `None` if the pass runs.
     pub culled: Option<String>,
-    /// Run condition, as the document writes it; `None` if the pass runs in every frame.
+    /// Run condition, as the document writes it, for example `OnChange`; `None` if the pass runs in
+    /// every frame.
     pub run: Option<String>,
 }
 
@@ -79,7 +87,7 @@ pub enum Kind {
     AccelerationStructure,
 }
 
-/// Sources of a material.
+/// Sources from which materials come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
@@ -88,15 +96,15 @@ pub enum Origin {
     Declared,
     /// Declared by the document with its content: a file or numbers.
     Constant,
-    /// Made for a single pass as working memory.
+    /// Buffer that the graph makes for a single pass as working memory.
     Scratch,
-    /// Copy of a material as it is after a pass.
+    /// Copy of another material as it is after a pass, made to be read back.
     Capture,
-    /// Built by the host's provider.
+    /// Built by the host's provider: a buffer or acceleration structure, such as a scene buffer.
     Provided,
-    /// Created and handed over by the host.
+    /// Texture, buffer or sampler that the host creates and hands over.
     Imported,
-    /// The uniform `frame`, with the number and time of the frame.
+    /// The uniform `frame`, with the number and time of the frame, which every graph can bind.
     Frame,
     /// Content of another material at the end of the previous frame.
     Previous,
@@ -108,7 +116,8 @@ impl Origin {
         !matches!(self, Self::Declared | Self::Scratch | Self::Capture)
     }
 
-    /// True if the graph allocates the material.
+    /// True if the graph allocates memory for the material itself. False for the content of the
+    /// previous frame, which lies in a second allocation of the other material.
     pub fn is_made(self) -> bool {
         !self.is_given() || self == Self::Constant
     }
@@ -123,7 +132,8 @@ pub struct Material {
     pub kind: Kind,
     /// Source of the material.
     pub origin: Origin,
-    /// Format of a texture, as the document writes it; `None` for other kinds.
+    /// Format of a texture, as the document writes it, for example `R32Float`; `None` for other
+    /// kinds.
     pub format: Option<String>,
     /// Width and height of a texture's mip 0 in texels; `None` for other kinds.
     pub size: Option<[u32; 2]>,
@@ -139,22 +149,23 @@ pub struct Material {
     pub versions: usize,
     /// Bytes of all allocations of a texture or buffer that the graph makes; `None` for others.
     pub bytes: Option<u64>,
-    /// Positions in the schedule of the first and the last pass that use the material. `None` if no
-    /// pass that runs uses it; it is then not allocated.
+    /// Positions ([`Pass::position`]) of the first and the last pass that use the material. `None`
+    /// if no pass that runs uses it; it is then not allocated.
     pub lifetime: Option<[usize; 2]>,
-    /// Names of the outputs and captures that read the material back after the frame.
+    /// Names under which the host can read the material, or a part of it, back after the frame: its
+    /// outputs and captures.
     pub outputs: Vec<String>,
-    /// Number of the shared memory: materials with the same number use it one after another. `None`
-    /// if the material shares no memory.
+    /// Number of the allocation that the material shares: materials with the same number use its
+    /// memory one after another. `None` if the material shares no memory.
     pub memory: Option<usize>,
 }
 
 /// Use of a material, or of a part of it, by a pass.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Access {
-    /// Name of the pass.
+    /// Name of the pass: [`Pass::name`].
     pub pass: String,
-    /// Name of the material.
+    /// Name of the material: [`Material::name`].
     pub material: String,
     /// True if the pass reads the part.
     pub reads: bool,
@@ -188,13 +199,14 @@ pub enum Aspect {
 /// Order of two passes: one must run before the other.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Edge {
-    /// Name of the earlier pass.
+    /// Name of the pass that must run first.
     pub from: String,
-    /// Name of the later pass.
+    /// Name of the pass that must run after it.
     pub to: String,
-    /// Reasons for the order, the strongest first.
+    /// Reasons for the order, one for each kind of conflict, the strongest first.
     pub because: Vec<Reason>,
-    /// True if other edges already imply this order.
+    /// True if other edges together already imply this order; [`to_dot`](crate::to_dot) leaves such
+    /// edges out.
     pub implied: bool,
 }
 

@@ -12,7 +12,7 @@ use std::{
     ops::Range,
 };
 
-/// Converts a plan into plain values that can be serialised or drawn.
+/// Converts a graph's plan into plain values that can be serialised or drawn.
 pub fn from_plan(plan: &Plan) -> Drawing {
     let mut positions = vec![None; plan.all_passes().len()];
     for (position, pass) in plan.schedule().passes.iter().enumerate() {

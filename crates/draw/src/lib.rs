@@ -1,5 +1,5 @@
-//! Draws plans: [`from_plan`] converts a plan into a [`Drawing`] of plain values; [`to_svg`] and
-//! [`to_dot`] draw it.
+//! Draws the passes and materials of a graph's [`Plan`](skiagraph_graph::Plan): [`from_plan`]
+//! converts a plan into a [`Drawing`] of plain values; [`to_svg`] and [`to_dot`] draw it.
 //!
 //! The SVG is a chart of lifetimes. Passes are rows in the order in which they run, materials are
 //! columns, and a bar spans the passes during which a material lives. Its size is passes ×

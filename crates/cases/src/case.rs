@@ -17,7 +17,8 @@ pub struct HardCase {
     /// Difficulty of the scene, or the error that it provokes in shadow methods, as one line of
     /// text.
     pub reason: &'static str,
-    /// Kind of the scene's casters, which decides if methods that cull front faces are held to it.
+    /// Kind of the scene's casters. On open casters, a method that culls front faces is also tested
+    /// without culling.
     pub casters: Casters,
     /// Largest allowed share, 0 to 1, of indeterminate pixels among those that face the light. A
     /// pixel is indeterminate if rounding to f32 may flip its answer.

@@ -11,16 +11,16 @@ use skiagraph_reference::GroundTruthPixels;
 use skiagraph_scene::{Scene, View};
 use std::{collections::BTreeMap, sync::Arc};
 
-/// State that the window asks the thread to show.
+/// State that the window requests of the thread that runs the graphs: scene, view and methods.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DesiredState {
     /// Name of the scene, as on the command line.
     pub scene: String,
     /// Camera and light to show the scene with; `None` for the scene's first view.
     pub view: Option<View>,
-    /// Width and height of the methods' pictures in pixels.
+    /// Width and height of each method's picture in pixels.
     pub size: [u32; 2],
-    /// Methods to run: one, or two side by side.
+    /// Methods to run, from left to right: one or two.
     pub methods: Vec<DesiredMethod>,
     /// Run every pass, even if its inputs have not changed.
     pub all_passes: bool,
@@ -85,7 +85,8 @@ pub struct MethodSnapshot {
     pub values: BTreeMap<String, ParamValue>,
     /// The live passes in schedule order.
     pub passes: Vec<PassSnapshot>,
-    /// Bytes of the graph's own memory, and bytes that sharing saved.
+    /// Bytes of the graph's own textures and buffers, and bytes that sharing memory among them
+    /// saved.
     pub memory: [u64; 2],
     /// GPU time of the frame in milliseconds; `None` without timestamps.
     pub gpu_ms: Option<f64>,
@@ -98,7 +99,7 @@ pub struct MethodSnapshot {
     /// Reason why the desired state could not be reached; the frame then shows the last one that
     /// ran. `None` if the frame is as desired.
     pub error: Option<String>,
-    /// Number of times that the method was read from its files.
+    /// Number of times that the method has been read from its files so far.
     pub reads: u64,
 }
 
@@ -115,6 +116,6 @@ pub struct PassSnapshot {
     pub skipped: bool,
     /// GPU time of the pass in milliseconds; `None` if it was not timed.
     pub gpu_ms: Option<f64>,
-    /// Number of its shader runs; `None` if the adapter does not count them.
+    /// Number of shader runs of the pass; `None` if the adapter does not count them.
     pub statistics: Option<PassStatistics>,
 }

@@ -14,7 +14,7 @@ use skiagraph_graph::{Capture, PartSummary};
 use skiagraph_reference::{GroundTruthPixels, Image, statistics::UNANSWERED};
 use std::collections::BTreeMap;
 
-/// Kinds of pictures that a pane can show.
+/// Kinds of pictures that a pane, one of the two pictures of the window, can show.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Show {
     /// The scene, shaded with the method's visibility.
@@ -33,30 +33,31 @@ pub enum Show {
 /// How a pane shows a material.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reading {
-    /// Index of the shown part: the layers of the first mip, then those of the next.
+    /// Index of the shown part in [`Drawn::parts`]: the layers of the first mip, then those of the
+    /// next.
     pub part: usize,
-    /// Channel to show as a heat map; `None` for the colours that saved pictures have.
+    /// Index of the channel to show as a heat map; `None` for the colours that saved pictures have.
     pub heat: Option<usize>,
     /// Index of the channel in the histogram.
     pub channel: usize,
 }
 
-/// Content of a pane.
+/// Content of a pane: picture, legend and numbers.
 #[derive(Default)]
 pub struct Drawn {
     /// The picture; `None` if there is none, and the legend says why.
     pub image: Option<Image>,
     /// Meaning of the colours, or the reason why the picture is missing.
     pub legend: String,
-    /// The numbers behind the picture.
+    /// The numbers of the picture's pixels; `None` if the picture has none.
     pub texels: Option<Texels>,
-    /// Histogram of one channel of a material.
+    /// Histogram of one channel of a material; `None` for pictures of other kinds.
     pub histogram: Option<Histogram>,
     /// Values at the ends of the heat map's colours; `None` without a heat map.
     pub heat: Option<[f64; 2]>,
     /// Names of the mips and layers to choose from; empty if there is only one.
     pub parts: Vec<String>,
-    /// The items of a buffer as text, a line each.
+    /// The items of a buffer as text, a line each; `None` for pictures.
     pub table: Option<String>,
 }
 

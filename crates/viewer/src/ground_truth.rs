@@ -20,7 +20,7 @@ pub const STRIDES: [u32; 3] = [9, 3, 1];
 /// Shadow rays per pixel for a light with an extent; more would be too slow for a live picture.
 pub const SAMPLES: u32 = 64;
 
-/// Question to the oracle: which pixels of this picture see the light?
+/// Question to the ray tracer of the reference: which pixels of this picture see the light?
 #[derive(Clone)]
 pub struct Question {
     /// The scene that the picture shows.
@@ -29,7 +29,7 @@ pub struct Question {
     pub camera: Camera,
     /// The light to judge.
     pub light: LightKind,
-    /// Index of the visible primitive of each pixel, row by row.
+    /// Index of the visible primitive of each pixel, row by row from the top left.
     pub primitives: Arc<Vec<u32>>,
     /// Flag that is set once the answer is not needed any more.
     pub outdated: Arc<AtomicBool>,
@@ -48,7 +48,8 @@ impl Question {
 pub struct Answer {
     /// The question that this answers.
     pub question: Question,
-    /// Distance of the answered pixels in rows and columns; 1 for all pixels.
+    /// Distance in pixels from each answered pixel to the next in rows and columns; 1 if all pixels
+    /// are answered.
     pub stride: u32,
     /// Ground truth of the answered pixels, or the reason why there is none.
     pub ground_truth: Result<GroundTruth, String>,
@@ -148,8 +149,8 @@ fn answer(oracle: &Oracle, question: &Question, tell: &impl Fn(Answer)) {
     }
 }
 
-/// Returns how many pixels of each row and column are left if the middle one of every `stride` is
-/// kept.
+/// Returns the width and height of a picture of `size` if only the middle pixel of every `stride`
+/// in rows and columns is kept.
 pub fn thinned_size(size: [u32; 2], stride: u32) -> [u32; 2] {
     size.map(|edge| edge / stride)
 }

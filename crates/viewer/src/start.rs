@@ -21,19 +21,21 @@ use std::{
 /// Callback that makes the window update after news from a thread.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
-/// Content that the viewer opens with.
+/// Methods, scene and settings with which [`open`](crate::open) opens the window.
 pub struct Opening {
-    /// One or two methods, named as in `compare`.
+    /// One or two methods, each as the command line writes it: `PRESET[@PARAM=VALUE,…]`, with the
+    /// name of a preset or the path of a graph document.
     pub methods: Vec<String>,
-    /// Params that are set in every method.
+    /// Values of params that are set in every method, unless the method's own `@PARAM=VALUE` sets
+    /// them.
     pub params: Vec<Assignment>,
-    /// Size of the methods' shadow maps in texels; `None` for their defaults.
+    /// Width and height of the methods' shadow maps in texels; `None` for their defaults.
     pub map_size: Option<u32>,
     /// Width and height of the methods' pictures in pixels.
     pub size: [u32; 2],
-    /// Name of the scene for [`load_scene`](Self::load_scene).
+    /// Name of the scene to show first, for [`load_scene`](Self::load_scene).
     pub scene: String,
-    /// Loads this scene, and scenes chosen later in the window.
+    /// Function that loads the first scene, and scenes that the user chooses in the window.
     pub load_scene: LoadScene,
     /// Choice of the GPU that runs the methods.
     pub gpu: GpuRequest,

@@ -13,7 +13,7 @@ use skiagraph_graph::{Capture, ParamValue};
 use skiagraph_scene::{Light, LightKind, View};
 use std::{collections::VecDeque, sync::mpsc};
 
-/// Number of frames whose times are kept.
+/// Number of last frames whose times a pane shows.
 pub const HISTORY: usize = 120;
 
 /// Effect of dragging the pointer in a picture.
@@ -46,7 +46,7 @@ pub struct Pane {
     is_stale: bool,
 }
 
-/// Channels between the window and the other threads.
+/// Channels between the window and the threads that run the graphs and trace the reference.
 pub struct Channels {
     /// Commands to the thread that runs the graphs.
     pub commands: mpsc::Sender<Command>,
@@ -91,7 +91,7 @@ pub struct Viewer {
     pub keep_running: bool,
     /// Trace the reference for every shown frame.
     pub is_judged: bool,
-    /// The last message to the user; true if it is an error.
+    /// The last message to the user, with true if it is an error; `None` if there is none.
     pub notice: Option<(String, bool)>,
 }
 

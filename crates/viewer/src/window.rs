@@ -29,10 +29,12 @@ use winit::{
 #[derive(Debug)]
 struct Wake(Duration);
 
-/// Opens the window and blocks until it is closed.
+/// Opens the viewer's window and blocks until the user closes it. `sink` receives remarks and
+/// warnings while the methods are read.
 ///
 /// # Errors
-/// If a display or a GPU for it is missing, or a method or param is unknown.
+/// If there is no display or no usable GPU, a method or param is unknown, or there are more than
+/// two methods.
 pub fn open(opening: Opening, sink: &dyn Sink) -> Result<(), CompareError> {
     let events = event_loop()?;
     let proxy = events.create_proxy();

@@ -31,8 +31,9 @@ pub enum Command {
     Reload,
 }
 
-/// Function that loads a scene by name. It returns the scene and the views to list before the
-/// scene's own.
+/// Function that loads a scene by name. It returns the scene, and further views that the window
+/// lists before the scene's own. The viewer calls it on a thread of its own, and shows the text of
+/// an error.
 pub type LoadScene =
     Box<dyn Fn(&str) -> Result<(Scene, Vec<View>), Box<dyn Error + Send + Sync>> + Send>;
 

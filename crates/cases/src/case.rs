@@ -54,7 +54,7 @@ pub enum Casters {
 /// Answers of the ground truth that occur among the pixels of a case's picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shows {
-    /// Of the pixels that face the light, some are lit and some are in shadow.
+    /// Some of the pixels that face the light are lit, the others are in shadow.
     Both,
     /// All pixels that face the light are lit.
     LitOnly,

@@ -315,7 +315,7 @@ impl SceneProvider {
         self.set_eye(&Eye::from(camera));
     }
 
-    /// Sets the camera of a host program, which is given by its matrices.
+    /// Sets the camera to a host program's own, which is given by its matrices.
     pub fn set_eye(&mut self, eye: &Eye) {
         self.versions.eye.set(*eye);
     }

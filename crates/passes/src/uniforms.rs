@@ -108,8 +108,8 @@ pub struct LightUniform {
     pub to_light: Vec3,
     /// Upper bound on the distance between two points of the scene, in scene units.
     pub max_distance: f32,
-    /// Centre of the scene's bounding box, world space. The matrix takes positions relative to it,
-    /// because absolute ones would lose the detail of a far-off scene.
+    /// Centre of the scene's bounding box, world space. For a directional light the matrix takes
+    /// positions relative to it, because absolute ones would lose the detail of a far-off scene.
     pub centre: Vec3,
     /// Largest sum of the magnitudes that are added up for clip x or y of a point in the scene's
     /// box. The rounding error of clip x and y is a share of this sum. 0 for other lights than
@@ -228,8 +228,8 @@ pub struct LightAreaUniform {
     /// Vector from the light's centre to its rim, in scene units; for a directional light, on a
     /// disk at distance 1. 0 for a point light, whose disk faces each receiver.
     pub right: Vec3,
-    /// Radius of the light's disk in scene units; for a directional light, of its disk at distance
-    /// 1. 0 for a light without extent.
+    /// Radius of the light's disk in scene units (for a directional light, at distance 1); 0 for a
+    /// light without extent.
     pub radius: f32,
     /// Second vector from the light's centre to its rim, at a right angle to `right`.
     pub up: Vec3,

@@ -24,7 +24,7 @@ pub struct BlockerCounts {
     pub open_part: u64,
     /// Pixels whose shadow ray meets a closed part, whatever else it meets.
     pub closed_part: u64,
-    /// Pixels whose shadow ray meets nothing, which face away from the light, or which show the
+    /// Pixels whose shadow ray meets nothing, and pixels that face away from the light or show the
     /// background.
     pub none: u64,
 }

@@ -1,4 +1,4 @@
-//! Distances of wrong pixels from the reference's shadow edges.
+//! Distances of a method's wrong pixels from the reference's shadow edges.
 //!
 //! The distances tell the causes apart: the steps of a map's texels stay within a texel of an edge,
 //! acne lies anywhere on lit surfaces, and a bias lights the shadow beside its caster.

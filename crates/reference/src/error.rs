@@ -35,7 +35,7 @@ pub enum Error {
         x: u32,
         /// Pixel row.
         y: u32,
-        /// Primitive id that the pixel shows.
+        /// Primitive id (index of a triangle) that the G-buffer has for the pixel.
         primitive: u32,
         /// Number of triangles of the mesh.
         count: u64,

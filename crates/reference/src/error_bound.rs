@@ -1,4 +1,5 @@
-//! Bounds on the f32 error of receivers and casters, as lengths and as displacements.
+//! Bounds on the f32 error of the positions of receivers (points that pixels show) and of casters
+//! (triangles that may block light).
 
 use glam::DVec3;
 use skiagraph_scene::Towards;

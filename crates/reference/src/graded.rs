@@ -1,4 +1,4 @@
-//! Errors of pictures that show shares of light, against the reference.
+//! Errors of soft-shadow pictures, whose pixels show shares of light, against the reference.
 
 use crate::{
     error::Error,
@@ -14,10 +14,10 @@ use std::ops::RangeInclusive;
 /// is the share of the light that arrives, 0 in shadow to 1 in light.
 ///
 /// Only pixels that face the light by the reference (PFL) are judged; no light arrives at other
-/// pixels, whatever their visibility. `invalid` counts values outside of 0 to 1. The *error* of a
-/// pixel is its visibility minus the reference's share. Such values, infinities included, are
-/// clamped and then judged, as a texture of 0 to 1 would hold them. NaN counts as an error of size
-/// 1.
+/// pixels, whatever their visibility. The *error* of a pixel is its visibility minus the
+/// reference's share. Values outside of 0 to 1, infinities included, are counted in `invalid`, and
+/// clamped before they are judged, as a texture of 0 to 1 would hold them. NaN counts as an error
+/// of size 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Graded {

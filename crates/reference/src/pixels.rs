@@ -4,7 +4,8 @@ use crate::error::Error;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Primitive id of a pixel that shows no geometry.
+/// Value for a pixel that shows no geometry, in place of a primitive id (the index of a triangle in
+/// the mesh).
 pub const BACKGROUND: u32 = u32::MAX;
 
 /// Callback that reports how far a run over a viewport is, and flag that stops the run. The
@@ -32,9 +33,9 @@ impl Default for Progress<'_> {
 }
 
 /// Computes one value per pixel, rows in parallel, and returns the values row by row from the top
-/// left. `pixel` gets the column, the row, and a list that it may use as scratch memory: each
-/// thread has its own and leaves in it the content of the last call. An error of any pixel ends the
-/// run.
+/// left. `pixel` gets the column, the row, and a list for use as scratch memory: each thread has
+/// one list, which still holds the content of the thread's last call. An error of any pixel ends
+/// the run.
 ///
 /// # Errors
 /// Those of `pixel`, and [`Error::Interrupted`].

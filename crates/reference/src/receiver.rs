@@ -42,7 +42,7 @@ const INDETERMINATE: f64 = 0.25;
 
 /// Receiver of a pixel: the point of the visible surface whose shadow the pixel shows.
 pub struct Receiver {
-    /// Primitive id of the surface.
+    /// Primitive id of the surface: the index of its triangle in the mesh.
     pub primitive: u32,
     /// Position of the receiver on its primitive, world space.
     pub position: DVec3,

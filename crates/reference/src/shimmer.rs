@@ -35,7 +35,8 @@ pub struct Seen<'a> {
     pub mesh: &'a Mesh,
     /// Camera of the frame, with its viewport.
     pub camera: &'a Camera,
-    /// Primitive id that each pixel shows, as for [`Oracle::shade`](crate::Oracle::shade).
+    /// Primitive id (index of a triangle of `mesh`) that each pixel shows, row by row from the top
+    /// left; [`BACKGROUND`] for a pixel without geometry.
     pub primitives: &'a [u32],
 }
 

@@ -1,4 +1,5 @@
-//! Finds the surfaces that rays meet first, from either side, for looking around in a mesh.
+//! Finds the first surface on each of several rays, seen from its front or back, for example to
+//! place cameras in a mesh.
 
 use crate::{oracle::Oracle, ray::Ray};
 use glam::DVec3;
@@ -10,7 +11,7 @@ use std::ops::ControlFlow;
 pub struct Sight {
     /// Distance from the ray's origin, in multiples of the length of the ray's direction vector.
     pub distance: f64,
-    /// Primitive id of the surface.
+    /// Primitive id of the surface: the index of its triangle in the mesh.
     pub primitive: u32,
     /// True if a picture from the ray's origin would show the surface: a front face, or a
     /// double-sided one.

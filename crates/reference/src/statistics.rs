@@ -1,4 +1,4 @@
-//! Counts of right and wrong pixels, as `results.json` holds them.
+//! Counts of a method's right and wrong pixels, as `results.json` holds them.
 
 use crate::{
     error::Error,

@@ -1,4 +1,4 @@
-//! Number of shadow-map texels that the receiver of a pixel covers.
+//! Number of shadow-map texels that a pixel covers at its receiver, the point that it shows.
 //!
 //! Fewer than one is *under-sampling*, which shows as steps. Zhang and others ("Parallel-Split
 //! Shadow Maps", VRCIA 2006, the dissertation's 3.2.1) write it as dp/ds = n · (dz / z ds) · (cos φ

@@ -313,8 +313,8 @@ impl Executor {
 
     /// Sets the texture of the import `name`, which
     /// [`PlanRequest::imports`](skiagraph_graph::PlanRequest::imports) describes. Its content
-    /// counts as changed, even if the texture is the one set before: passes that read it run in the
-    /// next frame. It may have more usages than described.
+    /// counts as changed, even if the texture is the one set before: passes with `run: OnChange`
+    /// that read it run in the next frame. The texture may have more usages than described.
     ///
     /// # Errors
     /// [`ExecuteError::NoSuchImport`] if the plan has no import of this name,

@@ -16,7 +16,8 @@ pub struct Frame<'a> {
     /// condition is false are still skipped.
     pub all: bool,
     /// Names of the outputs and captures to copy to the host; their contents come in
-    /// [`FrameReport::readbacks`]. A capture is named as `Capture::name` returns it.
+    /// [`FrameReport::readbacks`]. [`Capture::name`](skiagraph_graph::Capture::name) returns the
+    /// name of a capture.
     pub read: &'a [&'a str],
     /// Time in seconds that shaders read as `frame.seconds`, for animation; the host chooses its
     /// zero.
@@ -36,8 +37,8 @@ pub struct FrameReport {
     /// `None` if [`Frame::statistics`] was not set, the device cannot count, or the plan has no
     /// draws and dispatches.
     pub statistics: Option<Vec<PassStatistics>>,
-    /// Names of the live passes that did not run, because their inputs were unchanged or their
-    /// `run: When(…)` condition was false, in schedule order.
+    /// Names of the live passes that did not run, because their inputs were unchanged (`run:
+    /// OnChange`) or their condition was false (`run: When(…)`), in schedule order.
     pub skipped: Vec<String>,
     /// Contents of the requested outputs and captures: one entry for each name in [`Frame::read`],
     /// in that order.

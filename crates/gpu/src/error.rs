@@ -32,7 +32,8 @@ pub enum ExecuteError {
          differently"
     )]
     Panicked {
-        /// Name of the resource, or of the pass with its place in the graph document.
+        /// Name of the resource, in backticks, or of the pass, with its place in the graph
+        /// document.
         name: String,
         /// Message and source position of the panic.
         panicked: Panicked,
@@ -78,7 +79,7 @@ pub enum ExecuteError {
         pass: String,
         /// File, line and column of the pass in the graph document, as text.
         place: String,
-        /// The missing part, as [`Provider::missing`](crate::Provider::missing) names it.
+        /// The reason that [`Provider::missing`](crate::Provider::missing) returned.
         why: String,
     },
     /// The plan has no import of this name. An import is a texture, buffer or sampler of the host,
@@ -102,7 +103,8 @@ pub enum ExecuteError {
         /// `none` if there are none.
         known: String,
     },
-    /// An imported texture, buffer or sampler differs from the import that the plan was made for.
+    /// A texture, buffer or sampler that the host set as an import differs from the description
+    /// that the graph was planned for.
     #[error(
         "`{name}` cannot be imported where another was planned for: {why}; plan again with what \
          it is"

@@ -6,9 +6,9 @@ use skiagraph_graph::{Describe, NoProvider};
 /// uniforms, acceleration structures. The supertrait [`Describe`] describes them without a device.
 /// An [`Executor`](crate::Executor) calls these methods with names that [`Describe::names`] lists.
 pub trait Provider: Describe {
-    /// Returns the version of a resource: a number that changes whenever its content or buffer
-    /// does. [`Executor::refresh`](crate::Executor::refresh) rebuilds the resources whose version
-    /// has changed. The default is always 0.
+    /// Returns the version of the resource `name`: a number that changes whenever its content or
+    /// buffer does. [`Executor::refresh`](crate::Executor::refresh) rebuilds the resources whose
+    /// version has changed. The default is always 0.
     fn version(&self, name: &str) -> u64 {
         let _ = name;
         0

@@ -53,7 +53,8 @@ pub enum GpuMeshError {
         /// Size of a vertex in bytes.
         stride: usize,
     },
-    /// The numbers in the buffers do not form a mesh.
+    /// The numbers in the buffers do not form a mesh, for example because an index lies beyond the
+    /// last vertex.
     #[error(transparent)]
     Mesh(#[from] IndexedError),
     /// The device could not copy a buffer back.

@@ -22,8 +22,8 @@
 use glam::{DMat4, DVec3, Mat3, Mat4, Vec2, Vec3};
 use skiagraph_scene::{Camera, DirectionalLight, LightKind, Mesh, SpotLight, light::across};
 
-/// The struct `Camera` of `shaders/shared/camera.wgsl`: a perspective camera, 96 bytes. Distances
-/// are in scene units.
+/// The struct `Camera` of `shaders/shared/camera.wgsl`: a perspective camera, 96 bytes. Positions
+/// and vectors are in world space, distances in scene units.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct CameraUniform {

@@ -31,9 +31,9 @@ pub enum Error {
         "pixel ({x}, {y}) shows primitive {primitive}, but the mesh has only {count} triangles"
     )]
     UnknownPrimitive {
-        /// Pixel column.
+        /// Column of the pixel, counted from 0 at the left.
         x: u32,
-        /// Pixel row.
+        /// Row of the pixel, counted from 0 at the top.
         y: u32,
         /// Primitive id (index of a triangle) that the G-buffer has for the pixel.
         primitive: u32,
@@ -45,9 +45,9 @@ pub enum Error {
     Value {
         /// Name of the buffer: `visibility` or `status`.
         name: &'static str,
-        /// Pixel column.
+        /// Column of the pixel, counted from 0 at the left.
         x: u32,
-        /// Pixel row.
+        /// Row of the pixel, counted from 0 at the top.
         y: u32,
         /// Value of that pixel.
         value: u32,

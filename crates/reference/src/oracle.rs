@@ -97,7 +97,7 @@ pub struct Occlusion {
 }
 
 impl<'a> Oracle<'a> {
-    /// Creates an oracle: builds a hierarchy over the mesh, on all cores.
+    /// Creates an oracle: builds a bounding-volume hierarchy over the mesh, on all cores.
     ///
     /// # Panics
     /// If a triangle's index is out of range, which [`Mesh`] forbids.

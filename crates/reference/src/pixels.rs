@@ -13,7 +13,7 @@ pub const BACKGROUND: u32 = u32::MAX;
 #[derive(Clone, Copy)]
 pub struct Progress<'a> {
     /// Function that is called from any thread whenever a row of pixels is done, with the number of
-    /// rows done so far, out of `viewport[1]`.
+    /// rows done so far, out of the viewport's height.
     pub rows_done: &'a (dyn Fn(u64) + Sync),
     /// Flag that the caller raises to stop the run. The run then ends within a row's time with
     /// [`Error::Interrupted`].

@@ -1,5 +1,5 @@
-//! The receiver of a pixel: the point of the G-buffer's primitive that its ray meets, and how far
-//! f32 may err from it.
+//! The receiver of a pixel: the point where the pixel's ray meets its primitive in the G-buffer,
+//! and the bounds of its f32 error.
 
 use crate::{
     error::Error,

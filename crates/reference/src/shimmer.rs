@@ -1,4 +1,5 @@
-//! Shimmer: answers that change from a frame to the next though the ground truth does not.
+//! Shimmer: shadows of a method that change from one frame to the next though the ground truth does
+//! not.
 
 use crate::{
     error::Error,

@@ -14,13 +14,13 @@ pub use crate::status;
 /// [`Statistics::judged`] refuses frames with such pixels.
 pub const UNANSWERED: u32 = 2;
 
-/// Number of pixels by the reference's answer. `background + facing_away + facing_light` is the
-/// viewport, `lit + shadow` is `facing_light`.
+/// Number of pixels by the reference's answer ([`Class`]). `background + facing_away +
+/// facing_light` is the number of pixels of the viewport, `lit + shadow` is `facing_light`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PixelCounts {
     /// Pixels that show no geometry.
     pub background: u64,
-    /// Pixels that face away from the light (PnFL).
+    /// Pixels that face away from the light (PnFL: pixels not facing the light).
     pub facing_away: u64,
     /// Pixels that face the light (PFL), the denominator of every share.
     pub facing_light: u64,
@@ -40,7 +40,8 @@ pub struct CertainCounts {
     pub shadow: u64,
 }
 
-/// Number of pixels whose visibility differs from the reference's.
+/// Number of judged pixels whose visibility differs from the reference's; [`Statistics`] says which
+/// pixels are judged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WrongCounts {
     /// Pixels that the method shows lit, but the reference does not.

@@ -27,7 +27,7 @@ pub struct ReplanReport {
     /// Names of the passes whose uniform `params` got other values; new passes are not listed.
     pub uploads: Vec<String>,
     /// Names of the passes that got new pipelines: new passes, and passes with another shader,
-    /// format, constant or state.
+    /// target format, `override` constant, or state such as culling or depth bias.
     pub pipelines: Vec<String>,
     /// Names of the graph's own textures and buffers that were created anew without their former
     /// content.

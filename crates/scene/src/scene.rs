@@ -11,7 +11,7 @@ use glam::DVec3;
 /// Scene to be drawn: a mesh with its views and lights.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// Name shown in tables and results.
+    /// Name of the scene, shown in tables and results.
     pub name: String,
     /// Mesh of all receivers and casters.
     pub mesh: Mesh,
@@ -27,7 +27,8 @@ impl Scene {
         self.views.iter().find(|view| view.name == name)
     }
 
-    /// Returns the default light of the scene.
+    /// Returns the default light of the scene: the first of `lights`, or if that list is empty a
+    /// directional light that shines along −y.
     pub fn light(&self) -> LightKind {
         first(&self.lights)
     }

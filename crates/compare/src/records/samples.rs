@@ -20,13 +20,13 @@ use std::time::Duration;
 
 /// Times of one frame.
 pub struct TimedFrame {
-    /// Time from the start of the first timed frame until the encoding of this frame began.
+    /// Time from the start of the first timed frame until the start of this frame's encoding.
     pub began: Duration,
     /// GPU and CPU times of the frame's passes.
     pub timing: FrameTiming,
     /// Time from the start of encoding until the GPU was done.
     pub wall: Duration,
-    /// Names of the passes that did not run.
+    /// Names of the passes that were skipped in the frame, as their inputs had not changed.
     pub skipped: Vec<String>,
 }
 
@@ -43,7 +43,7 @@ pub struct Samples {
     pub wall: Vec<Duration>,
 }
 
-/// Times of one pass, with one item for each frame in which it ran.
+/// Times of one pass: each list has one item for each frame in which the pass ran.
 pub struct PassSamples {
     /// Name of the pass.
     pub name: String,

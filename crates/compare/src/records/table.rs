@@ -18,7 +18,7 @@ use serde::Serialize;
 pub struct Table {
     /// Head of each column.
     pub heads: Vec<String>,
-    /// Number of columns, from the first on, that hold words; the others hold numbers.
+    /// Number of leading columns that hold words; the other columns hold numbers.
     pub words: usize,
     /// Cells of each row, one per column.
     pub rows: Vec<Vec<String>>,

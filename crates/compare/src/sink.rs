@@ -39,7 +39,8 @@ pub trait Sink: Sync {
         self.note(diagnostics::render(warnings, false).trim_end());
     }
 
-    /// Receives the start of `total` runs, each of several steps.
+    /// Receives the start of `total` runs. A run is one method on one view in one viewport, and
+    /// consists of several steps.
     fn begin_runs(&self, _total: u64) {}
 
     /// Receives the end of one run.

@@ -265,7 +265,7 @@ pub fn path_panels<'a>(
 /// Renders a figure as the text of an SVG file.
 ///
 /// # Errors
-/// As for [`Figure::to_svg`].
+/// The errors of [`Figure::to_svg`].
 pub fn svg(figure: &Figure) -> Result<String, CompareError> {
     let svg = figure.to_svg();
     svg.map_err(|error| CompareError::Input(error.to_string()))

@@ -16,7 +16,7 @@ pub const FILE: &str = "report.html";
 /// about pictures that did not fit into the page.
 ///
 /// # Errors
-/// As for [`write`](write()).
+/// The errors of [`write`](write()).
 pub fn write_beside(folder: &Path, sink: &dyn Sink) -> Result<(), CompareError> {
     write(&[folder.to_path_buf()], &folder.join(FILE), sink)
 }

@@ -92,7 +92,7 @@ fn six_digits(number: f64) -> String {
 /// `pass` is empty in the lines of whole frames.
 ///
 /// # Errors
-/// As for [`Table::csv`].
+/// The errors of [`Table::csv`].
 pub fn to_csv(profiles: &[Profile]) -> Result<String, ::csv::Error> {
     let lines = profiles.iter().flat_map(|profile| {
         let passes = profile.passes.iter().map(Some).chain([None]);

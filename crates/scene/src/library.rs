@@ -139,7 +139,7 @@ impl SceneLibrary {
     /// replaced by the path at which the file was found.
     ///
     /// # Errors
-    /// As for [`load`](Self::load), except for errors in the content of the mesh.
+    /// The errors of [`load`](Self::load), except for errors in the content of the mesh.
     pub fn scene_file(&self, argument: &str) -> Result<SceneFile, SceneError> {
         let (file, mut scene) = self.parse_sized(argument)?;
         let found = match &scene.mesh {

@@ -213,9 +213,9 @@ impl SpotLight {
         (self.cone_degrees * 0.5).to_radians().cos()
     }
 
-    /// Returns the cosine of the angle between the cone's axis and the way from the light to a
-    /// receiver. `to_light` is the unit vector from the receiver to the light. Within the cone, the
-    /// result is at least [`edge_cosine`](Self::edge_cosine).
+    /// Returns the cosine of the angle between the cone's axis and the direction from the light to
+    /// a receiver (a shaded surface point). `to_light` is the unit vector from the receiver to the
+    /// light. Within the cone, the result is at least [`edge_cosine`](Self::edge_cosine).
     pub fn axis_cosine(&self, to_light: DVec3) -> f64 {
         -self.direction.normalize().dot(to_light)
     }

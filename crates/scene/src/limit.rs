@@ -54,7 +54,7 @@ impl Limit {
     /// Reads the text of the file at `path`, without its byte order mark.
     ///
     /// # Errors
-    /// Those of [`Self::read`]; bytes that are not UTF-8.
+    /// The errors of [`Self::read`]; bytes that are not UTF-8.
     pub fn read_text(&self, path: &Path) -> io::Result<String> {
         String::from_utf8(without_mark(&self.read(path)?).into_owned())
             .map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "it is not UTF-8 text"))

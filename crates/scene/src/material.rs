@@ -32,7 +32,8 @@ impl Default for Material {
 }
 
 /// Materials of a mesh, and the material and texture coordinates of each triangle. All lists are
-/// empty for a mesh without materials.
+/// empty for a mesh without materials. The argument `primitive` of methods is the index of a
+/// triangle in [`Mesh::triangles`](crate::Mesh::triangles).
 #[derive(Clone, Debug, Default)]
 pub struct Surfaces {
     /// Texture coordinates, v down: (0, 0) is the outer corner of the texture's first texel.

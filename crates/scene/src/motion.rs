@@ -40,8 +40,9 @@ pub enum Motion {
         /// the part stands still.
         keys: Vec<PoseKey>,
     },
-    /// The part is bent as by wind: a point at height h of a part of height H is shifted by
-    /// `H (h / H)² tan(a)`, where the angle a swings as a sine. The foot of the part stands still.
+    /// The part is bent as by wind: a point at height h above the foot (the lowest point along
+    /// `up`) of a part of height H is shifted by `H (h / H)² tan(a)` along `axis`, where the angle
+    /// a swings as a sine. The foot stands still.
     Sway {
         /// Direction in which the part leans, of any length but zero and not along `up`.
         axis: DVec3,

@@ -162,7 +162,7 @@ impl Movable {
 
     /// Returns the mesh with each part moved by a map that need not be affine. `map` gets the
     /// number of a part and a position on it at rest. It returns the moved position, and the
-    /// derivative of the map at the position at rest.
+    /// derivative (Jacobian matrix) of the map at the position at rest.
     ///
     /// # Errors
     /// [`MoveError::Folded`] for a map that mirrors only some of a part; other errors for a map

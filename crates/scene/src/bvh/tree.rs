@@ -75,8 +75,8 @@ impl Bvh {
         (bvh.depth <= MAX_DEPTH).then_some(bvh)
     }
 
-    /// Returns the tree reduced to at most `most` nodes (1 at least). Each subtree with few
-    /// triangles becomes one leaf, which may be larger than the leaves that [`build`](Self::build)
+    /// Returns the tree reduced to at most `most` nodes (1 at least). Subtrees with the fewest
+    /// triangles become leaves, which may be larger than the leaves that [`build`](Self::build)
     /// makes. A tree that is small enough already is returned unchanged.
     pub fn merged(self, most: usize) -> Self {
         if self.nodes.len() <= most.max(1) {

@@ -44,7 +44,7 @@ pub fn load_gltf(path: &Path, materials: MaterialUse) -> Result<(Mesh, ImportRep
 /// report of changes and ignored parts of the mesh.
 ///
 /// # Errors
-/// As for [`load_gltf`].
+/// The errors of [`load_gltf`].
 pub fn load_gltf_scene(
     path: &Path,
     materials: MaterialUse,
@@ -63,7 +63,7 @@ fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
 /// file in messages; other files that it names are searched beside it.
 ///
 /// # Errors
-/// As for [`load_gltf`], except for errors of reading the file itself.
+/// The errors of [`load_gltf`], except for errors of reading the file itself.
 pub fn parse_gltf(
     bytes: &[u8],
     path: &Path,
@@ -77,7 +77,7 @@ pub fn parse_gltf(
 /// searched beside it.
 ///
 /// # Errors
-/// As for [`parse_gltf`].
+/// The errors of [`parse_gltf`].
 pub fn parse_gltf_scene(
     bytes: &[u8],
     path: &Path,

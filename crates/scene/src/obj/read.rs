@@ -40,7 +40,7 @@ pub fn load_obj(path: &Path, options: &ObjOptions) -> Result<(Mesh, ImportReport
 /// `path` names the file in messages; files of materials are searched beside it.
 ///
 /// # Errors
-/// As for [`load_obj`], except for errors of reading the file itself.
+/// The errors of [`load_obj`], except for errors of reading the file itself.
 pub fn parse_obj(
     bytes: &[u8],
     path: &Path,

@@ -90,12 +90,14 @@ impl Method {
         }
     }
 
-    /// Returns the method as it runs on an adapter with these features.
+    /// Returns the method for an adapter with these features: the defaults of its params may depend
+    /// on them.
     pub fn settled(self, features: wgpu::Features) -> Self {
         Self::on(self.preset, self.params, self.viewport, features).named(&self.name)
     }
 
-    /// Returns the method as it runs in another viewport, in pixels.
+    /// Returns the method for another viewport, in pixels: the defaults of its params may depend on
+    /// it.
     pub fn at(&self, viewport: [u32; 2]) -> Self {
         let params = self.params.clone();
         Self::on(self.preset.clone(), params, viewport, self.features).named(&self.name)

@@ -65,8 +65,8 @@ pub fn settled(
 }
 
 /// Runs one frame of a plan with an executor from [`settled`]. Returns the contents of the outputs
-/// and captures `names`, and the report of the frames that were run to find buffer sizes. `graph`
-/// is the graph's name for messages.
+/// and captures `names`, by name, and the report of the frames that were run to find buffer sizes.
+/// `graph` is the graph's name for messages.
 ///
 /// # Errors
 /// [`CompareError::Gpu`] if the graph cannot run; an early end.

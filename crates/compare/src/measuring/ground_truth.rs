@@ -133,6 +133,7 @@ impl<'a> GroundTruthView<'a> {
     /// number of rays from a pixel to a light with an extent. The sink receives the progress under
     /// the name `what`.
     ///
+    /// # Errors
     /// An early end, primitive ids of another mesh, an invalid light.
     pub fn new(
         oracle: Rc<Oracle<'a>>,
@@ -253,7 +254,8 @@ pub struct GroundTruthFrames<'a> {
 }
 
 impl<'a> GroundTruthFrames<'a> {
-    /// Matches the receivers of each frame with those of the frame before.
+    /// Matches the visible surface points of each frame with those of the frame before.
+    /// `truth_views` has one entry per frame, in order.
     ///
     /// # Errors
     /// [`CompareError::Interrupted`].

@@ -198,8 +198,8 @@ pub fn write_all<'a>(
     })
 }
 
-/// Writes a material's content into the file of a save, decoded by `reading`. Returns a line of
-/// text about the file.
+/// Writes a material's content into the file of a save. `reading` says how the content is decoded.
+/// Returns a line of text about the file.
 ///
 /// # Errors
 /// The content cannot be encoded in this way, or the file cannot be written.

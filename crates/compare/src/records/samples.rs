@@ -35,7 +35,7 @@ pub struct TimedFrame {
 pub struct Samples {
     /// Times of each pass, in the order in which the passes ran.
     pub passes: Vec<PassSamples>,
-    /// GPU time from the first pass's begin to the last one's end; `None` where it is not known.
+    /// GPU time from the start of the first pass to the end of the last; `None` if it is not known.
     pub gpu: Vec<Option<Duration>>,
     /// CPU time of encoding all passes.
     pub cpu: Vec<Duration>,
@@ -47,14 +47,14 @@ pub struct Samples {
 pub struct PassSamples {
     /// Name of the pass.
     pub name: String,
-    /// GPU time between the pass's timestamps; `None` where it is not known.
+    /// GPU time between the pass's timestamps; `None` if it is not known.
     pub gpu: Vec<Option<Duration>>,
     /// CPU time of encoding the pass.
     pub cpu: Vec<Duration>,
 }
 
 impl Samples {
-    /// Gathers the times of some frames.
+    /// Gathers the times of `frames`, in their order.
     pub fn new(frames: &[TimedFrame]) -> Self {
         let mut samples = Self::default();
         for TimedFrame { timing, wall, .. } in frames {

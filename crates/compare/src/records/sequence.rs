@@ -86,8 +86,8 @@ pub struct Remade {
 /// Times of one frame.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrameCost {
-    /// GPU time in milliseconds, from the first pass's begin to the last one's end; null where it
-    /// cannot be had or trusted.
+    /// GPU time in milliseconds, from the start of the first pass to the end of the last; null if
+    /// there are no timestamps or they cannot be trusted.
     pub gpu_ms: Option<f64>,
     /// Milliseconds from the start of encoding until the outputs were read back, by the CPU's
     /// clock.
@@ -131,8 +131,8 @@ impl Sequence {
         )
     }
 
-    /// Lists the resources of the scene that took a median of 0.1 ms or more to make anew: name,
-    /// `made` or `refitted`, number of frames, and median time in milliseconds.
+    /// Lists the resources of the scene that took a median of 0.1 ms or more to build again between
+    /// frames: name, `made` or `refitted`, number of frames, and median time in milliseconds.
     pub fn remade<'s>(&'s self) -> Vec<(&'s str, &'s str, usize, f64)> {
         let all = self.frames.iter().flat_map(|frame| &frame.remade);
         let mut times: BTreeMap<(&str, &str), Vec<f64>> = BTreeMap::new();

@@ -95,7 +95,8 @@ pub struct Case {
     pub casters: Casters,
     /// Greatest share of the pixels facing the light, 0 to 1, that the band may take.
     pub band_cap: f64,
-    /// Verdict on the band: failed if it is above its cap, or if the case has no reference.
+    /// Verdict on the band: `Fail` if the band is above its cap or the case has no reference,
+    /// otherwise `Pass`.
     pub verdict: Verdict,
     /// Reason why the case has no reference, and so no cells; absent where it has one.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -171,11 +172,11 @@ pub struct Counts {
 /// Counts of the wrong pixels outside the band.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct OutsideBand {
-    /// Pixels lit by the method, but not by the reference.
+    /// Number of pixels lit by the method, but not by the reference.
     pub lit: u64,
-    /// Pixels in shadow by the method, but lit by the reference.
+    /// Number of pixels in shadow by the method, but lit by the reference.
     pub shadow: u64,
-    /// Wrong pixels of both kinds that the method called certain.
+    /// Number of wrong pixels of both kinds that the method called certain.
     pub certain: u64,
 }
 
@@ -211,8 +212,10 @@ impl Verdict {
 }
 
 impl Counts {
-    /// Creates the counts of a picture. `whole` counts all of its pixels; `settled` counts them
-    /// with the reference's answer for pixels in the band.
+    /// Creates the counts of a picture. `whole` counts the method's answers as they are; `settled`
+    /// counts them with the reference's answer at each pixel in the band, so that its wrong pixels
+    /// are those outside the band. `rays` is the number of rays traced; `None` if the graph does
+    /// not count them.
     pub fn new(whole: &Statistics, settled: &Statistics, rays: Option<u64>) -> Self {
         let outside = settled.wrong;
         Self {
@@ -253,7 +256,7 @@ impl Case {
 }
 
 impl Report {
-    /// Returns the number of cells with a verdict.
+    /// Returns the number of cells with the verdict `verdict`.
     pub fn count(&self, verdict: Verdict) -> usize {
         let cells = self.cases.iter().flat_map(|case| &case.cells);
         cells.filter(|cell| cell.verdict == verdict).count()

@@ -13,7 +13,7 @@ use glam::DVec3;
 pub struct Scene {
     /// Name of the scene, shown in tables and results.
     pub name: String,
-    /// Mesh of all receivers and casters.
+    /// Mesh whose triangles cast and receive shadows.
     pub mesh: Mesh,
     /// Views, at least one; the first is the default.
     pub views: Vec<View>,

@@ -16,7 +16,7 @@ use serde::Serialize;
 /// A table of cells with text that is shown as it is.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Table {
-    /// Head of each column.
+    /// Text above each column, one per column.
     pub heads: Vec<String>,
     /// Number of leading columns that hold words; the other columns hold numbers.
     pub words: usize,

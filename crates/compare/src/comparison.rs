@@ -49,9 +49,11 @@ pub struct Protocol {
     /// Number of sample positions within a pixel that the camera takes in turns, frame by frame;
     /// `None` to sample the pixel's centre.
     pub jitter: Option<u32>,
-    /// Mode of the reference: how its shadow rays leave their receivers.
+    /// Mode of the reference (the `f64` ray tracer that is the oracle): whether its shadow rays
+    /// start exactly on the visible surfaces or at an offset.
     pub oracle: OracleMode,
-    /// Number of shadow rays that the reference traces from a pixel to a light with an extent.
+    /// Number of shadow rays that the reference traces from a pixel to a light with an extent;
+    /// other lights take one ray.
     pub reference_samples: u32,
     /// True if pictures of every run are drawn into the folder of the results.
     pub pictures: bool,
@@ -88,7 +90,7 @@ pub struct Comparison {
     pub primary: PrimaryVisibility,
     /// Limits on frame time, wrong pixels and memory that an acceptable method keeps.
     pub budgets: Budgets,
-    /// Published figures, to stand beside those of the runs that they apply to.
+    /// Published figures. Those that apply to a run are shown beside the run's own figures.
     pub published: Vec<Row>,
     /// Command line that the results record, so that they can be measured again; `None` to record
     /// none.
@@ -141,7 +143,7 @@ impl Comparison {
         Ok(())
     }
 
-    /// Returns the methods with their params as the session's GPU runs them: defaults of params may
+    /// Returns the methods with the params that they have on the session's GPU: default values may
     /// depend on its features.
     pub fn settled(&self, session: Session) -> Vec<Method> {
         let features = session.gpu.device.features();

@@ -18,36 +18,38 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Reason why work ended early.
+/// Reason why a command or a step of it ended early.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CompareError {
-    /// A request whose parts contradict each other, or that is not in the expected form.
+    /// Options or arguments that contradict each other or are not in the expected form. Holds the
+    /// message.
     #[error("{0}")]
     Request(String),
-    /// A file, name or value from the user that cannot be used as asked.
+    /// A file, name or value from the user that cannot be used. Holds the message.
     #[error("{0}")]
     Input(String),
-    /// Faults in graphs or other files, in the order in which the files were named.
+    /// Faults in graphs or other files.
     #[error("{}{summary}", rendered(faults, false))]
     Diagnostics {
-        /// Lists of faults, in the order in which they are shown.
+        /// One list of faults per graph or set of files, in the order in which they are shown.
         faults: Vec<Vec<Diagnostic>>,
         /// Last line of the message, such as `2 errors in 1 graph`.
         summary: String,
     },
-    /// Outputs of graphs that ran but break the contract of a shadow method's outputs.
+    /// Outputs of graphs that ran but break the contract of a shadow method's outputs (their size,
+    /// format and values). Holds the message.
     #[error("{0}")]
     InvalidOutputs(String),
-    /// No GPU adapter that can be used.
+    /// No GPU adapter can be used. Holds the message.
     #[error("{0}")]
     NoGpu(String),
-    /// A graph that failed to run on the GPU.
+    /// A graph could not be run on the GPU.
     #[error("`{graph}` cannot run")]
     Gpu {
         /// Name of the preset or path of the graph.
         graph: String,
-        /// The error that running the graph ended with.
+        /// Error with which the run of the graph ended.
         source: Box<ExecuteError>,
     },
     /// A file or folder that cannot be written.
@@ -58,10 +60,10 @@ pub enum CompareError {
         /// The cause of the failure.
         source: Box<dyn Error + Send + Sync>,
     },
-    /// An early end that [`Sink::stop`](crate::sink::Sink::stop) asked for.
+    /// The work ended early, because [`Sink::stop`](crate::sink::Sink::stop) asked for it.
     #[error("stopped; {kept}")]
     Interrupted {
-        /// Says how much of the work is kept; empty if the caller is to say it.
+        /// Text for the user that says which results are kept; empty if the caller has to say it.
         kept: String,
     },
 }
@@ -75,8 +77,8 @@ impl CompareError {
         }
     }
 
-    /// Creates the error for an early end. Its `kept` is empty, as only the caller knows what is
-    /// kept.
+    /// Creates the error for an early end. Its `kept` is empty, as only the caller knows which
+    /// results are kept.
     pub fn interrupted() -> Self {
         Self::Interrupted {
             kept: String::new(),
@@ -84,14 +86,15 @@ impl CompareError {
     }
 }
 
-/// Returns faults as text with their source lines, coloured for a terminal if `colour` is true.
+/// Returns lists of faults as text with the faulty source lines, coloured for a terminal if
+/// `colour` is true.
 pub fn rendered(faults: &[Vec<Diagnostic>], colour: bool) -> String {
     let rendered = faults.iter().map(|list| diagnostics::render(list, colour));
     rendered.collect()
 }
 
-/// True if an error leaves the device unusable for every graph: it is lost, or its frame was given
-/// up.
+/// True if an error leaves the device unusable for every graph: the device is lost, or a frame was
+/// abandoned before it was finished.
 pub fn is_fatal(error: &ExecuteError) -> bool {
     matches!(
         error,
@@ -99,7 +102,7 @@ pub fn is_fatal(error: &ExecuteError) -> bool {
     )
 }
 
-/// Returns advice on how to avoid a GPU error; `None` for errors without advice.
+/// Returns advice on how to avoid a GPU error; `None` if there is no advice for this error.
 pub fn advice(error: &ExecuteError) -> Option<&'static str> {
     match error {
         ExecuteError::OutOfMemory { .. } => Some("use a smaller viewport or map"),
@@ -115,7 +118,7 @@ pub fn advice(error: &ExecuteError) -> Option<&'static str> {
     }
 }
 
-/// Returns advice on a file that cannot be written; `None` for errors without advice.
+/// Returns advice on a file that cannot be written; `None` if there is no advice for this error.
 pub fn io_advice(error: &io::Error) -> Option<&'static str> {
     use io::ErrorKind as Kind;
     Some(match error.kind() {

@@ -17,7 +17,8 @@ pub fn unique<T: PartialEq>(list: impl IntoIterator<Item = T>) -> Vec<T> {
     kept
 }
 
-/// Returns the index of an item in a list; a missing item is added at the end first.
+/// Returns the index of the first item of `list` that equals `item`. If there is none, `item` is
+/// added at the end.
 pub fn place<T: PartialEq>(list: &mut Vec<T>, item: T) -> usize {
     let known = list.iter().position(|known| *known == item);
     known.unwrap_or_else(|| {
@@ -26,8 +27,8 @@ pub fn place<T: PartialEq>(list: &mut Vec<T>, item: T) -> usize {
     })
 }
 
-/// Returns the value of a key in a list of pairs; a missing key is added at the end with a default
-/// value first.
+/// Returns the value beside the first `key` in a list of pairs. If there is none, `key` is added at
+/// the end with the default value.
 pub fn entry<K: PartialEq, V: Default>(list: &mut Vec<(K, V)>, key: K) -> &mut V {
     let known = list.iter().position(|(known, _)| *known == key);
     let place = known.unwrap_or_else(|| {

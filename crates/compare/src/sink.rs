@@ -39,7 +39,8 @@ pub trait Sink: Sync {
         self.note(diagnostics::render(warnings, false).trim_end());
     }
 
-    /// Receives the start of `total` runs, each of several steps.
+    /// Receives the start of `total` runs. A run is one method on one view in one viewport, and
+    /// consists of several steps.
     fn begin_runs(&self, _total: u64) {}
 
     /// Receives the end of one run.
@@ -74,7 +75,7 @@ impl Sink for Silent {
     fn note(&self, _text: &str) {}
 }
 
-/// An opened GPU, and the sink that receives the progress of work on it.
+/// An opened GPU, and the sink that receives the progress of work on the GPU.
 #[derive(Clone, Copy)]
 pub struct Session<'a> {
     /// The GPU that work runs on.
@@ -106,22 +107,23 @@ impl<'a> Session<'a> {
     }
 }
 
-/// A step under way, reported to a sink. If it is dropped without [`end`](Self::end), it counts as
-/// ended early.
+/// A step of work under way, such as the timed frames of a method, reported to a sink. If it is
+/// dropped without [`end`](Self::end), it counts as ended early.
 pub struct Step<'a> {
     sink: &'a dyn Sink,
     is_whole: bool,
 }
 
 impl<'a> Step<'a> {
-    /// Tells the sink that the step `name` begins, of `total` parts that are counted in `unit`.
+    /// Tells the sink that the step `name` begins. It has `total` parts, which are counted in
+    /// `unit`, such as `frames`.
     pub fn begin(sink: &'a dyn Sink, name: &str, total: u64, unit: &'static str) -> Self {
         sink.begin_step(name, total, unit);
         let is_whole = false;
         Self { sink, is_whole }
     }
 
-    /// Tells the sink how many parts are done; can be called from any thread.
+    /// Tells the sink how many of the step's parts are done. Can be called from any thread.
     pub fn set_done(&self, done: u64) {
         self.sink.set_done(done);
     }
@@ -138,7 +140,8 @@ impl Drop for Step<'_> {
     }
 }
 
-/// Runs under way, reported to a sink. They end when this value is dropped.
+/// Several runs under way, reported to a sink; a run is one method on one view in one viewport.
+/// Dropping this value tells the sink that all runs have ended.
 pub struct Runs<'a>(&'a dyn Sink);
 
 impl<'a> Runs<'a> {

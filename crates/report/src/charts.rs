@@ -1,5 +1,5 @@
-//! Builds charts from kept results: chooses the runs and the quantities to draw. `skiagraph-chart`
-//! draws them.
+//! Builds charts from results in folders: chooses the runs and quantities to draw.
+//! `skiagraph-chart` draws them.
 
 use itertools::Itertools;
 use skiagraph_chart::{Figure, Kind, Mark, Panel, Series};
@@ -39,8 +39,10 @@ impl Kept {
 const TIME: &str = "GPU ms of a frame less its G-buffer";
 
 /// Builds the chart of time against error: a panel for each folder and viewport, and a mark for
-/// each method and map size. Marks of several views show the mean of the views. `viewport` (pixels)
-/// limits the chart to one viewport; `None` draws all.
+/// each method and map size. The error is the wrong pixels outside the band (the pixels whose
+/// answer rounding decides), in percent of all pixels. Marks of several views show the mean of the
+/// views. Runs whose answers are shares of light, or whose light has an extent, are not drawn.
+/// `viewport` (pixels) limits the chart to one viewport; `None` draws all.
 ///
 /// # Errors
 /// If a drawn run has no GPU times.
@@ -206,11 +208,11 @@ pub fn frames_of_paths(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figu
     })
 }
 
-/// Returns a panel for each camera path among `runs`: the error of each frame, a series for each
-/// run. The error is the percentage of wrong pixels outside the band among those that face the
-/// light. Under a light with an extent it is the root mean square error of the shares of light.
-/// Runs without frames of a path are skipped. All runs must have one viewport. `name` returns the
-/// name of a run's series.
+/// Returns a panel for each camera path among `runs`, with the error of each frame and a series for
+/// each run. The error is the wrong pixels outside the band, in percent of the pixels that face the
+/// light; under a light with an extent it is the root mean square error of the shares of light.
+/// Runs without frames of a path are skipped. All runs must have the same viewport. `name` returns
+/// the name of a run's series.
 pub fn path_panels<'a>(
     runs: impl Iterator<Item = (&'a Run, &'a Measured)>,
     name: impl Fn(&Run) -> String,
@@ -263,13 +265,13 @@ pub fn path_panels<'a>(
 /// Renders a figure as the text of an SVG file.
 ///
 /// # Errors
-/// Those of [`Figure::to_svg`].
+/// The errors of [`Figure::to_svg`].
 pub fn svg(figure: &Figure) -> Result<String, CompareError> {
     let svg = figure.to_svg();
     svg.map_err(|error| CompareError::Input(error.to_string()))
 }
 
-/// Lists the methods that could not run, with the reason, each once. Each entry is a line of text.
+/// Returns a line of text for each method that could not run, with the reason; equal lines once.
 pub fn unavailable(kept: &[Kept]) -> BTreeSet<String> {
     let runs = kept.iter().flat_map(|kept| &kept.results.runs);
     runs.filter_map(|run| {
@@ -279,7 +281,7 @@ pub fn unavailable(kept: &[Kept]) -> BTreeSet<String> {
     .collect()
 }
 
-/// Adds a mark to the series called `name`, which it creates if it is missing.
+/// Adds a mark to the series called `name`; a missing series is added at the end first.
 pub fn push(series: &mut Vec<Series>, name: &str, mark: Mark) {
     match series.iter_mut().find(|series| series.name == name) {
         Some(series) => series.marks.push(mark),
@@ -319,8 +321,8 @@ fn time(kept: &Kept, measured: &Measured) -> Result<f64, CompareError> {
     })
 }
 
-/// Returns lines that state the conditions of the measurements: the adapters, and how many frames
-/// the medians are of.
+/// Returns lines that state the conditions of the measurements: the adapters, and the number of
+/// frames of which medians were taken.
 pub fn conditions(kept: &[Kept]) -> Vec<String> {
     let results = || kept.iter().map(|kept| &kept.results);
     let adapters = results().map(|results| results.adapter.to_string());

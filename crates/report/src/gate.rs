@@ -12,7 +12,8 @@ pub struct Gate {
     pub method: String,
     /// The figure that is limited.
     pub figure: Figure,
-    /// The greatest value that passes. Its unit is that of the figure.
+    /// Greatest value that passes, in the unit of the figure: percent, milliseconds, bytes, or
+    /// none.
     pub most: f64,
 }
 
@@ -22,14 +23,15 @@ pub enum Figure {
     /// Wrong pixels, in percent of the pixels that face the light. Those in the band, where
     /// rounding decides the answer, do not count.
     Wrong,
-    /// Root mean square error of the shares of light.
+    /// Root mean square error of the shares of light, which are 0 to 1.
     Rmse,
-    /// FLIP error of the shaded pictures, the mean of the views.
+    /// FLIP error (perceptual difference) of the shaded pictures, 0 to 1, as the mean of the views.
     Flip,
-    /// Milliseconds of a frame in which every pass runs.
+    /// Milliseconds of a frame in which every pass runs, as the mean of the views' medians: GPU
+    /// time, or wall time if any row has no GPU time.
     Frame,
-    /// Bytes of the method's own materials and of the scene buffers that it reads; the most on any
-    /// view.
+    /// Bytes of the textures and buffers of the method and of the scene buffers that it reads; the
+    /// largest value of all views.
     Memory,
 }
 
@@ -75,9 +77,9 @@ impl Figure {
 }
 
 impl Gate {
-    /// Returns a line of text for each row that fails this condition. Rows are those of the method,
-    /// in each map size, viewport and light. A row that could not run fails, too. The list is empty
-    /// if all pass.
+    /// Returns a line of text for each row that fails this condition. A row is the method in one
+    /// map size, viewport and light, over all views. A row that could not run fails as well. The
+    /// list is empty if all rows pass, or if the results have no row of the method.
     pub fn failures(&self, results: &Results) -> Vec<String> {
         let mut lines = Vec::new();
         for summary in summaries(results) {

@@ -6,7 +6,8 @@ use skiagraph_compare::wording::thousands;
 use skiagraph_reference::Graded;
 
 /// Describes the reference of a light with an extent: its samples per pixel, its standard error,
-/// and the pixels in penumbra. `band` is the number of pixels in the band.
+/// and the number of pixels in penumbra. `band` is the number of pixels in the band, whose answer
+/// rounding decides.
 pub fn area_reference(area: &AreaReference, band: u64) -> String {
     format!(
         "the light has an extent: reference of {} samples per pixel, standard error {:.5} (root \

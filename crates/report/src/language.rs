@@ -1,4 +1,5 @@
-//! Writes the reference of the document language in Markdown, from the JSON Schema of documents.
+//! Writes the reference of the language of graph documents in Markdown, from the JSON Schema of
+//! documents.
 
 use itertools::Itertools;
 use serde_json::{Map, Value};
@@ -13,8 +14,8 @@ Format 3, as the types that read it have it: `skiagraph schema --format markdown
 Fields in **bold** must be given; the others may be left out.
 ";
 
-/// Returns the reference page of the document language in Markdown. `schema` is the JSON Schema of
-/// documents.
+/// Returns the reference page of the language of graph documents in Markdown. `schema` is the JSON
+/// Schema of documents.
 pub fn markdown(schema: &Value) -> String {
     let mut page = Page {
         text: HEAD.to_owned(),

@@ -1,4 +1,4 @@
-//! Results as a document: a header, then for every view and viewport one table of errors and of the
+//! Results as a document: a header, then for each view and viewport one table of errors and of the
 //! times of steps.
 
 use crate::graded::area_reference;
@@ -11,9 +11,10 @@ use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::{command_line, frames, ms, share, thousands};
 use std::{collections::BTreeSet, env};
 
-/// Returns the document's header: a heading, the command line, and the conditions that all tables
-/// share. `today` is the date of runs that are still to be measured; `None` if there are none.
-/// `are_paths` is true if the runs are of camera paths, whose frames are timed.
+/// Returns the document's header: a heading, the command line of this process, and the conditions
+/// that all tables share. `today` is the date for runs that are still to be measured; `None` if
+/// there are none. `published` are the files of published figures that tables show. `are_paths` is
+/// true if the runs are of camera paths, of which each frame is timed.
 pub fn header(
     results: &Results,
     today: Option<&str>,
@@ -75,7 +76,7 @@ pub fn view(name: &str) -> String {
 }
 
 /// Returns the section of one view and viewport in Markdown: the reference's pixel counts, a table
-/// of the measured runs, and notes. It is empty without runs.
+/// of the runs with measurements, and notes. The text is empty without runs.
 pub fn viewport(results: &Results, runs: &[Run]) -> String {
     let Some(first) = runs.first() else {
         return String::new();

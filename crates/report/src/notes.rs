@@ -10,8 +10,8 @@ use skiagraph_reference::{BlockerCounts, Quantiles};
 /// The band is too large if more than one in this many of the pixels that face the light lie in it.
 const MAX_BAND: u128 = 1000;
 
-/// Returns a warning if the band of a run's view and viewport exceeds 0.1 % of the pixels that face
-/// the light; `None` otherwise.
+/// Returns a warning if the band (the pixels whose answer rounding decides) of a run's view and
+/// viewport exceeds 0.1 % of the pixels that face the light; `None` otherwise.
 pub fn band_warning(run: &Run) -> Option<String> {
     let is_large = u128::from(run.band) * MAX_BAND > u128::from(run.pixels.facing_light);
     let text = "warning: the band is larger than 0.1 % of PFL; what lies in it is not proven";
@@ -29,8 +29,8 @@ pub fn load_warning(machine: &Machine) -> Option<String> {
     ))
 }
 
-/// Returns a warning if pixels of a run's view and viewport show a surface that is hidden there;
-/// `None` if none do. Such pixels do not count against a method.
+/// Returns a warning if pixels of a run's view and viewport show a surface that another surface
+/// hides; `None` if no pixel does. Such pixels do not count against a method.
 pub fn surface_warning(run: &Run) -> Option<String> {
     let background = run.pixels.background + run.pixels.facing_away;
     let all = background + run.pixels.facing_light;
@@ -38,7 +38,7 @@ pub fn surface_warning(run: &Run) -> Option<String> {
     (run.wrong_surface > 0).then(text)
 }
 
-/// Says that `count` of `all` pixels show a surface that is hidden there.
+/// Returns a sentence that `count` of `all` pixels show a surface that another surface hides.
 pub fn wrong_surface(count: u64, all: u64) -> String {
     format!(
         "{} of {} pixels show a surface that another one hides, or none where there is one; every \
@@ -48,8 +48,8 @@ pub fn wrong_surface(count: u64, all: u64) -> String {
     )
 }
 
-/// Describes the texels of a run's shadow map per pixel, and how errors jump between its layers.
-/// `None` if the run has no measurements of texels.
+/// Describes the texels of a run's shadow map per pixel, and how errors jump between the map's
+/// layers. Returns `None` if the run has no measurements of texels.
 pub fn map_figures(run: &Run) -> Option<String> {
     let measured = run.measured.as_ref()?;
     let of = measured.texels.as_ref()?;
@@ -83,9 +83,9 @@ fn digits(number: f64) -> String {
     format!("{number:.*}", behind.max(0.0) as usize)
 }
 
-/// Returns a line for each method that was wrong on pixels that it called certain: their number,
-/// and what blocks the light there. Runs of a method must stand together; all its map sizes share
-/// one line.
+/// Returns a line for each method that was wrong on pixels that it called certain: the number of
+/// these pixels, and what blocks the light there. Runs of the same method must be consecutive; all
+/// its map sizes share one line.
 pub fn certain_wrong(runs: &[Run]) -> Vec<String> {
     let wrong = |run: &Run| {
         let certain = run.measured.as_ref().map_or(0, |of| of.wrong.certain);
@@ -123,9 +123,9 @@ const KINDS: [Kind; 3] = [
     ("no blocker", |by| by.none),
 ];
 
-/// Says how many pixels were certain and wrong, and what blocks the light there. `counts` has an
-/// entry for each run: the number of these pixels, and its split by kind of blocker. Kinds that no
-/// run has are left out.
+/// Describes how many pixels were certain and wrong, and what blocks the light there. `counts` has
+/// an entry for each run: the number of these pixels, and the split of this number by kind of
+/// blocker. Kinds that no run has are left out.
 pub fn blocked_by(counts: &[(u64, BlockerCounts)]) -> String {
     let said = |name: &str, count: &dyn Fn(&(u64, BlockerCounts)) -> u64| {
         let counts: Vec<u64> = counts.iter().map(count).collect();
@@ -139,8 +139,8 @@ pub fn blocked_by(counts: &[(u64, BlockerCounts)]) -> String {
     parts.join(", ")
 }
 
-/// Returns the notes of a group of runs: certain wrong pixels, shares of light, steady states,
-/// costs of camera paths, and missing GPU times if the adapter has them.
+/// Returns the notes of a group of runs, one per line: certain but wrong pixels, shares of light,
+/// steady states, costs of camera paths, and missing GPU times if the adapter measures them.
 pub fn of_runs(results: &Results, runs: &[Run]) -> Vec<String> {
     let mut notes = certain_wrong(runs);
     notes.extend(graded(runs));
@@ -183,8 +183,9 @@ pub fn remembering(run: &Run) -> Option<String> {
     })
 }
 
-/// Names the slowest frame of a camera path, both as the passes ran and with every pass run, and
-/// the CPU costs of scene changes. Each entry is a line. The list is empty for a single view.
+/// Describes the slowest frame of a camera path, both with the passes that ran and with every pass
+/// run, and the CPU costs of scene changes. Each entry is a line. The list is empty for a still
+/// view.
 pub fn path_costs(run: &Run) -> Vec<String> {
     let sequence = run.measured.as_ref().and_then(|of| of.sequence.as_ref());
     let lines = sequence.map(|sequence| {
@@ -218,8 +219,8 @@ fn remade(run: &Run, sequence: &Sequence) -> Option<String> {
     (!remade.is_empty()).then(|| format!("{label} between frames, on the CPU: {remade}"))
 }
 
-/// Names the GPU times that a run lacks on an adapter with true timestamps; `None` if it lacks
-/// none.
+/// Names the GPU times that a run lacks although the adapter's timestamps can be trusted; `None` if
+/// it lacks none.
 pub fn times_missing(run: &Run) -> Option<String> {
     let measured = run.measured.as_ref()?;
     let passes = measured.passes.iter();
@@ -228,8 +229,8 @@ pub fn times_missing(run: &Run) -> Option<String> {
     Some(format!("{}: {why}", run.method_label()))
 }
 
-/// Names the GPU times that are missing; `None` if none are. `passes` yields the name of each pass
-/// and true if it was timed; `frame` is true if the whole frame was.
+/// Names the GPU times that are missing; `None` if none are. `passes` yields the name of each pass,
+/// and true if the pass was timed; `frame` is true if the whole frame was timed.
 pub fn untimed<'a>(passes: impl Iterator<Item = (&'a str, bool)>, frame: bool) -> Option<String> {
     let mut untimed = passes.filter_map(|(name, is_timed)| (!is_timed).then_some(name));
     let untimed = untimed.join(", ");

@@ -12,11 +12,11 @@ use std::path::{Path, PathBuf};
 /// Name of the page's file in a folder of results.
 pub const FILE: &str = "report.html";
 
-/// Writes the page of one folder of results into that folder. The sink gets a note about pictures
-/// that did not fit into the page.
+/// Writes the page of one folder of results into that folder, as [`FILE`]. The sink gets a note
+/// about pictures that did not fit into the page.
 ///
 /// # Errors
-/// Those of [`write`](write()).
+/// The errors of [`write`](write()).
 pub fn write_beside(folder: &Path, sink: &dyn Sink) -> Result<(), CompareError> {
     write(&[folder.to_path_buf()], &folder.join(FILE), sink)
 }

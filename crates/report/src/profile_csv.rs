@@ -88,10 +88,11 @@ fn six_digits(number: f64) -> String {
     format!("{number:.6}")
 }
 
-/// Returns the profiles as CSV. The cell `pass` is empty in the lines of whole frames.
+/// Returns the profiles as CSV, with a line for each pass and one for the whole frame. The cell
+/// `pass` is empty in the lines of whole frames.
 ///
 /// # Errors
-/// See [`Table::csv`].
+/// The errors of [`Table::csv`].
 pub fn to_csv(profiles: &[Profile]) -> Result<String, ::csv::Error> {
     let lines = profiles.iter().flat_map(|profile| {
         let passes = profile.passes.iter().map(Some).chain([None]);

@@ -37,7 +37,7 @@ pub fn report(profile: &Profile) -> String {
 }
 
 /// Returns several profiles as text: a table for each method, with a row for each pass and a column
-/// for each view, viewport and map size. Cells are medians of GPU milliseconds.
+/// for each view, viewport and map size. Cells are median GPU times in milliseconds.
 pub fn matrices(profiles: &[Profile]) -> String {
     let mut text = String::new();
     if let Some(first) = profiles.first() {

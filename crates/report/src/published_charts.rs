@@ -10,11 +10,11 @@ use skiagraph_compare::records::columns::{figure, head_of, quantities};
 use skiagraph_compare::records::published_row::Row;
 use skiagraph_compare::records::results::Run;
 
-/// Charts of published and measured figures, and the gaps in them.
+/// Charts of published and measured figures, and the list of figures that only one side has.
 pub struct Charts {
-    /// Each chart with the name of its file, without an extension.
+    /// Name of the chart's file without extension, and the chart.
     pub charts: Vec<(String, Figure)>,
-    /// Lines that name what is not drawn, and why.
+    /// Lines of text, each about figures that are not drawn, and the reason.
     pub left_out: Vec<String>,
 }
 
@@ -25,9 +25,9 @@ const SUM: &str = "ms.steps";
 /// The chart of methods without a map, whose times have nothing to be a share of.
 const GROWTH: &str = "time-by-viewport";
 
-/// Draws every quantity that is both published and measured. The published figures must be attached
-/// to the runs of `kept`; `published_rows` are all rows of the publication, and `label` is its name
-/// in the charts. `viewport` (pixels) limits the charts to one viewport; `None` draws all.
+/// Draws a chart for each quantity that is both published and measured. The published figures must
+/// be attached to the runs of `kept`. `published_rows` are all rows of the publication; `label` is
+/// its name in the charts. `viewport` (pixels) limits the charts to one viewport; `None` draws all.
 pub fn draw(
     kept: &[Kept],
     published_rows: &[Row],

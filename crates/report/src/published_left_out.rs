@@ -7,8 +7,9 @@ use skiagraph_compare::records::published_row::Row;
 use skiagraph_compare::wording::size;
 use std::collections::BTreeSet;
 
-/// Returns a line that names the views missing from a drawn chart; `None` if none are. `cells` are
-/// all measured runs, `chart` is the chart's name, and `drawn` are its rows of panels.
+/// Returns a line that names the views of `cells` that a drawn chart does not show; `None` if it
+/// shows all. `cells` are all measured runs, `chart` is the chart's name, `drawn` are its pairs of
+/// panels, and `groups` is the grouping of its bars.
 pub fn views_left_out(
     cells: &[Cell],
     chart: &str,
@@ -33,9 +34,9 @@ pub fn views_left_out(
     ))
 }
 
-/// Returns a line for each scene of which only one side has figures, and for each scene in which
-/// only one side has a view, viewport, map size or preset. `cells` are the measured runs, `rows`
-/// the published ones, and `label` names the publication.
+/// Returns a line for each scene of which only one side (published or measured) has figures, and
+/// for each scene in which only one side has a view, viewport, map size or preset. `cells` are the
+/// measured runs, `rows` the published figures, and `label` names the publication.
 pub fn without_counterpart<'a>(
     cells: &[Cell],
     rows: impl Iterator<Item = &'a Row>,

@@ -1,4 +1,5 @@
-//! Pairs of panels: published figures left, measured ones right.
+//! Pairs of chart panels (coordinate systems): published figures on the left, measured ones on the
+//! right.
 
 use crate::charts::push;
 use skiagraph_chart::{Kind, Mark, Panel, Series};
@@ -7,28 +8,29 @@ use skiagraph_compare::records::results::{Published, Results, Run};
 use skiagraph_compare::wording::size;
 use std::collections::BTreeSet;
 
-/// A measured run with the published figures attached to it.
+/// A measured run, to which published figures may be attached.
 pub struct Cell<'a> {
-    /// The results that the run belongs to.
+    /// Results that contain the run.
     pub results: &'a Results,
-    /// The run; it has measurements.
+    /// The run. It has measurements.
     pub run: &'a Run,
 }
 
-/// Returns the runs of the results that have measurements.
+/// Returns the runs of `results` that have measurements.
 pub fn cells(results: &Results) -> impl Iterator<Item = Cell<'_>> {
     let runs = results.runs.iter().filter(|run| run.measured.is_some());
     runs.map(move |run| Cell { results, run })
 }
 
 impl<'a> Cell<'a> {
-    /// Name of the scene.
+    /// Returns the name of the scene.
     pub fn scene(&self) -> &'a str {
         &self.results.scene.name
     }
 
-    /// Returns the run of the same view and viewport whose method draws no map and has a published
-    /// figure of this quantity. `None` if there is none.
+    /// Returns the run whose figure of this quantity is the whole, of which this run's figures are
+    /// shares: the same view and viewport, with a method that draws no shadow map, and with a
+    /// published figure of the quantity. Returns `None` if there is no such run.
     pub fn whole(&self, quantity: &str) -> Option<&'a Run> {
         let Run { view, viewport, .. } = self.run;
         let mut runs = self.results.runs.iter();
@@ -39,13 +41,15 @@ impl<'a> Cell<'a> {
     }
 }
 
-/// Returns the published figure of this quantity for a run; `None` if there is none.
+/// Returns the published figure of a run for the quantity with this name, such as `wrong_percent`;
+/// `None` if there is none.
 pub fn published<'a>(run: &'a Run, quantity: &str) -> Option<&'a Published> {
     let mut figures = run.published.iter();
     figures.find(|figure| figure.quantity == quantity)
 }
 
-/// Grouping of bars. Each value of the other quantity gets a pair of panels of its own.
+/// Grouping of the bars in a panel, by viewport or by map size. Each value of the other one gets a
+/// pair of panels of its own.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Groups {
     /// A group of bars for each viewport, a pair of panels for each map size.
@@ -79,21 +83,22 @@ impl Groups {
     }
 }
 
-/// A published and a measured figure of the same quantity.
+/// A published and a measured figure of the same quantity, each drawn as a bar.
 pub struct Bar<'a> {
-    /// Name of the series that the bar belongs to.
+    /// Name of the bar's series, which is the preset.
     pub series: String,
     /// The published figure as printed.
     pub figure: &'a Published,
-    /// The published figure as drawn: divided by its whole.
+    /// Value of the published bar: the published figure divided by its whole.
     pub theirs: f64,
-    /// The measured figure as drawn: divided by its whole.
+    /// Value of the measured bar: the measured figure divided by its whole.
     pub ours: f64,
 }
 
 impl<'a> Bar<'a> {
-    /// Returns the bar of a quantity for a cell, with each figure divided by its whole. `None` if
-    /// the figure is not both published and measured, or a quotient is not finite.
+    /// Returns the bar of a quantity for a cell. The published figure is divided by `their_whole`,
+    /// the measured one by `our_whole`; 1 leaves a figure as it is. Returns `None` if the figure is
+    /// not both published and measured, or a quotient is not finite.
     pub fn new(
         cell: &Cell<'a>,
         quantity: &str,
@@ -111,7 +116,8 @@ impl<'a> Bar<'a> {
     }
 }
 
-/// Content of one pair of panels: one scene, view, and map size or viewport.
+/// Content of one pair of panels: the bars of one scene and view, and of one map size or viewport
+/// (the one by which bars are not grouped).
 pub struct PanelRow<'a> {
     /// Name of the scene.
     pub scene: &'a str,
@@ -160,7 +166,7 @@ pub fn rows<'a>(
 }
 
 impl PanelRow<'_> {
-    /// Returns the published figures of the bars.
+    /// Returns the published figures of all bars.
     pub fn figures(&self) -> impl Iterator<Item = &Published> {
         self.bars.iter().map(|(_, bar)| bar.figure)
     }

@@ -1,4 +1,5 @@
-//! Results of single views as tables for a terminal: speed beside error, then the times of passes.
+//! Results of one view and viewport as tables for a terminal: times beside errors, then the times
+//! of passes.
 
 use crate::graded::area_reference;
 use crate::notes::{band_warning, of_runs, surface_warning};
@@ -11,7 +12,7 @@ use skiagraph_compare::wording::{frames, ms, percent, size, thousands};
 use std::collections::BTreeSet;
 
 /// Returns the heading, both tables and the notes for the runs of one view and viewport, as text.
-/// `runs` must be a contiguous part of the results' runs; without runs the text is empty.
+/// `runs` must be a contiguous part of `results.runs`; without runs the text is empty.
 pub fn group(results: &Results, runs: &[Run]) -> String {
     let Some(first) = runs.first() else {
         return String::new();
@@ -73,8 +74,8 @@ fn heading(results: &Results, run: &Run, runs: &[Run]) -> String {
     format!("{title}\n{}\n", lines.join("\n"))
 }
 
-/// Says how many frames were timed for each run: `10 frames`, or `9 to 25 frames` for camera paths
-/// of several lengths.
+/// Returns text on how many frames were timed for each run: `10 frames`, or `9 to 25 frames` for
+/// camera paths of different lengths.
 pub fn timed_frames<'a>(results: &Results, runs: impl IntoIterator<Item = &'a Run>) -> String {
     let measured = runs.into_iter().filter_map(|run| run.measured.as_ref());
     let counts = measured.map(|of| {

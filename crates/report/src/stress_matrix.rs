@@ -1,5 +1,5 @@
-//! The matrix of `stress` for a terminal: a row for each case, a column for each method, then
-//! failures.
+//! The matrix of `stress` for a terminal: a row for each case, a column for each method, and below
+//! it the failures.
 
 use crate::notes::wrong_surface;
 use crate::table::terminal;
@@ -10,8 +10,9 @@ use skiagraph_compare::records::stress::{
 use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::{percent, size, thousands};
 
-/// Function that returns the command which shows a method's pictures of a case. Its arguments are
-/// the method's column, the case's name, and the additional setting of the cell, if any.
+/// Function that returns the command line that draws a method's pictures of a case. Its arguments
+/// are the method's column, the case's name, and the additional assignment of the cell, such as
+/// `cull=none`, if any.
 pub type CommandFor<'a> = &'a dyn Fn(&Column, &str, Option<&str>) -> String;
 
 /// Returns the heading, the matrix, the remarks and the failures as text for a terminal.
@@ -73,12 +74,13 @@ fn named(report: &Report, column: &Column) -> String {
     }
 }
 
-/// A row of the matrix: its case, and its cell for each method that could run. `None` stands for a
-/// method without a result in this row.
+/// A row of the matrix: its case, and one entry for each method that can run, in the order of the
+/// columns. An entry is `None` if the method has no result in this row.
 pub type MatrixRow<'a> = (&'a Case, Vec<Option<&'a Cell>>);
 
-/// Returns the matrix as a table, with the case and the cells of each row. The table's first three
-/// columns describe the case; the others belong to the methods in the order of the cells.
+/// Returns the matrix as a table for display, and its rows as data, in the same order. The table's
+/// first three columns describe the case; the others belong to the methods in the order of the
+/// cells. A case has a second row if methods also ran it with `cull=none`.
 pub fn matrix(report: &Report) -> (Table, Vec<MatrixRow<'_>>) {
     let can_run = report.methods.iter();
     let columns: Vec<&Column> = can_run
@@ -185,7 +187,8 @@ fn summary(report: &Report) -> String {
     text
 }
 
-/// Lists what failed, case by case, with the commands that show it. It is empty if nothing failed.
+/// Lists the failures case by case, with the commands that draw their pictures. The text is empty
+/// if nothing failed.
 pub fn failures(report: &Report, command_for: CommandFor) -> String {
     let mut text = String::new();
     for case in &report.cases {

@@ -16,9 +16,9 @@ pub fn terminal(table: &Table) -> String {
     drawn.to_string()
 }
 
-/// Returns a table as HTML. Cells in the word columns become row headers. `row` returns the
-/// attributes of the row with this index, `cell` those of the number cell at these indices of row
-/// and column.
+/// Returns a table as HTML. Cells in the word columns become row headers. `row` returns the HTML
+/// attributes of the row with this index; `cell` returns those of the number cell with this index
+/// of row and column.
 pub fn html(
     table: &Table,
     row: impl Fn(usize) -> String,

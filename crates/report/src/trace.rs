@@ -15,9 +15,11 @@ const ENCODING: u32 = 2;
 /// The first GPU track; further ones hold passes that overlap in time.
 const GPU: u32 = 3;
 
-/// Returns the content of the trace file. Times are microseconds from the begin of the first timed
-/// frame's encoding. The clocks of GPU and CPU share no zero, so the GPU work of a frame is placed
-/// at the end of its encoding, or after earlier GPU work; times within a frame are true.
+/// Returns the content of the trace file: JSON with a slice for each frame and for each pass on the
+/// CPU and the GPU. Times are microseconds since the start of the first timed frame's encoding. The
+/// clocks of GPU and CPU have no common zero, so the GPU work of a frame is placed at the end of
+/// its encoding, or after earlier GPU work; times within a frame are as measured. GPU slices are
+/// missing if the adapter's timestamps cannot be trusted.
 pub fn trace(conditions: &Conditions, frames: &[TimedFrame]) -> String {
     let mut events = Vec::new();
     let is_trusted = conditions.adapter.gpu_unavailable.is_none();

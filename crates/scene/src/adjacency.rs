@@ -29,8 +29,8 @@ enum Edge {
 
 impl Adjacency {
     /// Finds the neighbours across all edges of a mesh, in time linear in its triangles. A triangle
-    /// that names a position twice has no area and gets no neighbours. The triangles on its two
-    /// sides become neighbours of each other.
+    /// that names a position twice has no area and gets no neighbours; two of its edges coincide,
+    /// and the triangles beyond them become neighbours of each other.
     pub fn new(mesh: &Mesh) -> Self {
         let mut opposite = vec![NO_NEIGHBOUR; 3 * mesh.triangles.len()];
         let mut edges = HashMap::with_capacity(3 * mesh.triangles.len() / 2);

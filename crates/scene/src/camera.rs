@@ -8,29 +8,30 @@ use crate::{
 use glam::{DMat4, DVec2, DVec3};
 use serde::Deserialize;
 
-/// A named view of a scene: a perspective camera without a viewport.
+/// A named view of a scene: a perspective camera without the size of a viewport.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct View {
     /// Name on the command line and in results.
     pub name: String,
-    /// Place of the camera.
+    /// Position of the camera, world space.
     #[serde(with = "Vector")]
     pub eye: DVec3,
-    /// Direction in which it looks, of any length above 0.
+    /// Direction in which the camera looks, of any length above 0.
     #[serde(with = "Vector")]
     pub direction: DVec3,
-    /// Direction up in the picture, not parallel to `direction`.
+    /// Direction up in the picture, of any length above 0, not parallel to `direction`.
     #[serde(default = "y_axis", with = "Vector")]
     pub up: DVec3,
-    /// Opening angle from bottom to top: more than 0, less than 180.
+    /// Vertical field of view in degrees: more than 0, less than 180.
     pub fov_y_degrees: f64,
-    /// Distance of the near plane, more than 0.
+    /// Distance of the near plane from the eye in scene units, more than 0.
     pub near: f64,
-    /// Distance of the far plane, more than `near`.
+    /// Distance of the far plane from the eye in scene units, more than `near`.
     pub far: f64,
-    /// One sun in the place of the scene's lights.
+    /// The view's own light, which replaces all lights of the scene for this view; `None` for the
+    /// lights of the scene. A scene file gives a directional light.
     #[serde(default, deserialize_with = "own_light")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<crate::DirectionalLight>"))]
     pub light: Option<Light>,
@@ -44,7 +45,7 @@ pub(crate) fn y_axis() -> DVec3 {
 /// Smallest allowed ratio of a view's near plane distance to its far plane distance.
 pub const LEAST_DEPTH: f64 = 1e-30;
 
-/// Perspective camera of a view on a viewport: orthonormal frame and extents, in f64.
+/// Perspective camera of a view on a viewport: orthonormal axes and extents, in f64.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// Eye position, world space.
@@ -59,19 +60,21 @@ pub struct Camera {
     pub half_width: f64,
     /// Half the image height at distance 1: tan(fov/2).
     pub half_height: f64,
-    /// Near plane distance.
+    /// Distance of the near plane from the eye along `forward`, in scene units.
     pub near: f64,
-    /// Far plane distance.
+    /// Distance of the far plane from the eye along `forward`, in scene units.
     pub far: f64,
     /// Viewport width and height in pixels.
     pub viewport: [u32; 2],
-    /// Offset of each pixel's ray from the pixel's centre, in pixels, y down. It is 0 except in a
-    /// picture that is one of several to be blended.
+    /// Offset of each pixel's ray from the pixel's centre, in pixels, y down, each component within
+    /// ±0.5. It is 0 unless the frame is one of several to be blended
+    /// ([`jittered`](Self::jittered)).
     pub jitter: DVec2,
 }
 
 impl View {
-    /// Returns the camera of this view on a viewport of `[width, height]` pixels.
+    /// Returns the camera of this view on a viewport of `[width, height]` pixels, neither 0. The
+    /// view must pass [`check`](Self::check).
     pub fn camera(&self, viewport: [u32; 2]) -> Camera {
         let forward = self.direction.normalize();
         let right = forward.cross(self.up).normalize();
@@ -92,7 +95,7 @@ impl View {
         }
     }
 
-    /// Checks that a camera can be made of this view, and that its light has a direction.
+    /// Checks that a camera can be made of this view, and that its own light is valid.
     ///
     /// # Errors
     /// Sentence with the first mistake, which names the view.
@@ -157,9 +160,10 @@ impl View {
 }
 
 impl Camera {
-    /// Returns this camera with the [`jitter`](Self::jitter) of one frame out of `count` frames to
-    /// be blended; `frame` is its number. Offsets are points of the Halton sequence of bases 2 and
-    /// 3 (Halton 1964), in 256ths of a pixel, so that f32 holds them exactly.
+    /// Returns this camera with the [`jitter`](Self::jitter) of frame number `frame`, from 0, out
+    /// of `count` frames to be blended; further frames begin again. Offsets are points of the
+    /// Halton sequence of bases 2 and 3 (Halton 1964), in 256ths of a pixel, so that f32 holds them
+    /// exactly.
     pub fn jittered(self, frame: u32, count: u32) -> Self {
         let point = frame % count.max(1) + 1;
         let place = |base| ((radical_inverse(point, base) - 0.5) * 256.0).round() / 256.0;
@@ -169,14 +173,14 @@ impl Camera {
         }
     }
 
-    /// Returns the [`jitter`](Self::jitter) in clip space, y up.
+    /// Returns the [`jitter`](Self::jitter) in clip space: −1 to 1 across the viewport, y up.
     pub fn jitter_clip(&self) -> DVec2 {
         let [width, height] = self.viewport.map(f64::from);
         self.jitter * DVec2::new(2.0 / width, -2.0 / height)
     }
 
-    /// Returns the direction from the eye through the centre of pixel (`x`, `y`), y down, moved by
-    /// the jitter. Its component along `forward` is 1; it is not a unit vector.
+    /// Returns the direction from the eye through the centre of pixel (`x`, `y`), counted from the
+    /// top left, moved by the jitter. Its component along `forward` is 1; it is not a unit vector.
     pub fn pixel_direction(&self, x: u32, y: u32) -> DVec3 {
         let across = (f64::from(x) + 0.5 + self.jitter.x) / f64::from(self.viewport[0]);
         let down = (f64::from(y) + 0.5 + self.jitter.y) / f64::from(self.viewport[1]);
@@ -184,8 +188,8 @@ impl Camera {
         self.forward + self.right * (ndc_x * self.half_width) + self.up * (ndc_y * self.half_height)
     }
 
-    /// Finds the pixel `[x, y]` into which a world position falls. Returns `None` for a position
-    /// outside the image or not in front of the eye.
+    /// Finds the pixel `[x, y]`, counted from the top left, into which a world position falls.
+    /// Returns `None` for a position outside the image or not in front of the eye.
     pub fn pixel_of(&self, point: DVec3) -> Option<[u32; 2]> {
         let relative = point - self.eye;
         let distance = self.forward.dot(relative);

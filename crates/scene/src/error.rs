@@ -3,21 +3,22 @@
 use std::{borrow::Cow, io, path::PathBuf};
 use thiserror::Error;
 
-/// Number of faces that an error or a warning lists before it only counts the rest.
+/// Number of faces that an error or a warning lists; further faces are only counted.
 pub const FACES_SHOWN: usize = 5;
 
 /// Extents and coordinates of a mesh, in scene units, of which all products that shaders take stay
 /// within f32 (docs/precision.md).
 pub(crate) const EXTENTS: std::ops::RangeInclusive<f64> = 1e-12..=1e12;
 
-/// Reason why a scene could not be loaded. Its message names the file or scene, and the way out.
+/// Reason why a scene could not be loaded. Its message names the file or scene, and a way to mend
+/// it.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum SceneError {
     /// A file could not be read.
     #[error("cannot read {}: {reason}", path.display())]
     Read {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// Error of the operating system, or the size limit that the file exceeds.
         reason: io::Error,
@@ -49,7 +50,7 @@ pub enum SceneError {
         path: PathBuf,
         /// Place in the mesh file, or the file that the mesh file names.
         place: String,
-        /// Reason why the part cannot be used, and the way out.
+        /// Reason why the part cannot be used, and a way to mend it.
         reason: String,
     },
     /// A group to be left out is not in the OBJ file.
@@ -57,9 +58,9 @@ pub enum SceneError {
     NoSuchGroup {
         /// The OBJ file.
         path: PathBuf,
-        /// Name of the group as requested.
+        /// Name of the group to be left out.
         name: String,
-        /// Names of the groups in the file.
+        /// Names of the groups in the file, in file order.
         groups: Vec<String>,
     },
     /// A mesh file has no triangles.
@@ -73,7 +74,7 @@ pub enum SceneError {
     NoTriangles {
         /// The mesh file.
         path: PathBuf,
-        /// Number of faces read, without faces of groups left out.
+        /// Number of faces read, without faces of groups that were left out.
         faces: usize,
         /// Number of `l` records (lines).
         lines: usize,
@@ -86,8 +87,8 @@ pub enum SceneError {
         /// The OBJ file.
         path: PathBuf,
     },
-    /// A mesh is so small, so large or so far from the origin that products of its lengths leave
-    /// f32.
+    /// A mesh is so small, so large or so far from the origin that products of its lengths do not
+    /// fit into f32.
     #[error(
         "{}: the model is {across:.1e} units across and reaches {farthest:.1e} from the origin, \
          but f32 can only tell right from wrong between {:.0e} and {:.0e}: scale it",
@@ -98,11 +99,11 @@ pub enum SceneError {
         path: PathBuf,
         /// Diagonal of the mesh's box, in scene units.
         across: f64,
-        /// Largest coordinate of the mesh, as a distance from 0.
+        /// Largest absolute coordinate of the mesh, in scene units.
         farthest: f64,
     },
-    /// A scene file is not valid RON, or its content makes no scene. Holds all mistakes with their
-    /// places, at least one.
+    /// A scene file is not valid RON, or its content does not form a scene. Holds all mistakes with
+    /// their places, at least one.
     #[cfg(feature = "files")]
     #[error(transparent)]
     SceneFile(skiagraph_located_ron::diagnostics::Diagnostics),
@@ -116,12 +117,12 @@ pub enum SceneError {
     MeshNotFound {
         /// The scene's name.
         scene: String,
-        /// The file as the scene names it.
+        /// Path of the mesh file as the scene file gives it.
         file: String,
         /// Every path that was tried, in order.
         searched: Vec<PathBuf>,
-        /// Text of the scene file that says where the mesh can be downloaded; `None` if it has
-        /// none.
+        /// Text of the scene file that says where the mesh can be downloaded; `None` if the scene
+        /// file does not say it.
         source_text: Option<String>,
     },
     /// The path of a scene's mesh leads to a folder.
@@ -132,29 +133,30 @@ pub enum SceneError {
         /// The folder.
         path: PathBuf,
     },
-    /// The requested text is neither the name of a scene nor the path of a file.
+    /// The given text is neither the name of a scene nor the path of a file.
     #[error(
         "no scene {argument:?}: it is neither the path of a .ron, .obj, .gltf or .glb file, nor \
          the name of a .ron file in {}, nor one of the built-in scenes {}",
         folder.display(), builtin.join(", ")
     )]
     UnknownScene {
-        /// Name or path as requested.
+        /// Name or path that was given.
         argument: String,
         /// The folder of scene files that was searched.
         folder: PathBuf,
         /// Names of the built-in scenes.
         builtin: Vec<&'static str>,
     },
-    /// A number of triangles was requested for a scene that cannot have it.
+    /// A number of triangles was given for a scene whose mesh cannot have that number.
     #[error("{argument:?}: {reason}")]
     Size {
-        /// Scene and number as requested.
+        /// Scene and number that were given, such as `city:5`.
         argument: String,
         /// Reason why the scene cannot have that number.
         reason: String,
     },
-    /// A mesh file lacks a camera or a light, and the request gives no view and light instead.
+    /// A mesh file lacks a camera or a light, and `SceneRequest::obj` does not give
+    /// a view and a light instead.
     #[error("{}: it holds no camera or no light: give --eye x,y,z --look x,y,z \
         (direction) and --light x,y,z (the direction in which the light travels); --fov DEGREES, \
         --near and --far if the defaults do not suit it", path.display())]
@@ -162,16 +164,16 @@ pub enum SceneError {
         /// The mesh file.
         path: PathBuf,
     },
-    /// A view was requested for a scene that brings its own views.
+    /// A view was given for a scene that has its own views.
     #[error(
         "scene {argument:?} has its own views and light: a view and a light (--eye, --look, \
          --light …) can only be given with a mesh file"
     )]
     ViewNotWanted {
-        /// Name or path as requested.
+        /// Name or path that was given.
         argument: String,
     },
-    /// A requested view makes no camera, or a requested light makes no light.
+    /// A given view does not form a camera, or a given light is not valid.
     #[error("{}: {reason}", path.display())]
     BadView {
         /// The mesh file that the view or light was given for.
@@ -187,9 +189,10 @@ pub enum SceneError {
 pub struct FaceRef {
     /// Name of the face's group.
     pub group: String,
-    /// Number of the face within its run of the group, in file order, from 1.
+    /// Number of the face within its group, from 1. A group that begins anew further down in the
+    /// file counts from 1 again.
     pub number: u32,
-    /// Line of the face in the file, from 1; 0 in a format without lines of faces.
+    /// Line of the face in the file, from 1; 0 for a glTF file.
     pub line: u32,
 }
 
@@ -210,7 +213,7 @@ pub struct FaceFault {
     pub problem: FaceProblem,
 }
 
-/// Reason why a face cannot be used.
+/// Reason why a face cannot be used. The message continues that of [`FaceRef`].
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum FaceProblem {

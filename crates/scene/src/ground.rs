@@ -21,10 +21,11 @@ const LOWEST: f64 = 0.05;
 /// Share of the mesh's outline from above that such a floor covers.
 const COVERED: f64 = 0.5;
 
-/// Height and size of an added ground.
+/// Height and size of a ground that [`add_ground`] added.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ground {
-    /// Height of the ground's upper side along the up direction, in scene units.
+    /// Height of the ground's upper side: the dot product of its points with the unit vector up, in
+    /// scene units.
     pub height: f64,
     /// Length of the square ground's edges, in scene units.
     pub edge: f64,

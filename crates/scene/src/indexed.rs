@@ -6,12 +6,13 @@ use crate::{
 };
 use glam::{DVec3, Vec3};
 
-/// Triangle mesh as programs hold it in memory: not welded, with one normal for each position.
+/// Triangle mesh as a program holds it in memory: not welded, with one normal for each position.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Indexed<'a> {
-    /// Positions in world space, or in the space of an instance.
+    /// Positions in world space, or in the model space of an instance.
     pub positions: &'a [[f32; 3]],
-    /// Normals of any length but 0, one for each position. An empty list makes all faces flat.
+    /// Normals of any length but 0, parallel to `positions`. An empty list gives each triangle its
+    /// geometric normal.
     pub normals: &'a [[f32; 3]],
     /// Indices into `positions`, three for each triangle, counter-clockwise seen from outside.
     pub indices: &'a [u32],
@@ -58,9 +59,9 @@ pub enum IndexedError {
 }
 
 impl Indexed<'_> {
-    /// Welds equal positions and returns the mesh. Triangles keep their order. A triangle with the
-    /// same position at two corners is left out. A normal without length is replaced by that of its
-    /// triangle.
+    /// Returns the mesh with equal positions welded. Triangles keep their order. A triangle with
+    /// the same position at two corners is left out. A normal without length is replaced by the
+    /// geometric normal of its triangle.
     ///
     /// # Errors
     /// An index or a coordinate that cannot be used.

@@ -3,9 +3,9 @@
 //!
 //! Meshes and scenes from files (`.obj`, `.gltf`, `.ron`) need the feature `files`.
 //!
-//! The crate knows no GPU. World space is right-handed, units are the scene's own; positions are
-//! `f32` (what a file holds and a GPU reads), cameras and lights are `f64` so that an exact
-//! reference starts from unrounded input.
+//! The crate does not use the GPU. World space is right-handed and in scene units, of any length.
+//! Positions are `f32` (the precision of mesh files and of the GPU); cameras and lights are `f64`,
+//! so that an exact reference starts from unrounded input.
 
 pub mod adjacency;
 #[cfg(feature = "files")]

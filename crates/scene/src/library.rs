@@ -47,9 +47,9 @@ const BUILT_IN: [(&str, &str); 9] = [
 /// Scene to be loaded, as a user names it.
 #[derive(Clone, Debug, Default)]
 pub struct SceneRequest {
-    /// Name or path of the scene: a built-in name, a name in `scenes/`, or the path of a `.ron`,
-    /// `.obj`, `.gltf` or `.glb` file. If the scene's mesh is generated in any size, a number of
-    /// triangles may follow: `city:1000000`.
+    /// Name or path of the scene: the name of a built-in scene, the name of a file in the library's
+    /// folder of scenes without `.ron`, or the path of a `.ron`, `.obj`, `.gltf` or `.glb` file. If
+    /// the scene's mesh is generated in any size, a number of triangles may follow: `city:1000000`.
     pub argument: String,
     /// View and light for a bare mesh file, in the place of its own cameras and lights. Required if
     /// the file lacks either. Must be `None` for any other scene, which brings its own.
@@ -67,7 +67,7 @@ pub struct ObjSetup {
     pub quads: QuadDiagonal,
     /// Treatment of concave polygons of an OBJ file.
     pub concave: Concave,
-    /// Extent to which the file's materials are read.
+    /// Parts of the file's materials that are read.
     pub materials: MaterialUse,
 }
 
@@ -91,7 +91,7 @@ pub struct SceneListing {
 /// Folders in which scenes and meshes are searched.
 #[derive(Clone, Debug, Default)]
 pub struct SceneLibrary {
-    /// Folder of scene files. They take precedence over built-in scenes of the same name.
+    /// Folder of scene files. A file in it replaces a built-in scene of the same name.
     pub scenes: PathBuf,
     /// Folders of meshes, searched in order after the folder of the scene file.
     pub assets: Vec<PathBuf>,
@@ -115,7 +115,7 @@ impl SceneLibrary {
         }
     }
 
-    /// Loads a scene with its mesh.
+    /// Loads a scene with its mesh. The report lists changes that the import made to the mesh.
     ///
     /// # Errors
     /// [`SceneError`]: an unknown scene, a broken scene file or mesh, a mesh that was not found
@@ -134,11 +134,12 @@ impl SceneLibrary {
         self.assemble(scene, file.as_deref())
     }
 
-    /// Reads the scene file of a scene, to be changed and written. The mesh file in it is replaced
-    /// by the path at which it was found.
+    /// Reads the scene file of the scene `argument` (a name or path as in
+    /// [`SceneRequest::argument`]), to be changed and written. The path of a mesh file in it is
+    /// replaced by the path at which the file was found.
     ///
     /// # Errors
-    /// Those of [`load`](Self::load), except for the content of the mesh.
+    /// The errors of [`load`](Self::load), except for errors in the content of the mesh.
     pub fn scene_file(&self, argument: &str) -> Result<SceneFile, SceneError> {
         let (file, mut scene) = self.parse_sized(argument)?;
         let found = match &scene.mesh {
@@ -171,11 +172,11 @@ impl SceneLibrary {
         Ok((file, scene))
     }
 
-    /// Reads the camera paths of a scene without loading its mesh. Returns an empty list for a mesh
-    /// file, whose animations come with its mesh ([`MeshFile::clips`]).
+    /// Reads the camera paths of the scene `argument` without loading its mesh. Returns an empty
+    /// list for a mesh file, whose animations come with its mesh ([`MeshFile::clips`]).
     ///
     /// # Errors
-    /// [`SceneError`]: an unknown scene, a broken scene file.
+    /// [`SceneError`]: an unknown scene, a scene file that is not valid.
     pub fn paths(&self, argument: &str) -> Result<Vec<CameraPath>, SceneError> {
         if MeshFile::is_one(Path::new(argument)) {
             return Ok(Vec::new());
@@ -193,7 +194,7 @@ impl SceneLibrary {
         Ok((file, SceneFile::parse(&text, &name)?))
     }
 
-    /// Lists every scene that can be named, sorted by name: files of the scenes folder and built-in
+    /// Lists all scenes that can be named, sorted by name: files of the scenes folder and built-in
     /// scenes.
     pub fn list(&self) -> Vec<SceneListing> {
         let mut names: Vec<String> = BUILT_IN
@@ -283,7 +284,7 @@ impl SceneLibrary {
         }
     }
 
-    /// Returns the text of a scene file. `argument` is a name or path as `--scene` takes it.
+    /// Returns the text of the scene file with the name or path `argument`.
     ///
     /// # Errors
     /// [`SceneError`]: an unknown scene, a file that cannot be read.
@@ -291,8 +292,9 @@ impl SceneLibrary {
         self.locate(argument).map(|(_, text)| text)
     }
 
-    /// Finds the file in the scenes folder that is read instead of the built-in scene `argument`.
-    /// Returns `None` if there is no such file, or if its text is that of the built-in scene.
+    /// Finds the file in the scenes folder that is read in the place of the built-in scene
+    /// `argument`. Returns `None` for another name, if there is no such file, or if its text equals
+    /// that of the built-in scene.
     pub fn stand_in(&self, argument: &str) -> Option<PathBuf> {
         let name = sized(argument).0;
         let (_, text) = BUILT_IN.iter().find(|(built_in, _)| *built_in == name)?;

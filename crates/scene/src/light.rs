@@ -12,8 +12,8 @@ pub struct DirectionalLight {
     /// Direction in which the light travels, of any length above 0.
     #[serde(with = "Vector")]
     pub direction: DVec3,
-    /// Diameter as seen from the scene: 0 to less than 180. A light of 0 degrees has no extent, its
-    /// shadows are hard; the sun's are 0.53.
+    /// Angular diameter in degrees as seen from the scene: at least 0, less than 180. A light of 0
+    /// degrees has no extent, and its shadows are hard. The sun has 0.53 degrees.
     #[serde(default)]
     pub angle_degrees: f64,
 }
@@ -30,7 +30,8 @@ pub struct LightFit {
 }
 
 impl DirectionalLight {
-    /// Creates a light without extent, whose shadows are hard.
+    /// Creates a light without extent, whose shadows are hard. `direction` is the direction in
+    /// which it travels.
     pub const fn new(direction: DVec3) -> Self {
         Self {
             direction,
@@ -57,7 +58,8 @@ impl DirectionalLight {
         -self.direction.normalize()
     }
 
-    /// Checks that the light has a direction, and an angle below a half turn.
+    /// Checks that the light's direction is finite and not zero, and that its angle is at least 0
+    /// and less than 180 degrees.
     ///
     /// # Errors
     /// Sentence with the first mistake.
@@ -78,9 +80,10 @@ impl DirectionalLight {
         Ok(())
     }
 
-    /// Returns the smallest light-space box around some points, with the light's direction as its
-    /// third axis. One side of the rectangle of least area around a convex polygon lies on an edge
-    /// of it (Freeman and Shapira, CACM 18(7), 1975). No points count as one point at the origin.
+    /// Returns the smallest light-space box around points in world space, enlarged by 0.2 %, with
+    /// the light's direction as its third axis. One side of the rectangle of least area around a
+    /// convex polygon lies on an edge of it (Freeman and Shapira, CACM 18(7), 1975). An empty list
+    /// counts as one point at the origin.
     pub fn fit(&self, points: impl IntoIterator<Item = Vec3>) -> LightFit {
         let forward = self.direction.normalize();
         let (right, up) = across(forward);

@@ -9,7 +9,8 @@ use serde::{Deserialize, Deserializer};
 #[cfg_attr(feature = "files", derive(Deserialize))]
 #[cfg_attr(feature = "files", serde(from = "crate::scene_file::NamedLightText"))]
 pub struct Light {
-    /// Name of small letters, digits and `_`, unique within its scene.
+    /// Name of small letters, digits and `_`, unique within its scene. It begins with a letter and
+    /// is not `all`.
     pub name: String,
     /// Kind of the light.
     pub kind: LightKind,
@@ -48,7 +49,7 @@ pub struct PointLight {
     pub radius: f64,
 }
 
-/// Direction and distance from a point to a light.
+/// Direction and distance from a point to a light, as [`LightKind::towards`] returns them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Towards {
     /// Unit vector to the light; zero for a point at the light's position.
@@ -57,15 +58,17 @@ pub struct Towards {
     pub distance: f64,
 }
 
-/// Name of the light in a scene file that has one `light` instead of a list.
+/// Name of the only light of a scene whose scene file has the field `light` instead of the list
+/// `lights`.
 pub const ONLY_LIGHT: &str = "light";
 
 /// A positional light farther from the origin is as good as directional, and f32 cannot square the
 /// distance.
 const FARTHEST: f64 = 1e18;
 
-/// Share of its length by which a shadow ray ends short of a positional light. A surface on which
-/// the light lies thus casts no shadow, instead of being decided by rounding.
+/// Fraction of the distance from a receiver to a spot or point light by which a shadow ray ends
+/// before the light. A surface that contains the light's position thus casts no shadow, instead of
+/// being decided by rounding.
 pub const LIGHT_GAP: f64 = 1.0 / 65536.0;
 
 /// The light of a view, which checks it and says whose it is.
@@ -107,7 +110,8 @@ impl Light {
 }
 
 impl LightKind {
-    /// Returns the word for this kind in documents, messages and results.
+    /// Returns the word for this kind in documents, messages and results: `directional`, `spot` or
+    /// `point`.
     pub fn word(&self) -> &'static str {
         match self {
             Self::Directional(_) => "directional",
@@ -144,7 +148,7 @@ impl LightKind {
         }
     }
 
-    /// Returns the direction and distance from a point to the light.
+    /// Returns the direction and distance from a world-space point to the light.
     pub fn towards(&self, point: DVec3) -> Towards {
         match (self, self.position()) {
             (Self::Directional(light), _) => Towards {
@@ -209,9 +213,9 @@ impl SpotLight {
         (self.cone_degrees * 0.5).to_radians().cos()
     }
 
-    /// Returns the cosine of the angle between the cone's axis and the way from the light to a
-    /// receiver. `to_light` is the unit vector from the receiver to the light. Within the cone, the
-    /// result is at least [`edge_cosine`](Self::edge_cosine).
+    /// Returns the cosine of the angle between the cone's axis and the direction from the light to
+    /// a receiver (a shaded surface point). `to_light` is the unit vector from the receiver to the
+    /// light. Within the cone, the result is at least [`edge_cosine`](Self::edge_cosine).
     pub fn axis_cosine(&self, to_light: DVec3) -> f64 {
         -self.direction.normalize().dot(to_light)
     }

@@ -9,14 +9,14 @@ use std::{
 
 const MIB: u64 = 1 << 20;
 
-/// Limit on the size of a kind of file.
+/// Size limit for reading a kind of file.
 #[derive(Clone, Copy, Debug)]
 pub struct Limit {
-    /// Kind of file, with its article: "an .obj file".
+    /// Kind of file with its article, for the message: "an .obj file".
     pub of: &'static str,
-    /// Size of the largest file that is read, in MiB.
+    /// Largest size of a file that is read, in MiB.
     pub mib: u64,
-    /// Advice to the user for a larger file.
+    /// Advice to the user for a larger file, for the message.
     pub way_out: &'static str,
 }
 
@@ -54,7 +54,7 @@ impl Limit {
     /// Reads the text of the file at `path`, without its byte order mark.
     ///
     /// # Errors
-    /// Those of [`Self::read`]; bytes that are not UTF-8.
+    /// The errors of [`Self::read`]; bytes that are not UTF-8.
     pub fn read_text(&self, path: &Path) -> io::Result<String> {
         String::from_utf8(without_mark(&self.read(path)?).into_owned())
             .map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "it is not UTF-8 text"))

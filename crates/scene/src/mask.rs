@@ -1,10 +1,10 @@
-//! Masks, which say where a surface is opaque and where it has holes.
+//! Masks: textures of one bit that say where a surface is opaque and where it has holes.
 //!
-//! Shaders and the oracle look up a mask by the same rule. The texture coordinates at the weights
-//! of a triangle's corners are `uv_a + weight_b (uv_b - uv_a) + weight_c (uv_c - uv_a)`. Each
-//! coordinate is wrapped into 0…1, multiplied by the mask's edge in texels and rounded down, at
-//! most to the last texel. The surface exists where that texel of mip 0 is opaque. Shaders compute
-//! in f32, the oracle in f64.
+//! Shaders and the oracle (the `f64` reference ray tracer) look up a mask by the same rule. The
+//! texture coordinates at the weights of a triangle's corners are `uv_a + weight_b (uv_b - uv_a) +
+//! weight_c (uv_c - uv_a)`. Each coordinate is wrapped into 0…1, multiplied by the mask's edge in
+//! texels and rounded down, at most to the last texel. The surface exists where that texel of mip 0
+//! is opaque. Shaders compute in f32, the oracle in f64.
 
 use crate::texture::Wrap;
 use glam::DVec2;
@@ -14,20 +14,21 @@ use glam::DVec2;
 pub struct Mask {
     /// Width and height in texels, neither 0.
     pub size: [u32; 2],
-    /// Wrapping of u and v beyond the mask's edges.
+    /// Treatment of u and v outside 0…1.
     pub wrap: [Wrap; 2],
     /// Bits of all texels, 1 for opaque: row by row from the top left, 32 to a word, lowest bit
     /// first.
     pub opaque: Vec<u32>,
 }
 
-/// Result of [`Mask::ask`]: a texel, and whether texels near it differ.
+/// Result of [`Mask::ask`]: the texel at texture coordinates, and whether any texel within their
+/// error differs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Asked {
-    /// True if the texel at the place itself is opaque.
+    /// True if the texel at the texture coordinates is opaque.
     pub opaque: bool,
-    /// True if another texel within the distance differs from the texel at the place, or if there
-    /// are too many texels to look at.
+    /// True if a texel within the error differs from the texel at the texture coordinates, or if
+    /// more than 4,096 texels lie within the error.
     pub flips: bool,
 }
 
@@ -35,10 +36,11 @@ pub struct Asked {
 const MOST_LOOKED_AT: f64 = 4096.0;
 
 impl Mask {
-    /// Creates a mask. `is_opaque` gets the column and row of a texel, from the top left.
+    /// Creates a mask of `size` texels. `is_opaque` gets the column and row of a texel, from the
+    /// top left.
     ///
     /// # Panics
-    /// If an edge is 0.
+    /// If the width or height is 0.
     pub fn new(size: [u32; 2], wrap: [Wrap; 2], is_opaque: impl Fn(u32, u32) -> bool) -> Self {
         assert!(size[0] > 0 && size[1] > 0, "a mask without texels");
         let texels = size[0] as usize * size[1] as usize;
@@ -78,8 +80,8 @@ impl Mask {
         self.opaque[texel / 32] >> (texel % 32) & 1 == 1
     }
 
-    /// Looks up the mask at texture coordinates, each of which may be off by its component of
-    /// `error`.
+    /// Looks up the mask at the texture coordinates `uv`, whose components may be wrong by up to
+    /// those of `error`, in the same units.
     pub fn ask(&self, uv: DVec2, error: DVec2) -> Asked {
         let (uv, error) = (uv.to_array(), error.to_array());
         // Texels of each axis from low to high, before they are wrapped.

@@ -9,9 +9,9 @@ use std::sync::Arc;
 pub struct Material {
     /// Name of the material in its file.
     pub name: String,
-    /// Linear red, green and blue; multiplied by the texture, if there is one.
+    /// Linear red, green and blue, multiplied by the texture if there is one.
     pub base_color: [f32; 3],
-    /// Texture of the base colour, or `None`.
+    /// Texture of the base colour; `None` for a surface of one colour.
     pub texture: Option<Texture>,
     /// Mask that cuts out the surface; `None` for a surface without holes.
     pub mask: Option<Arc<Mask>>,
@@ -31,17 +31,20 @@ impl Default for Material {
     }
 }
 
-/// Materials of a mesh, and the material of each triangle. All lists are empty for a mesh without
-/// materials.
+/// Materials of a mesh, and the material and texture coordinates of each triangle. All lists are
+/// empty for a mesh without materials. The argument `primitive` of methods is the index of a
+/// triangle in [`Mesh::triangles`](crate::Mesh::triangles).
 #[derive(Clone, Debug, Default)]
 pub struct Surfaces {
-    /// Texture coordinates, v down: (0, 0) is the corner of the texture's first texel.
+    /// Texture coordinates, v down: (0, 0) is the outer corner of the texture's first texel.
     pub uvs: Vec<Vec2>,
-    /// Three indices into `uvs` per triangle; empty for a mesh without texture coordinates.
+    /// Three indices into `uvs` per triangle, in the order of the mesh's triangles; empty for a
+    /// mesh without texture coordinates.
     pub uv_indices: Vec<[u32; 3]>,
-    /// Materials that `of` refers to.
+    /// Materials of the mesh, indexed by `of`.
     pub materials: Vec<Material>,
-    /// Index into `materials` for each triangle; empty for a mesh without materials.
+    /// Index into `materials` for each triangle, in the order of the mesh's triangles; empty for a
+    /// mesh without materials.
     pub of: Vec<u32>,
 }
 
@@ -90,7 +93,8 @@ impl Surfaces {
             .is_some_and(|material| material.double_sided)
     }
 
-    /// Returns true if any triangle is masked or double-sided.
+    /// Returns true if any triangle is masked or double-sided, so that tracing and drawing have to
+    /// look at its material.
     pub fn need_care(&self) -> bool {
         let cared = |material: &Material| material.mask.is_some() || material.double_sided;
         let mut used = self.of.iter();
@@ -98,9 +102,9 @@ impl Surfaces {
             && used.any(|of| self.materials.get(*of as usize).is_some_and(cared))
     }
 
-    /// Returns the linear base colour of triangle `primitive`, texture included, at a point given
-    /// by the weights of its corners. A triangle without a material, and a texture that cannot be
-    /// read, count as white.
+    /// Returns the linear base colour of triangle `primitive`, texture included, at the point with
+    /// these barycentric weights (in the order of the triangle's corners). A triangle without a
+    /// material counts as white, and so does a texture that cannot be read.
     pub fn base_color(&self, primitive: u32, weights: [f64; 3]) -> [f32; 3] {
         let Some(material) = self.material(primitive) else {
             return [1.0; 3];

@@ -1,16 +1,17 @@
-//! How much is taken of a mesh file's materials.
+//! Extent to which the materials of a mesh file are read.
 
 use serde::Deserialize;
 
-/// How much is taken of a mesh file's materials.
+/// Extent to which the materials of a mesh file are read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum MaterialUse {
-    /// Nothing: files of materials and textures need not be there.
+    /// Nothing is read: files of materials and textures may be missing.
     Ignore,
-    /// Colours, for pictures. Every surface is opaque, and what cannot be read is a warning.
+    /// Only colours are read, for pictures. Every surface is opaque. A colour that cannot be read
+    /// is a warning in the import report.
     Color,
-    /// Colours and masks; masks must be there.
+    /// Colours and masks are read. A mask that cannot be read is an error.
     #[default]
     All,
 }

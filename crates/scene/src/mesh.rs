@@ -11,14 +11,14 @@ use std::ops::Range;
 pub struct Mesh {
     /// Welded positions, world space, finite.
     pub positions: Vec<Vec3>,
-    /// Three position indices per triangle, counter-clockwise seen from outside. The index in this
-    /// list is the *primitive id*.
+    /// Three indices into `positions` per triangle, counter-clockwise seen from outside. A
+    /// triangle's index in this list is its *primitive id*.
     pub triangles: Vec<[u32; 3]>,
-    /// Vertex normals, unit length.
+    /// Vertex normals, unit length, indexed by `normal_indices`.
     pub normals: Vec<Vec3>,
-    /// Three normal indices per triangle, parallel to `triangles`.
+    /// Three indices into `normals` per triangle, parallel to `triangles`.
     pub normal_indices: Vec<[u32; 3]>,
-    /// Consecutive runs of triangles, with their names in the file or generator.
+    /// Named runs of consecutive triangles, in the order of `triangles`.
     pub groups: Vec<Group>,
     /// Materials of the triangles, and texture coordinates of their corners.
     pub surfaces: Surfaces,
@@ -29,12 +29,12 @@ pub struct Mesh {
 pub struct Group {
     /// Name of the group in the file or generator.
     pub name: String,
-    /// Primitive ids of the group.
+    /// Primitive ids of the group: indices into [`Mesh::triangles`].
     pub triangles: Range<u32>,
 }
 
 impl Mesh {
-    /// Returns the corners of triangle `primitive`, in f64 (exact).
+    /// Returns the corner positions of triangle `primitive`, in f64 (exact).
     ///
     /// # Panics
     /// If `primitive` is not below `triangles.len()`.
@@ -63,13 +63,15 @@ impl Mesh {
         }
     }
 
-    /// Iterates over the positions of all triangles' corners, three for each triangle.
+    /// Iterates over the corner positions of all triangles, in the order of `triangles`, three for
+    /// each.
     pub fn corner_positions(&self) -> impl Iterator<Item = Vec3> {
         let corners = self.triangles.iter().flatten();
         corners.map(|&index| self.positions[index as usize])
     }
 
-    /// Iterates over the positions that triangles use, each once.
+    /// Iterates over the positions that at least one triangle uses, each once, in the order of
+    /// `positions`.
     pub fn used_positions(&self) -> impl Iterator<Item = Vec3> {
         let mut is_used = vec![false; self.positions.len()];
         for &index in self.triangles.iter().flatten() {

@@ -22,13 +22,13 @@ pub struct MeshFile {
     pub name: String,
     /// Triangles and materials of the file.
     pub mesh: Mesh,
-    /// One view for each camera of the file; empty for an OBJ file.
+    /// One view for each perspective camera that the file places; empty for an OBJ file.
     pub views: Vec<View>,
     /// Lights of the file; empty for an OBJ file.
     pub lights: Vec<Light>,
     /// Animations of the file; empty for an OBJ file.
     pub clips: Vec<Clip>,
-    /// Report of changes that the import made, and of parts that it left out.
+    /// Changes that the import made, and parts of the file that it left out.
     pub report: ImportReport,
 }
 
@@ -39,7 +39,7 @@ pub struct MeshFileOptions {
     pub quads: QuadDiagonal,
     /// Treatment of concave polygons of an OBJ file.
     pub concave: Concave,
-    /// Extent to which the file's materials are read.
+    /// Parts of the file's materials that are read.
     pub materials: MaterialUse,
 }
 

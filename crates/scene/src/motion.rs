@@ -13,17 +13,17 @@ use std::f64::consts::TAU;
 /// Motion of one part of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PartMotion {
-    /// Name of the part: an OBJ group or object, a glTF node, a part of a generated mesh.
+    /// Name of the moving part: an OBJ group or object, a glTF node, a group of a generated mesh.
     pub part: String,
-    /// Motion of the part.
+    /// Motion of the part along the path.
     pub motion: Motion,
 }
 
-/// Motion of a part over the seconds of a path.
+/// Motion of a part of a mesh over the time of a [`CameraPath`](crate::CameraPath), in seconds.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Motion {
-    /// The part is turned about an axis and shifted. The splines between keys are those that the
-    /// camera follows.
+    /// The part is turned about an axis and shifted. Between keys it follows Catmull-Rom splines,
+    /// like the camera.
     Rigid {
         /// Point on the axis, which stays where it is while the part turns; world space.
         pivot: DVec3,
@@ -40,46 +40,47 @@ pub enum Motion {
         /// the part stands still.
         keys: Vec<PoseKey>,
     },
-    /// The part is bent as by wind: a point at height h of a part of height H is shifted by
-    /// `H (h / H)² tan(a)`, where the angle a swings as a sine. The foot of the part stands still.
+    /// The part is bent as by wind: a point at height h above the foot (the lowest point along
+    /// `up`) of a part of height H is shifted by `H (h / H)² tan(a)` along `axis`, where the angle
+    /// a swings as a sine. The foot stands still.
     Sway {
-        /// Direction in which the part leans, of any length but zero.
+        /// Direction in which the part leans, of any length but zero and not along `up`.
         axis: DVec3,
         /// Direction in which the part grows: the path's own `up`.
         up: DVec3,
-        /// Greatest angle of the swing in degrees, below 90.
+        /// Greatest angle of the swing in degrees, between −90 and 90.
         degrees: f64,
         /// Period of the swing in seconds.
         seconds: f64,
     },
 }
 
-/// Where a part is at a time.
+/// Keyframe of a rigid motion: turn and shift of a part at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RigidKey {
-    /// Time in seconds.
+    /// Time in seconds, on the clock of the path's keyframes.
     pub at: f64,
-    /// From where it rests.
+    /// Shift of the part from its place at rest, in scene units, after the turn.
     #[serde(default, with = "Vector")]
     pub translation: DVec3,
-    /// Turn about the axis through the pivot, before it is shifted.
+    /// Angle in degrees by which the part is turned about the motion's axis.
     #[serde(default)]
     pub degrees: f64,
 }
 
-/// A pose of a part at a time: turned about the origin, then shifted.
+/// Keyframe of a posed motion: the part is turned about the world's origin, then shifted.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct PoseKey {
-    /// Time in seconds.
+    /// Time in seconds, on the clock of the path's keyframes.
     pub at: f64,
-    /// After the turn.
+    /// Shift after the turn, in scene units.
     #[serde(default, with = "Vector")]
     pub translation: DVec3,
-    /// Quaternion x, y, z, w of the turn from where the part rests.
+    /// Unit quaternion (x, y, z, w) that turns the part from its pose at rest.
     #[serde(default, with = "Turn")]
     pub rotation: DQuat,
 }
@@ -103,8 +104,8 @@ fn posed(keys: &[PoseKey], at: f64) -> DAffine3 {
 }
 
 impl PartMotion {
-    /// Checks that the motion is valid: it has keys in the order of their times, and finite
-    /// numbers.
+    /// Checks that the motion is valid: keys in the order of their times, finite numbers within
+    /// their ranges, and a sway that does not turn its part inside out.
     ///
     /// # Errors
     /// Sentence with the first mistake, which names the part.
@@ -230,11 +231,13 @@ fn folds(axis: DVec3, up: DVec3, degrees: f64) -> bool {
     2.0 * degrees.abs().to_radians().tan() * along >= 1.0
 }
 
-/// Returns the mesh of `movable` with its parts moved to their places at the time `at`, in seconds.
-/// Part number n follows `motions[n]`, whatever part that motion names.
+/// Returns the mesh of `movable` with its parts moved to their places at the time `at`, in seconds
+/// on the clock of the path's keyframes. Part number n follows `motions[n]`; the part's name in
+/// that motion is ignored.
 ///
 /// # Errors
-/// Other than one motion for each part, or a part that its motion cannot move at that time.
+/// [`MoveError::Count`] if there is not one motion for each part; other errors for a part that its
+/// motion cannot move at that time.
 pub fn moved(movable: &Movable, motions: &[PartMotion], at: f64) -> Result<Mesh, MoveError> {
     movable.check_count(motions.len())?;
     let parts = motions.iter().enumerate();

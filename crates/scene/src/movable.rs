@@ -1,15 +1,16 @@
-//! Meshes with parts that move by themselves, by affine maps or by bends.
+//! Meshes with parts that are moved independently of each other, by affine maps or by bends.
 
 use crate::mesh::{Group, Mesh};
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 use std::collections::{BTreeMap, HashSet};
 
-/// Mesh with parts that move by themselves.
+/// Mesh with parts that are moved independently of each other. Each part is moved by a map from
+/// positions at rest to moved positions.
 #[derive(Clone, Debug)]
 pub struct Movable {
-    /// Mesh at rest, before its parts are moved. Each moving part has normals of its own, one per
-    /// position of a corner. Parts from [`joined`](Self::joined) overlap here, because each is in a
-    /// space of its own.
+    /// Mesh at rest, before its parts are moved. Each part has normals of its own: one for each
+    /// pair of a position and a normal that meet at a corner. Parts from [`joined`](Self::joined)
+    /// overlap here, because each is in a space of its own.
     pub rest: Mesh,
     parts: Vec<Part>,
     is_joined: bool,
@@ -37,9 +38,9 @@ pub struct MovedPart {
 /// Changes that [`Movable::put`] made to a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PartChange {
-    /// True if a position or normal differs from before.
+    /// True if a position or normal of the part was changed.
     pub is_elsewhere: bool,
-    /// True if triangles are wound the other way than before.
+    /// True if the triangles of the part were wound the other way.
     pub is_turned: bool,
 }
 
@@ -81,7 +82,7 @@ pub enum MoveError {
     OutOfRange {
         /// Number of the part, from 0.
         part: usize,
-        /// The position at rest.
+        /// Position at rest.
         from: Vec3,
         /// Position to which the map moves it.
         to: DVec3,
@@ -104,8 +105,8 @@ impl Movable {
     /// `parts[n]`.
     ///
     /// # Errors
-    /// A name that no group has, or a part that is welded to another, so that moving it would tear
-    /// the surface.
+    /// Text that names the part: a name that no group has, or a part that shares positions with
+    /// triangles outside it, so that moving it would tear the surface.
     pub fn new(mesh: &Mesh, parts: &[&str]) -> Result<Self, String> {
         let mut rest = mesh.clone();
         let parts = parts.iter().map(|name| Part::cut(&mut rest, name));
@@ -117,9 +118,9 @@ impl Movable {
         })
     }
 
-    /// Joins several meshes into one, in which each mesh is a part in a space of its own, such as
-    /// an instance. Part number n is moved by the n-th map. If only some of the meshes have
-    /// materials, the others get a plain one.
+    /// Joins meshes into one. Part number n is `meshes[n]`, which is given in a space of its own,
+    /// such as the model space of an instance. If only some of the meshes have materials, the
+    /// others get a plain one.
     pub fn joined(meshes: &[&Mesh]) -> Self {
         let mut rest = Mesh::default();
         let has_materials = meshes.iter().any(|mesh| !mesh.surfaces.of.is_empty());
@@ -142,17 +143,18 @@ impl Movable {
         self.parts.len()
     }
 
-    /// Returns true if the parts come from [`joined`](Self::joined), each in a space of its own.
-    /// [`rest`](Self::rest) is then not a scene before each part was moved by its map.
+    /// Returns true if the parts come from [`joined`](Self::joined), each in a space of its own. In
+    /// that case [`rest`](Self::rest) can be drawn only after each part was moved by its map.
     pub fn is_joined(&self) -> bool {
         self.is_joined
     }
 
-    /// Returns the mesh with each part moved by the map of the part's number. Triangles of a part
-    /// that its map mirrors are wound the other way.
+    /// Returns the mesh with part number n moved by `maps[n]`. Triangles of a part that its map
+    /// mirrors are wound the other way.
     ///
     /// # Errors
-    /// The number of maps is not the number of parts, or a part cannot be moved by its map.
+    /// [`MoveError::Count`] if there is not one map for each part; other errors for a part that
+    /// cannot be moved by its map.
     pub fn moved(&self, maps: &[DAffine3]) -> Result<Mesh, MoveError> {
         self.check_count(maps.len())?;
         self.all(|part| self.moved_part(part, &maps[part]))
@@ -160,10 +162,11 @@ impl Movable {
 
     /// Returns the mesh with each part moved by a map that need not be affine. `map` gets the
     /// number of a part and a position on it at rest. It returns the moved position, and the
-    /// derivative of the map at the position at rest.
+    /// derivative (Jacobian matrix) of the map at the position at rest.
     ///
     /// # Errors
-    /// A map by which a part cannot be moved, or that mirrors only some of the part.
+    /// [`MoveError::Folded`] for a map that mirrors only some of a part; other errors for a map
+    /// that cannot move a part.
     pub fn bent(&self, map: impl Fn(usize, DVec3) -> (DVec3, DMat3)) -> Result<Mesh, MoveError> {
         self.all(|part| self.bent_part(part, |place| map(part, place)))
     }
@@ -251,9 +254,10 @@ impl Movable {
         })
     }
 
-    /// Writes a moved part into `mesh`, which is [`rest`](Self::rest) with parts moved.
-    /// `was_mirrored` says if the part is mirrored in `mesh` so far. If the moved part differs from
-    /// that, the corners of its triangles change their order.
+    /// Writes a moved part into `mesh`, which is a copy of [`rest`](Self::rest) in which parts may
+    /// be moved already, and returns the changes. `was_mirrored` says whether the part is mirrored
+    /// in `mesh` so far. If `moved` is mirrored and the part so far is not, or the reverse, the
+    /// part's triangles are wound the other way.
     ///
     /// # Panics
     /// If there is no part of that number, or if `mesh` is another mesh.
@@ -287,8 +291,11 @@ impl Movable {
         change
     }
 
-    /// Returns the lowest and highest coordinate of a part at rest along `axis` (dot products with
-    /// it); `[0, 0]` for a part without corners.
+    /// Returns the lowest and highest coordinate of part number `part` at rest along `axis`, as dot
+    /// products with `axis`. Returns `[0, 0]` for a part without corners.
+    ///
+    /// # Panics
+    /// If there is no part of that number.
     pub fn span(&self, part: usize, axis: DVec3) -> [f64; 2] {
         let places = self.parts[part].positions.iter();
         let along = places.map(|&p| self.rest.positions[p as usize].as_dvec3().dot(axis));

@@ -6,15 +6,15 @@ use std::collections::HashMap;
 /// Words of a triangle's record in [`mask_words`]: six texture coordinates and the mask's place.
 const RECORD: usize = 7;
 
-/// Flag in a triangle's word of [`mask_words`]: the triangle's back face is visible, too.
+/// Flag in a triangle's word of [`mask_words`]: the triangle's back face is visible as well.
 pub const DOUBLE_SIDED: u32 = 0x8000_0000;
 
-/// Packs masks as shaders read them (`shared/masks.wgsl`). The list begins with one word per
-/// triangle: the flag [`DOUBLE_SIDED`], and the index of the triangle's record in the list, or 0
-/// for a triangle without a mask. Records of seven words follow: three pairs of texture coordinates
-/// as f32 bits, and the index of the mask in the list. Masks come last: width, height, the wrapping
-/// of u and v (two bits each, in one word), and the bits of the texels. The list is empty if no
-/// triangle is masked or double-sided.
+/// Packs the masks of a mesh's triangles into one list of words, the layout of `shared/masks.wgsl`.
+/// The list begins with one word per triangle: the flag [`DOUBLE_SIDED`], and the index of the
+/// triangle's record in the list, or 0 for a triangle without a mask. Records of seven words
+/// follow: three pairs of texture coordinates as f32 bits, and the index of the mask in the list.
+/// Masks come last: width, height, the wrapping of u and v (two bits each, in one word), and one
+/// bit per texel, 1 for opaque. The list is empty if no triangle is masked or double-sided.
 pub fn mask_words(mesh: &Mesh) -> Vec<u32> {
     let surfaces = &mesh.surfaces;
     if !surfaces.need_care() {

@@ -8,15 +8,16 @@ use std::collections::HashMap;
 ///
 /// A part is *closed* if its triangles pass each edge as often in one direction as in the other:
 /// between two points outside the part a ray then meets as many of its back faces as of its front
-/// faces. It is *open* at an edge of one triangle, at one whose two triangles are wound against
-/// each other, and at one of more triangles that do not pair off. Four that do, as of two boxes
-/// that touch along an edge, leave it closed.
+/// faces. It is *open* if it has an edge of a single triangle, an edge whose two triangles are
+/// wound against each other, or an edge of more triangles that do not form pairs of opposite
+/// winding. Two boxes that touch along an edge have four triangles there, which form pairs: the
+/// part stays closed.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Parts {
-    /// Number of the part of each triangle. Parts are numbered from 0 in the order of their first
-    /// triangles.
+    /// Part number of each triangle, by primitive id (the index in [`Mesh::triangles`]). Parts are
+    /// numbered from 0 in the order of their first triangles.
     pub of: Vec<u32>,
-    /// True for each part that is open, by the part's number.
+    /// One entry per part, by part number: true if the part is open.
     pub open: Vec<bool>,
 }
 
@@ -53,7 +54,8 @@ impl Parts {
         parts
     }
 
-    /// Returns true if a triangle belongs to an open part.
+    /// Returns true if triangle `primitive` (an index into [`Mesh::triangles`]) belongs to an open
+    /// part.
     ///
     /// # Panics
     /// If the mesh has no triangle `primitive`.

@@ -24,55 +24,56 @@ const MOST_FRAMES: f64 = 10_000.0;
 #[cfg_attr(feature = "files", derive(Deserialize))]
 #[cfg_attr(feature = "files", serde(from = "crate::scene_file::PathText"))]
 pub struct CameraPath {
-    /// View with the path's name and all that stays constant. Its eye and direction are those of
-    /// the first keyframe.
+    /// View that is changed from frame to frame: it holds the path's name and everything that stays
+    /// constant. Its eye and direction are replaced by those of the keyframes.
     pub view: View,
-    /// Frames per second of the path's own time.
+    /// Number of frames per second of the keyframes' time, more than 0.
     pub frames_per_second: f64,
     /// Keyframes of the camera in the order of their times, at least two.
     pub keys: Vec<CameraKey>,
     /// Keyframes of the view's own light in the order of their times; empty for a light that stays
-    /// where it is. Before the first and after the last key the light stands still.
+    /// in place. They have no effect if the view has no light of its own. Before the first and
+    /// after the last key the light stands still.
     pub light_keys: Vec<LightKey>,
     /// Motions of parts of the mesh, at most one for each part.
     pub moves: Vec<PartMotion>,
 }
 
-/// Where the camera is at a time.
+/// Keyframe of a camera: its position and direction at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, rename = "Key")]
 pub struct CameraKey {
     /// Time in seconds.
     pub at: f64,
-    /// Place of the camera.
+    /// Position of the camera, world space.
     #[serde(with = "Vector")]
     pub eye: DVec3,
-    /// Direction in which it looks, of any length above 0.
+    /// Direction in which the camera looks, of any length above 0.
     #[serde(with = "Vector")]
     pub direction: DVec3,
 }
 
-/// Where a light is at a time.
+/// Keyframe of a light: its position and direction at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct LightKey {
-    /// Time in seconds.
+    /// Time in seconds, on the same clock as the keyframes of the camera.
     pub at: f64,
-    /// Direction in which the light travels, of any length above 0; none of a point light.
+    /// Direction in which the light travels, of any length above 0; `None` for a point light.
     #[serde(default, deserialize_with = "Vector::some")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<Vector>"))]
     pub direction: Option<DVec3>,
-    /// Place of a lamp; none of a directional light.
+    /// Position of a spot or point light, world space; `None` for a directional light.
     #[serde(default, deserialize_with = "Vector::some")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<Vector>"))]
     pub position: Option<DVec3>,
 }
 
 impl CameraPath {
-    /// Returns the number of frames. The first frame is at the first keyframe, the last frame at
-    /// the last keyframe or just before.
+    /// Returns the number of frames. Frame 0 is at the first keyframe, the last frame at the last
+    /// keyframe or just before.
     pub fn frames(&self) -> u32 {
         // A time that is a whole number of frames but for its rounding has its last frame.
         (self.seconds() * self.frames_per_second + 1e-6) as u32 + 1
@@ -106,8 +107,9 @@ impl CameraPath {
         Ok(Some(movable))
     }
 
-    /// Returns the mesh in a frame. `movable` is the result of [`movable`](Self::movable). The
-    /// triangles are those at rest, because no motion mirrors a part.
+    /// Returns the mesh of frame number `frame`, from 0, with all parts moved. `movable` is the
+    /// result of [`movable`](Self::movable). Its triangles are those at rest, because no motion
+    /// mirrors a part.
     ///
     /// # Errors
     /// A part that f32 cannot hold at its place in that frame. The message names path, part and
@@ -117,7 +119,8 @@ impl CameraPath {
             .map_err(|reason| format!("path {:?}: moves: frame {frame}: {reason}", self.view.name))
     }
 
-    /// Returns the view of a frame, with the path's own name.
+    /// Returns the view of frame number `frame`, from 0, under the path's name. Its direction need
+    /// not be a unit vector.
     pub fn view(&self, frame: u32) -> View {
         let at = self.at(frame);
         let times = |key: &CameraKey| key.at;
@@ -198,7 +201,8 @@ impl CameraPath {
         (0..self.frames()).map(|frame| self.view(frame))
     }
 
-    /// Checks that every frame makes a camera.
+    /// Checks that the keyframes and motions are valid, that the path has at most 10,000 frames,
+    /// and that the view of each frame is valid.
     ///
     /// # Errors
     /// Sentence with the first mistake, which names the path.

@@ -1,15 +1,15 @@
-//! Masks that are made here, for meshes whose textures are not at hand.
+//! Generated masks for meshes whose textures are not available.
 
 use crate::{mask::Mask, texture::Wrap};
 use serde::Deserialize;
 
-/// Pattern of a made mask. It repeats without a seam.
+/// Pattern of a generated mask of 128 × 128 texels, which repeats without a seam.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Pattern {
-    /// Leaves on twigs, half of it open.
+    /// Leaves on twigs; about half of the texels are holes.
     Leaves,
-    /// Links of a chain, one below the other.
+    /// A vertical chain of ring-shaped links.
     Links,
 }
 
@@ -17,7 +17,7 @@ pub enum Pattern {
 const SIZE: u32 = 128;
 
 impl Pattern {
-    /// Creates a mask with this pattern.
+    /// Creates the mask with this pattern.
     pub fn mask(self) -> Mask {
         Mask::new([SIZE; 2], [Wrap::Repeat; 2], |x, y| {
             let at = |texel: u32| (f64::from(texel) + 0.5) / f64::from(SIZE);

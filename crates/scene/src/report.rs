@@ -1,9 +1,9 @@
-//! Changes of a mesh by its import, and content that was left out.
+//! Changes that an import made to a mesh, and content that it left out.
 
 use crate::error::{FACES_SHOWN, FaceRef, plural};
 use std::{fmt, path::PathBuf};
 
-/// Counts and warnings of an import. A generated mesh has an empty report.
+/// Counts and warnings of the import of a mesh file. A generated mesh has an empty report.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ImportReport {
     /// Path of the mesh file; `None` for a mesh that is not from a file.
@@ -18,24 +18,24 @@ pub struct ImportReport {
     pub lines: usize,
     /// Number of vertices that welding merged with another one.
     pub vertices_welded: usize,
-    /// Number of faces without a normal at every corner. Their triangles got their geometric
-    /// normals.
+    /// Number of faces without a normal at every corner. Each of their triangles got its geometric
+    /// normal at all three corners.
     pub faces_without_normals: usize,
-    /// Number of corners whose normal had no direction (zero or not finite). It was replaced by the
+    /// Number of corners whose normal had no direction (zero or not finite) and was replaced by the
     /// geometric normal.
     pub normals_replaced: usize,
     /// Triangles dropped because two of their corners are the same point.
     pub dropped: Degenerate,
     /// Triangles kept although their area is zero (three different points on a line).
     pub zero_area: Degenerate,
-    /// One text for each colour that could not be read.
+    /// One message for each colour or texture that could not be read.
     pub colours_missing: Vec<String>,
-    /// One sentence for each part that was left out, or read in a way that a user may not expect;
-    /// no two alike.
+    /// One sentence for each part of the file that was left out or read in an unexpected way; no
+    /// two are equal.
     pub remarks: Vec<String>,
 }
 
-/// Degenerate triangles: their number, and the faces that they come from.
+/// Degenerate triangles of an import: their number, and the faces that they come from.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Degenerate {
     /// Number of triangles.
@@ -86,7 +86,8 @@ impl ImportReport {
         }
     }
 
-    /// Returns true if the file held anything that a user may want to mend.
+    /// Returns true if the file held anything that a user may want to mend: a degenerate triangle,
+    /// a replaced normal, a point or line, a missing colour, or a remark.
     pub fn has_warnings(&self) -> bool {
         self.dropped.triangles
             + self.zero_area.triangles
@@ -99,7 +100,7 @@ impl ImportReport {
     }
 }
 
-/// The warnings, one per line; nothing for a clean import.
+/// Writes the warnings, one per line; writes nothing for an import without warnings.
 impl fmt::Display for ImportReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.dropped

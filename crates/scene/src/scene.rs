@@ -11,9 +11,9 @@ use glam::DVec3;
 /// Scene to be drawn: a mesh with its views and lights.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// Name shown in tables and results.
+    /// Name of the scene, shown in tables and results.
     pub name: String,
-    /// Mesh of all receivers and casters.
+    /// Mesh whose triangles cast and receive shadows.
     pub mesh: Mesh,
     /// Views, at least one; the first is the default.
     pub views: Vec<View>,
@@ -27,7 +27,8 @@ impl Scene {
         self.views.iter().find(|view| view.name == name)
     }
 
-    /// Returns the default light of the scene.
+    /// Returns the default light of the scene: the first of `lights`, or if that list is empty a
+    /// directional light that shines along −y.
     pub fn light(&self) -> LightKind {
         first(&self.lights)
     }

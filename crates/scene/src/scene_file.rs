@@ -50,18 +50,20 @@ use std::collections::HashMap;
 pub struct SceneFile {
     /// Version of the format: 1.
     pub format: u32,
-    /// Shown in tables and results.
+    /// Name of the scene, shown in tables and results.
     pub name: String,
-    /// One line for `skiagraph scenes`.
+    /// Description of the scene in one line, for the list that `skiagraph scenes` prints; may be
+    /// empty.
     #[serde(default)]
     pub description: String,
-    /// The triangles.
+    /// Source of the scene's triangles.
     pub mesh: MeshSource,
-    /// Adds a ground just below the mesh, with this direction up.
+    /// Direction up of a ground that is added just below the mesh; `None` adds no ground.
     #[serde(default, deserialize_with = "ground")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<Vector>"))]
     pub ground: Option<DVec3>,
-    /// The lights of all views that have none of their own: at least one, no two of the same name.
+    /// Lights of the scene: at least one, no two of the same name. They light each view that has no
+    /// light of its own.
     #[serde(default, rename = "light", deserialize_with = "only_light")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<DirectionalLight>"))]
     #[cfg_attr(
@@ -69,10 +71,10 @@ pub struct SceneFile {
         schemars(description = "One sun, in the place of `lights`.")
     )]
     pub lights: Vec<Light>,
-    /// At least one view, no two of the same name.
+    /// Views of the scene: at least one, no two of the same name. The first is the default.
     #[serde(skip)]
     pub views: Vec<View>,
-    /// Ways that a camera takes, no two of the same name.
+    /// Camera paths of the scene, no two of the same name; may be empty.
     #[serde(skip)]
     pub paths: Vec<CameraPath>,
 }
@@ -80,7 +82,7 @@ pub struct SceneFile {
 /// Fields of a scene file that are lists.
 const LISTS: [&str; 3] = ["lights", "views", "paths"];
 
-/// Where a scene's triangles come from.
+/// Source of a scene's triangles.
 #[derive(Clone, Debug, Deserialize)]
 #[cfg_attr(
     feature = "schema",
@@ -91,38 +93,42 @@ const LISTS: [&str; 3] = ["lights", "views", "paths"];
 pub enum MeshSource {
     /// A Wavefront OBJ file.
     Obj {
-        /// Path with forward slashes, searched beside the scene file, in the assets folders and in
-        /// the cache folder.
+        /// Path of the file with forward slashes, relative to a folder. These folders are searched
+        /// in order: the folder of the scene file, the folders of `SKIAGRAPH_ASSETS`, the user's
+        /// cache folder.
         file: String,
-        /// Groups that are left out, by name.
+        /// Names of the groups that are left out.
         #[serde(default)]
         leave_out: Vec<String>,
-        /// How polygons are split.
+        /// Diagonal that splits a quad into triangles.
         #[serde(default)]
         quads: QuadDiagonal,
-        /// Treatment of concave ones.
+        /// Treatment of concave polygons.
         #[serde(default)]
         concave: Concave,
-        /// Materials of it that are read.
+        /// Parts of the file's materials that are read.
         #[serde(default)]
         materials: ObjMaterials,
-        /// Where the file can be downloaded, for the message that it is missing; absent for a mesh
-        /// of one's own.
+        /// Text that says where the file can be downloaded, for the message that it is missing;
+        /// `None` for a file that is not public.
         #[serde(default)]
         source: Option<String>,
     },
     /// A glTF 2.0 file, `.gltf` or `.glb`.
     Gltf {
-        /// Path, as of `Obj`.
+        /// Path of the file with forward slashes, searched in the same folders as the file of
+        /// `Obj`.
         file: String,
-        /// Materials of it that are read.
+        /// Parts of the file's materials that are read.
         #[serde(default)]
         materials: MaterialUse,
-        /// As of `Obj`.
+        /// Text that says where the file can be downloaded, for the message that it is missing;
+        /// `None` for a file that is not public.
         #[serde(default)]
         source: Option<String>,
     },
-    /// A mesh that this crate generates, by name: `"park"`, `"city:100000"`.
+    /// A mesh that this crate generates. A scene file names it, for example `"park"` or
+    /// `"city:100000"`.
     Generated(
         #[serde(deserialize_with = "generator")]
         #[cfg_attr(feature = "schema", schemars(with = "String"))]
@@ -131,11 +137,12 @@ pub enum MeshSource {
 }
 
 impl SceneFile {
-    /// Reads the text of a scene file; `file` only serves messages.
+    /// Reads a scene from the text of a scene file. `file` is the name of the file in error
+    /// messages.
     ///
     /// # Errors
-    /// [`SceneError::SceneFile`] with the places of all that is not RON, not a scene's field, or
-    /// makes no camera or light.
+    /// [`SceneError::SceneFile`] with every mistake and its place in the text: invalid RON, unknown
+    /// or missing fields, and views, paths and lights that are not valid.
     pub fn parse(text: &str, file: &str) -> Result<Self, SceneError> {
         let mut told = Vec::new();
         let scene = Self::read(&Node::root(&SourceFile::new(file, text)), &mut told);

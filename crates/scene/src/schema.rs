@@ -8,9 +8,8 @@ use schemars::{JsonSchema, SchemaGenerator};
 use serde_json::{Value, json};
 use skiagraph_located_ron::schema::plain;
 
-/// Returns the JSON Schema (draft 2020-12) of scene files. RON has no schemas of its own; for
-/// it `Kind(field: value)` is `{"Kind": {"field": value}}`, a bare word is a text, a tuple is a
-/// list.
+/// Returns the JSON Schema (draft 2020-12) of scene files. It describes RON as JSON: `Kind(field:
+/// value)` is `{"Kind": {"field": value}}`, a bare word is a string, a tuple is an array.
 pub fn schema() -> Value {
     let mut generator = SchemaGenerator::default();
     let head = SceneFile::json_schema(&mut generator).to_value();

@@ -7,9 +7,9 @@ use std::sync::Arc;
 pub struct Texels {
     /// Width and height in texels.
     pub size: [u32; 2],
-    /// Red, green, blue, alpha, row by row from the top left; the colours are sRGB.
+    /// One entry per texel, row by row from the top left: sRGB red, green and blue, then alpha.
     pub rgba: Vec<[u8; 4]>,
-    /// True if the alpha channel carries information.
+    /// True if the picture has an alpha channel; without one, every alpha is 255.
     pub has_alpha: bool,
 }
 

@@ -1,11 +1,11 @@
-//! Colour textures, decoded when their texels are first looked at.
+//! Colour textures, decoded when their texels are first read.
 
 use crate::texels::Texels;
 #[cfg(feature = "files")]
 use crate::texture_file::{decode, read};
 use std::sync::{Arc, OnceLock};
 
-/// Wrapping of a texture beyond its edges.
+/// Treatment of texture coordinates outside 0…1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Wrap {
     /// The texture repeats.
@@ -13,7 +13,7 @@ pub enum Wrap {
     Repeat,
     /// The texture is mirrored at each edge.
     Mirror,
-    /// The outermost texels of the texture go on.
+    /// The coordinate is clamped to 0…1: the outermost texels continue.
     Clamp,
 }
 
@@ -40,17 +40,18 @@ impl Wrap {
 /// Source of a texture's texels.
 #[derive(Clone, Debug)]
 pub enum Source {
-    /// Texels in the program's memory.
+    /// Decoded texels in memory.
     Texels(Arc<Texels>),
     /// Path of a PNG, JPEG or TGA file.
     #[cfg(feature = "files")]
     File(std::path::PathBuf),
-    /// Bytes of an encoded picture, such as a `.glb` file holds.
+    /// Bytes of an encoded PNG or JPEG, for example out of a `.glb` file.
     #[cfg(feature = "files")]
     Bytes(Arc<[u8]>),
 }
 
-/// Key to compare the sources of textures without looking at texels: equal for the same source.
+/// Key that tells whether two textures have the same source, without decoding them: equal keys mean
+/// the same source.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum SourceKey {
     /// Address of the texels or bytes in memory.
@@ -61,7 +62,8 @@ pub enum SourceKey {
 }
 
 impl Source {
-    /// Returns the key of this source. It is valid as long as the source lives.
+    /// Returns the key of this source. A key of texels or bytes in memory is an address: it is
+    /// valid as long as the source lives.
     pub fn key(&self) -> SourceKey {
         match self {
             Self::Texels(texels) => SourceKey::Memory(Arc::as_ptr(texels).addr()),
@@ -73,14 +75,14 @@ impl Source {
     }
 }
 
-/// Colour texture, whose texels are decoded when first asked for.
+/// Colour texture, whose texels are decoded at the first call of [`texels`](Self::texels).
 #[derive(Clone, Debug)]
 pub struct Texture {
     /// Name of the texture in messages.
     pub name: String,
     /// Source of the texels.
     pub source: Source,
-    /// Wrapping of u and v beyond the texture's edges.
+    /// Treatment of u and v outside 0…1.
     pub wrap: [Wrap; 2],
     texels: Arc<OnceLock<Result<Arc<Texels>, String>>>,
 }
@@ -97,7 +99,8 @@ impl Texture {
         }
     }
 
-    /// Returns the texels. Those of a PNG, JPEG or TGA are decoded when first asked for.
+    /// Returns the texels. A PNG, JPEG or TGA is decoded at the first call; the result, or the
+    /// error, is kept.
     ///
     /// # Errors
     /// Text that names the texture and says why it cannot be read.

@@ -3,15 +3,17 @@
 use glam::{Vec2, Vec3};
 use std::collections::HashMap;
 
-/// Distinct vectors with their indices: bit-equal vectors get the same index, new ones the next.
+/// Assigns indices to vectors of `N` components: bit-equal vectors get the same index, a new vector
+/// gets the next index.
 #[derive(Clone, Debug, Default)]
 pub struct Welder<V = Vec3, const N: usize = 3> {
-    /// Distinct vectors, in the order of their first appearance.
+    /// Distinct vectors by index, in the order of their first appearance.
     pub values: Vec<V>,
     by_bits: HashMap<[u32; N], u32>,
 }
 
-/// Vectors and their indices, as [`Welder::weld_to`] takes and returns them.
+/// Lookup table from vectors to their indices in [`Welder::values`], to be exchanged by
+/// [`Welder::weld_to`]. The default table is empty.
 #[derive(Clone, Debug, Default)]
 pub struct Known(HashMap<[u32; 3], u32>);
 
@@ -28,13 +30,15 @@ impl<V: Copy + Into<[f32; N]>, const N: usize> Welder<V, N> {
 }
 
 impl Welder {
-    /// Welds to the vectors of `known` from now on, and returns those that were known before. Parts
-    /// that move by themselves are welded like this, so that they share no vectors with others.
+    /// Replaces the lookup table with `known` and returns the previous table;
+    /// [`values`](Self::values) stay. A part that moves by itself is welded with a table of its
+    /// own, so that it shares no vectors with other parts.
     pub fn weld_to(&mut self, known: Known) -> Known {
         Known(std::mem::replace(&mut self.by_bits, known.0))
     }
 
-    /// Returns the index of a vector, which is added if it is new. −0 counts (and is stored) as 0.
+    /// Returns the index of a vector in [`values`](Self::values), where it is added if it is new.
+    /// −0 is stored as 0.
     pub fn index(&mut self, value: Vec3) -> u32 {
         self.place(value + Vec3::ZERO) // −0 + 0 = 0
     }
@@ -44,8 +48,8 @@ impl Welder {
 pub type UvWelder = Welder<Vec2, 2>;
 
 impl UvWelder {
-    /// Returns the index of a pair, which is added if it is new. A pair that is not finite counts
-    /// as (0, 0).
+    /// Returns the index of a pair in [`values`](Self::values), where it is added if it is new. A
+    /// pair that is not finite counts as (0, 0).
     pub fn index(&mut self, value: Vec2) -> u32 {
         self.place(if value.is_finite() { value } else { Vec2::ZERO })
     }

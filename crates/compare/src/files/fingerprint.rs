@@ -25,7 +25,7 @@ use std::{
 };
 
 /// A hash of texts and numbers, the same on every machine. FNV-1a of 64 bits (Fowler, Noll, Vo): it
-/// tells changes, not forgeries.
+/// detects changes, not forgeries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fingerprint(u64);
 
@@ -88,8 +88,8 @@ impl fmt::Display for Fingerprint {
     }
 }
 
-/// Sources that read from other sources and record a hash of every text and picture that is read. A
-/// graph that is loaded through them is recorded with its includes and shaders.
+/// Sources that read from other sources and record a hash of every text and picture that is read.
+/// Load a graph through them to record it with its includes and shaders.
 pub struct RecordedSources<'a> {
     sources: &'a dyn Sources,
     /// Texts and pictures by path.

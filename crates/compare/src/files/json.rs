@@ -27,7 +27,7 @@ pub fn to_text(value: &impl Serialize) -> String {
     text
 }
 
-/// A mistake in a JSON text: a message, and the byte of the text that it is about.
+/// A mistake in a JSON text: a message, and the byte of the text at which it is shown.
 #[derive(Debug)]
 pub struct Mistake {
     at: usize,
@@ -56,7 +56,7 @@ impl Mistake {
     }
 
     /// Returns the error that shows the mistake in its line of `file`. The message begins with
-    /// "`FILE` is not a `what_for`", `help` says what to do, and `summary` is the last line.
+    /// "`FILE` is not a `what_for`", `help` is advice to the user, and `summary` is the last line.
     pub fn in_file(
         self,
         file: &SourceFile,

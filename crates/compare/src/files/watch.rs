@@ -22,15 +22,15 @@ use std::{
 /// Editors write a file in several steps; after the first one it is waited so long for the rest.
 const SETTLING: Duration = Duration::from_millis(60);
 
-/// A watch on folders; it ends when this value is dropped.
+/// A watch on folders. It ends when this value is dropped.
 pub struct Watch {
     _watcher: notify::RecommendedWatcher,
 }
 
 impl Watch {
-    /// Starts a thread that calls `changed` whenever a `.ron`, `.wgsl` or `.png` file has changed
+    /// Starts a thread that calls `changed` after a `.ron`, `.wgsl` or `.png` file has changed
     /// directly in one of `folders`, or anywhere below `pipelines` and `shaders` in the working
-    /// directory.
+    /// directory. Several changes in quick succession are one call.
     ///
     /// # Errors
     /// A folder that cannot be watched.
@@ -64,8 +64,8 @@ impl Watch {
 }
 
 /// Returns the folders to watch for the graphs that `arguments` name: the working directory, the
-/// folder of each `.ron` file, and those of its direct subfolders that hold `.ron`, `.wgsl` or
-/// `.png` files.
+/// folder of each `.ron` file, and those direct subfolders of a `.ron` file's folder that hold
+/// `.ron`, `.wgsl` or `.png` files.
 pub fn folders<'a>(arguments: impl Iterator<Item = &'a str>) -> BTreeSet<PathBuf> {
     let mut folders = BTreeSet::from([PathBuf::from(".")]);
     for argument in arguments.filter(|argument| argument.ends_with(".ron")) {

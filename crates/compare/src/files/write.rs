@@ -19,9 +19,9 @@ use std::{
     path::{Component, Path, PathBuf},
 };
 
-/// Checks, before anything runs, that files can be written: their folders exist and take files, and
-/// no two files are the same. Each file comes with the name of its writer for messages, such as
-/// `--csv`.
+/// Checks, before anything runs, that files can be written: their folders exist and are writable,
+/// and no two files are the same. Each item is a file with the name of the option or work that
+/// writes it, such as `--csv`, for messages.
 ///
 /// # Errors
 /// Names the two writers of one file, or the file that cannot be written and the reason.
@@ -58,10 +58,11 @@ pub fn check_writable(files: &[(String, &Path)]) -> Result<(), CompareError> {
     Ok(())
 }
 
-/// Creates a folder if it is missing, and checks with a temporary file that it takes files.
+/// Creates a folder if it is missing, and checks with a temporary file that files can be created in
+/// it.
 ///
 /// # Errors
-/// The folder cannot be created, or takes no files.
+/// The folder cannot be created, or no file can be created in it.
 pub fn check_folder(folder: &Path) -> Result<(), CompareError> {
     let made = fs::create_dir_all(folder).and_then(|()| try_out(folder));
     made.map_err(|error| CompareError::write(folder, error))
@@ -99,8 +100,9 @@ fn beside(path: &Path) -> io::Result<tempfile::NamedTempFile> {
     builder.prefix(".skiagraph-").tempfile_in(folder_of(path))
 }
 
-/// Writes a file whole or not at all: writes a temporary file beside it and renames that over it,
-/// so that an interrupted write keeps the old file. Devices and pipes are written directly.
+/// Writes a file whole or not at all. It writes a temporary file beside `path` and renames it to
+/// `path`, so that an interrupted write leaves the old file. Devices and pipes are written
+/// directly.
 ///
 /// # Errors
 /// The file cannot be written.
@@ -119,8 +121,8 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), CompareError> {
     write().map_err(|error| CompareError::write(path, error))
 }
 
-/// Writes a file, whole or not at all, unless something of that name exists. Returns true if the
-/// file was written, false if the name was taken.
+/// Writes a file, whole or not at all, unless a file of that name exists. Returns true if the file
+/// was written, false if the name was in use.
 ///
 /// # Errors
 /// The file cannot be written.

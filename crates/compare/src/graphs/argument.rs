@@ -11,13 +11,13 @@
 
 use std::{path::Path, str::FromStr};
 
-/// An assignment of a value to a param, `NAME=VALUE`. The value is parsed by the graph that has the
-/// param.
+/// An assignment of a value to a param of a graph, `NAME=VALUE`. The value stays text until the
+/// graph that has the param parses it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Assignment {
     /// Name of the param.
     pub name: String,
-    /// The value as written.
+    /// Value as the user wrote it.
     pub value: String,
 }
 

@@ -22,18 +22,19 @@ use crate::graphs::preset::Preset;
 use crate::graphs::shadow_method::Outputs;
 use skiagraph_reference::{Graded, GroundTruth, Statistics};
 
-/// Result of comparing one frame of a method with the ground truth.
+/// Result of comparing one frame of a method with the ground truth (the exact reference).
 pub struct Judgement {
-    /// Counts of the frame's pixels. A share of light counts as lit from one half on.
+    /// Counts of right and wrong pixels of the frame. A share of light counts as lit from 0.5 on.
     pub counts: Statistics,
-    /// Errors of the shares of light that the frame shows.
+    /// Errors of the shares of light, 0 to 1, that the frame shows.
     pub graded: Graded,
-    /// True if method and light are hard: each pixel is then lit or in shadow, and right or wrong.
+    /// True if the method answers only 0 or 1 and the light has no extent: each pixel is then lit
+    /// or in shadow, and right or wrong.
     pub is_hard: bool,
 }
 
 impl Judgement {
-    /// Compares a frame's outputs with the ground truth.
+    /// Compares a frame's decoded outputs with the ground truth of the same view and viewport.
     ///
     /// # Errors
     /// Outputs that differ in size from the reference, or hold values that are not allowed.

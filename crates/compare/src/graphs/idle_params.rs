@@ -18,7 +18,7 @@ use skiagraph_passes::SceneProvider;
 use skiagraph_scene::LightKind;
 use std::collections::BTreeSet;
 
-/// Notes on params without effect; remembers them, so that each is told once.
+/// Tells a sink about params that are set but have no effect, about each only once.
 #[derive(Default)]
 pub struct IdleParams {
     told: BTreeSet<String>,
@@ -26,7 +26,7 @@ pub struct IdleParams {
 
 impl IdleParams {
     /// Tells the sink which params are set but change nothing in `plan`, the plan of the method
-    /// `name` under `light`. A note that was told before is not repeated.
+    /// `name` under `light`. A note that was given before is not repeated.
     pub fn note_of(&mut self, sink: &dyn Sink, name: &str, plan: &Plan, light: LightKind) {
         for param in plan.idle_params() {
             let value = plan.param(param).map(ParamValue::to_string);
@@ -55,9 +55,9 @@ impl IdleParams {
     }
 }
 
-/// Returns text on the params with words as values that have an effect under the first kind of
-/// light that a graph takes, but not under another: `; under a spot light fit has no effect`. The
-/// text is empty if there are none.
+/// Returns text on those params with a choice of words as values that have an effect under the
+/// first kind of light that a graph takes, but not under another kind: `; under a spot light fit
+/// has no effect`. The text is empty if there are no such params.
 pub fn under_other_lights(graph: &Graph) -> String {
     let viewport = [64, 64];
     let mut provider = placeholder(viewport, graph);

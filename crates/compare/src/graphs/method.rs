@@ -32,7 +32,8 @@ pub type ParamValues = BTreeMap<String, ParamValue>;
 /// A method: a preset with the params, viewport and adapter features that it runs with.
 #[derive(Clone)]
 pub struct Method {
-    /// Name of the preset, with the assignments that tell this setting from its others: `crsm@n=1`.
+    /// Name of the preset, with the assignments that tell this setting from other settings of the
+    /// preset: `crsm@n=1`.
     pub name: String,
     /// The preset, with its graph.
     pub preset: Arc<Preset>,
@@ -40,7 +41,7 @@ pub struct Method {
     pub params: ParamValues,
     /// Width and height of the viewport in pixels.
     pub viewport: [u32; 2],
-    /// Features of the adapter, on which the defaults of params may depend.
+    /// Features of the adapter. The default values of params may depend on them.
     pub features: wgpu::Features,
     /// All params; a default may depend on the viewport, and on what the adapter can do.
     values: ParamValues,
@@ -89,12 +90,14 @@ impl Method {
         }
     }
 
-    /// Returns the method as it runs on an adapter with these features.
+    /// Returns the method for an adapter with these features: the defaults of its params may depend
+    /// on them.
     pub fn settled(self, features: wgpu::Features) -> Self {
         Self::on(self.preset, self.params, self.viewport, features).named(&self.name)
     }
 
-    /// Returns the method as it runs in another viewport, in pixels.
+    /// Returns the method for another viewport, in pixels: the defaults of its params may depend on
+    /// it.
     pub fn at(&self, viewport: [u32; 2]) -> Self {
         let params = self.params.clone();
         Self::on(self.preset.clone(), params, viewport, self.features).named(&self.name)
@@ -132,8 +135,8 @@ impl Method {
         self.preset.graph.plan(&request)
     }
 
-    /// Returns a hash, as text, of everything but the params that a run depends on: `scene`, the
-    /// hash of scene and view, and the files of the preset.
+    /// Returns a hash, as text, of everything that a run depends on, except for the params:
+    /// `scene`, which is the hash of scene and view, and the files of the preset.
     pub fn fingerprint(&self, scene: Fingerprint) -> String {
         scene.with_all(self.preset.fingerprint).to_string()
     }

@@ -30,13 +30,14 @@ use std::collections::BTreeSet;
 
 /// Parses methods of a command line, and chooses documents for their *open includes*: includes
 /// whose document a run may exchange (`Include(open: "over")`). An assignment whose name is that of
-/// an open include, a method's own or else one of `params`, chooses its document, and becomes part
-/// of the graph's name: `step@over=pcf`. A list of documents gives a method for each. Returns the
-/// methods, and those of `params` that name no open include of any method, which the caller
-/// applies.
+/// an open include chooses the include's document, and becomes part of the graph's name:
+/// `step@over=pcf`. A method's own assignment wins over one of `params`. A list of documents gives
+/// one method for each. Returns the methods, and those of `params` that name no open include of any
+/// method: these set params, and are left to the caller.
 ///
 /// # Errors
-/// A graph that does not exist, of a method with assignments or where there are `params`.
+/// A graph file that does not exist or cannot be read, if its method has assignments or `params` is
+/// not empty.
 pub fn arguments(
     words: impl IntoIterator<Item = impl AsRef<str>>,
     params: &[Assignment],

@@ -49,8 +49,8 @@ impl Capabilities {
         }
     }
 
-    /// Returns the capabilities of the largest adapters of today. A graph that cannot be planned
-    /// for them is itself at fault.
+    /// Returns capabilities no smaller than those of the largest adapters of today. A graph that
+    /// cannot be planned with them is itself at fault.
     pub fn greatest() -> Self {
         let limits = wgpu::Limits {
             max_texture_dimension_2d: 32768,
@@ -153,7 +153,8 @@ fn of_each_kind() -> [LightKind; 3] {
     ]
 }
 
-/// Returns a light of each kind that a graph takes; one of every kind if it takes no known kind.
+/// Returns one example light of each kind (directional, spot, point) that a graph takes; one of
+/// every kind if it takes no known kind.
 pub fn stand_ins(graph: &Graph) -> Vec<LightKind> {
     let all = of_each_kind();
     let taken = all.iter().filter(|it| light_kinds::takes(graph, it.word()));
@@ -165,8 +166,9 @@ pub fn stand_ins(graph: &Graph) -> Vec<LightKind> {
     }
 }
 
-/// Returns a provider for planning without a scene, for a viewport in pixels. It describes every
-/// resource that a scene can have, under the first kind of light that the graph takes.
+/// Returns a provider of scene resources for planning without a scene, for a viewport in pixels. It
+/// describes every resource that a scene can have, under the first kind of light that the graph
+/// takes.
 pub fn placeholder(viewport: [u32; 2], graph: &Graph) -> SceneProvider {
     let mut provider = described(viewport);
     if let Some(light) = stand_ins(graph).first() {

@@ -31,15 +31,17 @@ use std::{
     sync::{Arc, Once},
 };
 
-/// Name of the output with the light that reaches each pixel, from 0 in shadow to 1 in light.
+/// Name of the output with the share of light that reaches each pixel, from 0 in shadow to 1 in
+/// full light.
 pub const VISIBILITY: &str = "visibility";
 /// Name of the optional output with the status of each pixel: 0 background, 1 facing away, 2
 /// certain light, 3 certain shadow, 4 uncertain.
 pub const STATUS: &str = "status";
 /// Name of the optional output with the number of rays traced in the frame.
 pub const RAY_COUNT: &str = "ray_count";
-/// Name of the optional output with the density of the shadow map at each pixel's receiver: texels
-/// per unit of area across the light's ray, 0 outside the map.
+/// Name of the optional output with the density of the shadow map at each pixel's receiver (its
+/// visible surface): texels per square unit of the scene, measured across the ray to the light; 0
+/// outside the map.
 pub const TEXEL_DENSITY: &str = "texel_density";
 /// Name of the optional output with the layer of the shadow map that each pixel reads.
 pub const MAP_LAYER: &str = "map_layer";
@@ -99,8 +101,8 @@ pub fn names(sources: &dyn Sources) -> Vec<String> {
     names.sorted().dedup().map(Into::into).collect()
 }
 
-/// Names of the built-in presets that a comparison takes by default, as methods that are fit to
-/// ship.
+/// Names of the built-in presets that are fit to ship as shadow methods; a comparison takes these
+/// by default.
 pub const SHIPPED: [&str; 8] = [
     "rt",
     "light_buffer",
@@ -121,8 +123,7 @@ pub fn shipped_and_own(sources: &dyn Sources) -> Vec<String> {
     SHIPPED.map(str::to_owned).into_iter().chain(own).collect()
 }
 
-/// Returns the names of the presets that `arguments` name; of all presets if there are no
-/// arguments.
+/// Returns the names of the presets that `arguments` name; of all presets if `arguments` is empty.
 pub fn named_or_all(arguments: &[String], sources: &dyn Sources) -> Vec<String> {
     match arguments {
         [] => names(sources),
@@ -141,14 +142,14 @@ pub struct Preset {
 }
 
 impl Preset {
-    /// Returns the names of the outputs by which a shadow method is judged, those that the graph
-    /// has of `visibility`, `status` and `ray_count`.
+    /// Returns those of the names `visibility`, `status` and `ray_count` that the graph has as
+    /// outputs: the outputs by which a shadow method is judged.
     pub fn judged(&self) -> Vec<&'static str> {
         self.outputs_of(&[VISIBILITY, STATUS, RAY_COUNT])
     }
 
-    /// Returns the names of the outputs that describe the shadow map, those that the graph has of
-    /// `texel_density` and `map_layer`. They are not drawn in timed frames.
+    /// Returns those of the names `texel_density` and `map_layer` that the graph has as outputs:
+    /// the outputs that describe the shadow map. They are not drawn in timed frames.
     pub fn diagnostics(&self) -> Vec<&'static str> {
         self.outputs_of(&[TEXEL_DENSITY, MAP_LAYER])
     }
@@ -167,7 +168,8 @@ impl Preset {
             .find(|param| param.name.as_str() == name)
     }
 
-    /// Returns the names that assignments can set: the graph's params and open includes.
+    /// Returns the names that assignments can set: the graph's params, and its open includes, whose
+    /// document can be exchanged.
     pub fn settable(&self) -> impl Iterator<Item = &str> {
         let params = self.graph.params().iter().map(|param| param.name.as_str());
         params.chain(self.graph.openings().map(|(name, _)| name))
@@ -222,7 +224,8 @@ pub fn load_all(
 }
 
 /// Loads the graph that an argument names. Returns the graph or its faults, and the path of the
-/// graph. `contact.ron@over=msm` puts the document `msm` into the open include `over`.
+/// graph. The argument `contact.ron@over=msm` puts the document `msm` in the place of the open
+/// include `over`.
 ///
 /// # Errors
 /// A file that does not exist or cannot be read.

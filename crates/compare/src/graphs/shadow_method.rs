@@ -69,8 +69,9 @@ fn none_or_error(errors: Vec<String>) -> Result<(), CompareError> {
 }
 
 /// Checks that methods can be planned in all viewports on [`Capabilities::greatest`], with the
-/// outputs of a shadow method. A method that `device` cannot run, or that does not take the light,
-/// is an error only if `device` can run none of the methods; `None` skips that check.
+/// outputs of a shadow method. With `device`, at least one method must be able to run on it; a
+/// method that `device` cannot run, or that does not take the light, is an error only if all fail.
+/// With `None` that check is skipped.
 ///
 /// # Errors
 /// Every fault of every graph together; outputs whose size or format is not that of a shadow
@@ -121,7 +122,8 @@ pub fn check_plans(
     none_or_error(mismatches.into_iter().collect())
 }
 
-/// True if a method answers for all lights at once: its output `visibility` has several layers.
+/// True if a method computes the shadows of all lights in one frame: its output `visibility` has
+/// several layers, one for each light.
 pub fn is_layered(method: &Method, device: &Capabilities, provider: &SceneProvider) -> bool {
     let plan = method.plan(method.viewport, device.clone(), provider);
     plan.is_ok_and(|plan| {
@@ -191,24 +193,26 @@ fn mismatch(preset: &Preset, plan: &Plan, viewport: [u32; 2], lights: usize) -> 
     })
 }
 
-/// Decoded outputs of one frame under one light.
+/// Decoded outputs of one frame under one light. Each list has one entry per pixel, row by row from
+/// the top left.
 pub struct Outputs {
-    /// Hard visibility of each pixel: 0 in shadow, 1 lit. A share of light counts as lit from one
-    /// half on.
+    /// Hard visibility of each pixel: 0 in shadow, 1 lit. A share of light counts as lit from 0.5
+    /// on.
     pub visibility: Vec<u32>,
-    /// Share of the light that reaches each pixel, 0 to 1 if the method is right; `None` if it
-    /// answers in 0 and 1.
+    /// Share of the light that reaches each pixel, 0 to 1 unless the method is faulty; `None` if
+    /// the method answers only 0 or 1.
     pub shares: Option<Vec<f32>>,
     /// Status of each pixel: 0 background, 1 facing away, 2 certain light, 3 certain shadow, 4
     /// uncertain.
     pub status: Vec<u32>,
-    /// Number of rays traced; `None` if the graph does not count them.
+    /// Number of rays traced in the frame; `None` if the graph does not count them.
     pub rays: Option<u64>,
 }
 
 impl Outputs {
-    /// Decodes the outputs that were read from a frame, for the light with the index `light`. An
-    /// output without a layer for each light holds for every light.
+    /// Decodes the outputs that were read back from a frame, for the light with the index `light`.
+    /// An output without a layer for each light holds for every light. `truth` is the reference of
+    /// the same view, for methods without the output `status`.
     ///
     /// # Errors
     /// The errors of [`decode`](Self::decode).
@@ -221,9 +225,9 @@ impl Outputs {
         Self::decode(&contents.into_iter().map(of).collect(), truth)
     }
 
-    /// Decodes the outputs that were read from a frame of one light. If the graph has no output
-    /// `status`, the reference `truth` says which pixels face the light, and the method counts as
-    /// certain of its answers there.
+    /// Decodes the outputs that were read back from a frame of one light. If the graph has no
+    /// output `status`, the reference `truth` says which pixels face the light, and the method
+    /// counts as certain of its answers there.
     ///
     /// # Errors
     /// An output that is not there or not in one of the allowed formats.
@@ -256,8 +260,8 @@ impl Outputs {
         })
     }
 
-    /// Returns the share of light that each pixel shows: 0 to 1, or exactly 0 or 1 for hard
-    /// answers.
+    /// Returns the share of light that each pixel shows, 0 to 1: the method's shares, or exactly 0
+    /// or 1 if it answers only 0 or 1.
     pub fn shown(&self) -> Cow<'_, [f32]> {
         match &self.shares {
             Some(shares) => Cow::Borrowed(shares),

@@ -27,7 +27,7 @@ pub const MAP_SIZE: &str = "map_size";
 /// Most values of one param; who asks for more has written something else than was meant.
 const MOST: usize = 1000;
 
-/// Returns the presets that arguments name, each once.
+/// Returns the names of the presets that arguments name, each once, in the order of the arguments.
 pub fn presets(arguments: &[MethodArgument]) -> Vec<String> {
     unique(arguments.iter().map(|argument| argument.preset.clone()))
 }
@@ -35,10 +35,10 @@ pub fn presets(arguments: &[MethodArgument]) -> Vec<String> {
 /// One setting of a preset: the assignments to its params, and a label.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Setting {
-    /// Assignments that tell this setting from others of the preset, `n=1,depth=plane`; may be
-    /// empty.
+    /// Assignments that tell this setting from other settings of the preset, as text:
+    /// `n=1,depth=plane`. Empty if the preset has only this setting.
     pub label: String,
-    /// All assignments of the setting, one value each.
+    /// All assignments of the setting, each with a single value.
     pub set: Vec<Assignment>,
 }
 

@@ -17,7 +17,8 @@
 use skiagraph_passes::SceneProvider;
 use skiagraph_scene::{Camera, View};
 
-/// The camera pose of one frame: its view and jitter.
+/// Camera of one frame without a viewport: its view, and the jitter of its sample position within
+/// the pixels.
 #[derive(Clone, Debug)]
 pub struct CameraPose {
     /// The view of the frame.
@@ -28,7 +29,7 @@ pub struct CameraPose {
 
 impl CameraPose {
     /// Creates a pose for each view, in the order of the frames. `jitter` is the number of sample
-    /// positions within a pixel that the frames take in turns; `None` for pixel centres.
+    /// positions within a pixel through which the frames cycle; `None` to sample pixel centres.
     pub fn numbered(views: Vec<View>, jitter: Option<u32>) -> Vec<Self> {
         let pose = |(view, frame)| Self {
             view,
@@ -46,7 +47,8 @@ impl CameraPose {
         }
     }
 
-    /// Gives the frame's view, with its light and camera, to a provider, for a viewport in pixels.
+    /// Sets the frame's view, light and camera in a provider of scene resources, for a viewport in
+    /// pixels.
     pub fn show(&self, provider: &mut SceneProvider, viewport: [u32; 2]) {
         provider.set_view(&self.view, viewport);
         if self.jitter.is_some() {

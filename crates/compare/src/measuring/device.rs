@@ -29,17 +29,18 @@ use skiagraph_graph::Graph;
 use std::time::Duration;
 use sysinfo::{CpuRefreshKind, System};
 
-/// The GPU to open, and limits on the memory and time that a graph may take on it.
+/// Request for a GPU, with limits on the memory and time that a graph may take on it.
 #[derive(Clone, Debug, Default)]
 pub struct GpuRequest {
-    /// Part of the adapter's name, in upper or lower case; `None` for the best adapter.
+    /// Part of the adapter's name, ignoring case; `None` for the best adapter.
     pub adapter: Option<String>,
-    /// Graphics APIs through which the GPU may be used; `None` for those of the platform.
+    /// Graphics APIs through which the GPU may be used; `None` for all of the platform.
     pub backends: Option<wgpu::Backends>,
-    /// Most bytes that textures and buffers of a graph may take. `None`: on a software adapter the
-    /// machine's free memory, on others no limit.
+    /// Most bytes that textures and buffers of a graph may take. `None` means the machine's free
+    /// memory on a software adapter, and no limit on others.
     pub memory_limit: Option<u64>,
-    /// Time after which a frame, and the device with it, is given up; `None` to wait without limit.
+    /// Time after which an unfinished frame is abandoned, and the device with it; `None` to wait
+    /// without limit.
     pub timeout: Option<Duration>,
 }
 
@@ -101,7 +102,8 @@ pub fn machine() -> Machine {
     }
 }
 
-/// Describes a GPU's adapter for results. `trust` says if its timestamps can be trusted.
+/// Describes a GPU's adapter for results. If `trust` says that its timestamps cannot be trusted,
+/// the description holds the reason.
 pub fn describe(gpu: &Gpu, trust: Trust) -> Adapter {
     let info = gpu.adapter.get_info();
     Adapter {
@@ -123,7 +125,7 @@ pub fn driver(info: &wgpu::AdapterInfo) -> String {
         .into()
 }
 
-/// Checks if a GPU's timestamps can be trusted.
+/// Checks whether a GPU's timestamps can be trusted, by timing work on it.
 pub fn timestamp_trust(gpu: &Gpu) -> Trust {
     timing::check(&gpu.device, &gpu.queue).unwrap_or_else(|error| Trust::Untrusted {
         reason: format!(

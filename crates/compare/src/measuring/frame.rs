@@ -42,9 +42,10 @@ pub fn executor(
     Executor::new(&session.gpu.device, &session.gpu.queue, plan, provider)
 }
 
-/// Creates the executor of a plan, with its growing buffers as large as a frame needs; in smaller
-/// ones, chance decides which items find room. Runs frames to find these sizes, and returns how
-/// many. If the method remembers earlier frames, its memory is emptied afterwards.
+/// Creates the executor of a plan, with growing buffers (those whose size depends on the frame's
+/// content) as large as a frame needs. In smaller buffers, chance decides which items find room.
+/// Runs frames to find the sizes, and returns a report of them. If the method reuses results of
+/// earlier frames, none are left from these frames.
 ///
 /// # Errors
 /// The errors of the executor.
@@ -63,8 +64,9 @@ pub fn settled(
     Ok((executor(session, plan, provider)?, growth))
 }
 
-/// Runs one frame of a plan as [`settled`] prepares it, and returns the contents of the outputs and
-/// captures `names`. `graph` is the graph's name for messages.
+/// Runs one frame of a plan with an executor from [`settled`]. Returns the contents of the outputs
+/// and captures `names`, by name, and the report of the frames that were run to find buffer sizes.
+/// `graph` is the graph's name for messages.
 ///
 /// # Errors
 /// [`CompareError::Gpu`] if the graph cannot run; an early end.
@@ -81,11 +83,11 @@ pub fn render(
         .map_err(|error| failed(session, graph, error))
 }
 
-/// Runs one frame to its end. Returns its report, and the time from the start of encoding until the
-/// GPU was done.
+/// Runs one frame and waits for its end. Returns the frame's report, and the time from the start of
+/// encoding until the GPU was done.
 ///
 /// # Errors
-/// The errors of the executor; a frame that was given up after the GPU's timeout or an early end.
+/// The errors of the executor; a frame that was abandoned after the GPU's timeout or an early end.
 pub fn run(
     session: Session,
     executor: &mut Executor,
@@ -104,19 +106,20 @@ pub fn run(
 /// Frames after which buffers are as large as they get: each brings the count of the one before.
 const GROWING: u32 = 8;
 
-/// Frames that were run until growing buffers had room for all that a frame needs.
+/// Report of the frames that were run until growing buffers had room for everything that a frame
+/// writes.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Growth {
     /// Number of frames that were run; 0 if the graph has no growing buffers.
     pub frames: u32,
-    /// Full names of the buffers and textures that may grow.
+    /// Full names of the growing buffers and textures.
     pub buffers: Vec<String>,
-    /// True if the last of these frames needed no more room.
+    /// True if the last of these frames needed no larger buffers.
     pub is_settled: bool,
 }
 
 impl Growth {
-    /// Returns a line of text for the command `run`; empty if no frame was run.
+    /// Returns a line of text on the report for the command `run`; empty if no frame was run.
     pub fn text(&self) -> String {
         let (frames, buffers) = (frames(self.frames), self.buffers.join(", "));
         match (self.frames, self.is_settled) {
@@ -133,8 +136,8 @@ impl Growth {
     }
 }
 
-/// Runs up to eight frames, until the executor's growing buffers have room for all that a frame
-/// needs.
+/// Runs up to eight frames, until the executor's growing buffers have room for everything that a
+/// frame writes.
 ///
 /// # Errors
 /// The errors of the executor.
@@ -181,8 +184,8 @@ fn wait(session: Session, executor: &mut Executor) -> Result<FrameReport, Execut
     }
 }
 
-/// Converts an executor's error into the error that ends a command about to run `graph`: an early
-/// end if it was asked for, otherwise [`CompareError::Gpu`].
+/// Converts an executor's error into the error that ends the command on the graph named `graph`: an
+/// early end if the sink asked for it, otherwise [`CompareError::Gpu`].
 pub fn failed(session: Session, graph: &str, error: ExecuteError) -> CompareError {
     match error {
         ExecuteError::Unfinished { .. } if session.is_stopped() => CompareError::interrupted(),

@@ -23,20 +23,22 @@ use crate::measuring::view_or_path::ViewOrPath;
 use skiagraph_passes::SceneProvider;
 use skiagraph_scene::{CameraPath, Mesh, Scene};
 
-/// The frames of a view or path in order: the camera of each, and its mesh where parts move.
+/// The frames of a still view or camera path in order: the camera of each frame, and its mesh if
+/// parts of the mesh move.
 pub struct FrameSequence {
     /// Camera pose of each frame.
     pub poses: Vec<CameraPose>,
-    /// Mesh of each frame, all with the same triangles; `None` if nothing moves.
+    /// Mesh of each frame, parallel to `poses`, all with the same triangles; `None` if nothing
+    /// moves.
     pub meshes: Option<Vec<Mesh>>,
     /// Frames per second of the path's clock, which says when each is; not how fast they are drawn.
     frames_per_second: f64,
 }
 
 impl FrameSequence {
-    /// Creates the first `count` frames of a view or path; `None` for one frame of a view, all of a
-    /// path. `jitter` is the number of sample positions within a pixel that the frames take in
-    /// turns; `None` for pixel centres.
+    /// Creates the first `count` frames of a view or path; with `None`, one frame of a view or all
+    /// frames of a path. `jitter` is the number of sample positions within a pixel through which
+    /// the frames cycle; `None` to sample pixel centres.
     ///
     /// # Errors
     /// A moving part that the mesh does not have, that is welded to others, or whose positions f32
@@ -65,17 +67,17 @@ impl FrameSequence {
         })
     }
 
-    /// Gives the mesh of the first frame to the provider, with triangles and normals that may
-    /// differ from those of the provider's mesh. Does nothing if nothing moves.
+    /// Sets the mesh of the first frame in a provider of scene resources, triangles and normals
+    /// included, before [`show`](Self::show). Does nothing if nothing moves.
     pub fn begin(&self, provider: &mut SceneProvider) {
         if let Some(first) = self.meshes.iter().flatten().next() {
             provider.set_mesh(first.clone());
         }
     }
 
-    /// Gives the camera, light and mesh of the frame with the index `frame` to the provider, for a
-    /// viewport in pixels. The mesh is updated as the host of a moving mesh does; an unchanged one
-    /// is not given again.
+    /// Sets the camera, light and mesh of the frame with the index `frame` in a provider, for a
+    /// viewport in pixels. Only positions and normals of the mesh are updated, and only if they
+    /// have changed.
     ///
     /// # Errors
     /// Positions that are not finite.
@@ -100,7 +102,8 @@ impl FrameSequence {
         deformed.map_err(|error| CompareError::Input(format!("frame {frame}: {error}")))
     }
 
-    /// Returns the time of the frame with the index `frame` on the path's clock, in seconds.
+    /// Returns the time of the frame with the index `frame` since the first frame of the path, in
+    /// seconds.
     pub fn seconds(&self, frame: usize) -> f32 {
         (frame as f64 / self.frames_per_second) as f32
     }

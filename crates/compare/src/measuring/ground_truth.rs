@@ -40,8 +40,8 @@ use std::rc::Rc;
 /// does each pixel show?
 const GBUFFER: &str = "pipelines/shared/gbuffer.ron";
 
-/// The graph that renders the id of each pixel's visible primitive, as every method's G-buffer
-/// does, so that all methods are judged on the surfaces that they show.
+/// Graph that renders the id of each pixel's visible primitive (triangle) in the same way as every
+/// method's G-buffer, so that methods are judged on the surfaces that they show.
 pub struct PrimaryVisibility {
     graph: Graph,
     /// Hash of the files from which the graph was read.
@@ -80,8 +80,8 @@ impl PrimaryVisibility {
             .map_err(|diagnostics| GraphFaults::one(GBUFFER, &diagnostics))
     }
 
-    /// Renders and returns the id of the primitive that each pixel shows,
-    /// [`BACKGROUND`](skiagraph_reference::BACKGROUND) for none.
+    /// Renders and returns the id of the primitive that each pixel shows, row by row from the top
+    /// left; [`BACKGROUND`](skiagraph_reference::BACKGROUND) for pixels without one.
     ///
     /// # Errors
     /// The graph cannot run, or has no output `primitive`.
@@ -102,7 +102,8 @@ impl PrimaryVisibility {
     }
 }
 
-/// Counts the reference's own pixels, in the way that [`Statistics::judged`] counts a method's.
+/// Counts the pixels of the reference itself in the way in which [`Statistics::judged`] counts
+/// those of a method, as if a method had given the right answers.
 pub fn own_counts(truth: &GroundTruthPixels) -> Statistics {
     let (visibility, status) = (truth.visibility(), truth.status());
     // Its own buffers are as large as it is and hold values that are allowed.
@@ -112,7 +113,7 @@ pub fn own_counts(truth: &GroundTruthPixels) -> Statistics {
 /// Default number of reference rays from a pixel to a light with an extent.
 pub const REFERENCE_SAMPLES: u32 = 512;
 
-/// The ground truth of one view in one viewport, with the scene data that it was traced from.
+/// Ground truth of one view in one viewport, with the scene data from which it was traced.
 pub struct GroundTruthView<'a> {
     oracle: Rc<Oracle<'a>>,
     camera: Camera,
@@ -121,18 +122,19 @@ pub struct GroundTruthView<'a> {
     mode: OracleMode,
     /// The oracle's answer for each pixel.
     pub ground_truth: GroundTruth,
-    /// Number of pixels whose rasterised surface is hidden behind another one by more than
-    /// rounding. Methods are judged on the rasterised surface all the same.
+    /// Number of pixels whose rasterised surface is hidden behind another surface by more than
+    /// rounding. Methods are judged on the rasterised surface nevertheless.
     pub wrong_surfaces: u64,
 }
 
 impl<'a> GroundTruthView<'a> {
-    /// Runs the oracle for a camera and light on `primitives`, the visible primitive of each pixel.
-    /// `how` is the oracle's mode, and the number of rays from a pixel to a light with an extent.
-    /// The sink is told the progress, under the name `what`.
+    /// Runs the oracle (the `f64` ray tracer) for a camera and a light. `primitives` is the visible
+    /// primitive of each pixel, row by row from the top left. `how` is the oracle's mode, and the
+    /// number of rays from a pixel to a light with an extent. The sink receives the progress under
+    /// the name `what`.
     ///
     /// # Errors
-    /// An early end, ids of another mesh, an impossible light.
+    /// An early end, primitive ids of another mesh, an invalid light.
     pub fn new(
         oracle: Rc<Oracle<'a>>,
         camera: Camera,
@@ -172,7 +174,7 @@ impl<'a> GroundTruthView<'a> {
         })
     }
 
-    /// Returns the mesh, camera and primitives that the view shows.
+    /// Returns the mesh, camera and visible primitives of the view, for functions of the reference.
     pub fn seen(&self) -> Seen<'_> {
         Seen {
             mesh: self.oracle.mesh(),
@@ -181,8 +183,8 @@ impl<'a> GroundTruthView<'a> {
         }
     }
 
-    /// Counts what blocks the light at the pixels that a method is certain of but gets wrong, under
-    /// a light without an extent.
+    /// Counts the pixels that a method is certain of but gets wrong, by the kind of caster that
+    /// blocks the light there. The light must have no extent.
     ///
     /// # Errors
     /// Outputs that do not fit the reference.
@@ -209,8 +211,9 @@ impl<'a> GroundTruthView<'a> {
         edges.map_err(|error| CompareError::Input(format!("no distances from edges: {error}")))
     }
 
-    /// Returns each pixel's footprint in a shadow map, from `density`, the map's texels per unit of
-    /// area at each pixel; `None` for a pixel without a footprint.
+    /// Returns each pixel's footprint (the area of the shadow map that it covers, in texels), in
+    /// the order of the pixels; `None` for a pixel without one. `density` is the map's texels per
+    /// unit of area at each pixel.
     ///
     /// # Errors
     /// A density that does not fit the reference.
@@ -221,8 +224,8 @@ impl<'a> GroundTruthView<'a> {
     }
 
     /// Measures how a method's errors jump between neighbouring pixels that read different layers
-    /// of its shadow map. `layers` is the layer that each pixel reads. Returns `None` if no two
-    /// layers meet.
+    /// of its shadow map. `layers` is the index of the layer that each pixel reads. Returns `None`
+    /// if no neighbouring pixels read different layers.
     ///
     /// # Errors
     /// Outputs or layers that do not fit the reference.
@@ -238,20 +241,21 @@ impl<'a> GroundTruthView<'a> {
     }
 }
 
-/// The frames of a view or path with their ground truth.
+/// Frames of a view or path with their ground truth.
 pub struct GroundTruthFrames<'a> {
     /// Camera pose and mesh of each frame.
     pub frames: &'a FrameSequence,
-    /// Ground truth of each frame.
+    /// Ground truth of each frame, in order.
     pub truth_views: Vec<GroundTruthView<'a>>,
-    /// `same[i]` matches frame `i + 1` with frame `i`: for each pixel of frame `i + 1`, the index
-    /// of the pixel of frame `i` that shows the same receiver, or
-    /// [`BACKGROUND`](skiagraph_reference::BACKGROUND).
+    /// `same[i]` matches frame `i + 1` with frame `i`. It has one entry per pixel of frame `i + 1`:
+    /// the index of the pixel of frame `i` that shows the same surface point, or
+    /// [`BACKGROUND`](skiagraph_reference::BACKGROUND) if there is none.
     pub same: Vec<Vec<u32>>,
 }
 
 impl<'a> GroundTruthFrames<'a> {
-    /// Matches the receivers of each frame with those of the frame before.
+    /// Matches the visible surface points of each frame with those of the frame before.
+    /// `truth_views` has one entry per frame, in order.
     ///
     /// # Errors
     /// [`CompareError::Interrupted`].
@@ -281,7 +285,7 @@ impl<'a> GroundTruthFrames<'a> {
             .sum()
     }
 
-    /// Counts the reference's own pixels over all frames.
+    /// Counts the pixels of the reference itself over all frames, as [`own_counts`] does for one.
     pub fn own_counts(&self) -> Statistics {
         let mut all = Statistics::default();
         for truth_view in &self.truth_views {
@@ -291,8 +295,8 @@ impl<'a> GroundTruthFrames<'a> {
     }
 }
 
-/// Creates the progress of an oracle, which calls `rows_done` with the number of finished rows and
-/// stops when the sink asks for an early end.
+/// Creates the progress callback of an oracle. It calls `rows_done` with the number of finished
+/// rows, and stops the oracle when the sink asks for an early end.
 pub fn heard<'a>(sink: &'a dyn Sink, rows_done: &'a (dyn Fn(u64) + Sync)) -> Progress<'a> {
     Progress {
         rows_done,

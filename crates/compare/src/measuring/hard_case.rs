@@ -55,19 +55,20 @@ use std::{
     sync::{Arc, atomic::AtomicBool},
 };
 
-/// A method to run on hard cases, with its guarantee.
+/// A method to be run on stress cases, with its guarantee.
 pub struct MethodRun {
-    /// The method as the user wants it.
+    /// The method with its params as the user gave them.
     pub method: Method,
-    /// The method with all faces as casters; `None` if all are casters already.
+    /// The method with all faces as casters; `None` if all are casters already, or if it has no
+    /// param `cull`.
     pub without_culling: Option<Method>,
     /// The method's column of the report, with its guarantee, or the reason why it cannot run here.
     pub column: Column,
 }
 
 impl MethodRun {
-    /// Creates the run of a method that can run here. `exact` lists methods or presets, by name,
-    /// that the user wants judged as exact.
+    /// Creates the run of a method that this adapter can run. Methods and presets named in `exact`
+    /// are judged as exact.
     ///
     /// # Errors
     /// The errors of [`guarantee::find`].
@@ -105,8 +106,8 @@ impl MethodRun {
     }
 
     /// Returns the beginning of the file names of the method's pictures of a case, each with the
-    /// owner of these pictures for messages; one pair for each way in which the method runs on the
-    /// case.
+    /// owner of the pictures as messages name it. There are two pairs if the case is also run with
+    /// `cull=none`, otherwise one.
     pub fn stems(&self, case: &HardCase, viewport: [u32; 2]) -> Vec<(String, String)> {
         let variants = self.variants(case.casters).into_iter();
         let owner = format!("`{}` on `{}`", self.method.name, case.name);
@@ -147,17 +148,17 @@ impl Sink for WithoutSteps<'_> {
     }
 }
 
-/// Settings that all cases share.
+/// Settings for running stress cases, the same for all cases.
 pub struct HardCaseContext<'a> {
     /// The GPU, and the sink for progress.
     pub session: Session<'a>,
-    /// Graph that finds the visible triangle of each pixel for the reference.
+    /// Graph that finds the visible triangle of each pixel, for the reference.
     pub primary: &'a PrimaryVisibility,
     /// The methods to run on each case.
     pub methods: &'a [MethodRun],
     /// Width and height of the viewport in pixels.
     pub viewport: [u32; 2],
-    /// Folder for pictures; `None` to draw no pictures.
+    /// Folder into which pictures are written; `None` to draw no pictures.
     pub pictures: Option<&'a Path>,
 }
 

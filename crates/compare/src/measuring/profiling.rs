@@ -31,7 +31,8 @@ use skiagraph_scene::{Scene, View};
 use std::sync::Arc;
 
 /// Times a method on a view: runs `warmup` frames, then `frames` timed ones. Returns the profile,
-/// and the times of each frame. An early end keeps the frames that were timed until then.
+/// and the times of each timed frame. If the work ends early, the frames timed until then are
+/// returned.
 ///
 /// # Errors
 /// The graph cannot be planned or run here; an early end before any frame was timed.

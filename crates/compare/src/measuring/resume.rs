@@ -26,21 +26,22 @@ use crate::sink::Sink;
 use crate::wording::plural;
 use std::path::Path;
 
-/// The earlier results in a folder that a comparison keeps.
+/// Which earlier results in a folder a comparison keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kept {
     /// No runs are kept.
     Nothing,
     /// Runs that this comparison does not measure are kept: other methods, views and sizes.
     Others,
-    /// Runs that this comparison does not measure are kept, and runs of its own of which nothing
-    /// has changed.
+    /// All runs are kept that this comparison does not measure, and those of its own runs whose
+    /// inputs have not changed.
     All,
 }
 
-/// Opens a folder of results, and finds in it, for each run of `planned`, the earlier run to keep
-/// instead; `None` if the run must be measured. Only [`Kept::All`] keeps any of them. Tells the
-/// sink which runs are kept.
+/// Opens a folder of results, and finds the earlier runs that need not be measured again. The
+/// returned list is parallel to `planned`: the earlier run, or `None` if the run must be measured.
+/// Only [`Kept::All`] reuses any. Tells the sink which runs are kept. `now` holds the conditions of
+/// this comparison.
 ///
 /// # Errors
 /// A file that cannot be read, is not a results.json, or was measured under other conditions than

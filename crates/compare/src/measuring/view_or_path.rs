@@ -42,13 +42,14 @@ impl ViewOrPath {
         view
     }
 
-    /// Returns the light of the view or path in a scene.
+    /// Returns the light under which the view or path is drawn: its own light, or else the scene's
+    /// default light.
     pub fn light(&self, scene: &Scene) -> LightKind {
         scene.light_of(self.view())
     }
 
-    /// Returns the name of the light of a view that was split by lights, `VIEW@LIGHT`; `None` for
-    /// other views.
+    /// Returns the name of the light if the view's name has the form `VIEW@LIGHT`, as
+    /// [`under_lights`] gives it; `None` for other views.
     pub fn one_of_lights(&self) -> Option<&str> {
         let view = self.view();
         let light = &view.light.as_ref()?.name;
@@ -56,7 +57,7 @@ impl ViewOrPath {
         view.ends_with('@').then_some(light)
     }
 
-    /// Returns the hash `of` extended by the view or path.
+    /// Returns the hash `of` extended by all data of the view or path.
     pub fn fingerprint(&self, of: Fingerprint) -> Fingerprint {
         match self {
             Self::Still(view) => of.with_view(view),
@@ -64,12 +65,12 @@ impl ViewOrPath {
         }
     }
 
-    /// Returns the path named `name` of a scene, or all of `paths` if the name is `all`. With
-    /// `light`, each path is put under the light of that name; `all` gives a path for each of its
-    /// lights.
+    /// Returns the path of `paths` that is named `name`, or all of `paths` if the name is `all`.
+    /// With `light`, each path is put under the light of that name; `all` gives one path for each
+    /// light of the path.
     ///
     /// # Errors
-    /// The scene has no such path or light, or no path at all.
+    /// The scene has no path of this name, no light of this name, or no paths at all.
     pub fn paths(
         scene: &Scene,
         paths: Vec<CameraPath>,
@@ -115,8 +116,9 @@ fn lit(scene: &Scene, path: &CameraPath, mut view: View) -> Result<CameraPath, C
     Ok(path)
 }
 
-/// Returns the views under the light named `name`; `all` gives a view for each of its lights, which
-/// are named `VIEW@LIGHT` if there are several. With `None` the views stay as they are.
+/// Returns the views under the light named `name`. The name `all` gives one view for each light of
+/// a view; these views are named `VIEW@LIGHT` if there are several lights. With `None` the views
+/// are returned unchanged.
 ///
 /// # Errors
 /// The scene has no such light.

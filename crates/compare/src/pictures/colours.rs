@@ -15,7 +15,7 @@ use skiagraph_reference::BACKGROUND;
 use skiagraph_scene::View;
 use std::collections::BTreeSet;
 
-/// RGB colour and meaning of each `status` value; the index is the value, 0 to 4.
+/// RGB colour and meaning of each value of an output `status`; the index is the value, 0 to 4.
 pub const STATUS: [([u8; 3], &str); 5] = [
     ([96, 112, 128], "grey background"),
     ([0, 128, 0], "green facing away"),
@@ -23,21 +23,21 @@ pub const STATUS: [([u8; 3], &str); 5] = [
     ([0, 0, 0], "black certain shadow"),
     ([160, 32, 240], "purple uncertain"),
 ];
-/// RGB colour of pixels without a primitive, and of depths that still have the cleared value.
+/// RGB colour of pixels that show no triangle, and of depths that still have the cleared value.
 pub const EMPTY: [u8; 3] = STATUS[0].0;
-/// RGB colour of NaN, and of integers that are not allowed.
+/// RGB colour of NaN, and of integers that have no meaning.
 pub const INVALID: [u8; 3] = [255, 0, 255];
 /// RGB colour of positive infinity.
 pub const POSITIVE_INFINITY: [u8; 3] = [255, 128, 0];
 /// RGB colour of negative infinity.
 pub const NEGATIVE_INFINITY: [u8; 3] = [0, 192, 255];
 
-/// Near and far plane of the perspective camera whose depths a texture holds.
+/// Near and far plane of a perspective camera, to turn its stored depths into distances.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClipPlanes {
-    /// Distance of the near plane, which has depth 1.
+    /// Distance of the near plane from the eye in scene units; it has depth 1.
     pub near: f64,
-    /// Distance of the far plane, which has depth 0, the cleared value.
+    /// Distance of the far plane from the eye in scene units; it has depth 0, the cleared value.
     pub far: f64,
 }
 
@@ -48,8 +48,8 @@ impl ClipPlanes {
         Self { near, far }
     }
 
-    /// Returns the distance along the viewing direction that a reversed depth, 1 near to 0 far,
-    /// stands for.
+    /// Returns the distance from the eye along the viewing direction, in scene units, for a
+    /// reversed depth: 1 at the near plane, 0 at the far plane.
     pub fn distance(self, depth: f32) -> f32 {
         let Self { near, far } = self;
         (near * far / (near + f64::from(depth) * (far - near))) as f32
@@ -131,8 +131,8 @@ pub fn id_colour(id: u32) -> [u8; 3] {
         .map(|channel| 48 + (channel * 207 / 255) as u8)
 }
 
-/// Returns the depth that means nothing was drawn: 0 for a camera, whose depths are reversed
-/// (`Some`), 1 for a light (`None`).
+/// Returns the depth of a texel in which nothing was drawn: 0 for a camera, whose depths are
+/// reversed (`planes` given), 1 for a light (`None`).
 pub fn cleared(planes: Option<ClipPlanes>) -> f32 {
     match planes {
         Some(_) => 0.0,
@@ -140,9 +140,9 @@ pub fn cleared(planes: Option<ClipPlanes>) -> f32 {
     }
 }
 
-/// Colours depths from black for the nearest to white for the farthest; cleared depths have the
-/// colour [`EMPTY`]. With `planes`, the depths are those of a camera and shown as distances, since
-/// they crowd just above 0. Returns three bytes (RGB) per depth, and the legend.
+/// Colours depths from black for the nearest to white for the farthest. Cleared depths have the
+/// colour [`EMPTY`]. With `planes`, the depths are those of a camera and are shown as distances, as
+/// the depths themselves crowd just above 0. Returns three bytes (RGB) per depth, and the legend.
 pub fn depths(values: &[f32], planes: Option<ClipPlanes>) -> (Vec<u8>, String) {
     let is_cleared = |depth: f32| depth == cleared(planes);
     let distance = |depth| planes.map_or(depth, |planes| planes.distance(depth));
@@ -171,8 +171,8 @@ pub fn depths(values: &[f32], planes: Option<ClipPlanes>) -> (Vec<u8>, String) {
     (values.iter().flat_map(colour).collect(), legend.join(", "))
 }
 
-/// Colours texels of `channels` values each, where 0 to 1 is shown as it is. Returns three bytes
-/// (RGB) per texel, and the legend.
+/// Colours texels of `channels` values each, where 0 is black and 1 is full intensity. Returns
+/// three bytes (RGB) per texel, and the legend.
 pub fn fractions(values: &[f32], channels: usize) -> (Vec<u8>, String) {
     let whole = [(0.0, 1.0); 4];
     let rgb = coloured(values, channels, &whole[..channels.min(3)]);
@@ -181,8 +181,8 @@ pub fn fractions(values: &[f32], channels: usize) -> (Vec<u8>, String) {
 }
 
 /// Colours texels of `channels` values each; each channel is scaled between its own least and
-/// greatest finite value. One channel is grey, two leave blue at 0, a fourth is not shown. Returns
-/// three bytes (RGB) per texel, and the legend.
+/// greatest finite value. One channel is grey; two are red and green; a fourth is not shown.
+/// Returns three bytes (RGB) per texel, and the legend.
 pub fn floats(values: &[f32], channels: usize) -> (Vec<u8>, String) {
     let shown: Vec<(f32, f32)> = (0..channels.min(3))
         .map(|index| range(channel(values, channels, index)))

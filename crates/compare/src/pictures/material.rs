@@ -19,17 +19,17 @@ use crate::pictures::colours::{ClipPlanes, EMPTY, depths, floats, fractions, int
 use skiagraph_gpu::Content;
 use skiagraph_reference::Image;
 
-/// The picture of a material, with its legend.
+/// Picture of a graph's material (a texture), with its legend.
 pub struct Picture {
-    /// The picture in RGB; mips and layers stand one below the other.
+    /// The picture in RGB; several mips and layers stand one below the other.
     pub image: Image,
-    /// Legend on how values became colours, as a part of a sentence.
+    /// Text on how values became colours, as a part of a sentence.
     pub legend: String,
 }
 
 impl Picture {
-    /// Draws the content of a texture. `name` is the material's name, which tells `status` from
-    /// other integers. `planes` are the clip planes if the content is a camera's depths.
+    /// Draws the content of a texture. `name` is the material's name, as integers of `status` have
+    /// colours of their own. `planes` are the clip planes if the content is a camera's depths.
     ///
     /// # Errors
     /// The reason why the content has no picture.

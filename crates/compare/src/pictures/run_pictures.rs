@@ -22,8 +22,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// A picture that is drawn and not yet written, as it is written together with the figures of its
-/// run.
+/// A picture that is drawn but not written yet. It is written together with the figures of its run.
 pub struct PictureFile {
     /// File name in the folder of the results.
     pub name: String,
@@ -40,13 +39,14 @@ pub fn write_pictures(folder: &Path, files: &[PictureFile]) -> Result<(), Compar
     files.try_for_each(|file| write_whole(&folder.join(&file.name), &file.png))
 }
 
-/// Names for the pictures of one frame of a method.
+/// Place of a method's pictures in the results: the view and frame that they show, and the
+/// beginning of their file names.
 pub struct PicturePlace<'a> {
-    /// Beginning of the file names of the method's pictures.
+    /// Beginning of the file names of the method's pictures, from [`stem`].
     pub stem: String,
-    /// Name of the view, path or case.
+    /// Name of the view, camera path or stress case.
     pub view: &'a str,
-    /// Index of the frame of a path, from 0; `None` for a still view or case.
+    /// Index of the frame of a camera path, from 0; `None` for a still view or stress case.
     pub frame: Option<usize>,
 }
 
@@ -59,8 +59,9 @@ impl PicturePlace<'_> {
     }
 }
 
-/// Draws the pictures of a method's frame and of the reference; with `footprints` of the pixels in
-/// a shadow map, also the texels per pixel. Returns the file names, and the pictures to write.
+/// Draws the pictures of a method's frame and of the reference. `footprints` are those of the
+/// pixels in the shadow map, one entry per pixel; with them, pictures of the texels per pixel are
+/// drawn as well. Returns the names of the files, and the pictures to write.
 ///
 /// # Errors
 /// Outputs that do not fit the reference.
@@ -120,7 +121,8 @@ pub fn draw_pictures(
     Ok((images, files))
 }
 
-/// Returns the file name of a frame, by its index: `visibility.0003.png` for `visibility.png`.
+/// Returns the name of the file for the frame with the index `frame`: `visibility.0003.png` for
+/// `visibility.png` and 3.
 pub fn numbered(file: &Path, frame: usize) -> PathBuf {
     let mut name = file.file_stem().unwrap_or_default().to_owned();
     name.push(format!(".{frame:04}"));
@@ -132,7 +134,7 @@ pub fn numbered(file: &Path, frame: usize) -> PathBuf {
 }
 
 /// Checks, before anything runs, that pictures do not overwrite each other. Each item is the
-/// beginning of a picture's file name, and the owner of the picture for messages.
+/// beginning of a picture's file name, and the owner of the picture as messages name it.
 ///
 /// # Errors
 /// Names two owners whose pictures would overwrite each other.
@@ -151,7 +153,8 @@ pub fn check_stems(stems: impl IntoIterator<Item = (String, String)>) -> Result<
     Ok(())
 }
 
-/// Returns the view, viewport and map size of a run as text for progress: `main 512x512 map1024`.
+/// Returns view, viewport and map size of a run as text for progress: `main 512x512 map1024`. The
+/// view's name is written as in file names.
 pub fn conditions(method: &Method, view: &str, viewport: [u32; 2]) -> String {
     let map = method
         .map_size
@@ -159,7 +162,7 @@ pub fn conditions(method: &Method, view: &str, viewport: [u32; 2]) -> String {
     format!("{} {}{map}", slug(view), size(viewport))
 }
 
-/// Returns the beginning of the file names of a run's pictures.
+/// Returns the beginning of the file names of a run's pictures: `nsm-main-512x512-map1024`.
 pub fn stem(method: &Method, view: &str, viewport: [u32; 2]) -> String {
     format!(
         "{}-{}",
@@ -168,17 +171,18 @@ pub fn stem(method: &Method, view: &str, viewport: [u32; 2]) -> String {
     )
 }
 
-/// Returns the beginning of the file name of the reference's picture.
+/// Returns the beginning of the file name of the reference's picture: `reference-main-512x512`.
 pub fn reference_stem(view: &str, viewport: [u32; 2]) -> String {
     format!("reference-{}-{}", slug(view), size(viewport))
 }
 
-/// Returns the file name of the chart of a method's graph.
+/// Returns the file name of the chart of a method's graph: `graph-nsm.svg`.
 pub fn graph_name(method: &str) -> String {
     format!("graph-{}.svg", slug(method))
 }
 
-/// Returns the file name of the reference's picture of a still view.
+/// Returns the file name of the reference's picture of a still view:
+/// `reference-main-512x512-visibility.png`.
 pub fn reference_name(view: &str, viewport: [u32; 2]) -> String {
     format!("{}-visibility.png", reference_stem(view, viewport))
 }

@@ -27,7 +27,7 @@ use skiagraph_graph::{Capture, Item, PartSummary, Plan};
 use skiagraph_passes::names::{CAMERA, LIGHT};
 use std::{collections::BTreeMap, path::PathBuf, str::FromStr};
 
-/// Encodings of a saved material.
+/// Encoding of the file of a saved material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Encoding {
     /// A picture for viewing, `.png`.
@@ -41,7 +41,8 @@ pub enum Encoding {
 /// A material to save and its file, `MATERIAL[@PASS]=FILE.png|.bin|.csv`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Save {
-    /// Output or other material of the graph, and the pass after which it is read.
+    /// Name of the output or other material, and the pass after which it is read; without a pass it
+    /// is read at the end of the frame.
     pub capture: Capture,
     /// Path of the file to write.
     pub file: PathBuf,
@@ -86,8 +87,8 @@ impl FromStr for Save {
     }
 }
 
-/// Returns the captures that `saves` need besides `outputs`, which are read back anyway; each once,
-/// sorted by name.
+/// Returns the captures of `saves` that are not among `outputs`, which are read back anyway; each
+/// once, sorted by name.
 pub fn captures(outputs: &[&str], saves: &[Save]) -> Vec<Capture> {
     let wanted = saves.iter().map(|save| &save.capture);
     let wanted = wanted.filter(|capture| !outputs.contains(&&*capture.name()));
@@ -95,7 +96,8 @@ pub fn captures(outputs: &[&str], saves: &[Save]) -> Vec<Capture> {
     wanted.cloned().collect()
 }
 
-/// Refuses, before anything is rendered, to save a buffer as a picture or a texture as a table.
+/// Checks, before anything is rendered, that no buffer is to be saved as a picture and no texture
+/// as a table.
 ///
 /// # Errors
 /// Names the encodings in which the output can be saved.
@@ -116,19 +118,20 @@ pub fn check_encodings(plan: &Plan, saves: &[Save]) -> Result<(), CompareError> 
     Ok(())
 }
 
-/// Describes how the contents of a material are to be read.
+/// Settings for decoding the content of a material.
 #[derive(Clone, Default)]
 pub struct Decoding {
-    /// Clip planes of the camera, if the material may hold its depths; `None` otherwise.
+    /// Clip planes of the camera, if the material may hold the camera's depths; `None` otherwise.
     pub planes: Option<ClipPlanes>,
-    /// Layout of a buffer's items; `None` if no shader declares it.
+    /// Layout of a buffer's items; `None` for a texture, or if no shader declares the layout.
     pub item: Option<Item>,
-    /// The mips, layers or items that are read; `None` for all of them.
+    /// Range of the mips, layers or items that are read; `None` if all are read.
     pub part: Option<PartSummary>,
 }
 
 impl Decoding {
-    /// Describes the output or capture `name` of a plan. `planes` are the camera's clip planes.
+    /// Creates the settings for the output or capture `name` of a plan. `planes` are the camera's
+    /// clip planes.
     pub fn new(plan: &Plan, name: &str, planes: ClipPlanes) -> Self {
         let behind = plan.provided_behind(name);
         // A pass that also knows the light may well draw from there.
@@ -159,7 +162,7 @@ impl Decoding {
         text.collect()
     }
 
-    /// Returns the index of the first item of a buffer that is read.
+    /// Returns the index in the buffer of the first item that is read.
     pub fn first_item(&self) -> usize {
         let part = self.part.as_ref();
         part.map_or(0, |part| part.layers.start as usize)
@@ -172,15 +175,16 @@ pub fn names(saves: &[Save]) -> Vec<String> {
     names.sorted().dedup().collect()
 }
 
-/// Returns the decoding of each save, in their order. `planes` are the camera's clip planes.
+/// Returns the decoding of each save, in the order of `saves`. `planes` are the camera's clip
+/// planes.
 pub fn decodings(plan: &Plan, saves: &[Save], planes: ClipPlanes) -> Vec<Decoding> {
     let decoding = |save: &Save| Decoding::new(plan, &save.capture.name(), planes);
     saves.iter().map(decoding).collect()
 }
 
-/// Writes the saved materials of the graph named `graph`, each when the iterator reaches it, and
-/// yields the text of [`write`](fn@write). `decodings` are in the order of `saves`; `contents` are
-/// by name.
+/// Writes the saved materials of the graph named `graph`. Each is written when the returned
+/// iterator reaches it; the item is the text of [`write`](fn@write). `decodings` are parallel to
+/// `saves`; `contents` are by the names of the materials.
 pub fn write_all<'a>(
     graph: &'a str,
     saves: &'a [Save],
@@ -194,7 +198,8 @@ pub fn write_all<'a>(
     })
 }
 
-/// Writes a material's content into the file of a save. Returns a line of text about the file.
+/// Writes a material's content into the file of a save. `reading` says how the content is decoded.
+/// Returns a line of text about the file.
 ///
 /// # Errors
 /// The content cannot be encoded in this way, or the file cannot be written.

@@ -28,20 +28,20 @@ pub struct Comparison {
     /// Conditions that differ between the two profiles; if there are any, a ratio says little about
     /// the code.
     pub differences: Vec<Difference>,
-    /// Ratios of the passes that both profiles have, in the order of the new one.
+    /// Ratios of the passes that both profiles have, in the order of the new profile.
     pub passes: Vec<PassRatio>,
     /// Ratios of whole frames.
     pub frame: FrameRatio,
-    /// Passes that only the older profile has.
+    /// Names of the passes that only the older profile has.
     pub only_old: Vec<String>,
-    /// Passes that only the new profile has.
+    /// Names of the passes that only the new profile has.
     pub only_new: Vec<String>,
 }
 
 /// A condition that differs between two profiles.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Difference {
-    /// Name of the condition.
+    /// Name of the condition, such as `adapter`.
     pub what: String,
     /// Value in the older profile.
     pub old: String,
@@ -102,8 +102,8 @@ pub enum Verdict {
     TooFewFrames,
 }
 
-/// Least number of samples whose quartiles are compared: of fewer, a quartile is hardly more than
-/// one sample.
+/// Least number of samples for which quartiles are compared: with fewer, a quartile is hardly more
+/// than one sample.
 pub const MIN_FRAMES: usize = 5;
 
 /// One nanosecond: what samples are stored in, so that nothing is divided by zero.

@@ -15,18 +15,20 @@ use crate::wording::bytes;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Limits that an acceptable method keeps; `None` for no limit.
+/// Limits that an acceptable method keeps, set by the user; `None` for no limit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Budgets {
-    /// Most milliseconds that a frame may take in which every pass runs.
+    /// Most milliseconds of a frame in which every pass runs: the median time, as the mean of the
+    /// views.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frame_ms: Option<f64>,
-    /// Wrong pixels outside the band, in percent of the pixels facing the light; a method must stay
-    /// below this.
+    /// Limit on wrong pixels outside the band (pixels whose answer rounding decides), in percent of
+    /// the pixels facing the light. A method must stay below it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub wrong_percent: Option<f64>,
-    /// Most bytes that the method's own materials and the scene data that it reads may take.
+    /// Most bytes that the textures and buffers of the method, and the scene data that it reads,
+    /// may take together.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub memory_bytes: Option<u64>,
 }

@@ -27,7 +27,7 @@ pub struct CheckReport {
     files: Vec<FileReport>,
 }
 
-/// Report on one graph.
+/// Report on one graph that `check` was given.
 #[derive(Debug, Serialize)]
 pub struct FileReport {
     /// The argument: a path, or a preset's name.
@@ -61,8 +61,9 @@ struct LabelReport {
 }
 
 impl FileReport {
-    /// Creates the report on the argument `file`: the number of passes that run, `None` if there
-    /// are errors, and all diagnostics, errors first.
+    /// Creates the report on the command-line argument `file`. `passes` is the number of passes
+    /// that run, `None` if the graph has errors. The report lists the diagnostics with errors
+    /// first.
     pub fn new<'a>(
         file: &str,
         passes: Option<usize>,

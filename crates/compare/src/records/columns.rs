@@ -274,8 +274,9 @@ const IF_PUBLISHED: [&str; 8] = [
     "fps",
 ];
 
-/// Names of the presets' steps, each with its head in tables. Other steps have their names as
-/// heads.
+/// Names of the steps of the built-in presets, each with its column head in tables. A step is a
+/// group of passes with the same name up to the first dot. The head of any other step is the step's
+/// name.
 pub const STEPS: [(&str, &str); 5] = [
     ("create_shadow_map", "map"),
     ("detect_uncertain", "detect"),
@@ -376,12 +377,12 @@ fn area(run: &Run, figure: fn(&AreaReference) -> Value) -> Value {
     run.area.as_ref().map_or(Unknown, figure)
 }
 
-/// A column in a table of runs.
+/// A column in a table of runs: how to get one figure, or one condition, from a run.
 pub struct Column {
     /// Head of the column.
     pub head: &'static str,
-    /// Name of the quantity of published figures that can stand beside the column; empty if none
-    /// can.
+    /// Name of the quantity, such as `wrong_percent`, whose published figures can stand beside the
+    /// column; empty if there are none.
     pub quantity: &'static str,
     source: &'static Source,
 }
@@ -397,7 +398,7 @@ impl Column {
         })
     }
 
-    /// True if the figure is measured: its cell is empty for a method that could not run.
+    /// True if the column shows a measurement: its cell is empty for a method that could not run.
     pub fn is_measured(&self) -> bool {
         matches!(self.source, Measure(_))
     }
@@ -409,8 +410,8 @@ impl Column {
         }
     }
 
-    /// Returns the cell of a run in a table, `–` for an unknown figure. `share` formats a count and
-    /// its whole as a share.
+    /// Returns the text of a run's cell in a table; `–` if the figure is unknown. `share` formats a
+    /// count and the whole that it is a share of.
     pub fn cell(&self, results: &Results, run: &Run, share: fn(u64, u64) -> String) -> String {
         match self.value(results, run) {
             Unknown => "–".to_owned(),
@@ -424,7 +425,7 @@ impl Column {
         }
     }
 
-    /// Returns the cell of a run in results.csv, empty for an unknown figure.
+    /// Returns the text of a run's cell in results.csv; empty if the figure is unknown.
     pub fn csv_cell(&self, results: &Results, run: &Run) -> String {
         match self.value(results, run) {
             Unknown => String::new(),
@@ -436,13 +437,14 @@ impl Column {
     }
 }
 
-/// Returns the columns of results.csv.
+/// Returns the columns of results.csv, in order.
 pub fn csv() -> Vec<Column> {
     let entries = CSV.iter().map(|(name, _)| (*name, *name, ""));
     entries.filter_map(Column::new).collect()
 }
 
-/// Returns the columns of the terminal's table, without those that say nothing about any of `runs`.
+/// Returns the columns of the terminal's table, in order, without columns that do not concern any
+/// of `runs`.
 pub fn terminal(runs: &[&Run]) -> Vec<Column> {
     let has_maps = runs.iter().any(|run| run.map_size.is_some());
     let entries = TERMINAL.iter().filter(|(name, ..)| {
@@ -463,9 +465,9 @@ pub fn are_paths<'a>(runs: impl IntoIterator<Item = &'a Run>) -> bool {
     measured.any(|of| of.sequence.is_some())
 }
 
-/// Returns the columns of a document's table of `runs`, in two lists: those before and those behind
-/// the times of steps, which are not among them. `published` says if there are published figures of
-/// a quantity.
+/// Returns the columns of a document's table of `runs` in two lists: those to the left and those to
+/// the right of the columns with times of steps, which the caller adds. `published` tells whether
+/// there are published figures of a quantity.
 pub fn document(runs: &[&Run], published: impl Fn(&str) -> bool) -> [Vec<Column>; 2] {
     let shown = |(name, _, quantity): &Entry| {
         (!IF_PUBLISHED.contains(name) || published(quantity))
@@ -479,8 +481,8 @@ pub fn document(runs: &[&Run], published: impl Fn(&str) -> bool) -> [Vec<Column>
     })
 }
 
-/// Lists the quantities whose published figures can stand beside a run's, without sums of steps
-/// such as `ms.gbuffer+detect_uncertain`.
+/// Lists the quantities that published figures can have, without sums of steps such as
+/// `ms.gbuffer+detect_uncertain`.
 pub fn quantities() -> Vec<String> {
     let of_columns = DOCUMENT.iter().map(|(.., quantity)| quantity.to_string());
     let of_steps = STEPS.iter().map(|(step, _)| format!("ms.{step}"));
@@ -488,8 +490,8 @@ pub fn quantities() -> Vec<String> {
     all.filter(|quantity| !quantity.is_empty()).collect()
 }
 
-/// Returns the steps of a quantity that is the time of steps: `gbuffer+detect_uncertain` for
-/// `ms.gbuffer+detect_uncertain`. Returns `None` for all other quantities.
+/// Returns the steps of a quantity that is a time of steps: `gbuffer+detect_uncertain` for
+/// `ms.gbuffer+detect_uncertain`. Returns `None` for any other quantity.
 pub fn steps_of(quantity: &str) -> Option<&str> {
     let steps = quantity.strip_prefix("ms.")?;
     let is_known = |step| step == GBUFFER || STEPS.iter().any(|(known, _)| *known == step);

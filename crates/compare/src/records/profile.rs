@@ -40,7 +40,7 @@ pub struct Profile {
     pub kind: String,
     /// Conditions under which everything was measured.
     pub conditions: Conditions,
-    /// The passes in the order in which they ran.
+    /// Times of each pass, in the order in which the passes ran.
     pub passes: Vec<PassProfile>,
     /// Times of whole frames.
     pub frame: FrameProfile,
@@ -51,16 +51,16 @@ pub struct Profile {
     pub baseline: Option<Comparison>,
 }
 
-/// Conditions of a measurement, without which its times mean nothing.
+/// Conditions under which a profile was measured: program, GPU, scene, method and settings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Conditions {
     /// The program, `skiagraph 0.1.0`.
     pub program: String,
-    /// `release`, or `debug`: then CPU times are those of unoptimised code.
+    /// `release`, or `debug`, whose CPU times are those of unoptimised code.
     pub build: String,
     /// Time of the measurement, ISO 8601 in UTC.
     pub date: String,
-    /// GPU that was measured; `gpu_unavailable` says why GPU times are null.
+    /// GPU that was measured. Its field `gpu_unavailable` gives the reason if GPU times are null.
     pub adapter: Adapter,
     /// The scene that was drawn.
     pub scene: Scene,
@@ -72,7 +72,7 @@ pub struct Conditions {
     pub viewport: [u32; 2],
     /// All params of the graph with the values it ran with.
     pub params: BTreeMap<String, serde_json::Value>,
-    /// Number of timed frames that were asked for; there are fewer samples after an early end.
+    /// Number of timed frames that were requested. There are fewer samples if the work ended early.
     pub frames: u32,
     /// Number of warm-up frames before the timed ones.
     pub warmup: u32,
@@ -126,9 +126,10 @@ impl Conditions {
 pub struct PassProfile {
     /// Name of the pass in the graph.
     pub name: String,
-    /// Kind of the pass, as the document writes it.
+    /// Kind of the pass in the words of graph documents, such as `Raster`.
     pub kind: String,
-    /// Milliseconds between the pass's GPU timestamps; null where they cannot be had or trusted.
+    /// Milliseconds between the pass's GPU timestamps; null if there are no timestamps or they
+    /// cannot be trusted.
     pub gpu_ms: Option<Series>,
     /// Share of the frame's GPU time that the pass takes, 0 to 1, median over the frames; null
     /// without GPU times. Passes may overlap, so that shares need not add up to 1.
@@ -140,12 +141,12 @@ pub struct PassProfile {
 /// Times of whole frames, in milliseconds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrameProfile {
-    /// GPU time from the first pass's begin to the last one's end; null where timestamps cannot be
-    /// had or trusted.
+    /// GPU time from the start of the first pass to the end of the last; null if there are no
+    /// timestamps or they cannot be trusted.
     pub gpu_ms: Option<Series>,
     /// CPU time of encoding all passes.
     pub cpu_ms: Series,
-    /// Time from the start of encoding until the GPU was done, by the CPU's clock.
+    /// Time from the start of encoding until the GPU was done, measured by the CPU's clock.
     pub wall_ms: Series,
 }
 
@@ -154,16 +155,16 @@ pub struct FrameProfile {
 pub struct Memory {
     /// Bytes of all textures and buffers together.
     pub bytes: u64,
-    /// Bytes saved by letting materials share memory.
+    /// Bytes saved by materials that share memory with others.
     pub saved_bytes: u64,
     /// Textures and buffers, in the order of the document.
     pub materials: Vec<Material>,
 }
 
-/// Memory of one texture or buffer.
+/// Memory of one texture or buffer of the graph.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Material {
-    /// Name of the material, or of a pass's own buffer.
+    /// Name of the material, or of a buffer that belongs to a pass.
     pub name: String,
     /// Format of a texture; null for a buffer.
     pub format: Option<String>,
@@ -175,13 +176,13 @@ pub struct Material {
     pub layers: u32,
     /// Bytes of the texture or buffer.
     pub bytes: u64,
-    /// Names of the materials that share its memory.
+    /// Names of the materials that share this one's memory.
     pub shared_with: Vec<String>,
 }
 
 impl Profile {
-    /// Creates a profile from the samples of frames; `None` if there are no frames. `kinds` are the
-    /// passes of the plan, for the kind of each.
+    /// Creates a profile from the times of frames. `kinds` are the passes of the plan, which give
+    /// the kind of each pass. Returns `None` if `samples` has no frames.
     pub fn new(
         conditions: Conditions,
         kinds: &[PassSummary],
@@ -249,7 +250,7 @@ impl Profile {
         }
     }
 
-    /// Returns the number of frames that were timed.
+    /// Returns the number of timed frames.
     pub fn timed(&self) -> usize {
         self.frame.wall_ms.samples.len()
     }

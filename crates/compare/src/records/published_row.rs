@@ -53,15 +53,16 @@ pub const HEADER: [&str; 9] = [
     "scene", "view", "viewport", "map_size", "preset", "quantity", "value", "source", "note",
 ];
 
-/// A published figure, with the scene, view, viewport, map size and preset that it belongs to.
+/// A published figure, with the scene, view, viewport, map size and preset that it was published
+/// for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     scene: String,
     view: String,
     viewport: [u32; 2],
     map_size: Option<u32>,
-    /// Name of the preset, empty for a figure of the reference. A row from `Row::read` has all
-    /// names of its line here, separated by spaces.
+    /// Name of the preset; empty for a figure of the reference. In a row from [`Row::read`] it is
+    /// all preset names of the line, separated by spaces.
     pub preset: String,
     /// Names of all presets on the row's line.
     pub named: Vec<String>,
@@ -72,8 +73,8 @@ pub struct Row {
 }
 
 impl Row {
-    /// Returns the fields that tell the figure from every other one: scene, view, viewport, map
-    /// size, preset, quantity.
+    /// Returns the fields that identify the figure: scene, view, viewport, map size, preset,
+    /// quantity.
     pub fn key(&self) -> (&str, &str, [u32; 2], Option<u32>, &str, &str) {
         let Self { scene, view, .. } = self;
         let quantity = &self.figure.quantity;
@@ -81,8 +82,8 @@ impl Row {
         (scene, view, viewport, map_size, &self.preset, quantity)
     }
 
-    /// Returns a copy of the row for each preset that its line names; the row itself for a figure
-    /// of the reference.
+    /// Returns one row for each preset that the line names; the row itself for a figure of the
+    /// reference.
     pub fn of_each_preset(self) -> Vec<Self> {
         if self.preset.is_empty() {
             return vec![self];
@@ -94,8 +95,8 @@ impl Row {
         self.named.iter().map(of).collect()
     }
 
-    /// True if the figure belongs to a run of the scene named `scene`, or to the reference of this
-    /// run.
+    /// True if the figure was published for `run` on the scene named `scene`, or for the reference
+    /// of that run.
     pub fn applies_to(&self, scene: &str, run: &Run) -> bool {
         let of_run = self.preset == run.preset && self.map_size == run.map_size;
         (self.scene.as_str(), &self.view, self.viewport) == (scene, &run.view, run.viewport)
@@ -251,7 +252,7 @@ fn is_known(quantity: &str) -> bool {
     OF_REFERENCE.contains(&quantity) || is_of_run(quantity)
 }
 
-/// Index of each column of [`HEADER`] in the lines of a file.
+/// Position of each column of [`HEADER`] in the lines of a file.
 pub struct Columns([usize; 9]);
 
 impl Columns {
@@ -285,7 +286,7 @@ impl Columns {
         }
     }
 
-    /// Returns the index in a line of the column `name`, which is one of [`HEADER`].
+    /// Returns the index of the column `name`, one of [`HEADER`], among the fields of a line.
     pub fn at(&self, name: &str) -> usize {
         let mut columns = HEADER.into_iter().zip(self.0);
         let column = columns.find(|(known, _)| *known == name);

@@ -26,7 +26,7 @@ use skiagraph_graph::SourceFile;
 use skiagraph_scene::Limit;
 use std::{io, path::Path};
 
-/// Advice for messages: how to go on without the earlier results of a folder.
+/// Advice for messages on a `results.json` that cannot be used: how to go on without it.
 pub const WITHOUT_RESULTS: &str =
     "take another folder (`--out`), or replace all that this one holds (`--replace`)";
 
@@ -92,7 +92,7 @@ fn read(limit: &Limit, path: &Path) -> Result<Option<SourceFile>, String> {
     }
 }
 
-/// Reads the results.json in a folder, to use finished results.
+/// Reads the finished results.json in a folder, for example to write a report of it.
 ///
 /// # Errors
 /// No such folder or results.json; a file that cannot be read, or is not a results.json. The
@@ -145,7 +145,7 @@ fn profile_of(file: &SourceFile) -> Result<Profile, CompareError> {
     })
 }
 
-/// Parses the text of a results.json that is to be resumed.
+/// Parses the text of a results.json, to continue from its runs.
 ///
 /// # Errors
 /// Text that is not a results.json; the message shows the place.

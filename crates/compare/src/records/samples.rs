@@ -20,13 +20,13 @@ use std::time::Duration;
 
 /// Times of one frame.
 pub struct TimedFrame {
-    /// Time from the start of the first timed frame until the encoding of this frame began.
+    /// Time from the start of the first timed frame until the start of this frame's encoding.
     pub began: Duration,
     /// GPU and CPU times of the frame's passes.
     pub timing: FrameTiming,
     /// Time from the start of encoding until the GPU was done.
     pub wall: Duration,
-    /// Names of the passes that did not run.
+    /// Names of the passes that were skipped in the frame, as their inputs had not changed.
     pub skipped: Vec<String>,
 }
 
@@ -35,7 +35,7 @@ pub struct TimedFrame {
 pub struct Samples {
     /// Times of each pass, in the order in which the passes ran.
     pub passes: Vec<PassSamples>,
-    /// GPU time from the first pass's begin to the last one's end; `None` where it is not known.
+    /// GPU time from the start of the first pass to the end of the last; `None` if it is not known.
     pub gpu: Vec<Option<Duration>>,
     /// CPU time of encoding all passes.
     pub cpu: Vec<Duration>,
@@ -43,18 +43,18 @@ pub struct Samples {
     pub wall: Vec<Duration>,
 }
 
-/// Times of one pass, with one item for each frame in which it ran.
+/// Times of one pass: each list has one item for each frame in which the pass ran.
 pub struct PassSamples {
     /// Name of the pass.
     pub name: String,
-    /// GPU time between the pass's timestamps; `None` where it is not known.
+    /// GPU time between the pass's timestamps; `None` if it is not known.
     pub gpu: Vec<Option<Duration>>,
     /// CPU time of encoding the pass.
     pub cpu: Vec<Duration>,
 }
 
 impl Samples {
-    /// Gathers the times of some frames.
+    /// Gathers the times of `frames`, in their order.
     pub fn new(frames: &[TimedFrame]) -> Self {
         let mut samples = Self::default();
         for TimedFrame { timing, wall, .. } in frames {

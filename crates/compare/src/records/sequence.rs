@@ -22,69 +22,72 @@ use serde::{Deserialize, Serialize};
 use skiagraph_reference::{Graded, Shimmer};
 use std::collections::BTreeMap;
 
-/// Measurements of each frame of a path. The run's own counts are the sums over all frames, its
-/// times the spread over them.
+/// Measurements of each frame of a camera path. The run's own counts are sums over all frames; its
+/// times are order statistics over the frames.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sequence {
     /// Measurements of each frame, in the order of the path.
     pub frames: Vec<SequenceFrame>,
-    /// Counts of the answers that changed from frame to frame though the right ones did not, over
-    /// all frames.
+    /// Counts, over all frames, of answers that changed from one frame to the next although the
+    /// right answers did not.
     pub shimmer: Shimmer,
-    /// The spread over the path of the frames' times with every pass run; absent where no frame
-    /// skips one, and with `--cached-frames 0`.
+    /// Order statistics of the frames' times when every pass runs; absent if no frame skips a pass,
+    /// and with `--cached-frames 0`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub every_pass: Option<FrameTimes>,
 }
 
-/// Measurements of one frame of a path.
+/// Measurements of one frame of a camera path.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SequenceFrame {
-    /// Number of pixels facing the light.
+    /// Number of pixels whose visible surface faces the light.
     pub facing_light: u64,
-    /// Number of pixels facing the light that are wrong, in-band pixels included.
+    /// Number of pixels facing the light on which method and reference disagree, pixels in the band
+    /// included.
     pub wrong: u64,
-    /// Number of pixels facing the light that are wrong outside the band.
+    /// Number of wrong pixels facing the light outside the band, which is the set of pixels whose
+    /// answer rounding decides.
     pub wrong_outside_band: u64,
-    /// Errors of the shares of light that the frame shows.
+    /// Errors of the shares of light, 0 to 1, that the frame shows.
     pub graded: Graded,
     /// Number of rays traced; null where the graph does not count them.
     pub rays: Option<u64>,
-    /// Times of the frame; in JSON their fields stand beside the others.
+    /// Times of the frame. In JSON the fields of this struct stand beside the other fields.
     #[serde(flatten)]
     pub cost: FrameCost,
     /// Counts of the answers that changed since the frame before; absent in the first frame.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shimmer: Option<Shimmer>,
-    /// Names of the passes that did not run, as nothing that they read had changed.
+    /// Names of the passes that did not run, because none of their inputs had changed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub skipped: Vec<String>,
-    /// Resources of the scene that were made anew before the frame, as something that they depend
-    /// on had changed.
+    /// Resources of the scene that were built again before the frame, because something that they
+    /// depend on had changed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub remade: Vec<Remade>,
-    /// Times of the frame when every pass runs, as if nothing were kept from earlier frames; absent
-    /// where this was not measured.
+    /// Times of the frame when every pass runs, as if no results were kept from earlier frames;
+    /// absent if this was not measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub every_pass: Option<FrameCost>,
 }
 
-/// A resource of the scene that was made anew before a frame.
+/// A resource of the scene that was built again before a frame, such as a hierarchy over moved
+/// triangles.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Remade {
     /// Name of the resource.
     pub name: String,
-    /// `made`, or `refitted` for a hierarchy.
+    /// `made` if it was built from scratch, `refitted` for a hierarchy whose boxes were updated.
     pub how: String,
-    /// Milliseconds that this took on the CPU, uploads included; not part of the frame's times.
+    /// Milliseconds that the work took on the CPU, uploads included; not part of the frame's times.
     pub ms: f64,
 }
 
 /// Times of one frame.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrameCost {
-    /// GPU time in milliseconds, from the first pass's begin to the last one's end; null where it
-    /// cannot be had or trusted.
+    /// GPU time in milliseconds, from the start of the first pass to the end of the last; null if
+    /// there are no timestamps or they cannot be trusted.
     pub gpu_ms: Option<f64>,
     /// Milliseconds from the start of encoding until the outputs were read back, by the CPU's
     /// clock.
@@ -128,8 +131,8 @@ impl Sequence {
         )
     }
 
-    /// Lists the resources of the scene that took a median of 0.1 ms or more to make anew: name,
-    /// `made` or `refitted`, number of frames, and median time in milliseconds.
+    /// Lists the resources of the scene that took a median of 0.1 ms or more to build again between
+    /// frames: name, `made` or `refitted`, number of frames, and median time in milliseconds.
     pub fn remade<'s>(&'s self) -> Vec<(&'s str, &'s str, usize, f64)> {
         let all = self.frames.iter().flat_map(|frame| &frame.remade);
         let mut times: BTreeMap<(&str, &str), Vec<f64>> = BTreeMap::new();

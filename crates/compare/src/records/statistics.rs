@@ -15,38 +15,38 @@
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
-/// Order statistics of times over frames, in milliseconds.
+/// Order statistics of times over frames, in milliseconds, without the samples.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
     /// Least sample.
     pub min: f64,
-    /// First quartile, linear between the samples beside it.
+    /// First quartile, interpolated linearly between the two nearest samples.
     pub q1: f64,
     /// Middle sample, or the mean of the two in the middle.
     pub median: f64,
-    /// Third quartile, linear between the samples beside it.
+    /// Third quartile, interpolated linearly between the two nearest samples.
     pub q3: f64,
     /// The smallest sample that at least 95 % of the samples do not exceed.
     pub p95: f64,
 }
 
-/// Times of frames by the GPU's and the CPU's clock, in milliseconds.
+/// Times of frames in milliseconds, by the GPU's clock and by the CPU's.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrameTimes {
-    /// GPU times from the first pass's begin to the last one's end; null where timestamps cannot be
-    /// had or trusted.
+    /// GPU times from the start of the first pass to the end of the last; null if there are no
+    /// timestamps or they cannot be trusted.
     pub gpu_ms: Option<Spread>,
     /// Times from the start of encoding until the GPU was done, by the CPU's clock.
     pub wall_ms: Spread,
-    /// GPU time of each frame, in order; null if any frame has none.
+    /// GPU time of each frame, in order; null if the GPU time of any frame is missing.
     pub gpu_frames: Option<Vec<f64>>,
     /// Time of each frame by the CPU's clock, in order.
     pub wall_frames: Vec<f64>,
 }
 
 impl FrameTimes {
-    /// Creates the times of frames from the GPU time and the wall time of each; `None` if there are
-    /// no frames. GPU times are left out if any is missing.
+    /// Creates the times of frames from the GPU time and the wall time of each frame, in order. GPU
+    /// times are left out if any is missing. Returns `None` if there are no frames.
     pub fn new(gpu: &[Option<Duration>], wall: &[Duration]) -> Option<Self> {
         let gpu_frames = all(gpu)
             .map(|gpu| in_ms(&gpu))
@@ -61,15 +61,15 @@ impl FrameTimes {
         })
     }
 
-    /// Returns the time of each frame in milliseconds: by the CPU's clock if `by_wall`, otherwise
-    /// by the GPU's. Returns `None` if there are no GPU times.
+    /// Returns the time of each frame in milliseconds, in order: wall times if `by_wall`, otherwise
+    /// GPU times. Returns `None` if those are missing.
     pub fn frames(&self, by_wall: bool) -> Option<&[f64]> {
         let wall = by_wall.then_some(&self.wall_frames[..]);
         wall.or(self.gpu_frames.as_deref().filter(|_| !by_wall))
     }
 
-    /// Returns the spread of the frames' times: by the CPU's clock if `by_wall`, otherwise by the
-    /// GPU's. Returns `None` if there are no GPU times.
+    /// Returns the order statistics of the frames' times: of wall times if `by_wall`, otherwise of
+    /// GPU times. Returns `None` if those are missing.
     pub fn spread(&self, by_wall: bool) -> Option<Spread> {
         if by_wall {
             Some(self.wall_ms)
@@ -85,12 +85,12 @@ impl FrameTimes {
 }
 
 impl Spread {
-    /// Returns the spread of some samples; `None` if there are none.
+    /// Returns the order statistics of samples; `None` if there are no samples.
     pub fn new(samples: &[Duration]) -> Option<Self> {
         Self::from_ms(samples.iter().map(|sample| sample.as_secs_f64() * 1e3))
     }
 
-    /// Returns the spread of some samples in milliseconds; `None` if there are none.
+    /// Returns the order statistics of samples in milliseconds; `None` if there are no samples.
     pub fn from_ms(samples: impl Iterator<Item = f64>) -> Option<Self> {
         let mut ms: Vec<f64> = samples.collect();
         ms.sort_by(f64::total_cmp);
@@ -106,7 +106,8 @@ impl Spread {
         })
     }
 
-    /// Returns the spread of samples; `None` if one is missing, or if there are none.
+    /// Returns the order statistics of samples; `None` if any sample is missing, or if there are no
+    /// samples.
     pub fn from_all(samples: &[Option<Duration>]) -> Option<Self> {
         Self::new(&all(samples)?)
     }
@@ -122,7 +123,7 @@ fn quartiles(sorted: &[f64]) -> [f64; 2] {
     })
 }
 
-/// Converts times into milliseconds of whole nanoseconds, with at most six decimals.
+/// Converts times into milliseconds, exact to the nanosecond.
 pub fn in_ms(times: &[Duration]) -> Vec<f64> {
     times
         .iter()
@@ -150,7 +151,7 @@ pub struct Series {
 }
 
 impl Series {
-    /// Creates a series of times in milliseconds; `None` if there are none.
+    /// Creates a series of times in milliseconds; `None` if there are no samples.
     pub fn new(samples: Vec<f64>) -> Option<Self> {
         let spread = Spread::from_ms(samples.iter().copied())?;
         let Spread {
@@ -165,17 +166,18 @@ impl Series {
         })
     }
 
-    /// Creates a series of times; `None` if there are none.
+    /// Creates a series of times; `None` if there are no samples.
     pub fn from_times(times: &[Duration]) -> Option<Self> {
         Self::new(in_ms(times))
     }
 
-    /// Creates a series of times; `None` if one is missing, or if there are none.
+    /// Creates a series of times; `None` if any sample is missing, or if there are no samples.
     pub fn from_all(times: &[Option<Duration>]) -> Option<Self> {
         Self::from_times(&all(times)?)
     }
 
-    /// Returns the first and third quartile of the samples, linear between the samples beside each.
+    /// Returns the first and third quartile of the samples, each interpolated linearly between the
+    /// two nearest samples.
     pub fn quartiles(&self) -> [f64; 2] {
         let mut sorted = self.samples.clone();
         sorted.sort_by(f64::total_cmp);

@@ -15,17 +15,17 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Steady state of a method that remembers earlier frames: how long a view stood still until the
-/// picture repeated.
+/// Steady state of a method that reuses results of earlier frames: how many frames a still view
+/// took until the picture repeated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Steady {
-    /// Number of frames until the picture repeated, the first with an empty memory.
+    /// Number of frames until the picture repeated. The first frame has no earlier frames to reuse.
     pub frames: u32,
-    /// Number of frames after which the picture repeats, shares of light within 1/1024; null if it
-    /// did not repeat within `frames`.
+    /// Number of frames after which the picture repeats; shares of light may differ by 1/1024. Null
+    /// if the picture did not repeat within `frames`.
     pub period: Option<u32>,
-    /// Means of the pictures that were judged in this state; absent where a camera path begins in
-    /// it.
+    /// Means over the pictures that were judged in the steady state; absent for a camera path that
+    /// begins in it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub judged: Option<Cycle>,
 }
@@ -34,14 +34,17 @@ pub struct Steady {
 /// of the worst picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Cycle {
-    /// Number of pictures: one period, or the longest period that was looked for if none was found.
+    /// Number of pictures: one period, or the longest period that was tried if the picture did not
+    /// repeat.
     pub pictures: u32,
-    /// Mean number of wrong pixels in a picture, in-band ones included.
+    /// Mean number of wrong pixels of a picture, pixels in the band included.
     pub wrong_mean: f64,
-    /// Mean number of wrong pixels outside the band in a picture.
+    /// Mean number of wrong pixels of a picture outside the band (the pixels whose answer rounding
+    /// decides).
     pub wrong_outside_band_mean: f64,
-    /// Mean of the pictures' root mean square errors.
+    /// Mean of the pictures' root mean square errors of the shares of light.
     pub rmse_mean: f64,
-    /// Mean of the pictures' FLIP errors.
+    /// Mean of the pictures' FLIP errors (perceptual difference to the reference's picture, 0 to
+    /// 1).
     pub flip_mean: f64,
 }

@@ -42,15 +42,15 @@ pub struct Report {
     pub cases: Vec<Case>,
 }
 
-/// A method, as a column of the matrix.
+/// A method of the `stress` matrix, as one of its columns.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Column {
     /// Name of the preset, or path of the graph.
     pub preset: String,
     /// Value of the param `map_size`; null where the graph has none.
     pub map_size: Option<u32>,
-    /// All params of the graph with the values it runs with, but for cells with a `set` of their
-    /// own.
+    /// All params of the graph with the values that it runs with. A cell with `set` differs in that
+    /// one param.
     pub params: BTreeMap<String, Value>,
     /// Pixels that the method guarantees to be right; null where nothing is guaranteed.
     #[serde(rename = "promise")]
@@ -63,13 +63,14 @@ pub struct Column {
     pub unavailable: Option<String>,
 }
 
-/// Pixels that a method guarantees to be right, outside the band.
+/// Set of pixels that a method guarantees to be right, outside the band (the pixels whose answer
+/// rounding decides).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Guarantee {
     /// All pixels of the final picture.
     Exact,
-    /// Pixels that the method calls certain.
+    /// Only the pixels that the method calls certain.
     Certain,
 }
 
@@ -88,13 +89,14 @@ impl Guarantee {
 pub struct Case {
     /// Name of the case in the catalogue.
     pub name: String,
-    /// Fault that the case provokes.
+    /// Fault in shadow methods that the case provokes.
     pub reason: String,
     /// Kind of the case's casters: closed or open.
     pub casters: Casters,
-    /// The greatest share of the pixels facing the light that the band may take.
+    /// Greatest share of the pixels facing the light, 0 to 1, that the band may take.
     pub band_cap: f64,
-    /// Verdict on the band: failed if it is above its cap, or if the case has no reference.
+    /// Verdict on the band: `Fail` if the band is above its cap or the case has no reference,
+    /// otherwise `Pass`.
     pub verdict: Verdict,
     /// Reason why the case has no reference, and so no cells; absent where it has one.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -107,19 +109,20 @@ pub struct Case {
     /// Number of pixels whose primitive, as rasterised, is hidden behind another one by more than
     /// rounding.
     pub wrong_surface: u64,
-    /// Results of the methods: a cell per method that runs, and a second one without culling if
-    /// only that way to run it is judged.
+    /// Results of the methods: one cell per method that can run, and a second one with `cull=none`
+    /// if the guarantee can only be judged in that way.
     pub cells: Vec<Cell>,
 }
 
-/// Result of one method on one case.
+/// Result of one method on one case of the stress catalogue.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Cell {
     /// Name of the preset, or path of the graph.
     pub preset: String,
     /// Value of the param `map_size`; null where the graph has none.
     pub map_size: Option<u32>,
-    /// Assignment that differs from the method's params, `cull=none`; null if there is none.
+    /// Assignment in which the cell differs from the method's params: `cull=none`. Null if there is
+    /// none.
     pub set: Option<String>,
     /// The cell's verdict.
     pub verdict: Verdict,
@@ -142,11 +145,11 @@ pub enum Verdict {
     Pass,
     /// The guarantee is broken, or the method could not run.
     Fail,
-    /// Not judged: what the method guarantees of closed casters does not hold for this case's open
-    /// ones.
+    /// Not judged: the case has open casters, and the method's guarantee holds for closed casters
+    /// only.
     Open,
-    /// Not judged: the method guarantees nothing, or only of certain pixels where it calls none
-    /// certain.
+    /// Not judged: the method guarantees nothing, or it guarantees only certain pixels and calls
+    /// none certain.
     Unjudged,
 }
 
@@ -157,7 +160,8 @@ pub struct Counts {
     pub wrong: WrongCounts,
     /// Counts of the wrong pixels that are not in the band.
     pub outside_band: OutsideBand,
-    /// Number of pixels facing the light that the method left to rays, or all that it traced.
+    /// Number of pixels facing the light that the method calls uncertain: it decides them by
+    /// tracing rays.
     pub uncertain: u64,
     /// Uncertain pixels as a share of the pixels facing the light, 0 to 1.
     pub uncertain_share: f64,
@@ -168,16 +172,16 @@ pub struct Counts {
 /// Counts of the wrong pixels outside the band.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct OutsideBand {
-    /// Pixels lit by the method, but not by the reference.
+    /// Number of pixels lit by the method, but not by the reference.
     pub lit: u64,
-    /// Pixels in shadow by the method, but lit by the reference.
+    /// Number of pixels in shadow by the method, but lit by the reference.
     pub shadow: u64,
-    /// Wrong pixels of both kinds that the method called certain.
+    /// Number of wrong pixels of both kinds that the method called certain.
     pub certain: u64,
 }
 
 impl OutsideBand {
-    /// True if these wrong pixels break a guarantee.
+    /// True if any of these wrong pixels breaks the guarantee.
     pub fn breaks(&self, guarantee: Guarantee) -> bool {
         match guarantee {
             Guarantee::Exact => self.lit + self.shadow > 0,
@@ -187,9 +191,9 @@ impl OutsideBand {
 }
 
 impl Verdict {
-    /// Judges a cell that ran. `culls` says that not all faces cast shadows, so that nothing is
-    /// guaranteed for open casters. `certain` is the number of pixels that the method calls
-    /// certain, `outside` counts the wrong pixels outside the band.
+    /// Judges a cell whose method ran. `culls` is true if not all faces cast shadows; the guarantee
+    /// then does not cover open casters. `certain` is the number of pixels that the method calls
+    /// certain; `outside` counts the wrong pixels outside the band.
     pub fn new(
         guarantee: Option<Guarantee>,
         culls: bool,
@@ -208,8 +212,10 @@ impl Verdict {
 }
 
 impl Counts {
-    /// Creates the counts of a picture. `whole` counts all of its pixels; `settled` counts them
-    /// with the reference's answer for pixels in the band.
+    /// Creates the counts of a picture. `whole` counts the method's answers as they are; `settled`
+    /// counts them with the reference's answer at each pixel in the band, so that its wrong pixels
+    /// are those outside the band. `rays` is the number of rays traced; `None` if the graph does
+    /// not count them.
     pub fn new(whole: &Statistics, settled: &Statistics, rays: Option<u64>) -> Self {
         let outside = settled.wrong;
         Self {
@@ -227,7 +233,7 @@ impl Counts {
 }
 
 impl Cell {
-    /// True if the cell belongs to the method of a column.
+    /// True if the cell belongs to the method of `column`.
     pub fn is_of(&self, column: &Column) -> bool {
         (&self.preset, self.map_size) == (&column.preset, column.map_size)
     }
@@ -235,13 +241,13 @@ impl Cell {
 
 impl Case {
     /// True if the band takes more than its cap of the pixels facing the light. Pixels in the band
-    /// prove nothing, and so does a case that consists of them.
+    /// prove nothing, and neither does a case that consists mostly of them.
     pub fn exceeds_cap(&self) -> bool {
         self.band as f64 > self.band_cap * self.pixels.facing_light as f64
     }
 
     /// True if a method with a shadow map left all pixels facing the light to rays, so that a right
-    /// answer says nothing about its map.
+    /// answer does not test its map.
     pub fn is_left_to_rays(&self, cell: &Cell) -> bool {
         let all = self.pixels.facing_light;
         let of_all = |counts: &Counts| all > 0 && counts.uncertain == all;
@@ -250,7 +256,7 @@ impl Case {
 }
 
 impl Report {
-    /// Returns the number of cells with a verdict.
+    /// Returns the number of cells with the verdict `verdict`.
     pub fn count(&self, verdict: Verdict) -> usize {
         let cells = self.cases.iter().flat_map(|case| &case.cells);
         cells.filter(|cell| cell.verdict == verdict).count()

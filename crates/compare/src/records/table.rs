@@ -16,9 +16,9 @@ use serde::Serialize;
 /// A table of cells with text that is shown as it is.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Table {
-    /// Head of each column.
+    /// Text above each column, one per column.
     pub heads: Vec<String>,
-    /// Number of columns, from the first on, that hold words; the others hold numbers.
+    /// Number of leading columns that hold words; the other columns hold numbers.
     pub words: usize,
     /// Cells of each row, one per column.
     pub rows: Vec<Vec<String>>,

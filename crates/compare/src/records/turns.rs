@@ -18,11 +18,12 @@
 use crate::records::statistics::FrameTimes;
 use serde::{Deserialize, Serialize};
 
-/// Group of methods that took turns frame by frame, to which a run belongs.
+/// Group of methods that took turns frame by frame: each method of the group draws one frame in
+/// each turn.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Turns {
-    /// Index of the group among those of the view and viewport. A group holds as many methods as
-    /// fit the memory at once.
+    /// Index of the group among the groups of the same view and viewport, from 0. A group holds as
+    /// many methods as fit into the memory at once.
     pub group: u32,
     /// Times of the frames of the group's first method. It is the same method in all groups of the
     /// view and viewport, so that groups can be compared.
@@ -32,8 +33,8 @@ pub struct Turns {
 /// The ratio of the times of two methods over their turns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PairedRatio {
-    /// Lower end of the interval in which the median of all such ratios lies with a confidence of
-    /// at least 99 %, whatever their distribution (order statistics).
+    /// Lower end of the interval that contains the true median of the ratio with a confidence of at
+    /// least 99 %, for any distribution of the times (order statistics).
     pub low: f64,
     /// Median of the ratios, one per turn.
     pub median: f64,
@@ -52,8 +53,8 @@ const LEVEL: f64 = 0.03;
 const RESOLUTION_MS: f64 = 1e-6;
 
 impl PairedRatio {
-    /// Divides the times of `one` by those of `other`, turn by turn; `None` for fewer than eight
-    /// turns.
+    /// Divides the times of `one` by those of `other`, which are in the order of the same turns.
+    /// Returns `None` for fewer than eight turns.
     pub fn new(one: &[f64], other: &[f64]) -> Option<Self> {
         let pairs = one.iter().zip(other);
         let ratio = |(one, other): (&f64, &f64)| one.max(RESOLUTION_MS) / other.max(RESOLUTION_MS);
@@ -67,7 +68,8 @@ impl PairedRatio {
         })
     }
 
-    /// True if 1 lies outside the interval, and the times differ by 3 % or more.
+    /// True if the two methods differ: 1 lies outside the interval, and the median ratio is off 1
+    /// by 3 % or more.
     pub fn is_told_apart(&self) -> bool {
         let differs = self.median >= 1.0 + LEVEL || self.median <= 1.0 / (1.0 + LEVEL);
         differs && (self.low > 1.0 || self.high < 1.0)

@@ -1,13 +1,13 @@
-//! Writes `report.html`: everything that `compare` and `stress` kept, in one file that works
-//! without a network. All figures, charts and tables are made here by the same rules as the
-//! terminal's; the page's script only shows the chosen ones.
+//! Writes `report.html`: all results that `compare` and `stress` wrote into folders, in one file
+//! that works without a network. All figures, charts and tables are made here by the same rules as
+//! those for the terminal; the page's script only shows the chosen ones.
 //!
 //! | | |
 //! |-|-|
-//! | `sources` | folders that were measured alike become one |
-//! | `shown` | tables to choose from, and parts of the page that are of some of them |
+//! | `sources` | combines folders that were measured under the same conditions |
+//! | `shown` | tables to choose from, and parts of the page that belong to some of them |
 //! | `charts`, `steps`, `rows` | these parts: charts, bars of steps, tables |
-//! | `stress` | matrices of hard cases |
+//! | `stress` | matrices of stress cases |
 //! | `data` | all other words, as JSON |
 //! | `pictures` | which pictures go in, as far as there is room |
 //! | `report.html`, `.css`, `*.js` | the page |
@@ -41,7 +41,7 @@ const SCRIPTS: [&str; 6] = [
     include_str!("report.js"),
 ];
 
-/// A page, and the list of what did not fit into it.
+/// A page, and the list of pictures that did not fit into it.
 pub struct Page {
     /// Content of the HTML file.
     pub html: String,
@@ -49,7 +49,7 @@ pub struct Page {
     pub left_out: Vec<String>,
 }
 
-/// Returns the page of these sources and of these reports of `stress`.
+/// Returns the page of the given sources and the given reports of `stress`.
 pub fn page(sources: &[Source], reports: &[Report]) -> Page {
     page_within(sources, reports, LIMIT)
 }

@@ -5,18 +5,18 @@ use skiagraph_compare::lists::unique;
 use skiagraph_compare::records::results::{Results, Run};
 use std::path::{Path, PathBuf};
 
-/// Measurements of one scene on one adapter under the same conditions.
+/// Measurements of one scene on one adapter under the same conditions, from one or several folders.
 pub struct Source {
     /// All runs of the source, with their conditions.
     pub results: Results,
-    /// The folders that the runs come from.
+    /// Folders that the runs come from.
     pub folders: Vec<PathBuf>,
     /// Index of each run's folder.
     places: Vec<usize>,
 }
 
 impl Source {
-    /// Returns the folder with the pictures of the run with this index in the results.
+    /// Returns the folder with the pictures of the run with the index `run` in `results.runs`.
     pub fn folder_of(&self, run: usize) -> &Path {
         &self.folders[self.places[run]]
     }
@@ -57,8 +57,8 @@ fn without_runs(results: &Results) -> Results {
     }
 }
 
-/// Combines kept results into sources, one for each adapter, scene and set of conditions, in the
-/// order of the folders.
+/// Combines the results of folders into sources, one for each adapter, scene and set of conditions,
+/// in the order of the folders.
 pub fn sources(kept: Vec<Kept>) -> Vec<Source> {
     let mut sources: Vec<Source> = Vec::new();
     for Kept { folder, results } in kept {

@@ -15,8 +15,9 @@ use obvhs::triangle::Triangle;
 /// 5.5, 56 and 5.1, 76 and 6.1).
 const DEPTH: f64 = 0.01;
 
-/// Node of a hierarchy over light space: 32 bytes, laid out as the trace shader reads it. All
-/// coordinates are relative to [`LightSpace::centre`], in scene units, and rounded outwards.
+/// Node of a bounding volume hierarchy in [`LightSpace`]: 32 bytes, laid out as the trace shader
+/// reads it. All coordinates are relative to [`LightSpace::centre`], in scene units, and rounded
+/// outwards.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct LightSpaceNode {
@@ -24,15 +25,15 @@ pub struct LightSpaceNode {
     pub low: [f32; 2],
     /// High corner of the node's box, in the two coordinates across the rays.
     pub high: [f32; 2],
-    /// Far sides of the node's box, by which rays leave it, along the three permuted world axes.
-    /// Axes are mirrored so that all rays go up. A ray that begins beyond any of these sides misses
-    /// the node. Three sides are stored instead of one depth along the ray because a floor is flat
-    /// along an axis, but deep along a ray.
+    /// Far sides of the node's box, by which rays leave it, along the three world axes in the order
+    /// of [`LightSpace::place`]. Axes are mirrored so that all rays go up. A ray that begins beyond
+    /// any of these sides misses the node. Three sides are stored instead of one depth along the
+    /// ray because a floor is flat along an axis, but deep along a ray.
     pub farthest: [f32; 3],
     /// Packed count and index. The [`LEAF_BITS`](Self::LEAF_BITS) low bits hold the number of
-    /// primitives of a leaf, or 0 for an inner node. The bits above hold an index: for a leaf its
-    /// first slot in the hierarchy's primitives, for an inner node its first child, which the
-    /// second child follows.
+    /// primitives of a leaf, or 0 for an inner node. The bits above hold an index. For a leaf it is
+    /// the first of its entries in [`Bvh::primitives`]; for an inner node it is the first child in
+    /// the list of nodes, which the second child follows.
     pub link: u32,
 }
 
@@ -41,7 +42,8 @@ impl LightSpaceNode {
     pub const LEAF_BITS: u32 = 6;
 }
 
-/// Coordinates for rays that are all parallel: seen along `direction`, each ray is a point.
+/// Coordinates for rays that are all parallel to `direction`, such as those towards a light: seen
+/// along the rays, each ray is a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightSpace {
     /// Direction of the rays in world space, of any length but zero.
@@ -63,8 +65,9 @@ impl LightSpace {
         }
     }
 
-    /// Returns a world position in light space: its two coordinates across the rays, and its three
-    /// permuted world coordinates, mirrored so that rays go up.
+    /// Returns the coordinates of a world position relative to `centre`, in scene units: two
+    /// coordinates across the rays, and the three world coordinates in cyclic order with the
+    /// longest component of `direction` last, mirrored so that rays go up in each.
     pub fn place(&self, position: Vec3) -> (DVec2, DVec3) {
         let d = self.permute(self.direction.as_dvec3());
         let p = self.permute(position.as_dvec3() - self.centre.as_dvec3());
@@ -73,10 +76,10 @@ impl LightSpace {
     }
 
     /// Builds a hierarchy over a mesh with at most `most` nodes. Returns its nodes, root first, and
-    /// the [`Bvh`] that they were made from, for its `primitives` and for [`refit`](Self::refit);
-    /// its own boxes serve to build it only. Both are empty for an empty mesh. Returns `None` if a
-    /// [`LightSpaceNode::link`] is too small: with more than 67 million triangles, or with more
-    /// than 63 in a leaf.
+    /// a [`Bvh`] of the same tree, to be used only for its `primitives` and for
+    /// [`refit`](Self::refit). Both are empty for an empty mesh. Returns `None` if
+    /// [`LightSpaceNode::link`] has too few bits: with more than 67 million triangles or nodes, or
+    /// with more than 63 triangles in a leaf.
     pub fn build(&self, mesh: &Mesh, most: usize) -> Option<(Vec<LightSpaceNode>, Bvh)> {
         let bvh = self.tree(mesh);
         // Nothing is merged in an empty one.
@@ -105,8 +108,9 @@ impl LightSpace {
     }
 
     /// Returns the nodes of a hierarchy, fitted to the mesh in this light space, root first. `bvh`
-    /// is a tree over the triangles of the mesh, as [`build`](Self::build) returns it. Returns
-    /// `None` if a [`LightSpaceNode::link`] is too small.
+    /// is a tree over the triangles of the mesh, such as [`build`](Self::build) returns; a mesh
+    /// with moved corners is allowed. Returns `None` if [`LightSpaceNode::link`] has too few bits,
+    /// as for `build`.
     pub fn refit(&self, bvh: &Bvh, mesh: &Mesh) -> Option<Vec<LightSpaceNode>> {
         let places = mesh.positions.iter().map(|&p| Bounds::at(self.place(p)));
         let places: Vec<Bounds> = places.collect();

@@ -9,11 +9,12 @@ pub(super) const MAX_LEAF: u32 = 8;
 pub struct BvhNode {
     /// Low corner of the node's box.
     pub min: [f32; 3],
-    /// Index of a child or a slot. For an inner node it is the first child, which the second child
-    /// follows. For a leaf it is the first slot in [`Bvh::primitives`](super::Bvh::primitives).
+    /// Index of a child or a primitive. For an inner node it is the index of the first child in
+    /// [`Bvh::nodes`](super::Bvh::nodes), which the second child follows. For a leaf it is the
+    /// index of the leaf's first entry in [`Bvh::primitives`](super::Bvh::primitives).
     pub first: u32,
     /// High corner of the node's box.
     pub max: [f32; 3],
-    /// Number of primitives of a leaf; 0 marks an inner node.
+    /// Number of primitives (triangles) of a leaf; 0 marks an inner node.
     pub count: u32,
 }

@@ -22,7 +22,8 @@ const BOX: f64 = 1.5;
 pub struct Bvh {
     /// Nodes of the tree. The two children of an inner node follow each other.
     pub nodes: Vec<BvhNode>,
-    /// Primitive ids in the order of the leaves. A leaf names a range of this list.
+    /// Primitive ids (indices into [`Mesh::triangles`]) in the order of the leaves, each once. Each
+    /// leaf names a range of this list.
     pub primitives: Vec<u32>,
     /// Number of nodes on the longest path from the root: the entries that a traversal's stack
     /// needs.
@@ -74,9 +75,9 @@ impl Bvh {
         (bvh.depth <= MAX_DEPTH).then_some(bvh)
     }
 
-    /// Returns the tree reduced to at most `most` nodes (1 at least). Each subtree of few enough
-    /// triangles becomes one leaf, which may be larger than the leaves that [`build`](Self::build)
-    /// makes. A tree that is small enough already is returned as it is.
+    /// Returns the tree reduced to at most `most` nodes (1 at least). Subtrees with the fewest
+    /// triangles become leaves, which may be larger than the leaves that [`build`](Self::build)
+    /// makes. A tree that is small enough already is returned unchanged.
     pub fn merged(self, most: usize) -> Self {
         if self.nodes.len() <= most.max(1) {
             return self;
@@ -147,8 +148,8 @@ impl Bvh {
         }
     }
 
-    /// Fits all boxes to a deformed mesh: the triangles that the tree was built from, with their
-    /// corners at other positions.
+    /// Updates all boxes for a deformed mesh: the triangles that the tree was built from, with
+    /// their corners at other positions.
     ///
     /// # Panics
     /// If the mesh has fewer triangles.
@@ -174,8 +175,8 @@ impl Bvh {
         }
     }
 
-    /// Returns the expected cost of a ray that enters the root's box, in triangle tests: the
-    /// surface area heuristic (MacDonald and Booth 1990). It is 0 for an empty tree.
+    /// Returns the expected cost of a ray that enters the root's box, in units of one triangle
+    /// test: the surface area heuristic (MacDonald and Booth 1990). It is 0 for an empty tree.
     pub fn cost(&self) -> f64 {
         let Some(root) = self.nodes.first() else {
             return 0.0;

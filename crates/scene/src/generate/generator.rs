@@ -4,20 +4,20 @@ use super::{avenue, city, forest, level, park};
 use crate::mesh::Mesh;
 use std::{fmt, ops::RangeInclusive, str::FromStr};
 
-/// Range of the number of triangles that a generated city or forest can have.
+/// Range of the number of triangles that a generated city or forest can have, both ends included.
 pub const TRIANGLES: RangeInclusive<u32> = 10_000..=10_000_000;
 
 /// Mesh that this crate generates. Its name as text is `park`, `avenue`, `level`, `city:100000` or
 /// `forest:100000`; the number is the number of triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Generator {
-    /// A bench, flowers, a lamp and trees on a lawn: closed parts of about 55,000 triangles.
+    /// A bench, flowers, a lamp and trees on a lawn: about 55,000 triangles, in closed parts.
     Park,
-    /// An avenue of 2,000 units between fences, trees and lamps: closed parts of about 50,000
-    /// triangles.
+    /// An avenue of 2,000 units between fences, trees and lamps: about 50,000 triangles, in closed
+    /// parts.
     Avenue,
-    /// Storeys of rooms whose floors and walls are sheets of large triangles: open parts of 3,168
-    /// triangles.
+    /// Storeys of rooms whose floors and walls are sheets of large triangles: 3,168 triangles, in
+    /// open parts.
     Level,
     /// Blocks of houses on a square kilometre. More triangles mean more details on walls and roofs.
     City {
@@ -33,8 +33,8 @@ pub enum Generator {
 }
 
 impl Generator {
-    /// Generates the mesh. 10⁷ triangles take seconds and less than a GB. The number of triangles
-    /// of a city or forest is off by 3 % at most.
+    /// Generates the mesh. 10⁷ triangles take seconds and less than 1 GB of memory. The number of
+    /// triangles of a city or forest is off by 3 % at most.
     pub fn build(self) -> Mesh {
         match self {
             Self::Park => park::build(),
@@ -45,11 +45,12 @@ impl Generator {
         }
     }
 
-    /// Returns this generator with another number of triangles, which is given as text, such as
-    /// `1000000` or `1_000_000`.
+    /// Returns this generator with the number of triangles that `text` gives, such as `1000000` or
+    /// `1_000_000`.
     ///
     /// # Errors
-    /// The text is not a number within [`TRIANGLES`], or the mesh has only one size.
+    /// Message that says that the text is not a number within [`TRIANGLES`], or that the mesh has
+    /// only one size.
     pub fn with_triangles(self, text: &str) -> Result<Self, String> {
         let (least, most) = TRIANGLES.into_inner();
         let number = text.replace('_', "").parse().ok();

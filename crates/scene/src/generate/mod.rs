@@ -1,4 +1,4 @@
-//! Meshes made by the program itself: the same bits on every machine.
+//! Meshes that the crate generates, with the same bits on every machine.
 //!
 //! Only operations that IEEE 754 rounds correctly are used (`+ − × ÷ √`): angles go through a
 //! series of our own, not through the platform's `sin`.

@@ -8,7 +8,7 @@ use glam::DVec3;
 pub struct Random(u64);
 
 impl Random {
-    /// Creates the sequence that belongs to `seed`.
+    /// Creates a generator whose sequence of numbers is determined by `seed`.
     pub fn new(seed: u64) -> Self {
         Self(seed)
     }
@@ -21,7 +21,7 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// Returns a uniformly distributed number in `low..high`.
+    /// Returns a uniformly distributed number, at least `low` and less than `high`.
     pub fn range(&mut self, low: f64, high: f64) -> f64 {
         // The upper 53 bits fill the mantissa exactly.
         let unit = (self.next() >> 11) as f64 / (1u64 << 53) as f64;
@@ -53,7 +53,8 @@ impl Random {
     }
 }
 
-/// Returns the cosine and the sine of an angle, given as a fraction of a full turn.
+/// Returns the cosine and the sine, in this order, of an angle that is given as a fraction of a
+/// full turn.
 pub fn turn(fraction: f64) -> (f64, f64) {
     // A quarter turn at most goes through the series: 12 terms are exact to the last bit of an f32
     // many times over.

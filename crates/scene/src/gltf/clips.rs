@@ -29,7 +29,8 @@ const MOST_KEYS: f64 = 1e6;
 const NEARLY_RIGID: f64 = 1e-3;
 const NEARLY_UPRIGHT: f64 = 1.0;
 
-/// Animation of a glTF file: positions of cameras, lights and parts, 30 times per second.
+/// Animation of a glTF file: positions of cameras, lights and parts of the mesh, sampled 30 times
+/// per second.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clip {
     /// Name of small letters, digits and `_`, unique among the clips of the file.
@@ -43,8 +44,10 @@ pub struct Clip {
 
 impl Clip {
     /// Returns the camera paths of this animation: one for each camera that moves, or one for the
-    /// view `standing` if no camera moves. If lights move, there is one such path under each moving
-    /// light. `views` and `lights` are those of the animation's own scene.
+    /// view `standing` if no camera moves. If any light moves, there is a path under each light of
+    /// `lights` instead, whether that light moves or not. `views` and `lights` are those of the
+    /// [`GltfScene`](super::GltfScene) that holds the animation. A path has the animation's name,
+    /// followed by the names of view and light if there are several.
     ///
     /// # Errors
     /// An entry of the list is an error if its path is not valid; the text says why.

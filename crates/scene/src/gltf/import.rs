@@ -30,7 +30,8 @@ use std::path::Path;
 /// Most corners of all triangles together: a small file may place one mesh any number of times.
 const MOST_CORNERS: usize = 1 << 28;
 
-/// Reads a `.gltf` or `.glb` file, and the files that it names.
+/// Reads a `.gltf` or `.glb` file, and the files that it names, into a welded mesh, with a report
+/// of changes and ignored parts.
 ///
 /// # Errors
 /// [`SceneError`]: a file that cannot be read, is damaged, requires an extension that this program
@@ -39,10 +40,11 @@ pub fn load_gltf(path: &Path, materials: MaterialUse) -> Result<(Mesh, ImportRep
     parse_gltf(&read(path)?, path, materials)
 }
 
-/// Reads a `.gltf` or `.glb` file with its cameras, lights and animations.
+/// Reads a `.gltf` or `.glb` file into a welded mesh, with its cameras, lights and animations and a
+/// report of changes and ignored parts of the mesh.
 ///
 /// # Errors
-/// Those of [`load_gltf`].
+/// The errors of [`load_gltf`].
 pub fn load_gltf_scene(
     path: &Path,
     materials: MaterialUse,
@@ -57,11 +59,11 @@ fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
     })
 }
 
-/// Reads the bytes of a `.gltf` or `.glb` file. Other files that it names are searched beside
-/// `path`.
+/// Reads the bytes of a `.gltf` or `.glb` file into a welded mesh, with a report. `path` names the
+/// file in messages; other files that it names are searched beside it.
 ///
 /// # Errors
-/// Those of [`load_gltf`], except for reading the file itself.
+/// The errors of [`load_gltf`], except for errors of reading the file itself.
 pub fn parse_gltf(
     bytes: &[u8],
     path: &Path,
@@ -70,11 +72,12 @@ pub fn parse_gltf(
     parse_gltf_scene(bytes, path, materials).map(|(mesh, _, report)| (mesh, report))
 }
 
-/// Reads the bytes of a `.gltf` or `.glb` file with its cameras, lights and animations. Other files
-/// that it names are searched beside `path`.
+/// Reads the bytes of a `.gltf` or `.glb` file into a welded mesh, with its cameras, lights and
+/// animations and a report. `path` names the file in messages; other files that it names are
+/// searched beside it.
 ///
 /// # Errors
-/// Those of [`parse_gltf`].
+/// The errors of [`parse_gltf`].
 pub fn parse_gltf_scene(
     bytes: &[u8],
     path: &Path,

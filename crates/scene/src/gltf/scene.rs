@@ -17,22 +17,23 @@ use glam::{DMat3, DMat4, DVec3, Vec3};
 use serde_json::Value;
 
 /// Views, lights and animations of a glTF file. Views and lights are in the order of its scene's
-/// nodes.
+/// nodes, depth first.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GltfScene {
-    /// One view for each perspective camera that a node of the scene places. Its name is that of
-    /// the node, or else of the camera, in small letters, digits and `_`; no two views have the
-    /// same name.
+    /// One view for each perspective camera that a node of the scene places. Its name is the
+    /// node's, or else the camera's, in small letters, digits and `_`; no two views have the same
+    /// name.
     pub views: Vec<View>,
-    /// Lights that nodes of the scene place and that light anything. Names are formed like those of
-    /// `views`.
+    /// One light for each light that a visible node of the scene places, except black lights and
+    /// those without power. Names are formed like those of `views`.
     pub lights: Vec<Light>,
-    /// Animations of the file's nodes.
+    /// Animations of the file's nodes, in file order.
     pub clips: Vec<Clip>,
     /// The node of each view, and of each light.
     nodes_of_views: Vec<usize>,
     nodes_of_lights: Vec<usize>,
-    /// One sentence for each camera or light that was left out, and for each value that was chosen.
+    /// One sentence for each camera, light or animation that was left out, and for each missing
+    /// value that was replaced by a default.
     pub remarks: Vec<String>,
 }
 

@@ -1,18 +1,19 @@
-//! How an OBJ file becomes a mesh.
+//! Options for reading an OBJ file.
 
 use crate::{material_use::MaterialUse, pattern::Pattern};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
-/// Which diagonal splits a quad, corners counted from the first; larger polygons are fanned from
-/// the same corner.
+/// Diagonal that splits a quad into two triangles. Larger polygons are split into a fan from the
+/// diagonal's first corner.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum QuadDiagonal {
-    /// (0, 1, 2), (0, 2, 3): what most importers do.
+    /// From corner 0 to corner 2: triangles (0, 1, 2) and (0, 2, 3). Most importers do this.
     #[default]
     FirstThird,
-    /// (1, 2, 3), (1, 3, 0): reproduces the dissertation's Sponza.
+    /// From corner 1 to corner 3: triangles (1, 2, 3) and (1, 3, 0). This reproduces the
+    /// dissertation's Sponza.
     SecondFourth,
 }
 
@@ -26,15 +27,16 @@ impl QuadDiagonal {
     }
 }
 
-/// Treatment of a polygon that the fan from its corner does not fit.
+/// Treatment of a concave polygon whose fan of triangles would cover area outside it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Concave {
-    /// It is cut as its outline is, and refused where that crosses itself.
+    /// The polygon is cut into triangles within its outline. A polygon whose outline crosses itself
+    /// is an error.
     #[default]
     Cut,
-    /// It is fanned all the same and gains area, as many importers have it: the dissertation's
-    /// Sponza has 231 such quads.
+    /// The polygon is split into the fan nevertheless and gains area, as many importers do it: the
+    /// dissertation's Sponza has 231 such quads.
     Fan,
 }
 
@@ -42,14 +44,16 @@ pub enum Concave {
 #[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum ObjMaterials {
-    /// Nothing: files of materials and textures need not be there.
+    /// Nothing is read: files of materials and textures may be missing.
     Ignore,
-    /// Colours, for pictures. Every surface is opaque, and what cannot be read is a warning.
+    /// Only colours are read, for pictures. Every surface is opaque. A colour that cannot be read
+    /// is a warning in the import report.
     Color,
-    /// Colours and masks (`map_d`, `d`); masks must be there.
+    /// Colours and masks (`map_d`, `d`) are read. A mask that cannot be read is an error.
     #[default]
     All,
-    /// Nothing but names: these materials get masks that are made here.
+    /// Only the names of materials are read: each material in this table gets a generated mask with
+    /// its pattern, and all others are opaque.
     Made(BTreeMap<String, Pattern>),
 }
 
@@ -66,9 +70,10 @@ impl From<MaterialUse> for ObjMaterials {
 /// Options for reading an OBJ file.
 #[derive(Clone, Debug, Default)]
 pub struct ObjOptions {
-    /// Names of groups or objects that are left out (the whole text after `g` or `o`).
+    /// Names of groups or objects that are left out: the whole text after `g` or `o`. A name that
+    /// the file does not have is an error.
     pub leave_out: Vec<String>,
-    /// Diagonal that splits a quad.
+    /// Diagonal that splits a quad into triangles.
     pub quads: QuadDiagonal,
     /// Treatment of concave polygons.
     pub concave: Concave,

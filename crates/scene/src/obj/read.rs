@@ -22,12 +22,12 @@ const OBJ_FILE: Limit = Limit {
     way_out: "split it, or leave groups out of it",
 };
 
-/// Reads an OBJ file.
+/// Reads an OBJ file into a welded mesh, with a report of changes and ignored parts.
 ///
 /// # Errors
-/// [`SceneError`] with file, line, group and face number: unreadable or damaged files, faces that
-/// name missing or non-finite vertices, a group to be left out that does not exist, a file without
-/// triangles.
+/// [`SceneError`] with file, line, group and face number: an unreadable or damaged file, a face
+/// that names missing or non-finite vertices, a group to be left out that does not exist, a file
+/// without triangles.
 pub fn load_obj(path: &Path, options: &ObjOptions) -> Result<(Mesh, ImportReport), SceneError> {
     let bytes = OBJ_FILE.read(path).map_err(|reason| SceneError::Read {
         path: path.to_owned(),
@@ -36,11 +36,11 @@ pub fn load_obj(path: &Path, options: &ObjOptions) -> Result<(Mesh, ImportReport
     parse_obj(&bytes, path, options)
 }
 
-/// Reads the bytes of an OBJ file. Messages name `path`, and files of materials are searched beside
-/// it.
+/// Reads the bytes of an OBJ file into a welded mesh, with a report of changes and ignored parts.
+/// `path` names the file in messages; files of materials are searched beside it.
 ///
 /// # Errors
-/// Those of [`load_obj`], except for reading the file itself.
+/// The errors of [`load_obj`], except for errors of reading the file itself.
 pub fn parse_obj(
     bytes: &[u8],
     path: &Path,

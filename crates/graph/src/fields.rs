@@ -106,8 +106,9 @@ impl<'de> Deserialize<'de> for Expr {
     }
 }
 
-/// Value of a pass kind's field that takes one word of a fixed set, of type `T`: the word itself,
-/// or an expression that yields it. [`Lowering::word`](crate::Lowering::word) returns the word.
+/// Value of a field of a [`PassKind`](crate::PassKind) that takes one word of a fixed set, the enum
+/// `T`: the word itself, or an expression that yields the word.
+/// [`Lowering::word`](crate::Lowering::word) returns the word.
 #[derive(Clone, Debug)]
 pub enum Chosen<T> {
     /// A word, written without quotes.

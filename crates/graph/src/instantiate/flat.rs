@@ -17,17 +17,19 @@ use crate::{
 };
 use std::{collections::BTreeSet, ops::Range};
 
-/// Frames in which a pass runs.
+/// Frames in which a pass runs, as its document gives them in `run: …`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Run {
     /// In every frame.
     Always,
-    /// In the first frame after planning.
+    /// In the first frame that the executor runs after planning.
     Once,
-    /// In frames where content that the pass reads has changed.
+    /// In the first frame, and in frames where content that the pass reads has changed since the
+    /// pass last ran.
     OnChange,
-    /// In every frame of a plan for which an expression is true, in none otherwise. Holds the text
-    /// of the expression; equal texts are equal conditions.
+    /// In every frame if an expression over params is true in the plan, in no frame otherwise.
+    /// Holds the text of the expression; equal texts are equal conditions.
+    /// [`LinkedPass::enabled`](crate::LinkedPass::enabled) holds its value.
     When(String),
 }
 

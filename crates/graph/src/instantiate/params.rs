@@ -16,18 +16,20 @@ use crate::{
 };
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Entry of a document's section `claims`: a property that the document claims for itself. The
-/// graph does not know its meaning; a caller, such as a test, checks it.
+/// Entry of a document's section `claims`: a property that the document's author promises of the
+/// outputs, under a condition. This crate does not know its meaning; a host, such as a test, checks
+/// the property.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Claim {
-    /// Name of the property; the caller knows its meaning.
+    /// Name of the property, as the document writes it.
     pub name: String,
-    /// Condition under which the claim is made, as the document writes it; empty without a
+    /// Text of the condition under which the document promises the property; empty without a
     /// condition.
     pub condition: String,
-    /// Reason for which the property holds, from the document; may be empty.
+    /// Reason that the document gives; may be empty.
     pub because: String,
-    /// True if the condition holds for the given params, or if there is none.
+    /// True if the condition is true for the params given to
+    /// [`Graph::claims`](crate::Graph::claims), or the entry has no condition.
     pub holds: bool,
 }
 

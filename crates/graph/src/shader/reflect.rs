@@ -187,7 +187,7 @@ impl Shader {
         &self.module
     }
 
-    /// Returns the path of the shader's own file; imported modules have files of their own.
+    /// Returns the path of the shader's file, not of the modules that it imports.
     pub fn file(&self) -> &str {
         &self.source.file.name
     }

@@ -43,7 +43,7 @@ impl<'de> Deserialize<'de> for Name {
     }
 }
 
-/// Expressions and references of a body that only its kind understands.
+/// Expressions and references in the fields of a pass kind, whose meaning only the kind knows.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Mentions {
     pub exprs: Vec<Expr>,
@@ -55,7 +55,8 @@ thread_local! {
 }
 
 impl Mentions {
-    /// Takes the expressions and references that were read on this thread since the last call.
+    /// Returns the expressions and references that were deserialised on this thread since the last
+    /// call.
     pub fn take() -> Self {
         MENTIONS.take()
     }

@@ -20,9 +20,9 @@ pub struct Panicked {
 }
 
 impl Panicked {
-    /// Returns the text for [`Diagnostic::help`](crate::diagnostics::Diagnostic::help): it tells
-    /// the author of the file that was read that the library is at fault, and to write the file
-    /// differently.
+    /// Returns the text for the field `help` of a [`Diagnostic`](crate::diagnostics::Diagnostic):
+    /// it tells the author of the file that was read that the library is at fault, and to write the
+    /// file differently.
     pub fn way_out(&self) -> String {
         format!(
             "this is a mistake of the library ({}), which may take the same written differently",

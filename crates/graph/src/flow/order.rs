@@ -36,6 +36,7 @@ pub type Dependences = BTreeMap<(PassId, PassId, Hazard), BTreeSet<ResourceId>>;
 /// to the later pass.
 #[derive(Debug)]
 pub(crate) struct Order {
+    /// The edges between passes, each with its reason.
     pub edges: DiGraph<(), Hazard>,
     /// The edges with the resources behind them, for drawings.
     pub dependences: Dependences,

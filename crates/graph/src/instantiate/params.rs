@@ -44,7 +44,8 @@ pub(crate) struct Params {
 pub(crate) struct BoundParam {
     pub param: Param,
     pub value: Reported<ParamValue>,
-    /// Param of the root document whose value this is, unchanged; `None` if it is not one.
+    /// Name of the param of the root document from which the value is taken unchanged; `None` if
+    /// there is no such param.
     pub root: Option<String>,
     /// Params of the root document that the value depends on.
     pub roots: BTreeSet<String>,
@@ -66,14 +67,14 @@ impl Params {
             .find(|bound| bound.param.name.value == name)
     }
 
-    /// Finds a param by its spelling in shaders.
+    /// Returns the param with this WGSL identifier; `None` if there is no such param.
     pub fn wgsl_name(&self, identifier: &str) -> Option<&BoundParam> {
         let wgsl_name = |bound: &&BoundParam| wgsl_identifier(&bound.param.name) == identifier;
         self.bound(identifier)
             .or_else(|| self.list.iter().find(wgsl_name))
     }
 
-    /// Returns the values without mistakes, by name.
+    /// Returns the values of all params by name, except those whose value has a mistake.
     pub fn values(&self) -> BTreeMap<String, ParamValue> {
         let values = self.list.iter().filter_map(|bound| {
             let value = bound.value.clone().ok()?;
@@ -111,7 +112,8 @@ impl Params {
     }
 }
 
-/// Viewport and features, which defaults and claims may ask for besides params.
+/// Viewport (width and height in pixels) and device features, which expressions in defaults and
+/// claims can use besides params.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Surroundings {
     pub viewport: [u32; 2],
@@ -215,9 +217,10 @@ pub(crate) struct SetParam {
 
 /// Settings from which the params of an included document get their values.
 pub(crate) struct Given<'a> {
-    /// Name under which the outer document exposes each param: with the include's name in front, if
-    /// it has one.
+    /// Name under which the including document exposes each exposed param of the included one, by
+    /// name there: with the include's name in front, if the include has a name.
     pub exposed: BTreeMap<&'a str, String>,
+    /// Params of the including document.
     pub outer: &'a Params,
     /// Place of the include.
     pub span: &'a Span,

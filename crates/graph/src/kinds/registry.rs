@@ -16,7 +16,9 @@ use std::{fmt, sync::Arc};
 /// Function that reads the fields of an entry as the body of a pass kind.
 type Parse = fn(&[Field], &Span) -> Result<Arc<dyn PassKind>, Diagnostic>;
 
+/// A pass kind with its tag.
 pub(crate) struct Kind {
+    /// Tag, as documents write it.
     pub name: &'static str,
     pub parse: Parse,
     /// Function that makes the schema of the kind's fields; `None` if none was given.

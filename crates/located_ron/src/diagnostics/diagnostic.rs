@@ -97,8 +97,8 @@ impl Diagnostic {
         }
     }
 
-    /// Appends a hint how to mend the mistake to [`help`](field@Self::help), on a new line after
-    /// earlier hints.
+    /// Appends a hint how to mend the mistake to the field `help`, on a new line after earlier
+    /// hints.
     #[must_use]
     pub fn help(mut self, text: impl Into<String>) -> Self {
         let text = text.into();
@@ -109,7 +109,7 @@ impl Diagnostic {
         self
     }
 
-    /// Appends a hint how to mend the mistake, as [`help`](Self::help()) does; `None` adds nothing.
+    /// Appends a hint how to mend the mistake, as the method `help` does; `None` adds nothing.
     #[must_use]
     pub fn help_any(self, text: Option<impl Into<String>>) -> Self {
         text.into_iter().fold(self, Self::help)

@@ -21,8 +21,8 @@ pub enum When {
     Never,
     /// In the first frame that the executor runs after planning.
     Once,
-    /// In the first frame, and in frames where content that the pass reads has changed since the
-    /// pass last ran.
+    /// In the first frame, and in frames where content that the pass reads, params included, has
+    /// changed since the pass last ran.
     OnChange,
     /// In frames where another pass of its group (see [`Conditions`]) runs: the pass copies a
     /// material for a capture between two passes that write the material.

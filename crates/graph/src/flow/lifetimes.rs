@@ -15,9 +15,9 @@ pub type Lifetimes = BTreeMap<ResourceId, Lifetime>;
 /// First and last use of one resource in a schedule, and the usages to create it with.
 #[derive(Clone, Debug)]
 pub struct Lifetime {
-    /// Usages that the resource must be created with if it is a texture; empty for a buffer.
+    /// Usages that a texture must be created with; without meaning if the resource is a buffer.
     pub textures: wgt::TextureUsages,
-    /// Usages that the resource must be created with if it is a buffer; empty for a texture.
+    /// Usages that a buffer must be created with; without meaning if the resource is a texture.
     pub buffers: wgt::BufferUsages,
     /// Index in [`Schedule::passes`](crate::Schedule::passes) of the first pass that uses the
     /// resource.

@@ -24,8 +24,8 @@ pub enum Run {
     Always,
     /// In the first frame that the executor runs after planning.
     Once,
-    /// In the first frame, and in frames where content that the pass reads has changed since the
-    /// pass last ran.
+    /// In the first frame, and in frames where content that the pass reads, params included, has
+    /// changed since the pass last ran.
     OnChange,
     /// In every frame if an expression over params is true in the plan, in no frame otherwise.
     /// Holds the text of the expression; equal texts are equal conditions.

@@ -12,7 +12,8 @@ pub(crate) const RESERVED: [&str; 13] = [
     "previous", "mip", "viewport",
 ];
 
-/// A name in a document: `[a-z][a-z0-9_]*`, at most 64 characters, without `__`. Cheap to clone.
+/// A name of a material, param, pass or other declaration in a document: `[a-z][a-z0-9_]*`, at most
+/// 64 characters, without `__`. Cheap to clone.
 #[derive(Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Name(Arc<str>);
 

@@ -58,7 +58,7 @@ impl LinkedPass {
     }
 }
 
-/// One use of a resource, or of a part of it, by a step.
+/// One use of a resource, or of a part of it, by a step: a read, a write or both.
 #[derive(Clone, Debug)]
 pub struct Access {
     /// Id of the resource that is used.
@@ -74,7 +74,7 @@ pub struct Access {
     /// True if a change of the resource's content is a reason for a pass with [`Run::OnChange`] to
     /// run. False only for the uniform `frame` if the shader reads just its flags.
     pub triggers: bool,
-    /// Usage that the resource must be created with.
+    /// Usage that the resource must be created with for this use.
     pub usage: Usage,
     /// Place in the document or shader that causes the use, for messages.
     pub span: Span,
@@ -115,7 +115,7 @@ pub struct Attachment {
     pub target: Target,
     /// Format of the texture.
     pub format: wgt::TextureFormat,
-    /// Number of samples of each texel.
+    /// Number of samples of each texel; 1 without multisampling.
     pub samples: u32,
 }
 

@@ -29,7 +29,7 @@ pub struct Diagnostic {
     pub code: Code,
     /// Severity: error or warning.
     pub severity: Severity,
-    /// Message: one sentence without a full stop that names the thing that is wrong.
+    /// Message, which names the thing that is wrong: "unknown field `hieght`".
     pub message: String,
     /// Places that the mistake is about. The first is the mistake's own place; the others explain
     /// it. Empty if the mistake has no place.
@@ -122,8 +122,8 @@ impl Diagnostic {
         self.help_any(suggestion(word, known))
     }
 
-    /// Returns the first place and the message as one line, `FILE:LINE:COLUMN: MESSAGE`; without a
-    /// place only the message.
+    /// Returns the first place and the message as `FILE:LINE:COLUMN: MESSAGE`, without the help.
+    /// Without a place it is only the message.
     pub fn brief(&self) -> String {
         match self.labels.first() {
             Some(label) => format!("{}: {}", label.span, self.message),

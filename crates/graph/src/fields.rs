@@ -43,7 +43,7 @@ impl<'de> Deserialize<'de> for Name {
     }
 }
 
-/// Expressions and references of a body that only its kind understands.
+/// Expressions and references in the fields of a pass kind, whose meaning only the kind knows.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Mentions {
     pub exprs: Vec<Expr>,
@@ -55,7 +55,8 @@ thread_local! {
 }
 
 impl Mentions {
-    /// Takes the expressions and references that were read on this thread since the last call.
+    /// Returns the expressions and references that were deserialised on this thread since the last
+    /// call.
     pub fn take() -> Self {
         MENTIONS.take()
     }
@@ -106,8 +107,9 @@ impl<'de> Deserialize<'de> for Expr {
     }
 }
 
-/// Value of a pass kind's field that takes one word of a fixed set, of type `T`: the word itself,
-/// or an expression that yields it. [`Lowering::word`](crate::Lowering::word) returns the word.
+/// Value of a field of a [`PassKind`](crate::PassKind) that takes one word of a fixed set, the enum
+/// `T`: the word itself, or an expression that yields the word.
+/// [`Lowering::word`](crate::Lowering::word) returns the word.
 #[derive(Clone, Debug)]
 pub enum Chosen<T> {
     /// A word, written without quotes.

@@ -17,16 +17,17 @@ use crate::{
 };
 use std::{collections::BTreeMap, sync::Arc};
 
-/// A graph loaded from a document: its materials and passes, with every shader that the passes
-/// name. Loading touches no GPU.
+/// A render graph loaded from a document (a RON file): its materials (textures, buffers and
+/// samplers) and passes, with every shader that the passes name. Loading touches no GPU.
 ///
 /// Clones share their content and are cheap.
 #[derive(Clone, Debug)]
 pub struct Graph(Arc<Loaded>);
 
 impl Graph {
-    /// Loads the document at `path` and every shader that it names from `sources`, and parses and
-    /// validates all WGSL. `registry` holds the pass kinds that the document may use.
+    /// Loads the document at `path` in `sources` and every shader that it names, and parses and
+    /// validates all WGSL. `registry` holds the pass kinds that the document may use, such as
+    /// `Raster`.
     ///
     /// # Errors
     /// All mistakes in the document and its shaders that can be found without sizes and a device.
@@ -38,13 +39,14 @@ impl Graph {
         Self::load_over(path, registry, sources, &BTreeMap::new())
     }
 
-    /// Loads the document at `path` as [`Graph::load`] does, with other documents in place of its
-    /// open includes (`Include(open: "over", …)`). `chosen` maps the name of an open include
-    /// ([`Graph::openings`]) to the path of the document to include instead.
+    /// Loads the document at `path` as [`Graph::load`] does, but with other documents in its open
+    /// includes. `chosen` maps the name of an open include (`over` in `Include(open: "over", …)`,
+    /// see [`Graph::openings`]) to the path in `sources` of the document to include there. An open
+    /// include that `chosen` does not name keeps its document.
     ///
     /// # Errors
     /// The mistakes that [`Graph::load`] reports, and a name in `chosen` that no open include of
-    /// the document has.
+    /// the document at `path` has.
     pub fn load_over(
         path: &str,
         registry: &Registry,
@@ -59,8 +61,9 @@ impl Graph {
         }
     }
 
-    /// Plans the graph: resolves names and sizes, links shaders, orders the passes and drops those
-    /// that no output needs. Touches no GPU.
+    /// Plans the graph for a viewport, params and device: resolves names and sizes, connects the
+    /// shaders' bindings with resources, orders the passes and drops those that no output needs.
+    /// Touches no GPU.
     ///
     /// # Errors
     /// All mistakes found while planning, each with its place in a document or shader.
@@ -68,15 +71,20 @@ impl Graph {
         Plan::new(&self.0, request)
     }
 
-    /// Loads and plans the document at `path` and reports all mistakes at once. The readable part
-    /// of a document is planned even if another part is wrong. The graph is also planned once for
-    /// each other value of each param and feature in an `if`, changed one at a time. For an input
-    /// that the request does not import, the check assumes the texture, buffer or sampler that the
-    /// document asks for.
+    /// Loads and plans the document at `path` in `sources` and reports all mistakes at once. The
+    /// readable part of a document is planned even if another part is wrong. For an input that the
+    /// request does not import, the check assumes the texture, buffer or sampler that the document
+    /// asks for.
+    ///
+    /// If this finds no mistake, the graph is planned again for other values of each param that an
+    /// `if` depends on, one at a time: each word, true and false, or `min` and `max`; and with and
+    /// without each device feature that an `if` asks for. Returns the graph, and the plan for
+    /// `request` itself.
     ///
     /// # Errors
     /// All mistakes of loading and planning. Reads before writes, and cycles, are only reported for
-    /// passes above the first pass with a mistake.
+    /// passes above the first pass with a mistake. Limits, sizes, memory, features and lights are
+    /// not checked for the other values of params and features.
     pub fn check(
         path: &str,
         registry: &Registry,
@@ -89,13 +97,14 @@ impl Graph {
         Ok((Self(loaded), plan))
     }
 
-    /// Returns the document at `path` as one text, with everything that it extends merged in. A
-    /// comment at the end of a line names the file and line that it comes from. The text loads as
-    /// the document does. Params, values, inputs and materials that nothing uses are left out,
-    /// unless the document has mistakes.
+    /// Returns the document at `path` as RON text, with the documents that it extends merged in;
+    /// included documents stay separate. A comment at the end of a line names the file and line of
+    /// its origin. The text loads as the same graph. Params, values, inputs and materials that
+    /// nothing uses are left out, unless the document has mistakes.
     ///
     /// # Errors
-    /// Mistakes in the syntax of one of the documents, or in an edit that one makes to another.
+    /// A document that is missing, a mistake in the syntax of a document, or in an edit that a
+    /// document makes to the document that it extends.
     pub fn flat(
         path: &str,
         registry: &Registry,
@@ -133,62 +142,67 @@ impl Graph {
         &self.0.document.description
     }
 
-    /// Returns the params of the graph: those that the document declares, then those of included
-    /// documents that it exposes.
+    /// Returns the params of the graph: first those that the document declares, then those that it
+    /// exposes from the documents that it includes, each in the order of the document.
     pub fn params(&self) -> &[Param] {
         &self.0.document.params
     }
 
-    /// Returns the names of the outputs that are textures or buffers, those on request and those
-    /// whose conditions are false included.
+    /// Returns the names of all outputs that are textures or buffers, in the order of the document.
+    /// Outputs marked `on_request`, and outputs whose `if` may be false, are in the list, too.
     pub fn outputs(&self) -> Vec<&str> {
         let outputs = self.0.document.material_outputs();
         outputs.map(|output| output.name.as_str()).collect()
     }
 
-    /// Returns the names of the outputs that a host gets without naming them: those of
-    /// [`Graph::outputs`] that are not `on_request`.
+    /// Returns the names of the outputs that a plan computes if its request has no list of
+    /// [`outputs`](crate::Request::outputs): those in [`Graph::outputs`] that are not marked
+    /// `on_request`.
     pub fn default_outputs(&self) -> Vec<&str> {
         let outputs = self.0.document.material_outputs();
         let outputs = outputs.filter(|output| !output.on_request);
         outputs.map(|output| output.name.as_str()).collect()
     }
 
-    /// Returns the words of the document's section `lights`: the kinds of light that the method
-    /// takes, each with its place. The graph does not know their meaning. If the section is empty,
-    /// the method takes the first kind that the provider knows.
+    /// Returns the words of the document's section `lights`, each with its place: the kinds of
+    /// light that the graph can be planned with, such as `spot`. If there are none, the graph takes
+    /// the first kind in [`ProvidedKind::words`](crate::ProvidedKind::words) alone.
     pub fn lights(&self) -> impl Iterator<Item = &Located<Name>> {
         self.0.document.lights.iter()
     }
 
-    /// Returns the words of the document's section `proven_on`: names of backends that lack part of
-    /// WebGPU ([`PartialBackend`](crate::PartialBackend)), on which the graph is known to be right.
+    /// Returns the words of the document's section `proven_on`, each with its place: names of
+    /// backends that lack part of WebGPU ([`PartialBackend`](crate::PartialBackend)), on which the
+    /// graph may run because its author has checked its outputs there.
     pub fn proven_on(&self) -> impl Iterator<Item = &Located<Name>> {
         self.0.document.proven_on.iter()
     }
 
-    /// Returns the open includes of the document, which [`Graph::load_over`] can replace: pairs of
-    /// the include's name and the path of the document that it includes now.
+    /// Returns the open includes of the document (`Include(open: "over", …)`), whose documents
+    /// [`Graph::load_over`] can replace: pairs of the name in the field `open` and the path of the
+    /// included document. The path is the one given to `load_over`, or else the one in the
+    /// document.
     pub fn openings(&self) -> impl Iterator<Item = (&str, &str)> {
         let openings = self.0.document.openings();
         openings.map(|(name, include)| (name.as_str(), include.graph.as_str()))
     }
 
-    /// Returns the names of the document's inputs, for which the host must put an import into
-    /// [`PlanRequest::imports`](crate::Request::imports).
+    /// Returns the names of the document's inputs, in its order. For each of them the host must put
+    /// an import into [`PlanRequest::imports`](crate::Request::imports).
     pub fn inputs(&self) -> Vec<&str> {
         let inputs = self.0.document.inputs.iter();
         inputs.map(|input| input.name.as_str()).collect()
     }
 
-    /// Returns every device feature that the document or an included document requires, asks for by
-    /// `has`, or can make use of in a pass. A device with all of these that its adapter offers runs
-    /// the graph as well as that adapter can.
+    /// Returns every device feature that the document or an included document requires, tests by
+    /// `has(…)`, or uses in a pass if the device has it. A device that is created with all of these
+    /// features that the adapter offers runs the graph as well as the adapter can.
     pub fn features(&self) -> wgt::Features {
         self.0.features()
     }
 
-    /// Returns the warnings that loading the document gave.
+    /// Returns the warnings that loading the document gave, such as those about unused materials;
+    /// empty without warnings.
     pub fn warnings(&self) -> &[Diagnostic] {
         &self.0.warnings
     }
@@ -208,11 +222,12 @@ impl Graph {
     }
 
     /// Returns the value of every param by name: the value in `asked`, or else the param's default
-    /// for a viewport of this width and height in pixels on a device with these features.
+    /// ([`Param::default`]) for a viewport of this width and height in pixels on a device with
+    /// these features.
     ///
     /// # Errors
-    /// If `asked` names a param that the graph does not have, or a value has the wrong type or is
-    /// out of range.
+    /// If `asked` names a param that the graph does not have, a value has the wrong type or is out
+    /// of range, or a default cannot be evaluated.
     pub fn values(
         &self,
         asked: &BTreeMap<String, ParamValue>,
@@ -227,9 +242,9 @@ impl Graph {
         }
     }
 
-    /// Returns the entries of the document's section `claims`, each with the value of its
-    /// condition. Params have the values in `asked` or else their defaults for a viewport of this
-    /// width and height in pixels on a device with these features.
+    /// Returns the entries of the document's section `claims` in its order, each with the value of
+    /// its condition ([`Claim::holds`]). Params have the values in `asked` or else their defaults
+    /// for a viewport of this width and height in pixels on a device with these features.
     ///
     /// # Errors
     /// If a value in `asked` does not fit its param, or a condition cannot be evaluated.

@@ -1,4 +1,5 @@
-//! Params: the typed values that a document takes from outside.
+//! Params: the typed settings that a document takes from its host or from the document that
+//! includes it.
 
 use crate::{
     diagnostics::suggest::{likeness, suggestion},
@@ -16,14 +17,15 @@ use std::{collections::BTreeMap, fmt, sync::Arc};
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ParamError {
-    /// The graph has no such param.
+    /// The graph has no param of this name.
     #[error("`{graph}` has no param `{name}`{hint}")]
     Unknown {
         /// Path of the graph's document.
         graph: String,
         /// Name that was asked for.
         name: String,
-        /// End of the message: a suggestion, or the list of the graph's params.
+        /// End of the message, with the punctuation before it: a suggestion or list of the graph's
+        /// params, or a note that the graph has none.
         hint: String,
     },
     /// The value has the wrong type or is out of range.
@@ -55,7 +57,7 @@ pub(crate) fn find<'p>(
     })
 }
 
-/// Type of a param.
+/// Type of a [`Param`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ParamType {
     /// 32-bit float.
@@ -66,13 +68,13 @@ pub enum ParamType {
     U32,
     /// Boolean; a `u32` in WGSL, 0 or 1.
     Bool,
-    /// Two floats.
+    /// Two 32-bit floats.
     Vec2,
-    /// Three floats.
+    /// Three 32-bit floats.
     Vec3,
-    /// Four floats.
+    /// Four 32-bit floats.
     Vec4,
-    /// One of the given words; in WGSL a `u32`, the word's index in this list.
+    /// One of these words; in WGSL a `u32`, the index of the word in this list, counted from 0.
     Choice(Arc<[Name]>),
 }
 
@@ -111,8 +113,8 @@ impl fmt::Display for ParamType {
     }
 }
 
-/// Value of a param. Each variant belongs to the [`ParamType`] of the same name; `Vec` to all
-/// vectors.
+/// Value of a [`Param`]. Each variant belongs to the [`ParamType`] of the same name; `Vec` belongs
+/// to all vectors.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum ParamValue {
@@ -124,7 +126,7 @@ pub enum ParamValue {
     U32(u32),
     /// Boolean.
     Bool(bool),
-    /// Two to four floats, for `Vec2`, `Vec3` and `Vec4`.
+    /// Two to four 32-bit floats, for `Vec2`, `Vec3` and `Vec4`: x, y, z, w.
     Vec(Vec<f32>),
     /// A word of the param's [`ParamType::Choice`].
     Choice(String),
@@ -146,24 +148,33 @@ impl fmt::Display for ParamValue {
     }
 }
 
-/// A param that a document declares, or exposes of a document that it includes.
+/// A typed setting of a graph: a number, vector, bool or word that shaders and expressions read and
+/// the host sets in [`Request::params`](crate::Request::params). The document declares the param,
+/// or exposes it from a document that it includes.
 #[derive(Clone, Debug)]
 pub struct Param {
-    /// Name, as in `params.NAME` of a shader and `--set NAME=…`. A param that a named include
-    /// exposes has the include's name before it: `left.radius`.
+    /// Name, as in `params.NAME` of a shader and `--set NAME=…` on the command line, with its place
+    /// in the document. A param that a named include exposes has the include's name before it:
+    /// `left.radius`.
     pub name: Located<String>,
     /// Type of the param's values.
     pub ty: ParamType,
-    /// Value that the param has unless it is set; `None` if it must be set.
+    /// Expression for the value that the param has unless it is set; `None` if the document gives
+    /// none. A param of an included document must then be set by the include, or be a param of the
+    /// including document, too. A param of the loaded document that has no default and is not set
+    /// has its `min` or 1, false, or its first word.
     pub default: Option<Expr>,
-    /// Least value of a number, or of each component of a vector; `None` for no lower bound.
+    /// Least allowed value of a number, or of each component of a vector; `None` for no lower
+    /// bound.
     pub min: Option<f64>,
-    /// Greatest value of a number, or of each component of a vector; `None` for no upper bound.
+    /// Greatest allowed value of a number, or of each component of a vector; `None` for no upper
+    /// bound.
     pub max: Option<f64>,
     /// Description of the param's effect, as its document gives it; may be empty.
     pub description: String,
-    /// Words of a [`ParamType::Choice`] that `narrow` took away, each with the reason. They cannot
-    /// be set.
+    /// Words of a [`ParamType::Choice`] that cannot be set because the section `narrow` of a
+    /// document excludes them: each word with the reason that the document gives. Empty for other
+    /// types.
     pub refused: BTreeMap<String, String>,
 }
 
@@ -180,8 +191,8 @@ pub enum ParamFault {
 }
 
 impl Param {
-    /// Iterates over the words of a [`ParamType::Choice`] that may be set, without the refused
-    /// ones. Empty for every other type.
+    /// Iterates over the words of a [`ParamType::Choice`] that may be set, in its order, without
+    /// those in [`refused`](Self::refused). Empty for every other type.
     pub fn words(&self) -> impl Iterator<Item = &Name> {
         let words = match &self.ty {
             ParamType::Choice(words) => &words[..],
@@ -307,7 +318,8 @@ impl Param {
     /// `1,2,3`.
     ///
     /// # Errors
-    /// The expected type or range.
+    /// If the text is not a value of the param's type, or the value is out of range, not finite or
+    /// not an allowed word.
     pub fn parse(&self, text: &str) -> Result<ParamValue, ParamFault> {
         let wrong = || ParamFault::Type(self.ty.to_string());
         let scalar = |text: &str| {
@@ -347,10 +359,11 @@ impl Param {
         self.check(&value).map(|()| value)
     }
 
-    /// Checks that a value has the param's type and lies in its range.
+    /// Checks that a value has the param's type and lies in its range, the ends included, or is an
+    /// allowed word.
     ///
     /// # Errors
-    /// The expected type or range.
+    /// If the value has another type, or is out of range, not finite or not an allowed word.
     pub fn check(&self, value: &ParamValue) -> Result<(), ParamFault> {
         let numbers: Vec<f64> = match (&self.ty, value) {
             (ParamType::F32, ParamValue::F32(v)) => vec![f64::from(*v)],

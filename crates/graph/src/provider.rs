@@ -4,8 +4,8 @@
 use crate::{document::materials::Filter, provided_kind::ProvidedKind};
 use std::collections::BTreeMap;
 
-/// Source of descriptions of the resources that a graph does not make itself: scene buffers, camera
-/// and light uniforms, acceleration structures.
+/// Source of descriptions of the resources that the host's renderer makes and a graph only reads:
+/// scene buffers, camera and light uniforms, acceleration structures.
 ///
 /// Names have dots, such as `scene.positions`. A shader's global has underscores in their place:
 /// `scene_positions`.
@@ -27,10 +27,10 @@ pub struct Provided {
     /// Size in bytes of one item, or of the whole buffer for a uniform; 0 for an acceleration
     /// structure.
     pub stride: u64,
-    /// The ways in which shaders may bind the resource.
+    /// Ways in which shaders may bind the resource.
     pub binding: ProvidedBinding,
-    /// Kind of the resource, for those that come in several kinds and on which plans depend, such
-    /// as a light; `None` for all others.
+    /// Kind of a resource that comes in several kinds, such as the kind of a light; `None` for a
+    /// resource without kinds.
     pub kind: Option<ProvidedKind>,
 }
 
@@ -44,7 +44,7 @@ impl Provided {
     };
 }
 
-/// The ways in which shaders may bind a provided resource.
+/// Ways in which shaders may bind a provided resource ([`Provided`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProvidedBinding {
     /// As `var<uniform>`, the whole buffer.
@@ -59,7 +59,8 @@ pub enum ProvidedBinding {
 }
 
 impl ProvidedBinding {
-    /// Returns the usages to create the buffer with; empty for an acceleration structure.
+    /// Returns the usages that the buffer must be created with; empty for an acceleration
+    /// structure.
     pub fn usages(self) -> wgt::BufferUsages {
         match self {
             Self::Uniform => wgt::BufferUsages::UNIFORM,
@@ -70,8 +71,9 @@ impl ProvidedBinding {
     }
 }
 
-/// Description of a resource that the host hands over for an input of the root document. The
-/// resource has content before the first pass runs. A pass that writes it is never culled.
+/// Description of a texture, buffer or sampler that the host hands over for an input of the loaded
+/// document. The resource has content before the first pass runs. A pass that writes it is never
+/// culled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Import {
     /// A texture.
@@ -95,15 +97,15 @@ pub enum Import {
     Buffer {
         /// Size in bytes.
         bytes: u64,
-        /// Number of items; needed only if a pass is dispatched over the items or an expression
-        /// counts them.
+        /// Number of items; may be `None` unless a pass is dispatched over the items or an
+        /// expression asks for their `count`.
         items: Option<u64>,
         /// Usages that the buffer was created with.
         usage: wgt::BufferUsages,
     },
     /// A sampler.
     Sampler {
-        /// Filtering of the sampler.
+        /// Filter of the sampler.
         filter: Filter,
         /// True for a comparison sampler.
         compare: bool,
@@ -137,7 +139,7 @@ impl Describe for Described {
     }
 }
 
-/// A provider without resources, for graphs that need no scene.
+/// A provider ([`Describe`]) without resources, for graphs that need no scene, camera or light.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoProvider;
 

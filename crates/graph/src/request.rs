@@ -26,39 +26,42 @@ pub type PlanRequest<'a> = Request<&'a dyn Describe>;
 /// [`PlanRequest`], which callers use. A plan keeps a copy of its request with an owned provider.
 #[derive(Clone, Debug)]
 pub struct Request<P> {
-    /// Width and height of the viewport in pixels.
+    /// Width and height of the viewport in pixels, each at least 1. A texture without a `size` has
+    /// this size.
     pub viewport: [u32; 2],
-    /// Values of params by name. A param that is not listed has the document's default.
+    /// Values of params by name. A param that is not listed has its default
+    /// ([`Param::default`](crate::Param::default)).
     pub params: BTreeMap<String, ParamValue>,
-    /// Names of the outputs to compute. `None` means all that the document declares, without those
-    /// `on_request` that no capture names.
+    /// Names of the outputs to compute; the document must declare them. `None` means all that the
+    /// document declares, except those marked `on_request` that no capture names.
     pub outputs: Option<Vec<String>>,
-    /// Materials to read back in addition to the outputs.
+    /// Materials (textures and buffers) to read back in addition to the outputs.
     pub captures: Vec<Capture>,
     /// Limits of the device that will run the graph.
     pub limits: wgt::Limits,
     /// Features of the device that will run the graph.
     pub features: wgt::Features,
     /// The backend of the device, if it lacks part of WebGPU; `None` for any other. A graph that
-    /// does not list this backend in `proven_on` is refused. An executor refuses it too, so `None`
-    /// only delays the error.
+    /// does not list this backend in `proven_on` is refused. The executor, which runs the plan on a
+    /// device, refuses it too, so `None` only delays the error.
     pub partial_backend: Option<PartialBackend>,
     /// Most bytes that the graph's own textures and buffers may take together. A graph that takes
     /// more is refused before anything is allocated, with a table of the largest allocations.
     /// `None` sets no limit. (wgpu does not tell how much memory a device has.)
     pub memory_limit: Option<u64>,
-    /// Descriptions of the textures, buffers and samplers that the host hands over, by the name of
-    /// the root document's input.
+    /// Descriptions of the textures, buffers and samplers that the host hands over, each under the
+    /// name of an input of the loaded document ([`Graph::inputs`](crate::Graph::inputs)).
     pub imports: BTreeMap<String, Import>,
-    /// Number of items or layers that growing buffers and textures (`grow`) need, by full name of
-    /// the material. Each is made that large, up to its `max`. To keep grown sizes when a graph is
-    /// loaded again, pass the result of [`Plan::grown`].
+    /// Number of items that growing buffers (with `grow`) need, or of layers that growing textures
+    /// need, by full name of the material. Each is made at least that large, but not larger than
+    /// its `max`. To keep grown sizes when a graph is loaded again, pass the result of
+    /// [`Plan::grown`].
     ///
     /// [`Plan::grown`]: crate::Plan::grown
     pub grown: BTreeMap<String, u64>,
-    /// Byte that memory is filled with before a resource is first used in a frame; `None` fills
-    /// nothing. A graph whose outputs change with this byte reads memory that it has not written.
-    /// Filling costs time; it is meant for finding mistakes.
+    /// Byte that the memory of a resource is filled with before its first use in a frame; `None`
+    /// fills nothing. A graph whose outputs change with this byte reads memory that it has not
+    /// written. Filling costs time; it is meant for finding mistakes.
     pub poison: Option<u8>,
     /// True if the device that will run the graph is not known. Exceeding `limits` and `features`
     /// is then a warning instead of an error.
@@ -122,11 +125,12 @@ impl<P> Request<P> {
 /// A material whose content is to be read back after a frame.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Capture {
-    /// Full name of a material, or a part of one such as `maps[2]`. Without `after` also the name
-    /// of an output; with `after` also a provided buffer.
+    /// Full name of a material (`left.depth` for the material `depth` of the include `left`), or a
+    /// part of one, such as `maps[2]`. Without `after` also the name of an output; with `after`
+    /// also the name of a provided buffer.
     pub material: String,
-    /// Full name of the pass after which the content is captured; `None` captures it at the end of
-    /// the frame.
+    /// Full name of the pass after which the content is captured, as in
+    /// [`PassSummary::name`](crate::PassSummary::name); `None` captures it at the end of the frame.
     pub after: Option<String>,
 }
 

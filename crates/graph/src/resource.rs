@@ -8,7 +8,7 @@ use crate::{
 };
 use std::{ops::Range, sync::Arc};
 
-/// Index of a resource in [`Plan::resources`](crate::Plan::resources).
+/// Id of a [`Resource`] of one plan: its index in [`Plan::resources`](crate::Plan::resources).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ResourceId(pub(crate) usize);
 
@@ -19,21 +19,25 @@ impl ResourceId {
     }
 }
 
-/// A texture, buffer, sampler, acceleration structure or uniform that passes may use.
+/// A texture, buffer, sampler or acceleration structure of a plan that passes may use, or its
+/// uniform `frame`.
 #[derive(Clone, Debug)]
 pub struct Resource {
-    /// Full name: for a material of a named include with the include's name in front, `left.depth`.
+    /// Full name: the name in the document; for a material of a named include, with the include's
+    /// name in front: `left.depth`.
     pub name: String,
-    /// Place of the declaration in a document; `None` for provided resources and for a pass's own
-    /// buffers.
+    /// Place of the declaration in a document; `None` for a resource that no document declares,
+    /// such as a provided one or a buffer that only one pass uses.
     pub declared: Option<Span>,
     /// Kind of the resource, with its description.
     pub kind: ResourceKind,
     /// Origin of the content: the graph, the document, the host, or the frame before.
     pub origin: Origin,
-    /// Growth of the buffer or texture between frames; `None` if its size is fixed.
+    /// Growth of the number of items of a buffer, or of layers of a texture, between frames; `None`
+    /// if the number is fixed.
     pub growth: Option<Growth>,
-    /// True if the content stays from frame to frame until a pass overwrites it (`keep: true`).
+    /// True if the content stays from frame to frame until a pass overwrites it (`keep: true` in
+    /// the document).
     pub keep: bool,
 }
 
@@ -60,7 +64,8 @@ pub enum Origin {
     Constant,
     /// The host: the resource is imported or provided, and has content before the first pass.
     Host,
-    /// The frame before: the content that this other resource had at the end of that frame.
+    /// The frame before: this resource holds the content that the resource with this id had at the
+    /// end of that frame (`.previous` in documents).
     Previous(ResourceId),
 }
 
@@ -73,17 +78,17 @@ pub enum ResourceKind {
     Buffer(Buffer),
     /// A sampler.
     Sampler(Sampler),
-    /// A buffer that the provider builds later, by its description.
+    /// A buffer that the host's provider makes, by its description.
     Provided(Provided),
-    /// An acceleration structure that the provider builds.
+    /// An acceleration structure that the host's provider makes.
     AccelerationStructure,
-    /// The uniform `frame`, which the executor fills: index, seconds and flags of the frame
-    /// (`shared/frame.wgsl`).
+    /// The uniform `frame`, which the executor fills before each frame: index, seconds and flags
+    /// ([`FRAME_BYTES`], `shared/frame.wgsl`).
     Frame,
 }
 
-/// Size in bytes of the uniform `frame`: index `u32`, seconds `f32`, the flags `changed_scene`,
-/// `changed_light` and `fresh` as a `u32` each, then padding.
+/// Size in bytes of the uniform `frame`: the frame's index as `u32`, the seconds as `f32`, the
+/// flags `changed_scene`, `changed_light` and `fresh` as a `u32` each, then padding.
 pub const FRAME_BYTES: u64 = 32;
 
 /// Size in bytes of index and seconds, which stand at the start of the uniform `frame`.
@@ -126,7 +131,7 @@ pub struct Texture {
     pub format: wgt::TextureFormat,
     /// Width and height of mip 0 in texels.
     pub size: [u32; 2],
-    /// Number of array layers, or of slices of mip 0 of a 3D texture.
+    /// Number of array layers, or of slices of mip 0 of a 3D texture; 1 for a plain 2D texture.
     pub layers: u32,
     /// True for a 3D texture, whose `layers` are slices.
     pub is_3d: bool,
@@ -134,18 +139,19 @@ pub struct Texture {
     pub mips: u32,
     /// Number of samples of each texel; 1 without multisampling.
     pub samples: u32,
-    /// Picture that the document fills the texture with; `None` without a picture.
+    /// Picture that the document fills the texture with (`file: …`); `None` for a texture without a
+    /// picture.
     pub picture: Option<Picture>,
 }
 
 impl Texture {
-    /// Returns the width and height of a mip level in texels.
+    /// Returns the width and height in texels of the mip level `mip`, counted from 0.
     pub fn mip_size(&self, mip: u32) -> [u32; 2] {
         self.size.map(|edge| (edge >> mip).max(1))
     }
 
-    /// Returns the number of layers of a mip level. An array has the same layers in every mip; the
-    /// slices of a 3D texture are halved with each mip.
+    /// Returns the number of layers, or of slices of a 3D texture, of the mip level `mip`. An array
+    /// has the same layers in every mip; the slices of a 3D texture are halved with each mip.
     pub fn mip_layers(&self, mip: u32) -> u32 {
         if self.is_3d {
             (self.layers >> mip).max(1)
@@ -170,7 +176,7 @@ impl Texture {
         (0..self.mips).map(mip).fold(0, u64::saturating_add)
     }
 
-    /// Returns the range of all mips and all layers.
+    /// Returns the range of all mips, all layers and all aspects.
     pub fn whole(&self) -> SubresourceRange {
         SubresourceRange {
             mips: 0..self.mips,
@@ -183,8 +189,8 @@ impl Texture {
 /// Description of a buffer.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Buffer {
-    /// Number of items of the buffer's runtime-sized array; `None` if the document does not give
-    /// it.
+    /// Number of items of the buffer's runtime-sized array; `None` if the document gives none
+    /// (`count: …`), because shaders declare the buffer with a fixed size.
     pub count: Option<u64>,
     /// Distance in bytes from one item to the next; 0 before linking, and if no shader declares the
     /// buffer as a runtime-sized array.
@@ -192,8 +198,8 @@ pub struct Buffer {
     /// Size in bytes. Before linking it is 0, because item layouts come from WGSL, except for an
     /// import.
     pub bytes: u64,
-    /// Content that stands in the document: a list of items, each a list of its numbers; `None`
-    /// without such content. The bytes are laid out when a shader's type is known.
+    /// Content that the document gives (`data: …`): one entry for each item, with one number for
+    /// each scalar of the item. `None` for a buffer without `data`.
     pub data: Option<Arc<Vec<Vec<f64>>>>,
     /// The bytes of `data` in the layout of the shader; `None` before linking, or without `data`.
     pub content: Option<Arc<[u8]>>,
@@ -205,30 +211,31 @@ pub struct Growth {
     /// Buffer, or item of a buffer, whose first `u32` holds the number of items or layers that the
     /// frame would have needed.
     pub counter: Target,
-    /// Greatest number of items or layers.
+    /// Greatest number of items or layers, which the buffer or texture never exceeds.
     pub max: u64,
 }
 
 /// Description of a sampler.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sampler {
-    /// Filter for minification, magnification and between mips.
+    /// Filter for minification, for magnification and between mips.
     pub filter: Filter,
-    /// Address mode in all directions.
+    /// Address mode in all directions, for coordinates outside of the texture.
     pub address: Address,
     /// Comparison function; `None` for a sampler that does not compare.
     pub compare: Option<wgt::CompareFunction>,
 }
 
 /// Part of a texture or buffer: a range of mips and layers of a texture (slices, if it is 3D), or a
-/// range of items of a buffer, which stand in `layers`.
+/// range of items of a buffer. The items are in the field `layers`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SubresourceRange {
-    /// Range of mip levels; `0..1` for a buffer.
+    /// Range of mip levels, counted from 0; `0..1` for a buffer.
     pub mips: Range<u32>,
-    /// Range of array layers, slices or items; `0..u32::MAX` for a whole buffer.
+    /// Range of array layers, slices or items, counted from 0; `0..u32::MAX` for a whole buffer.
     pub layers: Range<u32>,
-    /// Depth or stencil aspect of a texture that has both; otherwise `All`.
+    /// `DepthOnly` or `StencilOnly` if the part is one aspect of a texture with depth and stencil;
+    /// otherwise `All`.
     pub aspect: wgt::TextureAspect,
 }
 
@@ -256,7 +263,7 @@ impl SubresourceRange {
         self.mips.len() == 1 && self.layers.len() == 1
     }
 
-    /// Returns the range of items of a buffer; `None` if it is the whole buffer.
+    /// Returns the range of items if this is a part of a buffer; `None` if it is the whole buffer.
     pub fn items(&self) -> Option<Range<u32>> {
         (*self != Self::WHOLE).then(|| self.layers.clone())
     }
@@ -270,11 +277,11 @@ impl SubresourceRange {
     }
 }
 
-/// A resource and the part of it that is used.
+/// A resource, and the part of it that is used.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Target {
     /// Id of the resource.
     pub id: ResourceId,
-    /// The mips and layers, or items, that are used; all of them for a whole resource.
+    /// Mips and layers of the texture, or items of the buffer, that are used.
     pub part: SubresourceRange,
 }

@@ -129,10 +129,10 @@ written!(ClaimEntry, "Claim", generator => {
     json_schema!({ "anyOf": [condition, long] })
 });
 
-/// Returns the JSON Schema (draft 2020-12) of documents of a registry's kinds. RON has no schemas
-/// of its own; for it `Kind(field: value)` is `{"Kind": {"field": value}}`, a bare word is a text,
-/// a tuple is a list. The schema knows neither names nor values of expressions:
-/// `skiagraph check` does.
+/// Returns the JSON Schema (draft 2020-12) of documents whose passes are of the kinds in
+/// `registry`. It describes RON as JSON: `Kind(field: value)` is `{"Kind": {"field": value}}`, a
+/// bare word is a string, a tuple is an array. The schema checks neither names nor values of
+/// expressions; [`Graph::check`](crate::Graph::check) does.
 pub fn schema(registry: &Registry) -> Value {
     let mut generator = SchemaGenerator::default();
     let mut sections = Map::new();

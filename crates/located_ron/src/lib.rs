@@ -1,9 +1,9 @@
-//! A RON reader whose values keep their place in the source text, and diagnostics that point at
-//! that place.
+//! A reader of RON files whose values keep their place in the source text, and diagnostics that
+//! point at that place.
 //!
-//! [`reader`] splits a text into nodes and reads each node by itself, so that one mistake does not
-//! hide the next. A [`diagnostics::Diagnostic`] holds the kind of a mistake, its message, the
-//! places in the text, and a hint how to mend it.
+//! [`reader`] splits a text into nodes (a list entry, a field's value) and reads each node by
+//! itself, so that one mistake does not hide the next. A [`diagnostics::Diagnostic`] holds the kind
+//! of a mistake, its message, its places in the text, and a hint how to mend it.
 //!
 //! ```
 //! use serde::Deserialize;

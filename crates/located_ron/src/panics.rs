@@ -7,20 +7,22 @@ use std::{
     sync::Once,
 };
 
-/// A panic that [`caught`] has caught, with its place in the source of the library that panicked.
+/// A panic that [`caught`] has caught, with its place in the source code of the library that
+/// panicked.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{message} ({place})")]
 pub struct Panicked {
     /// Message of the panic.
     pub message: String,
-    /// File and line in the library's source, from the folder of the crate on:
-    /// `naga-30.0.1/src/proc/a.rs:12`.
+    /// File and line in the library's source code, from the folder of the crate on:
+    /// `naga-30.0.1/src/proc/a.rs:12`; `unknown place` if another panic hook was set meanwhile.
     pub place: String,
 }
 
 impl Panicked {
-    /// Returns the help text of a diagnostic about this panic, for the author of the file that was
-    /// read.
+    /// Returns the text for the field `help` of a [`Diagnostic`](crate::diagnostics::Diagnostic):
+    /// it tells the author of the file that was read that the library is at fault, and to write the
+    /// file differently.
     pub fn way_out(&self) -> String {
         format!(
             "this is a mistake of the library ({}), which may take the same written differently",
@@ -35,12 +37,13 @@ thread_local! {
 }
 
 /// Calls `run` and returns its result, or its panic as an error. The panic is not printed: the
-/// first call sets a panic hook, which passes panics outside of `caught` on to the hook set before.
+/// first call sets a panic hook, which passes panics outside of `caught` on to the hook that was
+/// set before.
 ///
-/// State that `run` changes may be left half changed by a panic and must not be relied on.
+/// A panic may leave state that `run` changes half changed; do not rely on this state.
 ///
 /// # Errors
-/// The panic. (A process that is built with `panic = "abort"` ends instead.)
+/// The panic of `run`. (A process that is built with `panic = "abort"` ends instead.)
 pub fn caught<T>(run: impl FnOnce() -> T) -> Result<T, Panicked> {
     quieten();
     let outer = HEARD.replace(Some(None));

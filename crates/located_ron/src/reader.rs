@@ -1,4 +1,4 @@
-//! Reads RON piece by piece, so that every error of a document is found and every name keeps its
+//! Reads RON piece by piece, so that every mistake in a file is found and every name keeps its
 //! place.
 //!
 //! ron stops at its first error, so each list entry and each field of a pass is deserialised by
@@ -46,8 +46,9 @@ fn fail(diagnostic: impl FnOnce(&SourceFile) -> Option<Diagnostic>) {
     });
 }
 
-/// Returns a serde error that stands for `mistake`. The [`Node`] that is being read then reports
-/// `mistake` itself, not the text of the error. For use in implementations of `Deserialize`.
+/// Returns a serde error for `mistake`, for implementations of `Deserialize` to return. The
+/// function that reads the [`Node`], such as [`Node::parse`], then returns `mistake` with its
+/// places, not just the text of the serde error.
 pub fn refuse<E: serde::de::Error>(mistake: impl Into<Diagnostic>) -> E {
     let diagnostic = mistake.into();
     let message = diagnostic.message.clone();
@@ -121,11 +122,11 @@ fn word_around(text: &str, start: usize, end: usize, base: usize) -> Range<usize
     base + low..base + text.len() - rest.len()
 }
 
-/// Returns the raw text of a value, and its place in the file that is being read. For use in
-/// implementations of `Deserialize`.
+/// Returns the text of a value as it is written, without space and comments around it, and its
+/// place in the file that is being read. For use in implementations of `Deserialize`.
 ///
 /// # Errors
-/// If the value is not well-formed, or is not read through a [`Node`].
+/// If the value is not well-formed RON, or is not read through a [`Node`].
 pub fn raw<'de, D: Deserializer<'de>>(deserializer: D) -> Result<(&'de str, Span), D::Error> {
     let text = bare(<&RawValue>::deserialize(deserializer)?);
     let span = READING.with_borrow(|reading| {
@@ -136,11 +137,12 @@ pub fn raw<'de, D: Deserializer<'de>>(deserializer: D) -> Result<(&'de str, Span
     Ok((text, span.ok_or_else(outside)?))
 }
 
-/// Deserialises a value from its raw text, as [`raw`] returns it.
+/// Deserialises a value from a text that [`raw`] returned. For use in implementations of
+/// `Deserialize`.
 ///
 /// # Errors
-/// If the text cannot be read as a `T`. The [`Node`] that is being read reports the innermost
-/// place.
+/// If the text cannot be read as a `T`. The diagnostic of the [`Node`] that is being read points at
+/// the innermost place that failed.
 pub fn read<T: DeserializeOwned, E: serde::de::Error>(text: &str) -> Result<T, E> {
     read_part(text).map_err(E::custom)
 }
@@ -153,27 +155,28 @@ impl<'de, T: DeserializeOwned> Deserialize<'de> for Located<T> {
     }
 }
 
-/// A piece of a document: the place of one RON value, whose text is read on demand.
+/// A RON value that is not read yet: its place in a file. Its methods split the text at this place,
+/// or deserialise it.
 pub type Node = Span;
 
-/// A field of a struct, `name: value`.
+/// A field of a RON struct, `name: value`, whose value is not read yet.
 #[derive(Clone, Debug)]
 pub struct Field {
-    /// Name of the field, at its place.
+    /// Name of the field, with its place.
     pub name: Located<String>,
     /// Place of the field's value.
     pub node: Node,
 }
 
 impl Node {
-    /// Returns the node of a whole file, without a byte order mark before it.
+    /// Returns the node of the whole text of a file, without a byte order mark at its start.
     pub fn root(file: &SourceFile) -> Self {
         // Some editors begin UTF-8 with a byte order mark.
         let start = file.text.len() - file.text.trim_start_matches('\u{feff}').len();
         file.span(start..file.text.len())
     }
 
-    /// Returns the place of the node's first line, which stands for the whole node in a diagnostic.
+    /// Returns the place of the node's first line, for diagnostics about a node of many lines.
     pub fn head(&self) -> Span {
         let start = self.range.start;
         let length = self.text().lines().next().map_or(0, str::len);
@@ -185,10 +188,10 @@ impl Node {
         self.file.span(range)
     }
 
-    /// Deserialises the node's text.
+    /// Deserialises the node's text as a `T`.
     ///
     /// # Errors
-    /// One diagnostic at the innermost place that failed.
+    /// The first mistake as a diagnostic, at the innermost place that failed.
     pub fn parse<T: DeserializeOwned>(&self) -> Result<T, Diagnostic> {
         self.reading(|| read_part(self.text()))
     }
@@ -214,7 +217,8 @@ impl Node {
         })
     }
 
-    /// Returns the entries of a list, `[…]`, or of a tuple, `(…)`, in order.
+    /// Returns a node for each entry of a list, `[…]`, or of a tuple, `(…)`, in the order of the
+    /// text.
     ///
     /// # Errors
     /// If the node is neither a list nor a tuple, or is not well-formed.
@@ -224,8 +228,8 @@ impl Node {
         Ok(parts.map(|(_, part)| self.sub(part)).collect())
     }
 
-    /// Returns the entries of a map, `{"name": value}`, in order: each name, and the node of its
-    /// value. A name that is given twice is returned twice.
+    /// Returns the entries of a map, `{"name": value}`, in the order of the text: each name, and
+    /// the node of its value. A name that is given twice is returned twice.
     ///
     /// # Errors
     /// If the node is not a map of names, or is not well-formed.
@@ -238,8 +242,8 @@ impl Node {
         self.parts(Shape::Map)?.into_iter().map(entry).collect()
     }
 
-    /// Returns the fields of a struct, `(name: value, …)`, in order. A field that is given twice is
-    /// returned twice.
+    /// Returns the fields of a struct, `(name: value, …)`, in the order of the text. A field that
+    /// is given twice is returned twice.
     ///
     /// # Errors
     /// If the node is not a struct with named fields, or is not well-formed.
@@ -274,8 +278,8 @@ impl Node {
         }
     }
 
-    /// Splits `Tag(…)` into the tag and the node of its body, `(…)`; a bare `Tag` has an empty
-    /// body. `None` if the text does not begin with a letter.
+    /// Splits an enum variant `Tag(…)` into the tag and the node of its body, `(…)`. The body of a
+    /// bare `Tag` is empty. Returns `None` if the text does not begin with a letter.
     pub fn variant(&self) -> Option<(Located<String>, Node)> {
         let text = self.text();
         let end = text.find(|c: char| !c.is_alphanumeric() && c != '_');
@@ -367,22 +371,23 @@ impl<'de> Deserialize<'de> for Word {
     }
 }
 
-/// Deserialises a struct from fields that were split before, each from its own text. `whole` is the
-/// place of the struct, where a missing field is reported.
+/// Deserialises a struct from fields that [`Node::fields`] returned, each from its own text.
+/// `whole` is the place of the struct, where a missing field is reported.
 ///
 /// # Errors
-/// One diagnostic at its place: an unknown, missing or duplicate field, or a value of the wrong
-/// type.
+/// The first mistake as a diagnostic at its place: an unknown, missing or duplicate field, or a
+/// value of the wrong type.
 pub fn from_fields<T: DeserializeOwned>(fields: &[Field], whole: &Span) -> Result<T, Diagnostic> {
     from_some_fields(fields, whole, &[])
 }
 
-/// Deserialises a struct as [`from_fields`] does, where the caller has taken some fields out
-/// before. `more` names these: the suggestion for a misspelt field lists them, too.
+/// Deserialises a struct as [`from_fields`] does, from fields of which the caller has removed some.
+/// `more` holds the names of the removed fields, so that the suggestion for a misspelt field knows
+/// them, too.
 ///
 /// # Errors
-/// One diagnostic at its place: an unknown, missing or duplicate field, or a value of the wrong
-/// type.
+/// The first mistake as a diagnostic at its place: an unknown, missing or duplicate field, or a
+/// value of the wrong type.
 pub fn from_some_fields<T: DeserializeOwned>(
     fields: &[Field],
     whole: &Span,
@@ -397,9 +402,9 @@ pub fn from_some_fields<T: DeserializeOwned>(
     }
 }
 
-/// Deserialises a struct as [`from_some_fields`] does, but adds a diagnostic to `told` for every
-/// field that cannot be read, not only for the first. `None` if a field could not be read or is
-/// missing.
+/// Deserialises a struct as [`from_some_fields`] does, but appends a diagnostic to `told` for every
+/// unknown or duplicate field and every field that cannot be read, not only for the first. Returns
+/// `None` if a field is unknown, missing or cannot be read. Of a duplicate field the first is read.
 pub fn from_all_fields<T: DeserializeOwned>(
     mut fields: Vec<Field>,
     whole: &Span,
@@ -525,8 +530,8 @@ impl<'de> MapAccess<'de> for Access<'de> {
     }
 }
 
-/// Returns the error for a field whose name is not in `known`, at the place of the name, with a
-/// suggestion.
+/// Returns the error [`Code::UnknownField`] for a field whose name is not in `known`, at the place
+/// of the name, with a name in `known` as suggestion.
 pub fn unknown_field<S: AsRef<str>>(
     name: &Located<String>,
     known: impl IntoIterator<Item = S>,
@@ -536,8 +541,8 @@ pub fn unknown_field<S: AsRef<str>>(
         .suggest(name, known)
 }
 
-/// Returns the error for a word that is not in `known`, at the place of the word, with a
-/// suggestion.
+/// Returns the error [`Code::UnknownVariant`] for a word that is not in `known`, at the place of
+/// the word, with a word in `known` as suggestion.
 pub fn unknown_word<S: AsRef<str>>(
     word: &Located<String>,
     known: impl IntoIterator<Item = S>,
@@ -547,13 +552,15 @@ pub fn unknown_word<S: AsRef<str>>(
         .suggest(word, known)
 }
 
-/// Returns the error for a required field `field` that is missing in the struct at `place`.
+/// Returns the error [`Code::MissingField`] for the required field `field` that is missing in the
+/// struct at `place`.
 pub fn missing_field(place: impl Into<Span>, field: &str) -> Diagnostic {
     let what = format!("the field `{field}` is missing");
     Diagnostic::error(Code::MissingField, what).at(place, "it must be given here")
 }
 
-/// Returns the error for a field that is given twice; `field` is the name of the second one.
+/// Returns the error [`Code::DuplicateName`] for a field that is given twice. `field` is the name
+/// where it is given the second time.
 pub fn field_twice(field: &Located<String>) -> Diagnostic {
     let what = format!("the field `{field}` is given twice");
     Diagnostic::error(Code::DuplicateName, what).at(field, "the second one")

@@ -1,4 +1,4 @@
-//! JSON Schemas of the values that the reader reads (feature `schema`).
+//! JSON Schemas of the types that [`reader`](crate::reader) reads (feature `schema`).
 
 use crate::span::Located;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
@@ -18,8 +18,8 @@ impl<T: JsonSchema> JsonSchema for Located<T> {
     }
 }
 
-/// Simplifies a JSON Schema in place: takes the `null` alternative of optional fields out, and the
-/// line breaks of descriptions.
+/// Simplifies a JSON Schema in place: removes the alternative `null` of optional fields, and
+/// replaces line breaks in descriptions by spaces.
 pub fn plain(schema: &mut Value) {
     match schema {
         Value::Object(fields) => {

@@ -6,21 +6,22 @@ use std::{
     sync::Arc,
 };
 
-/// A file that was read: its path and its text. Cheap to clone: clones share one text.
+/// Path and text of a source file, which places ([`Span`]) refer to. Clones share one text and are
+/// cheap.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SourceFile(Arc<SourceText>);
 
 /// Path and text of a [`SourceFile`].
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct SourceText {
-    /// Path of the file, as it was given to the reader.
+    /// Path of the file, as it was given to [`SourceFile::new`].
     pub name: Arc<str>,
     /// Whole text of the file.
     pub text: Arc<str>,
 }
 
 impl SourceFile {
-    /// Creates a file from its path and its text; nothing is read from disk.
+    /// Creates a source file from its path, `name`, and its text; nothing is read from disk.
     pub fn new(name: impl Into<Arc<str>>, text: impl Into<Arc<str>>) -> Self {
         Self(Arc::new(SourceText {
             name: name.into(),
@@ -28,7 +29,7 @@ impl SourceFile {
         }))
     }
 
-    /// Returns the place of `range`, in bytes, in this file.
+    /// Returns the place of the byte range `range` of this file's text.
     pub fn span(&self, range: Range<usize>) -> Span {
         Span {
             file: self.clone(),
@@ -49,17 +50,19 @@ impl Deref for SourceFile {
 pub struct Span {
     /// File that the place lies in.
     pub file: SourceFile,
-    /// Range of the place in the file's text, in bytes.
+    /// Range of bytes in the file's text, the end excluded.
     pub range: Range<usize>,
 }
 
 impl Span {
-    /// Returns the text at this place; empty if the range lies outside of the file.
+    /// Returns the text at this place; empty if the range lies outside of the file's text or cuts a
+    /// character.
     pub fn text(&self) -> &str {
         self.file.text.get(self.range.clone()).unwrap_or("")
     }
 
-    /// Returns line and column of the start, both counted from 1; columns count characters.
+    /// Returns the line and column of the start of the place, both counted from 1; columns count
+    /// characters, not bytes.
     pub fn line_column(&self) -> (usize, usize) {
         let before = self
             .file
@@ -108,7 +111,7 @@ impl<T> Located<T> {
 }
 
 impl<T: fmt::Display> Located<T> {
-    /// Returns the value as text, at the same place.
+    /// Returns the value formatted as text, with the same place.
     pub fn text(&self) -> Located<String> {
         Located::new(self.value.to_string(), self.span.clone())
     }

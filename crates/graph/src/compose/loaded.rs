@@ -38,6 +38,7 @@ use std::{
 /// A document that was read, with all documents, shaders and pictures that it names.
 #[derive(Debug)]
 pub(crate) struct Loaded {
+    /// The root document, with its includes.
     pub document: Arc<Document>,
     pub shaders: Shaders,
     pub pictures: Pictures,
@@ -46,6 +47,7 @@ pub(crate) struct Loaded {
     pub required: wgt::Features,
     /// Features that they ask for by `has`, or that their passes can make use of.
     asked_for: wgt::Features,
+    /// Warnings that loading gave.
     pub warnings: Vec<Diagnostic>,
 }
 
@@ -61,8 +63,8 @@ impl Pictures {
 }
 
 impl Loaded {
-    /// Reads a document with its includes. Returns its readable part, and the errors. `chosen`
-    /// holds a document for each open include that is asked for, by the include's open name.
+    /// Reads a document with its includes. Returns its readable part, and the errors. `chosen` maps
+    /// names of open includes to paths of the documents to include there.
     ///
     /// # Errors
     /// All diagnostics, if the root document itself cannot be read.
@@ -122,7 +124,7 @@ impl Loaded {
         &self.document.file.name
     }
 
-    /// Returns the begin of the document, as the place for mistakes of a request.
+    /// Returns the start of the document, as the place for mistakes of a request.
     pub fn place(&self) -> Span {
         self.document.file.span(0..0)
     }

@@ -35,7 +35,8 @@ use std::{
 /// stack.
 const DEEPEST: usize = 64;
 
-/// Place where a document is asked for: its path, the place, and a text such as "included here".
+/// Place where a document is extended or included: path of that document, the place, and a text for
+/// the label such as "included here".
 pub(crate) type IncludeSite = (String, Span, &'static str);
 
 /// Reads a document with the documents that it extends and includes, each once.
@@ -54,8 +55,8 @@ pub(crate) struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// Creates a reader. `chosen` holds paths of documents for the root's open includes, by open
-    /// name.
+    /// Creates a reader. `chosen` maps names of open includes of the root document to paths of the
+    /// documents to include there.
     pub fn new(
         registry: &'a Registry,
         sources: &'a dyn Sources,

@@ -30,7 +30,7 @@ pub(crate) struct Reports {
 }
 
 impl Reports {
-    /// Reports the mistake of a result, if it is one.
+    /// Reports the mistake of a result that is an error; passes a value on.
     pub fn check<T>(&mut self, result: Result<T, impl Into<Diagnostic>>) -> Reported<T> {
         result.map_err(|mistake| self.report(mistake))
     }
@@ -44,6 +44,7 @@ impl Reports {
         ErrorGuaranteed(())
     }
 
+    /// Reports a mistake as a warning, whatever its severity is.
     pub fn warn(&mut self, mistake: impl Into<Diagnostic>) {
         self.report(Diagnostic {
             severity: Severity::Warning,
@@ -76,6 +77,7 @@ impl Reports {
         self.errors
     }
 
+    /// True if so many mistakes were reported that the search for more may end.
     pub fn has_enough(&self) -> bool {
         self.list.len() > ENOUGH
     }

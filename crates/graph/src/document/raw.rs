@@ -21,7 +21,7 @@ pub(crate) const REMOVE: &str = "Remove";
 /// Version of the document format that this crate reads.
 pub(crate) const FORMAT: u32 = 3;
 
-/// A map as it is written: names with raw values, each name once.
+/// A map as it is written in RON: names, each once, with their values not yet read.
 pub(crate) type RawMap = Vec<(Located<String>, Node)>;
 
 /// The sections of a document.
@@ -70,10 +70,11 @@ pub(crate) struct RawEntry {
     pub passes: Option<Vec<Result<RawEntry, Invalid>>>,
 }
 
-/// An entry that could not be read, which was reported. The materials that it writes are unknown,
-/// and so is the content of an include.
+/// An entry of `passes` that could not be read, which was reported. The materials that it writes
+/// are unknown, and so is the content of an include.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Invalid {
+    /// True if the entry is an include.
     pub is_include: bool,
     pub reported: ErrorGuaranteed,
 }

@@ -10,13 +10,16 @@ pub(crate) struct Entry {
     pub span: Span,
 }
 
-/// Memory above a limit, and the variable that takes the most of it.
+/// Memory of an entry point above a limit, and its largest variable.
 #[derive(Clone, Debug)]
 pub(crate) struct Excess {
+    /// Memory that the entry point takes, in bytes.
     pub bytes: u64,
+    /// The limit, in bytes.
     pub most: u64,
-    /// Bytes of the largest variable.
+    /// Size of the largest variable, in bytes.
     pub of_largest: u64,
+    /// Name of the largest variable, with its place.
     pub largest: Located<String>,
 }
 

@@ -11,21 +11,25 @@ use crate::{
 };
 use std::collections::{BTreeMap, BTreeSet};
 
-/// One allocation of memory, and the resources that use it one after the other.
+/// One allocation: a texture or buffer of the device, and the resources that use it one after the
+/// other in a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Allocation {
-    /// The resources that use the allocation, in the order of their first use.
+    /// Resources that use the allocation, at least one, in the order of their first use.
     pub aliases: Vec<ResourceId>,
     /// Position in the schedule of the last use of the last of these resources.
     until: usize,
 }
 
-/// All allocations of the textures and buffers that a plan makes itself.
+/// Allocations for all textures and buffers of a plan that the host does not hand over, and the
+/// resources that share them.
 #[derive(Clone, Debug, Default)]
 pub struct Aliases {
-    /// The allocations. Each resource is in exactly one.
+    /// All allocations. Each texture and buffer that a live pass uses, except the host's, is in
+    /// exactly one of them.
     pub list: Vec<Allocation>,
-    /// Index in `list` of the allocation that each resource uses.
+    /// Index in `list` of the allocation of each resource. A resource that is not a key has no
+    /// allocation.
     pub of: BTreeMap<ResourceId, usize>,
 }
 

@@ -11,34 +11,38 @@ use crate::{
 use petgraph::unionfind::UnionFind;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Frames in which a pass runs.
+/// Frames in which a scheduled pass runs: the [`Run`] of its document, with the condition of
+/// [`Run::When`] evaluated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum When {
     /// In every frame.
     Always,
     /// In no frame: the condition of its [`Run::When`] is false in this plan.
     Never,
-    /// In the first frame after planning.
+    /// In the first frame that the executor runs after planning.
     Once,
-    /// In frames where content that the pass reads has changed.
+    /// In the first frame, and in frames where content that the pass reads, params included, has
+    /// changed since the pass last ran.
     OnChange,
-    /// In frames where another pass of its group runs: the pass is a capture between two writes.
+    /// In frames where another pass of its group (see [`Conditions`]) runs: the pass copies a
+    /// material for a capture between two passes that write the material.
     Follows,
 }
 
-/// Run conditions of a schedule. A *position* is an index into
+/// Run conditions of the passes of a schedule. A *position* is an index into
 /// [`Schedule::passes`](crate::Schedule::passes). A *group* is a set of passes that run or are
-/// skipped together; its number is the position of its first pass.
+/// skipped together in a frame; its number is the position of its first pass.
 #[derive(Clone, Debug, Default)]
 pub struct Conditions {
-    /// Group of the pass at each position.
+    /// Number of the group of each pass, by position.
     pub group: Vec<usize>,
-    /// Run condition of the pass at each position.
+    /// Run condition of each pass, by position.
     pub when: Vec<When>,
-    /// Pairs of a position and a resource that its pass writes, sorted.
+    /// Pairs of the position of a pass and a resource that the pass writes, sorted by position.
     pub written: Vec<(usize, ResourceId)>,
-    /// Group that writes each resource, by index of the resource; `None` if no pass writes it. A
-    /// resource with `keep` may be written by several groups; this is the first.
+    /// Number of the group that writes each resource, by [`ResourceId::index`]; `None` if no
+    /// scheduled pass writes the resource. A resource with `keep` may be written by several groups;
+    /// the entry is the number of the first.
     pub writers: Vec<Option<usize>>,
     /// Resources whose content must outlive the frame: those with `keep`, and those written by a
     /// pass that may be skipped.
@@ -53,8 +57,9 @@ impl Conditions {
     }
 
     /// Returns true if a pass that runs in this frame writes the resource `id` before the pass at
-    /// position `at` reads it. `keep` is the resource's field `keep`. `runs[group]` is true if the
-    /// group with this number runs.
+    /// position `at` reads it. `keep` is [`Resource::keep`](crate::Resource::keep) of the resource.
+    /// `runs` has an entry for each position; at the number of a group it is true if the group runs
+    /// in this frame.
     pub fn is_written_before(
         &self,
         (id, keep): (ResourceId, bool),

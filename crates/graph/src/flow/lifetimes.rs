@@ -8,16 +8,16 @@ use crate::{
 };
 use std::collections::BTreeMap;
 
-/// Lifetimes by resource. Only resources that a scheduled pass uses are listed, and only these are
-/// created.
+/// Lifetimes by resource. Only resources of which a scheduled pass uses the content of this frame
+/// or of the frame before are listed, and only these are created.
 pub type Lifetimes = BTreeMap<ResourceId, Lifetime>;
 
 /// First and last use of one resource in a schedule, and the usages to create it with.
 #[derive(Clone, Debug)]
 pub struct Lifetime {
-    /// Usages that a texture must be created with.
+    /// Usages that a texture must be created with; without meaning if the resource is a buffer.
     pub textures: wgt::TextureUsages,
-    /// Usages that a buffer must be created with.
+    /// Usages that a buffer must be created with; without meaning if the resource is a texture.
     pub buffers: wgt::BufferUsages,
     /// Index in [`Schedule::passes`](crate::Schedule::passes) of the first pass that uses the
     /// resource.

@@ -14,7 +14,8 @@ use petgraph::{
 };
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Reason for which one pass must run before another.
+/// Reason for which one pass must run before another pass that uses the same part of a texture or
+/// buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Hazard {
@@ -26,14 +27,16 @@ pub enum Hazard {
     WriteAfterWrite,
 }
 
-/// Dependences between passes. A key is the earlier pass, the later pass and the reason for the
-/// order; its value is the set of resources that cause the dependence.
+/// Dependences between passes of a plan. A key is the earlier pass, the later pass and the reason
+/// for which the earlier one must run first; its value is the set of resources that cause the
+/// dependence.
 pub type Dependences = BTreeMap<(PassId, PassId, Hazard), BTreeSet<ResourceId>>;
 
 /// Dependency graph of passes: node i is pass i of the document, and an edge runs from the earlier
 /// to the later pass.
 #[derive(Debug)]
 pub(crate) struct Order {
+    /// The edges between passes, each with its reason.
     pub edges: DiGraph<(), Hazard>,
     /// The edges with the resources behind them, for drawings.
     pub dependences: Dependences,

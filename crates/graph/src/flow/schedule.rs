@@ -9,20 +9,21 @@ use std::{
     collections::{BTreeSet, BinaryHeap},
 };
 
-/// The live passes in the order in which they run, with the lifetimes, run conditions and
-/// allocations that follow from this order.
+/// The live passes of a plan (those that an output or the host needs) in the order in which they
+/// run, with the lifetimes, run conditions and allocations that follow from this order.
 #[derive(Debug, Default)]
 pub struct Schedule {
-    /// The passes in the order in which they run. A *position* is an index into this list.
+    /// Ids of the live passes in the order in which they run. A *position* is an index into this
+    /// list.
     pub passes: Vec<PassId>,
-    /// First use, last use and usages of each resource that a live pass uses.
+    /// First use, last use and usages of each resource that is created.
     pub lifetimes: Lifetimes,
-    /// Run condition of each pass, and the passes that run or are skipped together.
+    /// Run condition of each pass, and the groups of passes that run or are skipped together.
     pub conditions: Conditions,
     /// Allocations, and the resources that share each of them.
     pub aliases: Aliases,
-    /// The graph's own resources that a pass also reads as they were in the frame before. Each has
-    /// two allocations, which take turns from frame to frame.
+    /// Textures and buffers of the graph that a pass also reads as they were in the frame before
+    /// (`.previous`). The executor makes two of each, which take turns from frame to frame.
     pub ping_pong: BTreeSet<ResourceId>,
 }
 

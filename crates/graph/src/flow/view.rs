@@ -14,7 +14,7 @@ pub(crate) struct GraphView<'p> {
 }
 
 impl<'p> GraphView<'p> {
-    /// Returns every pass with its id.
+    /// Iterates over all passes, each with its id.
     pub fn ids(self) -> impl Iterator<Item = (PassId, &'p LinkedPass)> {
         let passes = self.passes.iter().enumerate();
         passes.map(|(index, pass)| (PassId(index), pass))

@@ -17,17 +17,19 @@ use crate::{
 };
 use std::{collections::BTreeSet, ops::Range};
 
-/// Frames in which a pass runs.
+/// Frames in which a pass runs, as its document gives them in `run: …`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Run {
     /// In every frame.
     Always,
-    /// In the first frame after planning.
+    /// In the first frame that the executor runs after planning.
     Once,
-    /// In frames where content that the pass reads has changed.
+    /// In the first frame, and in frames where content that the pass reads, params included, has
+    /// changed since the pass last ran.
     OnChange,
-    /// In every frame of a plan for which an expression is true, in none otherwise. Holds the text
-    /// of the expression; equal texts are equal conditions.
+    /// In every frame if an expression over params is true in the plan, in no frame otherwise.
+    /// Holds the text of the expression; equal texts are equal conditions.
+    /// [`LinkedPass::enabled`](crate::LinkedPass::enabled) holds its value.
     When(String),
 }
 
@@ -42,14 +44,18 @@ impl std::fmt::Display for Run {
 
 /// A graph whose includes, groups and repetitions are resolved to one list of passes.
 pub(crate) struct Flat<'a> {
+    /// Meanings of the names in the graph's documents.
     pub symbols: SymbolTable<'a>,
+    /// The passes in the order of the documents.
     pub passes: Vec<FlatPass<'a>>,
     /// Number of passes above the first entry with a mistake that was reported; `None` without a
     /// mistake.
     pub first_invalid: Option<usize>,
+    /// Inputs and outputs of each instance of a document.
     pub interfaces: Vec<Interface>,
     /// Includes that are replaced by an earlier include of the same content.
     pub merged: Vec<Merge>,
+    /// Params and features that decide which entries exist.
     pub plan_inputs: PlanInputs,
 }
 
@@ -57,16 +63,16 @@ pub(crate) struct Flat<'a> {
 pub(crate) struct Merge {
     /// Indices of the passes between the end of the earlier include and this one.
     pub between: Range<usize>,
-    /// Resources from outside that the include reads.
+    /// Resources of the including document that are bound to the inputs of the included one.
     pub inputs: Vec<ResourceId>,
-    /// Indices of the resources that the earlier include declares.
+    /// Indices in the plan's resources of those that the earlier include declares.
     pub owned: Range<usize>,
     /// Path of the included document.
     pub graph: String,
     pub span: Span,
 }
 
-/// A pass with its place in the graph.
+/// A pass of a flattened graph, with the settings that it inherits.
 pub(crate) struct FlatPass<'a> {
     pub name: Located<String>,
     pub entry: &'a Entry,
@@ -85,7 +91,7 @@ pub(crate) struct FlatPass<'a> {
 #[derive(Clone)]
 pub(super) struct EntryContext<'a> {
     pub scope: ScopeId,
-    /// Prefix of the full names of passes.
+    /// Prefix of the full names of the passes inside.
     pub prefix: String,
     pub run: Option<(Run, bool)>,
     pub bind: Vec<Inherited<'a, Reference>>,
@@ -114,7 +120,8 @@ impl<'a> EntryContext<'a> {
     }
 }
 
-/// Setting of a group that entries inside inherit, with the place where it is evaluated.
+/// A `bind` or `set` of a group that the entries inside inherit, with the position at which its
+/// expressions are evaluated.
 pub(crate) struct Inherited<'a, T> {
     pub name: &'a Located<String>,
     pub value: &'a T,
@@ -134,14 +141,16 @@ impl<T> Copy for Inherited<'_, T> {}
 /// Inputs and outputs of an instance of a document, to be compared with the accesses of its passes.
 pub(crate) struct Interface {
     pub instance: InstanceId,
+    /// Outputs of the document, each with the target that it means.
     pub outputs: Vec<(Located<Name>, Target)>,
-    /// Inputs that the document does not write.
+    /// Inputs that the document must not write, because they are not outputs, too.
     pub read_only: Vec<(Located<Name>, Target)>,
 }
 
 /// Params and features that decide which entries exist.
 #[derive(Debug, Default)]
 pub(crate) struct PlanInputs {
+    /// Names of params of the root document.
     pub params: BTreeSet<String>,
     pub features: wgt::Features,
 }

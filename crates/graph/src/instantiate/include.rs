@@ -30,7 +30,7 @@ type Bound = (Located<String>, Reported<Target>);
 /// Bindings and values of groups around an include that its document uses.
 type Said<'e> = (Vec<Inherited<'e, Reference>>, Vec<Inherited<'e, Expr>>);
 
-/// One use of an include, with all settings for its document.
+/// One repetition of an include, with all bindings and values for its document.
 pub(super) struct Call<'e> {
     entry: &'e Entry,
     include: &'e Include,
@@ -63,14 +63,14 @@ pub(super) fn takes(input: &InputKind, found: &ResourceKind) -> bool {
     }
 }
 
-/// True if a document writes into one of its inputs.
+/// True if an input of a document is one of its outputs, too, so that the document may write it.
 pub(super) fn is_output(document: &Document, input: &Input) -> bool {
     let mut outputs = document.outputs.iter();
     outputs.any(|output| output.material.path() == *input.name.as_str())
 }
 
-/// Returns the bindings and values of groups around an include that its document uses and the
-/// include does not set itself.
+/// Returns the bindings and values of the groups around an include that have a name in its document
+/// and that the include does not set itself.
 pub(super) fn said<'e>(
     entry: &'e Entry,
     document: &Document,
@@ -94,8 +94,8 @@ pub(super) fn said<'e>(
     (bind, set)
 }
 
-/// Returns the material of the outer document that is written instead of a declared one; `None` if
-/// none is.
+/// Returns the material of the including document that is written instead of `material`, because
+/// the include binds it to an output; `None` without such a binding.
 pub(super) fn overridden(material: &Material, at: &mut At<'_, '_>) -> Option<Reported<Target>> {
     let overrides = &at.instance().overrides;
     let (name, target) = overrides.get(material.name().as_str())?.clone();
@@ -183,7 +183,7 @@ impl<'e> Call<'e> {
         read_only
     }
 
-    /// Declares the outputs of the included document in the document around it.
+    /// Declares `names`, the outputs of the included document, in the including document.
     pub fn give(&self, names: &Names, scopes: &mut Scopes) -> Reported<()> {
         let name = &self.entry.name.value;
         if let Some(reported) = self.document.broken_outputs {

@@ -18,9 +18,11 @@ use crate::{
 /// A pass with its body lowered to steps.
 pub(crate) struct LoweredPass<'a> {
     pub flat: FlatPass<'a>,
+    /// GPU work of the pass, in order.
     pub steps: Vec<Step<Names>>,
     /// Buffers that only this pass uses.
     pub scratch: Vec<ResourceId>,
+    /// Instance of the document that the pass belongs to.
     pub instance: InstanceId,
     /// Name of the shader that the pass's own bindings are for.
     pub shader: Located<String>,

@@ -18,13 +18,14 @@ use std::{
     sync::Arc,
 };
 
-/// Everything that the work of an include depends on; two includes with equal content can be
-/// merged.
+/// Everything that the work of an include depends on: two includes with equal content do the same
+/// work and can be merged.
 #[derive(PartialEq)]
 pub(super) struct Content {
     /// Each path is read once, so equal pointers are equal documents.
     document: *const Document,
     params: Vec<ParamContent>,
+    /// Targets for the inputs of the document, in its order.
     pub inputs: Vec<Target>,
     /// Targets of names of the scene; the innermost include that binds a name decides.
     scene: BTreeMap<String, Target>,
@@ -39,10 +40,11 @@ type ParamContent = (ParamValue, Option<String>, BTreeSet<String>);
 /// An include that later includes of the same content are merged into.
 pub(super) struct Site {
     pub content: Content,
+    /// Names that the include gives to the including document.
     pub names: Names,
-    /// Number of passes above the end of the include.
+    /// Number of passes of the graph up to the end of the include.
     pub end: usize,
-    /// Indices of the resources that the include declared.
+    /// Indices in the plan's resources of those that the include declares.
     pub owned: Range<usize>,
 }
 

@@ -16,18 +16,20 @@ use crate::{
 };
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Entry of a document's section `claims`: a property that the document claims for itself. The
-/// graph does not know its meaning; a caller, such as a test, checks it.
+/// Entry of a document's section `claims`: a property that the document's author promises of the
+/// outputs, under a condition. This crate does not know its meaning; a host, such as a test, checks
+/// the property.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Claim {
-    /// Name of the property; the caller knows its meaning.
+    /// Name of the property, as the document writes it.
     pub name: String,
-    /// Condition under which the claim is made, as the document writes it; empty without a
+    /// Text of the condition under which the document promises the property; empty without a
     /// condition.
     pub condition: String,
-    /// Reason for which the property holds, from the document; may be empty.
+    /// Reason that the document gives; may be empty.
     pub because: String,
-    /// True if the condition holds for the given params, or if there is none.
+    /// True if the condition is true for the params given to
+    /// [`Graph::claims`](crate::Graph::claims), or the entry has no condition.
     pub holds: bool,
 }
 
@@ -42,7 +44,8 @@ pub(crate) struct Params {
 pub(crate) struct BoundParam {
     pub param: Param,
     pub value: Reported<ParamValue>,
-    /// Param of the root document whose value this is, unchanged; `None` if it is not one.
+    /// Name of the param of the root document from which the value is taken unchanged; `None` if
+    /// there is no such param.
     pub root: Option<String>,
     /// Params of the root document that the value depends on.
     pub roots: BTreeSet<String>,
@@ -64,14 +67,14 @@ impl Params {
             .find(|bound| bound.param.name.value == name)
     }
 
-    /// Finds a param by its spelling in shaders.
+    /// Returns the param with this WGSL identifier; `None` if there is no such param.
     pub fn wgsl_name(&self, identifier: &str) -> Option<&BoundParam> {
         let wgsl_name = |bound: &&BoundParam| wgsl_identifier(&bound.param.name) == identifier;
         self.bound(identifier)
             .or_else(|| self.list.iter().find(wgsl_name))
     }
 
-    /// Returns the values without mistakes, by name.
+    /// Returns the values of all params by name, except those whose value has a mistake.
     pub fn values(&self) -> BTreeMap<String, ParamValue> {
         let values = self.list.iter().filter_map(|bound| {
             let value = bound.value.clone().ok()?;
@@ -109,7 +112,8 @@ impl Params {
     }
 }
 
-/// Viewport and features, which defaults and claims may ask for besides params.
+/// Viewport (width and height in pixels) and device features, which expressions in defaults and
+/// claims can use besides params.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Surroundings {
     pub viewport: [u32; 2],
@@ -213,9 +217,10 @@ pub(crate) struct SetParam {
 
 /// Settings from which the params of an included document get their values.
 pub(crate) struct Given<'a> {
-    /// Name under which the outer document exposes each param: with the include's name in front, if
-    /// it has one.
+    /// Name under which the including document exposes each exposed param of the included one, by
+    /// name there: with the include's name in front, if the include has a name.
     pub exposed: BTreeMap<&'a str, String>,
+    /// Params of the including document.
     pub outer: &'a Params,
     /// Place of the include.
     pub span: &'a Span,

@@ -1,6 +1,6 @@
 //! Scopes: the meaning of names in a document. A document knows its own materials and inputs, the
-//! outputs of its includes, and the names of the scene. No other name crosses the border between
-//! two documents.
+//! outputs of its includes, and the names of provided resources. No other name crosses the border
+//! between two documents.
 
 use super::params::Params;
 use crate::{
@@ -41,28 +41,31 @@ pub(crate) struct InstanceId(usize);
 /// One use of a document in the graph: the root, or one include of it.
 #[derive(Debug)]
 pub(crate) struct Instance {
+    /// Document that is used.
     pub document: Arc<Document>,
+    /// Params of the document with their values in this instance.
     pub params: Arc<Params>,
-    /// Targets that includes bind to names of the scene in this instance.
+    /// Targets that the include binds to names of provided resources, by that name.
     pub scene: BTreeMap<String, Reported<Target>>,
     /// Place where the document is included; `None` for the root.
     pub outer: Option<Outer>,
-    /// Materials outside that the instance writes instead of its own, by name of its own, with the
-    /// place that says so.
+    /// Materials of the including document that the instance writes instead of its own: by name of
+    /// its own material, the name in the `bind` with its place, and the target.
     pub overrides: BTreeMap<String, (Located<String>, Reported<Target>)>,
-    /// Modules that replace others in the instance's shaders.
+    /// WGSL modules that replace others in the instance's shaders.
     pub replaced: Replaced,
     /// Set if a part of the document could not be read, so that an unknown name is not reported.
     pub incomplete: Option<ErrorGuaranteed>,
 }
 
-/// Place where a document is included.
+/// Place where a document is included, and prefixes of its names.
 #[derive(Debug)]
 pub(crate) struct Outer {
     pub scope: ScopeId,
-    /// Prefix of the names of the document's outputs at that place: `left.`, `lamp[2].`.
+    /// Prefix of the names of the document's outputs in the including document: `left.`,
+    /// `lamp[2].`; `None` for an include without a name and repetition.
     pub namespace: Option<String>,
-    /// Prefix of the full names of all other things in the document.
+    /// Prefix of the full names of all materials and passes of the document that are not outputs.
     pub private: String,
 }
 
@@ -83,7 +86,7 @@ struct Scope {
     index: Option<(Name, u32)>,
 }
 
-/// Names with their meanings.
+/// Names of one scope or include, each with its meaning.
 pub(crate) type Names = BTreeMap<Name, Symbol>;
 
 /// Meaning of a name of a document.
@@ -101,8 +104,8 @@ pub(crate) enum Symbol {
 }
 
 impl Symbol {
-    /// Returns the meanings of `name` behind this symbol and a dot. A repeated entry gives one for
-    /// each repetition; a target or value gives none.
+    /// Returns the meanings of `name` behind this symbol and a dot: of a named include at most one,
+    /// of a repeated entry one for each repetition, in order. A target or value has none.
     pub fn named<'m>(&'m self, name: &Name) -> Vec<&'m Self> {
         match self {
             Self::Target(_) | Self::Value(_) | Self::Invalid(_) => Vec::new(),
@@ -112,7 +115,8 @@ impl Symbol {
     }
 }
 
-/// Place of an expression: its scope, and the index of its entry if the entry is repeated.
+/// Position of an expression in a graph: its scope, and the index of the repetition if its entry is
+/// repeated.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Position {
     pub scope: ScopeId,
@@ -173,13 +177,14 @@ impl Scopes {
         self.instance(self.instance_of(scope))
     }
 
-    /// Returns the prefix of a scope's names in its document.
+    /// Returns the prefix of a scope's names in its document, such as `sample[3].`; empty for the
+    /// document's own scope.
     pub fn path(&self, scope: ScopeId) -> &str {
         &self.scopes[scope.0].path
     }
 
-    /// Returns the full name for `name` of a document: the name that the outermost document knows
-    /// it by.
+    /// Returns the full name of the material or value `name` of an instance of a document: the name
+    /// by which the root document knows it.
     pub fn full_name(&self, id: InstanceId, name: &str) -> String {
         let instance = self.instance(id);
         let Some(outer) = &instance.outer else {
@@ -223,17 +228,21 @@ impl Scopes {
         scope.names.entry(name.clone()).or_insert(symbol);
     }
 
+    /// Returns the meaning of `name` in a scope or the scopes around it in its document; `None` for
+    /// an unknown name.
     pub fn find(&self, scope: ScopeId, name: &str) -> Option<&Symbol> {
         self.outwards(scope).find_map(|scope| scope.names.get(name))
     }
 
-    /// Finds the target of a shader's global by its spelling.
+    /// Returns the target for a shader global, by its WGSL identifier; `None` if no name of the
+    /// document has it.
     pub fn find_wgsl_name(&self, scope: ScopeId, identifier: &str) -> Option<Reported<Target>> {
         self.outwards(scope)
             .find_map(|scope| scope.wgsl_name.get(identifier).cloned())
     }
 
-    /// Finds the value `name`; that of a named include has a dot, `left.edge`.
+    /// Returns the id of the named value `name`, or `left.edge` for the value `edge` of the include
+    /// `left`; `None` if there is no such value.
     pub fn find_value(&self, scope: ScopeId, name: &str) -> Option<ValueId> {
         let mut parts = name.split('.');
         let mut symbol = self.find(scope, parts.next()?)?;
@@ -249,7 +258,8 @@ impl Scopes {
         }
     }
 
-    /// Finds the value for a shader's param or override by its spelling.
+    /// Returns the id of the named value for a shader's param or override, by its WGSL identifier;
+    /// `None` if there is no such value.
     pub fn find_wgsl_value(&self, scope: ScopeId, identifier: &str) -> Option<ValueId> {
         self.outwards(scope)
             .find_map(|scope| scope.wgsl_values.get(identifier).copied())
@@ -267,7 +277,8 @@ impl Scopes {
         })
     }
 
-    /// Returns every name that is known in a scope, those in namespaces included.
+    /// Returns every name that is declared in a scope or the scopes around it in its document;
+    /// names that a named include gives have its name in front.
     pub fn known(&self, scope: ScopeId) -> Vec<String> {
         let mut known = Vec::new();
         for scope in self.outwards(scope) {
@@ -281,14 +292,15 @@ impl Scopes {
         std::iter::successors(Some(id), |id| self.parent(*id))
     }
 
-    /// Returns the target that an include binds to a name of the scene in an instance; `None` if
-    /// none does.
+    /// Returns the target that the innermost include around an instance binds to the name of a
+    /// provided resource; `None` if no include binds the name.
     pub fn scene(&self, id: InstanceId, name: &str) -> Option<Reported<Target>> {
         self.outer_instances(id)
             .find_map(|id| self.instance(id).scene.get(name).cloned())
     }
 
-    /// Returns all targets that includes bind to names of the scene in an instance.
+    /// Returns all targets that includes around an instance bind to names of provided resources, by
+    /// that name.
     pub fn bound_scene(&self, id: InstanceId) -> BTreeMap<String, Reported<Target>> {
         let mut bound = BTreeMap::new();
         for instance in self.outer_instances(id) {
@@ -299,7 +311,7 @@ impl Scopes {
         bound
     }
 
-    /// True if `inner` is `outer`, or is included in it, however deep.
+    /// True if `inner` is `outer`, or is included in it directly or through other documents.
     pub fn is_within(&self, inner: InstanceId, outer: InstanceId) -> bool {
         self.outer_instances(inner).any(|id| id == outer)
     }

@@ -20,7 +20,7 @@ pub(super) enum State {
     Invalid(ErrorGuaranteed),
 }
 
-/// Material of an instance of a document, whose size is not known yet.
+/// A material of an instance of a document, whose size is not known yet.
 #[derive(Clone, Debug)]
 pub(super) struct Declared {
     pub scope: ScopeId,
@@ -45,7 +45,7 @@ pub(super) struct DeclaredValue {
     pub state: ValueState,
 }
 
-/// State of finding a value.
+/// State of evaluating a named value.
 #[derive(Clone, Debug)]
 pub(super) enum ValueState {
     Declared,

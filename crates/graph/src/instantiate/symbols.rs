@@ -42,17 +42,22 @@ const DEEPEST_VALUE: usize = 64;
 /// Greatest depth of sizes that are found while another size is being found.
 const NESTED: usize = 8;
 
-/// Everything that names of a graph can mean in one plan: scopes, resources and values.
+/// Meanings of all names in the documents of a graph for one plan: its scopes, resources and named
+/// values.
 pub(crate) struct SymbolTable<'a> {
+    /// Loaded documents and shaders of the graph.
     pub graph: &'a Loaded,
+    /// Request that the plan is made for.
     pub request: &'a PlanRequest<'a>,
-    /// Mistakes so far; any access to a name or size may add one.
+    /// Mistakes reported so far; any look-up of a name or size may add one.
     pub reports: Reports,
+    /// Scopes of names, and the instances of documents that they belong to.
     pub scopes: Scopes,
+    /// Resources found so far; a [`ResourceId`] is an index into this list.
     pub resources: Vec<Resource>,
     /// State of each resource's size, by index of the resource.
     pub(super) states: Vec<State>,
-    /// Materials whose sizes are being found; each was asked for by the one before.
+    /// Materials whose sizes are being found; the size of each is needed for the one before it.
     pub(super) evaluating: Vec<ResourceId>,
     /// Values, and those of them that are being found, each for the sake of the one before.
     values: Vec<DeclaredValue>,
@@ -226,7 +231,7 @@ impl<'a> SymbolTable<'a> {
         }
     }
 
-    /// Returns the target of the whole of a resource.
+    /// Returns a target that holds all of a resource.
     pub fn whole(&self, id: ResourceId) -> Target {
         let part = match &self.get(id).kind {
             ResourceKind::Texture(texture) => texture.whole(),
@@ -235,12 +240,14 @@ impl<'a> SymbolTable<'a> {
         Target { id, part }
     }
 
-    /// Resolves a reference of a document.
+    /// Returns the resource, or part of it, that a reference at `position` in a document means.
     pub fn resolve(&mut self, reference: &Reference, position: Position) -> Reported<Target> {
         self.at(position, None).resolve(reference)
     }
 
-    /// Finds the target of a name of the scene in a scope; `None` for an unknown name.
+    /// Returns the target for the name of a provided resource, such as `scene.indices`, in a scope:
+    /// the material that an include binds to the name, or else the provided resource. `None` if the
+    /// provider does not know the name.
     pub fn find_scene(&mut self, name: &str, scope: ScopeId) -> Option<Reported<Target>> {
         let instance = self.scopes.instance_of(scope);
         if let Some(bound) = self.scopes.scene(instance, name) {
@@ -266,8 +273,9 @@ impl<'a> SymbolTable<'a> {
         Some(Ok(self.whole(id)))
     }
 
-    /// Returns the kind of the resource that a name of the scene stands for in a scope. A
-    /// document's own material in its place has the first kind.
+    /// Returns the kind of the provided resource `name` in a scope. If an include binds a material
+    /// to the name, returns the first kind. `None` for an unknown name, and for a resource without
+    /// kinds.
     pub fn provided_kind(&mut self, name: &str, scope: ScopeId) -> Option<ProvidedKind> {
         let target = self.find_scene(name, scope)?.ok()?;
         if let ResourceKind::Provided(provided) = &self.get(target.id).kind {
@@ -277,13 +285,15 @@ impl<'a> SymbolTable<'a> {
         Some(ProvidedKind { number: 0, ..kind })
     }
 
-    /// Returns the kind that a shader asks for by an overridable constant such as `light_kind`.
+    /// Returns the kind for an overridable constant of a shader such as `light_kind`, which gets
+    /// the number of the kind of `light`. `None` for other constants.
     pub fn kind_of_wgsl_name(&mut self, constant: &str, scope: ScopeId) -> Option<ProvidedKind> {
         let name = self.wgsl_name.get(constant.strip_suffix("_kind")?)?.clone();
         self.provided_kind(&name, scope)
     }
 
-    /// Finds the target for a shader's global of this name in a scope; `None` for an unknown name.
+    /// Returns the target for the shader global `global` in a scope: a material, a provided
+    /// resource, or the previous version of one (`…_previous`). `None` for an unknown name.
     pub fn find_global(&mut self, global: &str, scope: ScopeId) -> Option<Reported<Target>> {
         let found = self.scopes.find_wgsl_name(scope, global).or_else(|| {
             let name = self.wgsl_name.get(global).cloned()?;
@@ -332,7 +342,8 @@ impl<'a> SymbolTable<'a> {
         found.ok().map(Ok)
     }
 
-    /// Returns the full names of all resources, and the names of the scene that were not used.
+    /// Returns the full names of all resources, sorted, then the names of provided resources that
+    /// no pass uses.
     pub fn full_names(&self) -> Vec<String> {
         let mut names: Vec<String> = self.resources.iter().map(|r| r.name.clone()).collect();
         names.sort();
@@ -345,7 +356,8 @@ impl<'a> SymbolTable<'a> {
         names
     }
 
-    /// Returns every name that is known in a scope, that of its document first.
+    /// Returns every name that can be used in a scope: first those of its document, then those of
+    /// the provider.
     pub fn known(&self, scope: ScopeId) -> Vec<String> {
         let mut known = self.scopes.known(scope);
         known.extend(self.request.provider.names());
@@ -513,6 +525,7 @@ impl<'a> SymbolTable<'a> {
 /// Environment that evaluates expressions and resolves references at a position of a document.
 pub(crate) struct At<'w, 'a> {
     symbols: &'w mut SymbolTable<'a>,
+    /// Position of the expressions and references.
     pub position: Position,
     /// Shader of the pass, for an expression of a pass.
     shader: Option<Reported<Arc<Shader>>>,
@@ -541,17 +554,17 @@ impl<'a> At<'_, 'a> {
         self.symbols.value(id)
     }
 
-    /// Finds the output or capture that a request names.
+    /// Returns the target that a request names, as [`SymbolTable::find_full`] does.
     pub fn find_full(&mut self, name: &str) -> Option<Reported<Target>> {
         self.symbols.find_full(name)
     }
 
-    /// Finds the target of a name of the scene.
+    /// Returns the target for the name of a provided resource, as [`SymbolTable::find_scene`] does.
     pub fn find_scene(&mut self, name: &str) -> Option<Reported<Target>> {
         self.symbols.find_scene(name, self.position.scope)
     }
 
-    /// Resolves a reference.
+    /// Returns the resource, or part of it, that a reference at this position means.
     pub fn resolve(&mut self, reference: &Reference) -> Reported<Target> {
         let mut reference = reference;
         while let Some(otherwise) = &reference.otherwise {

@@ -15,14 +15,15 @@ use crate::{
 };
 use std::fmt;
 
-/// Body of a pass, read from its entry in `passes`. The type's fields are all fields of the RON
-/// entry except `name`, `shader`, `bind`, `set`, `if`, `repeat`, `run`, `clear`, `overwrites` and
-/// `reads`, which every kind has.
+/// A kind of pass, such as `Raster`. A value of the type is the body of one pass, deserialised from
+/// its entry in a document's `passes`: all fields except `name`, `shader`, `bind`, `set`, `if`,
+/// `repeat`, `run`, `clear`, `overwrites` and `reads`, which entries of every kind have.
 pub trait PassKind: fmt::Debug + Send + Sync {
-    /// Appends the pass's GPU work to `pass`, step by step ([`Lowering::step`]). Called more than
-    /// once, and without a GPU: when the document is loaded, and for every plan. It must depend
-    /// only on the body and on values that it asks `pass` for. A shader that it uses for some of
-    /// these values only must be announced by [`Lowering::alternative`].
+    /// Lowers the body to steps: appends the pass's GPU work to `pass`, step by step
+    /// ([`Lowering::step`]). Called more than once, and without a GPU: when the document is loaded,
+    /// and for every plan. It must depend only on the body and on values that it asks `pass` for. A
+    /// shader that it uses for some of these values only must be announced by
+    /// [`Lowering::alternative`].
     fn lower(&self, pass: &mut Lowering<'_>);
 }
 
@@ -40,9 +41,9 @@ pub(crate) const OF_PASS: [&str; 10] = [
     "reads",
 ];
 
-/// Interface through which a [`PassKind`] lowers its body: it reads the pass's name, shader and
-/// values, and takes steps and diagnostics. While a document is loaded, expressions have no value
-/// yet, and the methods that evaluate them return a fixed stand-in.
+/// Interface through which a [`PassKind`] turns its body into steps: it gives the kind the pass's
+/// name, shader and values, and collects steps and diagnostics. While a document is loaded,
+/// expressions have no value yet, and the methods that evaluate them return a fixed substitute.
 pub struct Lowering<'a> {
     pub(crate) name: &'a Located<Name>,
     pub(crate) shader: Option<&'a Located<String>>,
@@ -85,14 +86,14 @@ impl<'a> Lowering<'a> {
         self.named(self.name)
     }
 
-    /// Creates the program for the pass's own shader, with the bindings that the document gives.
-    /// The shader is that of the field `shader`, or else the one with the pass's name.
+    /// Returns a program for the pass's own shader, with the bindings of the entry's field `bind`.
+    /// The shader is the one that the field `shader` names, or else the one with the pass's name.
     pub fn program(&self) -> Program {
         self.program_with(self.shader.cloned().unwrap_or_else(|| self.name()))
     }
 
-    /// Creates the program for a shader that comes with the pass kind, with the bindings that the
-    /// document gives. `shader` is the WGSL file without folder and ending.
+    /// Returns a program for a shader that comes with the pass kind, with the bindings of the
+    /// entry's field `bind`. `shader` is the name of the WGSL file without folder and ending.
     pub fn program_of(&self, shader: &str) -> Program {
         self.program_with(self.named(shader))
     }
@@ -108,22 +109,24 @@ impl<'a> Lowering<'a> {
         }
     }
 
-    /// Returns a name that the pass kind chooses, with the pass as its place: errors about the name
-    /// point at the pass.
+    /// Returns `name`, chosen by the pass kind and not written in the document, with the place of
+    /// the pass: errors about the name point at the pass.
     pub fn named(&self, name: &str) -> Located<String> {
         Located::new(name.to_owned(), self.name.span.clone())
     }
 
-    /// Adds a buffer of `bytes` bytes that only this pass uses. Captures show it as `pass/name`.
+    /// Adds a buffer of `bytes` bytes that only this pass uses, and returns its handle for steps. A
+    /// capture reads it as the material `pass/name`.
     pub fn scratch(&mut self, name: &str, bytes: u64) -> Scratch {
         self.scratch.push((name.to_owned(), bytes));
         Scratch(self.scratch.len() - 1)
     }
 
-    /// Announces a shader that the pass runs for other values of its expressions only, so that it
-    /// is loaded with the document. `shader` comes with the pass kind. Each pair in `imports` is a
-    /// module and the module that it imports in its place. `features` are device features that the
-    /// pass can make use of.
+    /// Announces a shader that the pass runs only for other values of its expressions, so that the
+    /// shader is loaded with the document. `shader` is the name of a WGSL file that comes with the
+    /// pass kind, without folder and ending. Each pair in `imports` is a module that an `#import`
+    /// names and the module that is imported instead. `features` are device features that the pass
+    /// uses if the device has them.
     pub fn alternative(&mut self, shader: &str, imports: &[(&str, &str)], features: wgt::Features) {
         let imports = imports.iter();
         self.alternatives.push(ShaderUse {
@@ -140,13 +143,13 @@ impl<'a> Lowering<'a> {
         self.steps.push(step);
     }
 
-    /// Reports a mistake in the pass's body.
+    /// Reports a mistake in the pass's body, an error or a warning.
     pub fn report(&mut self, mistake: impl Into<Diagnostic>) {
         self.diagnostics.push(mistake.into());
     }
 
-    /// Reports a value that is not allowed, with the message `what`, at the place of its
-    /// expression.
+    /// Reports an error at the place of the expression `expr`, whose value is not allowed. `what`
+    /// is the message.
     pub fn report_value(&mut self, code: Code, expr: &Expr, what: impl Into<String>) {
         self.report(Diagnostic::error(code, what).at(expr.span.clone(), ""));
     }
@@ -173,29 +176,33 @@ impl<'a> Lowering<'a> {
             .unwrap_or(0)
     }
 
-    /// Evaluates an expression to a non-negative whole number; 1 while a document is loaded.
+    /// Evaluates an expression to a non-negative whole number. Returns 1 while a document is
+    /// loaded, and after a mistake, which is reported.
     pub fn count(&mut self, expr: &Expr) -> u64 {
         self.evaluate(1, |environment| eval::count(expr, environment))
     }
 
-    /// Evaluates an expression to a non-negative whole number of at most 32 bits; 1 while a
-    /// document is loaded.
+    /// Evaluates an expression to a non-negative whole number of at most 32 bits. Returns 1 while a
+    /// document is loaded, and after a mistake, which is reported.
     pub fn count32(&mut self, expr: &Expr) -> u32 {
         self.evaluate(1, |environment| eval::count32(expr, environment))
     }
 
-    /// Evaluates an expression to a number; 0 while a document is loaded.
+    /// Evaluates an expression to a number. Returns 0 while a document is loaded, and after a
+    /// mistake, which is reported.
     pub fn number(&mut self, expr: &Expr) -> f64 {
         self.evaluate(0.0, |environment| eval::number(expr, environment))
     }
 
-    /// Evaluates an expression to true or false; false while a document is loaded.
+    /// Evaluates an expression to true or false. Returns false while a document is loaded, and
+    /// after a mistake, which is reported.
     pub fn boolean(&mut self, expr: &Expr) -> bool {
         self.evaluate(false, |environment| eval::boolean(expr, environment))
     }
 
-    /// Returns the word for the kind of the provided resource `name`, such as the kind of `light`.
-    /// Returns `None` if the resource has no kind, and while a document is loaded.
+    /// Returns the word for the kind of the provided resource `name`, such as `spot` for a `light`.
+    /// Returns `None` if the provider does not know the name or the resource has no kind, and while
+    /// a document is loaded.
     pub fn kind_of(&mut self, name: &str) -> Option<&'static str> {
         let environment = self.environment.as_mut()?;
         environment.kind(name).map(|kind| kind.word())
@@ -217,9 +224,9 @@ impl<'a> Lowering<'a> {
         self.evaluate(vec![1, 1], |environment| eval::edges(expr, environment))
     }
 
-    /// Returns one thread for each texel of a texture or of a part of it: of the first mip that it
-    /// selects, and of all slices of a 3D texture, but of one layer of an array. One thread while a
-    /// document is loaded.
+    /// Returns one thread for each texel of the texture, or part of it, that `texture` refers to:
+    /// of its first mip, and of all slices of a 3D texture, but of one layer of an array. Returns
+    /// one thread while a document is loaded, and after a mistake, which is reported.
     pub fn texels(&mut self, texture: &Reference) -> Threads {
         let of = Subject::Material(Box::new(texture.clone()));
         let size = ExprKind::Attribute(of, Attribute::Size);
@@ -239,10 +246,11 @@ impl<'a> Lowering<'a> {
         expr
     }
 
-    /// Returns the value in `words` of the word that `chosen` is or evaluates to. If `chosen` is a
-    /// `Choice` param, all words of the param must be in `words`, so that a document fails for all
-    /// values of a param or for none. Returns the value of the first word while a document is
-    /// loaded, and after a mistake, which was reported. `words` must not be empty.
+    /// Returns the value of the field `chosen`: the word in it, or the value that `words` has for
+    /// the word that its expression yields. If the expression is a `Choice` param, all words of the
+    /// param must be in `words`, so that a document fails for all values of a param or for none.
+    /// Returns the first value in `words` while a document is loaded, and after a mistake, which is
+    /// reported. `words` must not be empty.
     pub fn word<T: Copy>(&mut self, chosen: &Chosen<T>, words: &[(&str, T)]) -> T {
         let whole = match chosen {
             Chosen::Word(word) => return *word,

@@ -16,7 +16,9 @@ use std::{fmt, sync::Arc};
 /// Function that reads the fields of an entry as the body of a pass kind.
 type Parse = fn(&[Field], &Span) -> Result<Arc<dyn PassKind>, Diagnostic>;
 
+/// A pass kind with its tag.
 pub(crate) struct Kind {
+    /// Tag, as documents write it.
     pub name: &'static str,
     pub parse: Parse,
     /// Function that makes the schema of the kind's fields; `None` if none was given.
@@ -28,7 +30,8 @@ pub(crate) struct Kind {
 #[cfg(feature = "schema")]
 type Described = fn(&mut schemars::SchemaGenerator) -> schemars::Schema;
 
-/// The pass kinds that documents may use, by tag.
+/// The pass kinds that documents may use, each with its tag: the word before the fields of a pass,
+/// `Raster` in `Raster(name: …)`.
 #[derive(Default)]
 pub struct Registry {
     kinds: Vec<Kind>,
@@ -49,8 +52,8 @@ impl Registry {
         registry
     }
 
-    /// Adds the pass kind `K`, which documents write as `tag(…)`. A kind that already has this tag
-    /// is replaced. The language's own entries (`Include`, `Group`, `Change`, `Remove`) cannot be
+    /// Adds the pass kind `K`, which documents write as `tag(…)`. Replaces a kind that already has
+    /// this tag. The language's own entries (`Include`, `Group`, `Change`, `Remove`) cannot be
     /// replaced.
     pub fn register<K: PassKind + DeserializeOwned + 'static>(&mut self, tag: &'static str) {
         self.kinds.retain(|kind| kind.name != tag);
@@ -65,8 +68,8 @@ impl Registry {
     }
 
     /// Adds the JSON schema of the fields of the registered kind `tag` to the result of
-    /// [`schema`](crate::schema). Without it the schema allows any fields. An unknown `tag` is
-    /// ignored.
+    /// [`schema`](crate::schema()). For a kind without it, the result allows any fields. A `tag`
+    /// that is not registered is ignored.
     #[cfg(feature = "schema")]
     pub fn describe<K: schemars::JsonSchema>(&mut self, tag: &str) {
         if let Some(kind) = self.kinds.iter_mut().find(|kind| kind.name == tag) {

@@ -43,10 +43,11 @@
 use crate::{language::syntax::Reference, source::span::Located};
 use std::fmt::Debug;
 
-/// Types by which a step refers to resources, shaders and sizes at one stage of processing. The
-/// stages are [`Names`], ids ([`Ids`](crate::Ids)) and the handles of an executor.
+/// Types by which a [`Step`] refers to resources, shaders and sizes at one stage of processing. The
+/// stages are [`Names`] when a pass kind makes the step, [`Ids`](crate::Ids) in a plan, and the GPU
+/// handles of an executor.
 pub trait Stage: Clone + Debug + PartialEq {
-    /// Attachment of a draw: one mip of one layer of a texture.
+    /// Attachment of a draw: one mip of one layer or slice of a texture.
     type Attachment: Clone + Debug + PartialEq;
     /// Source or target of a copy or clear: a texture, a buffer, or a part of one.
     type Operand: Clone + Debug + PartialEq;
@@ -54,14 +55,16 @@ pub trait Stage: Clone + Debug + PartialEq {
     type Arguments: Clone + Debug + PartialEq;
     /// Shader of a draw or dispatch, with its bindings.
     type Program: Clone + Debug + PartialEq;
-    /// Size of a direct dispatch.
+    /// Number of threads or workgroups of a dispatch that is not indirect.
     type Size: Clone + Debug + PartialEq;
-    /// Size of the target of a draw without attachments, or the texture that stands in for them.
+    /// Target of a draw without attachments: its size, or a texture of that size
+    /// ([`Draw::canvas`]).
     type Canvas: Clone + Debug + PartialEq;
 }
 
-/// The stage in which a pass kind lowers: resources and shaders are names of the document, and
-/// sizes are numbers of threads.
+/// The [`Stage`] of the steps that a pass kind makes in
+/// [`PassKind::lower`](crate::PassKind::lower): resources and shaders are names in the document,
+/// and sizes are numbers of threads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Names;
 
@@ -74,17 +77,19 @@ impl Stage for Names {
     type Canvas = Located<[u64; 2]>;
 }
 
-/// A texture or buffer, by name, or a buffer that only this pass uses.
+/// A texture or buffer that a step uses: one with a name, or a buffer that only the step's pass
+/// uses.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Operand {
-    /// A material or input of the document, or a provided resource, or a part of one.
+    /// A material or input of the document, a provided resource, or a part of one of these.
     Named(Reference),
     /// A buffer that only this pass uses.
     Scratch(Scratch),
 }
 
-/// Handle of a buffer that only one pass uses, from
-/// [`Lowering::scratch`](crate::Lowering::scratch).
+/// Handle of a buffer that only one pass uses, which
+/// [`Lowering::scratch`](crate::Lowering::scratch) returns. It is valid in the same call of
+/// [`PassKind::lower`](crate::PassKind::lower).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Scratch(pub(crate) usize);
 
@@ -103,8 +108,8 @@ impl From<Scratch> for Operand {
 /// Number of threads or workgroups of a dispatch.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Threads {
-    /// This many threads in one dimension, rounded up to whole workgroups. If one dimension does
-    /// not hold so many workgroups, they are folded to two. A thread's item is then
+    /// This many threads in one dimension, rounded up to whole workgroups. If the device does not
+    /// allow so many workgroups in x, they are spread over x and y. The index of a thread is then
     /// `(workgroup.y * num_workgroups.x + workgroup.x) * workgroup_size + local index`.
     Items(u64),
     /// This many threads in x, y and z, rounded up to whole workgroups in each direction.
@@ -113,8 +118,8 @@ pub enum Threads {
     Groups([u32; 3]),
 }
 
-/// One piece of GPU work of a pass, at stage `S`. The steps of a pass run in order and are timed
-/// together.
+/// One piece of GPU work of a pass. The steps of a pass run in order and are timed together. `S` is
+/// the [`Stage`], which determines the types for resources, shaders and sizes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Step<S: Stage> {
     /// A render pass with one draw call.
@@ -125,15 +130,15 @@ pub enum Step<S: Stage> {
     Copy {
         /// Texture or buffer that is copied from.
         from: S::Operand,
-        /// Texture or buffer that is copied to, of the same format and size.
+        /// Texture or buffer that is copied to, of the same format and size as `from`.
         to: S::Operand,
     },
     /// A clear of a texture, a buffer or a part of one.
     Clear {
         /// Texture or buffer that is cleared.
         target: S::Operand,
-        /// Value of each channel of a colour texture; depth, then stencil, of a depth texture. Must
-        /// be all zero for a buffer.
+        /// Red, green, blue and alpha of a colour texture; depth, then stencil, of a depth or
+        /// stencil texture. All zero for a buffer, which can be cleared to nothing else.
         value: [f64; 4],
     },
 }
@@ -149,27 +154,28 @@ impl<S: Stage> Step<S> {
     }
 }
 
-/// A shader, by name, with its entry points, constants and bindings.
+/// A shader of a draw or dispatch, by name, with its entry points, constants and bindings.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Program {
     /// Name of the WGSL file without folder and ending. A step whose program has `None` is refused.
     pub shader: Option<Located<String>>,
-    /// Modules that replace others in the shader's imports: pairs `(of, is)` of the module that an
-    /// `#import` names and the module that is imported.
+    /// Modules that replace others in the shader's imports: pairs of the module that an `#import`
+    /// names and the module that is imported instead.
     pub imports: Vec<(String, String)>,
-    /// Vertex entry point; `None` takes the file's only one.
+    /// Name of the vertex entry point; `None` takes the only one in the shader's file.
     pub vertex: Option<Located<String>>,
-    /// Fragment entry point; `None` takes the file's only one.
+    /// Name of the fragment entry point; `None` takes the only one in the shader's file.
     pub fragment: Option<Located<String>>,
     /// True for a draw without a fragment stage, even if the file has fragment entry points.
     pub no_fragment: bool,
-    /// Compute entry point; `None` takes the file's only one.
+    /// Name of the compute entry point; `None` takes the only one in the shader's file.
     pub compute: Option<Located<String>>,
-    /// Values of pipeline-overridable constants by name. Constants that are not listed get the
-    /// value that the document has under their name.
+    /// Values of pipeline-overridable constants by name. A constant that is not listed gets the
+    /// value that the pass's entry sets for it, or else the value of the param or named expression
+    /// of the same name.
     pub constants: Vec<(String, f64)>,
-    /// Shader globals and the resources that they are bound to. Globals that are not listed are
-    /// bound to the resource of their name.
+    /// Names of shader globals, each with the resource that is bound to it. A global that is not
+    /// listed is bound to the resource of the same name.
     pub bind: Vec<(Located<String>, Operand)>,
 }
 
@@ -191,35 +197,36 @@ impl Program {
     }
 }
 
-/// A render pass with one draw call.
+/// A render pass with one draw call, a [`Step`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Draw<S: Stage> {
-    /// Vertex and fragment shaders.
+    /// Shader with the vertex and fragment entry points.
     pub program: S::Program,
-    /// True if the vertex stage is the crate's own triangle over the whole target.
+    /// True if the vertex stage is a built-in triangle over the whole target instead of an entry
+    /// point of the program.
     pub fullscreen: bool,
-    /// Colour attachments; the index is the location in the shader.
+    /// Colour attachments; the index is the fragment shader's `@location`.
     pub colors: Vec<ColorTarget<S>>,
-    /// Depth attachment; `None` without a depth test.
+    /// Depth attachment; `None` for a draw without a depth test.
     pub depth: Option<DepthTarget<S>>,
-    /// Stencil attachment; `None` without a stencil test. With a depth attachment it is the same
-    /// texture.
+    /// Stencil attachment; `None` for a draw without a stencil test. If there is a depth
+    /// attachment, too, both are the same texture.
     pub stencil: Option<StencilTarget<S>>,
     /// Target of a draw without attachments, whose fragment shader writes buffers or storage
     /// textures: width and height in texels before linking, afterwards a texture of that size that
     /// is never read. `None` for a draw with attachments.
     pub canvas: Option<S::Canvas>,
-    /// Viewport and scissor rectangle in texels: x, y, width, height. `None` draws the whole
-    /// target.
+    /// Viewport and scissor rectangle in texels of the target: x and y of its upper left corner,
+    /// width, height. `None` draws to the whole target.
     pub area: Option<[u32; 4]>,
     /// Numbers of vertices and instances.
     pub call: DrawCall<S>,
-    /// Topology, winding and culling of triangles.
+    /// Primitive topology, and winding and culling of triangles.
     pub primitive: wgt::PrimitiveState,
 }
 
-/// Numbers of vertices and instances of a draw. There are no vertex buffers: shaders read vertices
-/// by `vertex_index`.
+/// Numbers of vertices and instances of a [`Draw`]. There are no vertex buffers: shaders read
+/// vertices by `vertex_index`.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DrawCall<S: Stage> {
     /// Numbers that are known when the graph is planned.
@@ -229,14 +236,14 @@ pub enum DrawCall<S: Stage> {
         /// Number of instances.
         instances: u32,
     },
-    /// Arguments in a buffer: `vertex_count, instance_count, first_vertex, first_instance`, a u32
-    /// each.
+    /// Numbers that the GPU reads from this buffer: `vertex_count, instance_count, first_vertex,
+    /// first_instance`, a u32 each.
     Indirect(S::Arguments),
 }
 
 impl<S: Stage> DrawCall<S> {
-    /// Converts the draw call to another stage. `arguments` converts the buffer of an indirect
-    /// call.
+    /// Returns the same draw call at another [`Stage`]. `arguments` converts the buffer of an
+    /// indirect draw call.
     ///
     /// # Errors
     /// The error that `arguments` returns.
@@ -257,43 +264,47 @@ impl<S: Stage> DrawCall<S> {
     }
 }
 
-/// A colour attachment of a draw.
+/// A colour attachment of a [`Draw`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColorTarget<S: Stage> {
     /// Texture that is drawn to: one mip of one layer.
     pub target: S::Attachment,
-    /// Texture that a multisampled target is resolved into; `None` without resolve.
+    /// Texture that a multisampled `target` is resolved into after the draw; `None` if it is not
+    /// resolved.
     pub resolve: Option<S::Attachment>,
-    /// Red, green, blue and alpha that the target is cleared to before the draw; `None` keeps its
-    /// content.
+    /// Red, green, blue and alpha that the target is cleared to before the draw; `None` keeps the
+    /// target's content.
     pub clear: Option<[f64; 4]>,
-    /// Blending of the drawn colour with the stored one; `None` overwrites the stored one.
+    /// Blending of the drawn colour with the colour in the target; `None` replaces the colour in
+    /// the target.
     pub blend: Option<wgt::BlendState>,
     /// Colour channels that are written.
     pub write: wgt::ColorWrites,
 }
 
-/// A depth attachment of a draw.
+/// A depth attachment of a [`Draw`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct DepthTarget<S: Stage> {
     /// Texture that is drawn to: one mip of one layer.
     pub target: S::Attachment,
-    /// Depth that the target is cleared to before the draw; `None` keeps its content.
+    /// Depth, from 0 to 1, that the target is cleared to before the draw; `None` keeps the target's
+    /// content.
     pub clear: Option<f32>,
-    /// Comparison of a fragment's depth with the stored depth.
+    /// Depth test: comparison of a fragment's depth with the depth in the target.
     pub compare: wgt::CompareFunction,
-    /// True if fragments that pass the test write their depth.
+    /// True if fragments that pass the depth test write their depth.
     pub write: bool,
-    /// Bias that the rasteriser adds to depth.
+    /// Bias that the rasteriser adds to the depth of fragments.
     pub bias: wgt::DepthBiasState,
 }
 
-/// A stencil attachment of a draw.
+/// A stencil attachment of a [`Draw`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct StencilTarget<S: Stage> {
     /// Texture that is drawn to: one mip of one layer.
     pub target: S::Attachment,
-    /// Stencil value that the target is cleared to before the draw; `None` keeps its content.
+    /// Stencil value that the target is cleared to before the draw; `None` keeps the target's
+    /// content.
     pub clear: Option<u32>,
     /// Stencil tests and operations of front and back faces.
     pub state: wgt::StencilState,
@@ -301,20 +312,20 @@ pub struct StencilTarget<S: Stage> {
     pub reference: u32,
 }
 
-/// A compute pass with one dispatch.
+/// A compute pass with one dispatch, a [`Step`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dispatch<S: Stage> {
-    /// Compute shader of the dispatch.
+    /// Shader with the compute entry point.
     pub program: S::Program,
-    /// Number of workgroups.
+    /// Numbers of workgroups.
     pub groups: Groups<S>,
 }
 
-/// Number of workgroups of a dispatch.
+/// Numbers of workgroups of a [`Dispatch`].
 #[derive(Clone, Debug, PartialEq)]
 pub enum Groups<S: Stage> {
-    /// A number that is known when the graph is planned.
+    /// Numbers that are known when the graph is planned: workgroups in a plan, [`Threads`] before.
     Direct(S::Size),
-    /// Numbers in x, y and z, three u32 in a buffer.
+    /// Numbers of workgroups in x, y and z that the GPU reads from this buffer, a u32 each.
     Indirect(S::Arguments),
 }

@@ -12,7 +12,8 @@ pub(crate) const RESERVED: [&str; 13] = [
     "previous", "mip", "viewport",
 ];
 
-/// A name in a document: `[a-z][a-z0-9_]*`, at most 64 characters, without `__`. Cheap to clone.
+/// A name of a material, param, pass or other declaration in a document: `[a-z][a-z0-9_]*`, at most
+/// 64 characters, without `__`. Cheap to clone.
 #[derive(Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Name(Arc<str>);
 
@@ -87,8 +88,8 @@ impl fmt::Debug for Name {
     }
 }
 
-/// Returns the WGSL identifier that stands for a full name: `sample[3].rays` becomes
-/// `sample_3_rays`.
+/// Returns the WGSL identifier under which shaders find the resource or param with this full name:
+/// `sample[3].rays` becomes `sample_3_rays`.
 pub fn wgsl_identifier(name: &str) -> String {
     name.replace(['.', '@', '['], "_").replace(']', "")
 }

@@ -118,8 +118,9 @@ spelt! {
     Sqrt = "sqrt" 1,
 }
 
-/// A parsed reference to a material or a part of one: `maps[index].mip[0]`, `left.position`,
-/// `history.previous`. It may choose between two by a condition: `is_large ? many : few`.
+/// A parsed reference to a material or a part of one: `maps[2].mip[0]` (a mip of a layer),
+/// `left.position` (an output of the include `left`), `history.previous` (the content at the end of
+/// the frame before), or one of two by a condition, `is_large ? many : few`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reference {
     pub(crate) segments: Vec<Segment>,

@@ -4,7 +4,7 @@ use super::name::Name;
 use crate::provided_kind::ProvidedKind;
 use std::{fmt, sync::Arc};
 
-/// A number in an expression: a 64-bit integer or a float.
+/// A number in an expression: a 64-bit integer or a 64-bit float.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Scalar {
     /// An integer.
@@ -14,7 +14,7 @@ pub enum Scalar {
 }
 
 impl Scalar {
-    /// Returns the number as a float.
+    /// Returns the number as a 64-bit float; an integer beyond 2^53 is rounded.
     pub fn number(self) -> f64 {
         match self {
             Self::Whole(whole) => whole as f64,
@@ -41,13 +41,14 @@ impl fmt::Display for Scalar {
     }
 }
 
-/// A word of a `Choice` param, as the value of an expression. Two are equal if their words are.
+/// A word as the value of an expression: a word of a `Choice` param, or of the kind of a provided
+/// resource. Two words are equal if their field `word` is equal.
 #[derive(Clone, Debug)]
 pub struct Word {
     /// The word itself.
     pub word: Name,
-    /// All words of the param that the value comes from; `None` if the word is written in the
-    /// expression.
+    /// All words of the `Choice` param, or of the kinds of a provided resource, that the value
+    /// comes from; `None` if the word is written in the expression.
     pub of: Option<Arc<[Name]>>,
 }
 
@@ -64,9 +65,10 @@ pub enum Value {
     Scalar(Scalar),
     /// A boolean.
     Bool(bool),
-    /// A word of a `Choice`.
+    /// A word of a [`Choice`](crate::ParamType::Choice) param, or of the kind of a provided
+    /// resource.
     Word(Word),
-    /// Two to four numbers: a size or a vector.
+    /// Several numbers: a size, with width and height first, or a vector.
     List(Vec<Scalar>),
     /// The format of a texture.
     Format(wgt::TextureFormat),

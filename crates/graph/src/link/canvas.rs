@@ -39,8 +39,8 @@ pub(super) fn stages_of(
     (stages, depth_only)
 }
 
-/// Returns the texture that stands in for the attachments of a draw without attachments; `None` for
-/// any other draw.
+/// Returns the texture that serves as target of a draw without attachments; `None` for any other
+/// draw.
 pub(super) fn texture(
     draw: &Draw<Names>,
     program: Option<&LinkedProgram>,

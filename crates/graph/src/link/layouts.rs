@@ -9,7 +9,7 @@ use crate::{
 };
 use std::{collections::BTreeMap, sync::Arc};
 
-/// Layouts that shaders declare for each buffer.
+/// Layouts that shaders declare for each buffer, from which the sizes of buffers follow.
 #[derive(Default)]
 pub(super) struct Layouts {
     seen: BTreeMap<ResourceId, Vec<Seen>>,
@@ -36,7 +36,7 @@ struct Copied {
 }
 
 impl Layouts {
-    /// Notes that a shader sees a part of a buffer through this global.
+    /// Adds the layout that a shader declares for a part of a buffer by a global.
     pub fn see(&mut self, id: ResourceId, part: &SubresourceRange, global: &Global) {
         let (fixed, stride, layout, uniform) = match &global.class {
             Class::Storage {
@@ -59,8 +59,8 @@ impl Layouts {
         });
     }
 
-    /// Notes that a buffer must hold at least `bytes` bytes behind the start of a part, whatever
-    /// shaders declare.
+    /// Adds that a buffer must hold at least `bytes` bytes. Does nothing if `part` is a range of
+    /// items, whose size shaders declare.
     pub fn at_least(&mut self, id: ResourceId, part: &SubresourceRange, bytes: u64, span: &Span) {
         // Items are as large as shaders say; that these are large enough is theirs to see.
         if *part == SubresourceRange::WHOLE {
@@ -69,7 +69,8 @@ impl Layouts {
         }
     }
 
-    /// Notes that the first buffer is copied onto the second, so that both have the same size.
+    /// Adds that the buffer `from`, or part of it, is copied onto `to`, so that both must have the
+    /// same size.
     pub fn same(
         &mut self,
         from: (ResourceId, &SubresourceRange, &Located<String>),
@@ -82,7 +83,8 @@ impl Layouts {
         }));
     }
 
-    /// Returns every buffer with its size, and the mistakes of buffers whose size cannot be found.
+    /// Returns every buffer of the graph with its size by id, and the mistakes of buffers whose
+    /// size cannot be found.
     pub fn sized(
         self,
         symbols: &SymbolTable<'_>,

@@ -23,7 +23,9 @@ use std::collections::BTreeSet;
 
 /// All passes of a graph after linking, with its resources.
 pub(crate) struct Linked<'a> {
+    /// Resources of the graph, and the meanings of names.
     pub symbols: SymbolTable<'a>,
+    /// The linked passes and captures, in the order of the documents.
     pub passes: Vec<LinkedPass>,
     /// Instance of the document that each pass belongs to; `None` for a capture.
     pub instances: Vec<Option<InstanceId>>,
@@ -34,11 +36,13 @@ pub(crate) struct Linked<'a> {
     /// Number of passes above the first mistake, `None` without a mistake. Writes below the mistake
     /// are not known.
     pub first_invalid: Option<usize>,
+    /// Inputs and outputs of each instance of a document.
     pub interfaces: Vec<Interface>,
+    /// Params and features that decide which entries exist.
     pub plan_inputs: PlanInputs,
 }
 
-/// Links all passes with their captures.
+/// Links all passes, and adds the passes of the request's captures.
 pub(crate) fn link(lowered: Lowered<'_>) -> Linked<'_> {
     let request = lowered.symbols.request;
     let mut scope = PassScope::new(lowered.symbols);

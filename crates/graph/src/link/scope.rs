@@ -29,11 +29,13 @@ use crate::{
 };
 use std::{collections::BTreeSet, sync::Arc};
 
-/// Symbols of a graph as seen by the pass that is being linked, with the results of linking so far.
+/// Names and resources of a graph as the pass that is being linked sees them, with the reads,
+/// writes and layouts found so far.
 pub(super) struct PassScope<'a> {
     symbols: SymbolTable<'a>,
+    /// Layouts that shaders declare for buffers, so far.
     pub layouts: Layouts,
-    /// The name of the pass.
+    /// Full name of the pass.
     pub pass: Located<String>,
     /// Reads and writes of the pass so far.
     pub accesses: Vec<Access>,
@@ -111,7 +113,8 @@ impl<'a> PassScope<'a> {
         self.symbols.reports.report(mistake)
     }
 
-    /// Reports a need of the graph that this adapter cannot meet.
+    /// Reports that the adapter cannot do something that the graph needs: an error, or a warning if
+    /// the adapter is not known.
     pub fn unsupported(&mut self, mistake: impl Into<Diagnostic>) -> Reported<()> {
         self.symbols.reports.unsupported(mistake)
     }
@@ -121,7 +124,7 @@ impl<'a> PassScope<'a> {
         self.symbols.reports.check(result)
     }
 
-    /// Adds a read or write of a part by a step.
+    /// Adds a read or write of `target` by a step to the pass's accesses.
     pub fn access(
         &mut self,
         target: &Target,
@@ -156,7 +159,7 @@ impl<'a> PassScope<'a> {
         self.symbols.request
     }
 
-    /// Resolves a reference of the pass's document.
+    /// Returns the resource, or part of it, that a reference in the pass's document means.
     pub fn resolve(&mut self, reference: &Reference) -> Reported<Target> {
         self.symbols.resolve(reference, self.position)
     }
@@ -167,7 +170,7 @@ impl<'a> PassScope<'a> {
         self.symbols.find_full(name)
     }
 
-    /// Resolves an operand of a step. Returns the target, and its name and place for messages.
+    /// Returns the target of an operand of a step, and its name with its place, for messages.
     pub fn operand(&mut self, operand: &Operand) -> Reported<(Target, Located<String>)> {
         match operand {
             Operand::Named(reference) => Ok((self.resolve(reference)?, reference.located())),
@@ -326,14 +329,14 @@ impl<'a> PassScope<'a> {
         instance.params.names()
     }
 
-    /// Returns the number of a provided resource's kind, for an overridable constant such as
-    /// `light_kind`.
+    /// Returns the value for an overridable constant such as `light_kind`: the number of the kind
+    /// of the provided resource; `None` for other constants.
     pub fn kind(&mut self, name: &str) -> Option<f64> {
         let kind = self.symbols.kind_of_wgsl_name(name, self.position.scope)?;
         Some(f64::from(kind.number))
     }
 
-    /// Reports values that the entry sets and none of its shaders asks for.
+    /// Reports each value that the entry sets (`set`) and none of its shaders takes.
     pub fn unasked(&mut self) -> Reported<()> {
         let mut wrong = None;
         for (name, _) in self.set {

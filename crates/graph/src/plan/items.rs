@@ -9,15 +9,16 @@ use crate::{
 };
 use std::{collections::BTreeSet, ops::Range};
 
-/// Part of a texture or buffer, compared with the whole.
+/// Mips, layers or items of a texture or buffer that an output or capture holds, and their numbers
+/// in the whole texture or buffer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PartSummary {
-    /// Range of mip levels; `0..1` for a buffer.
+    /// Range of mip levels, counted from 0; `0..1` for a buffer.
     pub mips: Range<u32>,
-    /// Range of array layers, of slices of a 3D texture, or of items of a buffer.
+    /// Range of array layers, of slices of a 3D texture, or of items of a buffer, counted from 0.
     pub layers: Range<u32>,
-    /// Number of mips, and of layers or items, of the whole texture or buffer. The second is
-    /// `u32::MAX` for a buffer whose items the document does not count.
+    /// Number of mips of the whole texture or buffer, then its number of layers, slices or items.
+    /// The second number is `u32::MAX` for a buffer whose document gives no `count`.
     pub of: [u32; 2],
 }
 

@@ -61,12 +61,12 @@ pub(super) struct Planned {
     pub depends_on: BTreeSet<String>,
 }
 
-/// Name of a pass that does not run, with the reason.
+/// Name of a pass that a plan does not run, with the reason.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CulledPass {
     /// Full name of the pass.
     pub name: String,
-    /// Reason for which the pass does not run, as a clause: "it writes nothing".
+    /// Reason for which the pass does not run, as a clause for messages: "it writes nothing".
     pub reason: String,
 }
 

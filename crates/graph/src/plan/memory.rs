@@ -14,20 +14,21 @@ const ROWS: usize = 12;
 /// Memory that one of the graph's own textures or buffers takes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MemoryEntry {
-    /// Full name of the material, or of a pass's own buffer.
+    /// Full name of the material, or of a buffer that only one pass uses.
     pub name: String,
     /// Format of a texture; `None` for a buffer.
     pub format: Option<wgt::TextureFormat>,
-    /// Width and height in texels of a texture's mip 0; `[bytes, 1]` for a buffer.
+    /// Width and height in texels of a texture's mip 0; for a buffer `[n, 1]` with its size of n
+    /// bytes.
     pub size: [u32; 2],
-    /// Mip levels of a texture; 1 for a buffer.
+    /// Number of mip levels of a texture; 1 for a buffer.
     pub mips: u32,
-    /// Array layers of a texture; 1 for a buffer.
+    /// Number of array layers of a texture, or of slices of mip 0 of a 3D texture; 1 for a buffer.
     pub layers: u32,
-    /// Size in bytes of all texels or items; a driver may add to it. Twice the size for a resource
-    /// that is also read as it was in the frame before.
+    /// Size in bytes of all texels or items, without padding that a driver adds. Doubled if a pass
+    /// also reads the resource as it was in the frame before (`.previous`).
     pub bytes: u64,
-    /// Names of the other materials that use the same memory at other times of the frame.
+    /// Full names of the other materials that use the same memory at other times of the frame.
     pub shared_with: Vec<String>,
 }
 

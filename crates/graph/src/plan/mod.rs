@@ -1,5 +1,5 @@
-//! Phase 6: the [`Plan`], which holds everything that an executor needs to create resources and to
-//! run passes on a device.
+//! Phase 6: the [`Plan`], with everything that an executor needs to create resources and to run
+//! passes on a device.
 
 mod backend;
 pub(crate) mod check;

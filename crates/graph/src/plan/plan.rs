@@ -32,8 +32,9 @@ use std::{
     sync::Arc,
 };
 
-/// A graph that is ready to be allocated and run: the live passes in order, and every resource with
-/// its size and usages.
+/// A graph that is planned for one viewport, one set of param values and one device: the *live*
+/// passes, which an output or the host needs, in the order in which they run, and every resource
+/// with its size and usages. It holds no GPU objects.
 #[derive(Debug)]
 pub struct Plan(pub(super) Planned);
 
@@ -46,34 +47,35 @@ impl Plan {
     }
 
     /// Returns every resource that a pass may name; [`ResourceId::index`] is the index in this
-    /// list. Only resources that a live pass uses are created.
+    /// list. Resources that no live pass uses are in the list, but are not created.
     pub fn resources(&self) -> &[Resource] {
         &self.0.resources
     }
 
-    /// Returns the resource with this id.
+    /// Returns the resource with this id, which must be an id of this plan.
     pub fn resource(&self, id: ResourceId) -> &Resource {
         &self.0.resources[id.0]
     }
 
-    /// Returns the resources that live passes use. Only these are created.
+    /// Iterates over the resources that live passes use, in the order of
+    /// [`resources`](Self::resources). Only these are created.
     pub fn used(&self) -> impl Iterator<Item = &Resource> {
         let used = self.0.schedule.lifetimes.keys();
         used.map(|id| self.resource(*id))
     }
 
-    /// Returns every pass in the order of the document, with those that do not run.
+    /// Returns every pass in the order of the document, those that do not run included.
     /// [`PassId::index`] is the index in this list.
     pub fn all_passes(&self) -> &[LinkedPass] {
         &self.0.passes
     }
 
-    /// Returns the pass with this id.
+    /// Returns the pass with this id, which must be an id of this plan.
     pub fn pass(&self, id: PassId) -> &LinkedPass {
         &self.0.passes[id.0]
     }
 
-    /// Returns the live passes with their steps, in the order in which they run.
+    /// Iterates over the live passes with their steps, in the order in which they run.
     pub fn live(&self) -> impl Iterator<Item = &LinkedPass> + Clone {
         self.0.schedule.passes.iter().map(|id| self.pass(*id))
     }
@@ -84,13 +86,15 @@ impl Plan {
         &self.0.schedule
     }
 
-    /// Returns the name of every output and capture that can be read back, with the resource or
-    /// part that holds it.
+    /// Returns the name of every output and capture that can be read back, with the texture or
+    /// buffer, or part of it, that holds its content: first the outputs in the order of the
+    /// document, then the captures in the order of the request.
     pub fn readable(&self) -> &[(String, Target)] {
         &self.0.readable
     }
 
-    /// Finds the dependences between the passes for which `runs` is true, as if no others existed.
+    /// Finds the dependences between the passes for which `runs` returns true, as if the plan had
+    /// no other passes.
     pub fn dependences(&self, runs: impl Fn(PassId) -> bool) -> Dependences {
         let view = GraphView {
             passes: &self.0.passes,
@@ -99,13 +103,15 @@ impl Plan {
         dependences(view, runs)
     }
 
-    /// Returns the `values` of the documents as pairs of full name and result. The result is
-    /// written as in a document. A value that no expression uses is not listed.
+    /// Returns the named expressions in the section `values` of the documents: pairs of full name
+    /// and result, the result as text in the language of documents. A value that nothing uses is
+    /// not listed.
     pub fn named_values(&self) -> &[(String, String)] {
         &self.0.named_values
     }
 
-    /// Returns the imports of the request, by name of the input.
+    /// Returns the [`imports`](crate::Request::imports) of the request: descriptions of the
+    /// resources that the host hands over, by name of the document's input.
     pub fn imports(&self) -> &BTreeMap<String, Import> {
         &self.0.request.imports
     }
@@ -116,58 +122,61 @@ impl Plan {
         &self.0.request.grown
     }
 
-    /// Returns the byte that memory is filled with before a resource is first used in a frame;
-    /// `None` if memory is not filled.
+    /// Returns the [`poison`](crate::Request::poison) of the request: the byte that the memory of a
+    /// resource is filled with before its first use in a frame; `None` if memory is not filled.
     pub fn poison(&self) -> Option<u8> {
         self.0.request.poison
     }
 
-    /// Returns true if the request imports a resource under this name, or the provider describes
-    /// one.
+    /// Returns true if the request imports a resource under this name, or its provider describes
+    /// one, even if no pass uses it.
     pub fn offers(&self, name: &str) -> bool {
         let request = &self.0.request;
         request.imports.contains_key(name) || request.provider.0.contains_key(name)
     }
 
-    /// Returns an entry for each live texture and buffer of the graph's own, with its size in
-    /// memory, in the order of the document.
+    /// Returns an entry for each texture and buffer that a live pass uses and the executor
+    /// allocates, with its size in memory, in the order of [`resources`](Self::resources). Imported
+    /// and provided resources are left out.
     pub fn memory(&self) -> Vec<MemoryEntry> {
         self.own_memory().entries()
     }
 
-    /// Returns the live buffers and textures that may grow, each with its counter and its greatest
-    /// number of items or layers. That number is limited by the document and by the device.
+    /// Returns the buffers and textures that live passes use and that may grow (`grow`), each with
+    /// its counter and its greatest number of items or layers. The device's limits may lower the
+    /// number that the document gives.
     pub fn growing(&self) -> Vec<(ResourceId, Growth)> {
         self.own_memory().growing(&self.0.request.limits)
     }
 
-    /// Returns the size in bytes of the graph's own textures and buffers together; memory that
-    /// resources share counts once. A resource that is also read as it was in the frame before
-    /// counts twice.
+    /// Returns the size in bytes of all textures and buffers in [`memory`](Self::memory) together;
+    /// memory that they share counts once. A resource that a pass also reads as it was in the frame
+    /// before (`.previous`) counts twice.
     pub fn memory_bytes(&self) -> u64 {
         self.own_memory().bytes()
     }
 
-    /// Returns the number of bytes that sharing memory between resources saves.
+    /// Returns the number of bytes that sharing memory between resources saves, compared with an
+    /// allocation for each.
     pub fn saved_bytes(&self) -> u64 {
         self.own_memory().saved_bytes()
     }
 
-    /// Returns the graph's largest allocations as a table of text, with names, size, format and
-    /// bytes. It has one line for each of the largest allocations, then one for all smaller ones
-    /// together, then the sum. Materials that share an allocation stand in one line.
+    /// Returns a table as text, for people to read, of the memory that the graph takes. It has one
+    /// line for each of the 12 largest allocations, with the names of its materials, size, format
+    /// and bytes; then a line for all smaller allocations together; then the sum.
     pub fn memory_table(&self) -> String {
         self.own_memory().table()
     }
 
-    /// Returns the number of textures or buffers that a resource is made of: two if it is also read
-    /// as it was in the frame before, otherwise one.
+    /// Returns the number of textures or buffers that the executor makes for a resource: 2 if a
+    /// pass also reads it as it was in the frame before (`.previous`), otherwise 1.
     pub fn versions(&self, id: ResourceId) -> usize {
         self.own_memory().versions(id)
     }
 
-    /// Checks that the plan may run on a backend that lacks part of WebGPU, whichever backend it
-    /// was made for.
+    /// Checks that the plan may run on a backend that lacks part of WebGPU, even if its request
+    /// named no such backend.
     ///
     /// # Errors
     /// If the graph's document does not list the backend in `proven_on`.
@@ -180,11 +189,9 @@ impl Plan {
         Err(self.0.graph.diagnostics(reports.into_list()))
     }
 
-    /// Returns the names of the params whose values in the request have no effect: they differ from
-    /// their defaults, but with the default in place of that one value the plan would have the same
-    /// passes, and shaders would read the same values. A param that is set to its default is not
-    /// among them. For example, the `fit` of a shadow map has no effect under a light whose map has
-    /// only one fit.
+    /// Returns the names of the params that the request sets without effect: the value differs from
+    /// the param's default, but with the default the plan would have the same passes, and shaders
+    /// would read the same values. Plans the graph again for each param of the request.
     pub fn idle_params(&self) -> Vec<&str> {
         let by_default = |name: &&String| {
             let others = self.with(|request| {
@@ -199,8 +206,9 @@ impl Plan {
         asked.filter(by_default).map(String::as_str).collect()
     }
 
-    /// Returns true if a frame would do the same work with another value of the param `name`.
-    /// Returns false if the param cannot have this value.
+    /// Returns true if frames would do the same work with `value` for the param `name`: the same
+    /// passes, and the same values for shaders. Plans the graph again; returns false if that fails,
+    /// for example because the param cannot have this value.
     pub fn is_same_with(&self, name: &str, value: ParamValue) -> bool {
         self.with_param(name, value)
             .is_ok_and(|other| self.does_the_same_as(&other))
@@ -216,40 +224,40 @@ impl Plan {
                 .eq(other.used().map(|it| &it.kind))
     }
 
-    /// Returns the names of the provided resources that are bound by the passes that write an
-    /// output or capture. For example, if these passes bind a `camera`, depths in the output are
-    /// that camera's. Empty for an unknown name.
+    /// Returns the names of the provided buffers that are bound by the passes that write the output
+    /// or capture called `output`. For example, if these passes bind a `camera`, depths in the
+    /// output are that camera's. Empty for an unknown name.
     pub fn provided_behind(&self, output: &str) -> BTreeSet<&str> {
         let target = self.readable_target(output);
         let behind = |target| items::provided_behind(self.live(), target, &self.0.resources);
         target.map_or_else(BTreeSet::new, behind)
     }
 
-    /// Returns the layout of one item of the buffer behind an output or capture. Returns `None` for
-    /// a texture or an unknown name, or if no live pass binds the buffer as an array of plain items
-    /// or as a single item.
+    /// Returns the layout of one item of the buffer that holds the output or capture called
+    /// `output`. Returns `None` for a texture or an unknown name, or if no live pass binds the
+    /// whole buffer with items of 32-bit numbers.
     pub fn item(&self, output: &str) -> Option<Item> {
         items::item_of(self.live(), self.readable_target(output)?)
     }
 
-    /// Returns the mips and layers of a texture, or the items of a buffer, that an output or
-    /// capture holds; `None` for an unknown name. A capture after a pass holds only the part that
-    /// has been written by then.
+    /// Returns the mips and layers of a texture, or the items of a buffer, that the output or
+    /// capture called `output` holds; `None` for an unknown name. A capture after a pass holds only
+    /// the part that has been written by then.
     pub fn part(&self, output: &str) -> Option<PartSummary> {
         let target = self.readable_target(output)?;
         Some(items::part(self.live(), target, &self.0.resources))
     }
 
-    /// Returns the resource, or part of one, that holds an output or capture; `None` for an unknown
-    /// name.
+    /// Returns the texture or buffer, or part of it, that holds the output or capture called
+    /// `output`; `None` for an unknown name.
     pub fn readable_target(&self, output: &str) -> Option<&Target> {
         let (_, target) = self.0.readable.iter().find(|(name, _)| name == output)?;
         Some(target)
     }
 
-    /// Returns true if the param `name` can be set to this value without planning again: the value
-    /// has the right type and range, and it affects nothing but the content of `params` uniforms.
-    /// Always false for a `Choice` param.
+    /// Returns true if [`set_in_uniforms`](Self::set_in_uniforms) can set the param `name` to this
+    /// value without planning again: the value has the right type and range, and the param affects
+    /// nothing but the bytes of `params` uniforms. Always false for a `Choice` param.
     pub fn is_in_uniforms(&self, name: &str, value: &ParamValue) -> bool {
         self.0.graph.param(name).is_ok_and(|param| {
             // A document that is included may count its words in another order.
@@ -260,8 +268,8 @@ impl Plan {
 
     /// Sets a param to another value without planning again, if
     /// [`is_in_uniforms`](Self::is_in_uniforms) allows it; otherwise changes nothing and returns an
-    /// empty list. Returns the positions in [`Schedule::passes`] of the passes whose uniforms have
-    /// other bytes now.
+    /// empty list. Returns the indices in [`Schedule::passes`] of the passes whose uniforms have
+    /// other bytes now and must be uploaded.
     pub fn set_in_uniforms(&mut self, name: &str, value: ParamValue) -> Vec<usize> {
         let Ok(param) = self.0.graph.param(name) else {
             return Vec::new();
@@ -279,7 +287,7 @@ impl Plan {
             .collect()
     }
 
-    /// Returns name and kind of each live pass, in the order in which they run.
+    /// Returns the name and kind of each live pass, in the order in which they run.
     pub fn passes(&self) -> Vec<PassSummary> {
         let summary = |pass: &LinkedPass| PassSummary {
             name: pass.name.value.clone(),
@@ -288,13 +296,14 @@ impl Plan {
         self.live().map(summary).collect()
     }
 
-    /// Returns the passes that do not run, each with the reason.
+    /// Returns the passes that do not run because no output needs them, each with the reason, in
+    /// the order of the document.
     pub fn culled(&self) -> &[CulledPass] {
         &self.0.culled
     }
 
-    /// Returns the names of the provided resources that live passes bind. Only these need to be
-    /// built.
+    /// Returns the names of the provided resources that live passes bind, in the order of
+    /// [`resources`](Self::resources). The host needs to make only these.
     pub fn provided(&self) -> Vec<&str> {
         let is_provided = |resource: &&Resource| {
             matches!(
@@ -306,9 +315,9 @@ impl Plan {
         provided.map(|resource| resource.name.as_str()).collect()
     }
 
-    /// Returns true if a frame may depend on frames before it although the host changes nothing: a
-    /// live pass reads content that the graph left in the frame before, or binds the uniform
-    /// `frame`.
+    /// Returns true if the outputs may differ from frame to frame although the host changes
+    /// nothing: a live pass uses a resource with `keep` or content of the frame before, or binds
+    /// the uniform `frame`.
     pub fn remembers(&self) -> bool {
         self.used().any(|resource| match resource.kind {
             _ if resource.keep => true,
@@ -318,8 +327,8 @@ impl Plan {
         })
     }
 
-    /// Returns name, format and size of the outputs and captures that can be read back after a
-    /// frame.
+    /// Returns the name, format and size of the outputs and captures that can be read back after a
+    /// frame, in the order of [`readable`](Self::readable).
     pub fn outputs(&self) -> Vec<OutputSummary> {
         let summary = |(name, target): &(String, Target)| {
             OutputSummary::new(name, target, &self.resource(target.id).kind)
@@ -327,17 +336,19 @@ impl Plan {
         self.0.readable.iter().map(summary).collect()
     }
 
-    /// Returns the width and height of the viewport in pixels.
+    /// Returns the width and height in pixels of the viewport that the plan is made for.
     pub fn viewport(&self) -> [u32; 2] {
         self.0.request.viewport
     }
 
-    /// Returns the value of a param in this plan; `None` for an unknown name.
+    /// Returns the value of the param `name` in this plan, whether set or its default; `None` for
+    /// an unknown name.
     pub fn param(&self, name: &str) -> Option<&ParamValue> {
         self.0.values.get(name)
     }
 
-    /// Plans again for another viewport: width and height in pixels.
+    /// Returns a plan of the same graph for another viewport, width and height in pixels. This plan
+    /// stays as it is.
     ///
     /// # Errors
     /// All mistakes of the graph with this viewport.
@@ -345,7 +356,8 @@ impl Plan {
         self.with(|request| request.viewport = viewport)
     }
 
-    /// Plans again with another value of one param.
+    /// Returns a plan of the same graph with another value of the param `name`. This plan stays as
+    /// it is.
     ///
     /// # Errors
     /// All mistakes of the graph with this value.
@@ -355,9 +367,9 @@ impl Plan {
         })
     }
 
-    /// Plans again with a changed request. `change` may change several parts at once, such as the
-    /// viewport and the imports that follow it. The descriptions of the provider stay, unless
-    /// `change` sets another provider.
+    /// Returns a plan of the same graph for a changed request. `change` gets a copy of this plan's
+    /// request and may change several parts at once, such as the viewport and the imports that
+    /// depend on it. The descriptions of the provider stay, unless `change` sets another provider.
     ///
     /// # Errors
     /// All mistakes of the graph with the changed request.
@@ -370,7 +382,8 @@ impl Plan {
         Self::new(&self.0.graph, &request)
     }
 
-    /// Returns the warnings that planning gave.
+    /// Returns the warnings that planning gave, in the order in which they were found; empty
+    /// without warnings.
     pub fn warnings(&self) -> &[Diagnostic] {
         &self.0.warnings
     }

@@ -10,23 +10,26 @@ use crate::{
 /// Name and kind of a pass that runs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PassSummary {
-    /// Full name.
+    /// Full name of the pass: the name in the document, with the names of the groups and named
+    /// includes around it in front, `blur.x`.
     pub name: String,
-    /// Kind, as the document writes it.
+    /// Kind of the pass, as the document writes it, such as `Compute`; or
+    /// [`CAPTURE`](crate::CAPTURE).
     pub kind: String,
 }
 
-/// Name, format and size of an output or capture that can be read back.
+/// Name, format and size of an output or capture ([`Capture`](crate::Capture)) that can be read
+/// back after a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OutputSummary {
-    /// Name of the output or capture.
+    /// Name of the output, or of the capture ([`Capture::name`](crate::Capture::name)).
     pub name: String,
     /// Format of a texture; `None` for a buffer.
     pub format: Option<wgt::TextureFormat>,
-    /// Width and height in texels of a texture's first mip that is read back; `[bytes, 1]` for a
-    /// buffer.
+    /// Width and height in texels of the first mip of a texture that is read back; for a buffer
+    /// `[n, 1]`, where n is the number of bytes that are read back.
     pub size: [u32; 2],
-    /// Number of layers of a texture; 1 for a buffer.
+    /// Number of layers, or of slices of a 3D texture, that are read back; 1 for a buffer.
     pub layers: u32,
 }
 

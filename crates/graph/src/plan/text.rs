@@ -8,7 +8,7 @@
 //! ```
 
 /// Shortens a text to at most `characters` characters: an ellipsis replaces the middle, because the
-/// end of a name often tells more than its middle. A short text is returned as it is.
+/// end of a name often tells more than its middle. A text that is not longer is returned unchanged.
 pub fn cut(text: &str, characters: usize) -> String {
     let all: Vec<char> = text.chars().collect();
     if all.len() <= characters {
@@ -23,7 +23,8 @@ pub fn cut(text: &str, characters: usize) -> String {
         .collect()
 }
 
-/// Formats a number of bytes in the unit that fits: `B`, `KiB`, `MiB` or `GiB`.
+/// Formats a number of bytes in the largest unit in which it is at least 1: `B`, `KiB`, `MiB` or
+/// `GiB`.
 pub fn bytes(bytes: u64) -> String {
     match bytes {
         0..1024 => format!("{bytes} B"),

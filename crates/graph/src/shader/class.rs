@@ -4,7 +4,8 @@
 use crate::scalar_class::ScalarClass;
 use naga::{AddressSpace, Handle, ImageClass, TypeInner, proc::Layouter};
 
-/// Class of a resource global, with the layout that a resource must have to be bound to it.
+/// Type of a resource global of a shader, with the layout that a resource must have to be bound to
+/// the global.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Class {
     Uniform {
@@ -12,8 +13,9 @@ pub(crate) enum Class {
         members: Vec<Member>,
         layout: String,
     },
-    /// A storage buffer. `fixed`: bytes before the runtime-sized array, or of the whole type if it
-    /// has none. `stride`: bytes per item of that array; `None` if there is none.
+    /// A storage buffer. `fixed`: number of bytes before the runtime-sized array, or of the whole
+    /// type without such an array. `stride`: number of bytes from one item of the array to the
+    /// next; `None` without such an array. `layout`: text that is equal for equal layouts.
     Storage {
         fixed: u64,
         stride: Option<u64>,
@@ -28,7 +30,7 @@ pub(crate) enum Class {
     Unsupported(&'static str),
 }
 
-/// A texture global, sampled or storage.
+/// Type of a texture global: sampled or storage.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum TextureClass {
     Sampled {
@@ -56,6 +58,7 @@ impl TextureClass {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Member {
     pub name: String,
+    /// Offset from the start of the struct, in bytes.
     pub offset: u64,
     /// Scalar class and number of components; `None` for matrices, arrays and structs.
     pub vector: Option<(ScalarClass, u32)>,

@@ -20,8 +20,8 @@ use std::{
     sync::Arc,
 };
 
-/// Modules that stand in for others: path of the replaced module, to path of the one imported
-/// instead.
+/// WGSL modules that replace others in imports: path of the replaced module, to path of the module
+/// that is imported instead.
 pub(crate) type Replaced = BTreeMap<String, String>;
 
 /// Deepest chain of imports; far above any sensible house, far below the stack.
@@ -30,6 +30,7 @@ const DEEPEST_IMPORT: usize = 64;
 /// Text of a shader with its imports in place.
 #[derive(Clone, Debug)]
 pub(crate) struct Expanded {
+    /// WGSL of the shader and of the modules that it imports.
     pub text: String,
     /// File of the shader itself.
     pub file: SourceFile,
@@ -46,9 +47,9 @@ pub(crate) struct ImportLine {
     pub asked: Located<String>,
     /// Path of the module that the line names.
     pub path: Arc<str>,
-    /// File that is imported; another one if a module stands in for it.
+    /// File that is imported: the module that the line names, or the module that replaces it.
     pub file: SourceFile,
-    /// True for a line with `instead`, which leaves out another module.
+    /// True for a line with `instead`, which also leaves out another module.
     pub replaces: bool,
 }
 

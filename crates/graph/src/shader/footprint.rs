@@ -9,9 +9,10 @@ use naga::{
 };
 use std::collections::BTreeSet;
 
-/// Size of some variables in bytes, and the largest of them.
+/// Size in bytes of several variables of a shader, and the largest of them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Memory {
+    /// Sum of the sizes in bytes.
     pub bytes: u64,
     largest: Option<(u64, Located<String>)>,
 }
@@ -24,8 +25,8 @@ impl Memory {
         }
     }
 
-    /// Returns the largest variable: its bytes, and its name at its place. Without a variable: 0
-    /// bytes, an empty name, and the place `otherwise`.
+    /// Returns the largest variable: its size in bytes, and its name with its place. Without a
+    /// variable: 0, and an empty name with the place `otherwise`.
     pub fn largest(&self, otherwise: &Span) -> (u64, Located<String>) {
         let none = || (0, Located::new(String::new(), otherwise.clone()));
         self.largest.clone().unwrap_or_else(none)

@@ -2,19 +2,19 @@
 
 use naga::{Handle, ScalarKind, TypeInner};
 
-/// One scalar in the items of a buffer.
+/// One scalar in each item of a buffer, such as `origin.x`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Field {
     /// Path of the scalar in the item, as in WGSL: `origin.x`, `indices[2]`. Empty if the item is a
     /// single scalar.
     pub name: String,
-    /// Offset of the scalar from the begin of the item, in bytes.
+    /// Offset of the scalar from the start of the item, in bytes.
     pub offset: usize,
     /// Type of the scalar.
     pub scalar: ItemScalar,
 }
 
-/// Type of a 32-bit scalar in a buffer.
+/// Type of a 32-bit scalar in an item of a buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ItemScalar {
     /// `f32`.
@@ -42,12 +42,14 @@ impl ItemScalar {
     }
 }
 
-/// Layout of one item of a buffer, as a shader that binds the buffer declares it.
+/// Layout of one item of a buffer: an element of its array, or the whole buffer without an array,
+/// as a shader that binds the buffer declares it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Item {
     /// Distance from one item to the next, in bytes.
     pub stride: usize,
-    /// All scalars of the item, in order of their offsets; bytes between them are padding.
+    /// All scalars of the item, at most 64, in the order of their offsets; bytes between them are
+    /// padding.
     pub fields: Vec<Field>,
 }
 

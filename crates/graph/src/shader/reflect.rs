@@ -57,19 +57,23 @@ impl PartialEq for Shader {
 
 impl Eq for Shader {}
 
-/// A resource global, with its use by some entry points.
+/// A resource global of a shader, with its use by some of the shader's entry points together.
 #[derive(Clone, Debug)]
 pub(crate) struct Global {
     pub handle: Handle<naga::GlobalVariable>,
     pub name: String,
+    /// Place of the declaration.
     pub span: Span,
     pub group: u32,
     pub binding: u32,
+    /// Type of the global.
     pub class: Class,
+    /// True if one of the entry points reads the global.
     pub reads: bool,
+    /// True if one of the entry points writes the global.
     pub writes: bool,
-    /// Layout of the global's items; `None` if it has members other than 32-bit numbers, or too
-    /// many.
+    /// Layout of the global's items; `None` if they have members other than 32-bit numbers, or more
+    /// than 64.
     pub item: Option<Item>,
     /// Stages of the entry points that use the global.
     pub stages: wgt::ShaderStages,
@@ -187,7 +191,7 @@ impl Shader {
         &self.module
     }
 
-    /// Returns the path of the shader's own file; imported modules have files of their own.
+    /// Returns the path of the shader's file, not of the modules that it imports.
     pub fn file(&self) -> &str {
         &self.source.file.name
     }
@@ -356,7 +360,7 @@ impl Shader {
         }
     }
 
-    /// Names of the module-scope constants.
+    /// Iterates over the names of the constants at module scope.
     pub(crate) fn constants(&self) -> impl Iterator<Item = &str> {
         let constants = self.module.constants.iter();
         constants.filter_map(|(_, constant)| constant.name.as_deref())
@@ -398,7 +402,7 @@ impl Shader {
         self.info.get_entry_point(entry)[global] != GlobalUse::empty()
     }
 
-    /// Names of all globals of the module, used or not.
+    /// Iterates over the names of all globals of the module, used or not.
     pub(crate) fn global_names(&self) -> impl Iterator<Item = &str> {
         let globals = self.module.global_variables.iter();
         globals.filter_map(|(_, global)| global.name.as_deref())

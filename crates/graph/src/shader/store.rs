@@ -46,8 +46,8 @@ impl Shaders {
         (Arc::clone(&document.file.name), folder, name)
     }
 
-    /// Returns the shader that a pass of a document names. `around` holds the modules that stand in
-    /// for others there. `None` if the shader was not read with the document.
+    /// Returns the shader that a pass of a document names. `around` holds the modules that replace
+    /// others in the document's shaders. `None` if the shader was not read with the document.
     pub fn get(
         &self,
         document: &Document,
@@ -60,8 +60,8 @@ impl Shaders {
         found.map(|(_, shader)| shader)
     }
 
-    /// Iterates over the valid variants of the shader that a pass of a document names: one per set
-    /// of modules that stand in for others.
+    /// Iterates over the valid variants of the shader that a pass of a document names: one for each
+    /// set of modules that replace others.
     pub fn variants(
         &self,
         document: &Document,
@@ -91,8 +91,8 @@ impl Shaders {
         (folder, name.value.clone())
     }
 
-    /// Notes in `around` that the module `is` stands in for the module `of`. Does nothing if one of
-    /// them was not found.
+    /// Adds to `around` that the module `is` replaces the module `of`. Does nothing if one of the
+    /// two was not found.
     pub fn replace(&self, around: &mut Replaced, of: &Located<String>, is: &Located<String>) {
         // One that is not there was reported.
         if let (Some(of), Some(is)) = (self.module(of), self.module(is)) {

@@ -10,10 +10,12 @@ use crate::source::span::{Located, SourceFile};
 use naga::Expression;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Something unused in a shader: its kind in words, and its name at its place.
+/// An import, param or global of a shader that is not used.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Unused {
+    /// Kind of the unused thing in words, for messages.
     pub what: &'static str,
+    /// Name of the unused thing, with its place.
     pub name: Located<String>,
 }
 

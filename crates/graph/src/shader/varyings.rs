@@ -5,11 +5,12 @@ use super::class::vector;
 use crate::scalar_class::ScalarClass;
 use naga::{Binding, BuiltIn, Handle, Module, Type, TypeInner};
 
-/// A value that passes between stages at a location.
+/// A scalar or vector that passes from one shader stage to the next at a `@location`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Varying {
     pub location: u32,
     pub scalar: ScalarClass,
+    /// Number of components, from 1 to 4.
     pub width: u32,
     pub interpolation: Option<naga::Interpolation>,
     pub sampling: Option<naga::Sampling>,
@@ -18,8 +19,10 @@ pub(crate) struct Varying {
 /// Values that an entry point takes from the stage before, or gives to the next one.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Varyings {
+    /// Values with a `@location`, in the order of their declaration.
     pub locations: Vec<Varying>,
-    /// Number of the device's inter-stage variables that the entry point's built-in values take.
+    /// Number of inter-stage variables that the entry point's built-in values count for in the
+    /// device's limit.
     pub builtins: u32,
 }
 

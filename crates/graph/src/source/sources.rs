@@ -8,7 +8,7 @@ use std::{io::Read, path::PathBuf, sync::Arc};
 /// Paths have forward slashes and are relative to the store (`pipelines/nsm.ron`,
 /// `shaders/shared/camera.wgsl`), or absolute.
 pub trait Sources: Send + Sync {
-    /// Reads the text at `path`; `Ok(None)` if the store has no such file.
+    /// Reads the text of the file at `path`; `Ok(None)` if the store has no such file.
     ///
     /// # Errors
     /// The reason, if the file is there but cannot be read.
@@ -18,8 +18,9 @@ pub trait Sources: Send + Sync {
     /// there is no such folder. Used for listings and for suggestions on misspelt names.
     fn list(&self, folder: &str) -> Vec<String>;
 
-    /// Reads the picture at `path`, for a `Texture` with a `file`; `Ok(None)` if the store has no
-    /// such file. Each store decides which picture formats it decodes; by default it decodes none.
+    /// Reads and decodes the picture at `path`, for a `Texture` with a `file`; `Ok(None)` if the
+    /// store has no such file. Each store decides which picture formats it decodes; without an
+    /// implementation it decodes none.
     ///
     /// # Errors
     /// The reason, if the file is there but cannot be decoded.
@@ -56,7 +57,8 @@ fn too_long(length: &str) -> String {
     )
 }
 
-/// A store that reads the files of a folder on disk. Absolute paths are read as they are.
+/// A store that reads the files of a folder on disk. Absolute paths are read as they are. A text
+/// longer than 8 MiB is an error, and pictures are not decoded.
 #[derive(Clone, Debug)]
 pub struct FolderSources {
     /// Folder that relative paths start from.
@@ -111,7 +113,7 @@ impl Sources for FolderSources {
 /// Several stores as one: each file comes from the first store that has it.
 #[derive(Default)]
 pub struct LayeredSources(
-    /// Stores, in the order in which they are asked.
+    /// The stores, in the order in which they are searched for a file.
     pub Vec<Box<dyn Sources>>,
 );
 

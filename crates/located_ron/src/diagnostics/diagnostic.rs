@@ -3,21 +3,22 @@
 use super::{code::Code, suggest::suggestion};
 use crate::span::Span;
 
-/// Severity of a diagnostic. Errors sort before warnings.
+/// Severity of a [`Diagnostic`]. Errors sort before warnings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// The document cannot be used.
+    /// The file that was read cannot be used.
     Error,
-    /// The document can be used, but something in it has no effect or is likely a mistake.
+    /// The file that was read can be used, but something in it has no effect or is likely a
+    /// mistake.
     Warning,
 }
 
-/// A place in a file, with the text that a diagnostic prints beside it.
+/// A place in a file, with the text that a [`Diagnostic`] prints beside it.
 #[derive(Clone, Debug)]
 pub struct Label {
-    /// Place in the source.
+    /// Place in the source file.
     pub span: Span,
-    /// Text beside the place; may be empty.
+    /// Text that is printed beside the place; may be empty.
     pub text: String,
 }
 
@@ -28,12 +29,12 @@ pub struct Diagnostic {
     pub code: Code,
     /// Severity: error or warning.
     pub severity: Severity,
-    /// Message, which names the thing that is wrong.
+    /// Message, which names the thing that is wrong: "unknown field `hieght`".
     pub message: String,
     /// Places that the mistake is about. The first is the mistake's own place; the others explain
     /// it. Empty if the mistake has no place.
     pub labels: Vec<Label>,
-    /// Hint how to mend the mistake; `None` if there is none.
+    /// Hint how to mend the mistake, which may have several lines; `None` without a hint.
     pub help: Option<String>,
 }
 
@@ -57,7 +58,8 @@ impl Diagnostic {
         }
     }
 
-    /// Adds a place with a text beside it. The first place that is added is the mistake's own.
+    /// Appends a place to [`labels`](Self::labels), with a text to print beside it. The first place
+    /// that is added is the mistake's own.
     #[must_use]
     pub fn at(mut self, place: impl Into<Span>, text: impl Into<String>) -> Self {
         self.labels.push(Label {
@@ -67,13 +69,14 @@ impl Diagnostic {
         self
     }
 
-    /// Adds a place with a text beside it, if the place is known; `None` adds nothing.
+    /// Appends a place to [`labels`](Self::labels), with a text to print beside it; `None` adds
+    /// nothing.
     #[must_use]
     pub fn at_any(self, place: Option<impl Into<Span>>, text: impl Into<String>) -> Self {
         self.at_all(place.map(|place| (place, text)))
     }
 
-    /// Adds several places, each with a text beside it.
+    /// Appends places to [`labels`](Self::labels), each with a text to print beside it.
     #[must_use]
     pub fn at_all<P: Into<Span>, T: Into<String>>(
         self,
@@ -83,8 +86,8 @@ impl Diagnostic {
         places.fold(self, |diagnostic, (place, text)| diagnostic.at(place, text))
     }
 
-    /// Adds another diagnostic as the reason of this one: its message as a label at `place`, and
-    /// its help. The kind of `reason` replaces the kind of this diagnostic.
+    /// Adds another diagnostic as the reason for this mistake: appends the message of `reason` as a
+    /// label at `place`, appends its help, and takes over its kind ([`code`](Self::code)).
     #[must_use]
     pub fn because(self, place: impl Into<Span>, reason: impl Into<Self>) -> Self {
         let reason = reason.into();
@@ -94,7 +97,8 @@ impl Diagnostic {
         }
     }
 
-    /// Adds a hint how to mend the mistake, on a new line after earlier hints.
+    /// Appends a hint how to mend the mistake to the field `help`, on a new line after earlier
+    /// hints.
     #[must_use]
     pub fn help(mut self, text: impl Into<String>) -> Self {
         let text = text.into();
@@ -105,20 +109,21 @@ impl Diagnostic {
         self
     }
 
-    /// Adds a hint how to mend the mistake, if there is one; `None` adds nothing.
+    /// Appends a hint how to mend the mistake, as the method `help` does; `None` adds nothing.
     #[must_use]
     pub fn help_any(self, text: Option<impl Into<String>>) -> Self {
         text.into_iter().fold(self, Self::help)
     }
 
-    /// Adds the hint "did you mean …?" if a name in `known` is close to `word`, else a list of the
-    /// known names. An empty `known` adds nothing.
+    /// Appends the hint "did you mean …?" if a name in `known` is close to the misspelt `word`, or
+    /// else a list of the names in `known`. An empty `known` adds nothing.
     #[must_use]
     pub fn suggest<S: AsRef<str>>(self, word: &str, known: impl IntoIterator<Item = S>) -> Self {
         self.help_any(suggestion(word, known))
     }
 
-    /// Returns the first place and the message as `PLACE: MESSAGE`, without the help.
+    /// Returns the first place and the message as `FILE:LINE:COLUMN: MESSAGE`, without the help.
+    /// Without a place it is only the message.
     pub fn brief(&self) -> String {
         match self.labels.first() {
             Some(label) => format!("{}: {}", label.span, self.message),

@@ -6,13 +6,14 @@ use std::fmt;
 /// Most diagnostics that are printed, each with a piece of its file.
 const MOST_SHOWN: usize = 200;
 
-/// A list of diagnostics: errors before warnings, and each of these by file name and place.
+/// A sorted list of diagnostics, as loading or planning returns it: errors before warnings, and
+/// both by file name and place.
 #[derive(Clone, Debug)]
 pub struct Diagnostics(Vec<Diagnostic>);
 
 impl Diagnostics {
-    /// Sorts `list`, and drops duplicates. Of more than 200 diagnostics, the rest becomes one that
-    /// counts them.
+    /// Creates a list from `list`: sorts the diagnostics and drops duplicates. If there are more
+    /// than 200, those after the first 200 are replaced by one that counts them.
     pub fn new(mut list: Vec<Diagnostic>) -> Self {
         list.sort_by(|a, b| a.key().cmp(&b.key()));
         list.dedup_by(|a, b| a.message == b.message && a.key() == b.key());
@@ -35,8 +36,8 @@ impl Diagnostics {
         self.0.iter()
     }
 
-    /// Renders all diagnostics as text, each with the source lines that it is about. `colour` adds
-    /// ANSI colours for a terminal.
+    /// Returns all diagnostics as text for a terminal, each with the source lines that it is about.
+    /// `colour` adds ANSI colours.
     #[cfg(feature = "render")]
     pub fn render(&self, colour: bool) -> String {
         super::render::render(&self.0, colour)

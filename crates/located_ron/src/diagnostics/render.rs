@@ -12,8 +12,8 @@ use std::{fmt, ops::Range};
 /// Longest line of which a piece is printed, in bytes: there is no pointing at a word in one that
 /// fills a screen, and miette cannot count beyond 65,535 columns.
 const LONGEST_LINE: usize = 2000;
-/// Renders diagnostics one after the other, each with the source lines that it is about. `colour`
-/// adds ANSI colours for a terminal.
+/// Returns the diagnostics in `list` as text for a terminal, in their order, each with the source
+/// lines that it is about. `colour` adds ANSI colours.
 pub fn render(list: &[Diagnostic], colour: bool) -> String {
     let theme = if colour {
         GraphicalTheme::unicode()

@@ -10,8 +10,9 @@ const LONGEST: usize = 80;
 /// Names in a list.
 const SHOWN: usize = 16;
 
-/// Returns the name in `known` that is most like `word`; `None` if no name is close enough. Names
-/// of more than 80 bytes, and those after the first 1,024, are not compared.
+/// Returns the name in `known` that is most like the misspelt `word`, by similarity of the letters;
+/// `None` if no name is close enough. A dotted name that ends in `.word` counts as closest if it is
+/// the only one. Names of more than 80 bytes, and those after the first 1,024, are not compared.
 pub fn closest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
     if word.len() > LONGEST {
         return None;
@@ -39,8 +40,9 @@ pub fn closest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Opti
     best.map(|(.., name)| name)
 }
 
-/// Returns "did you mean …?" for a misspelt `word`, or else a list of the names in `known`, of
-/// which 16 are shown. `None` if `known` is empty.
+/// Returns a hint for a misspelt `word`: "did you mean …?" with the [`closest`] name in `known`, or
+/// else "known here: …" with the first 16 names in `known`. `None` if `known` is empty. Names of
+/// more than 80 bytes are left out.
 pub fn suggestion<S: AsRef<str>>(word: &str, known: impl IntoIterator<Item = S>) -> Option<String> {
     let known: Vec<S> = known.into_iter().collect();
     let count = known.len();
@@ -65,7 +67,8 @@ pub fn suggestion<S: AsRef<str>>(word: &str, known: impl IntoIterator<Item = S>)
     Some(format!("known here: {list}"))
 }
 
-/// Returns "did you mean …?" for a misspelt `word`; `None` if no name in `known` is close enough.
+/// Returns the hint "did you mean …?" for a misspelt `word`, with the [`closest`] name in `known`;
+/// `None` if no name is close enough.
 pub fn likeness<S: AsRef<str>>(word: &str, known: impl IntoIterator<Item = S>) -> Option<String> {
     suggestion(word, known).filter(|hint| hint.starts_with("did"))
 }

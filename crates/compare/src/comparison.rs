@@ -80,9 +80,9 @@ pub struct Comparison {
     pub scene: Arc<Scene>,
     /// Still views and camera paths from which the scene is seen.
     pub views: Vec<ViewOrPath>,
-    /// Width and height of each viewport in pixels.
+    /// Width and height of each viewport in pixels; these replace [`Method::viewport`].
     pub viewports: Vec<[u32; 2]>,
-    /// The methods, each with one setting of its params.
+    /// The methods, each with one setting of its params. Every method runs in every viewport.
     pub methods: Vec<Method>,
     /// Settings of how the methods are run, timed and judged.
     pub protocol: Protocol,

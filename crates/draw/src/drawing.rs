@@ -104,7 +104,8 @@ pub enum Origin {
     Provided,
     /// Texture, buffer or sampler that the host creates and hands over.
     Imported,
-    /// The uniform `frame`, with the number and time of the frame, which every graph can bind.
+    /// The uniform `frame`, with the number, time and flags of the frame, which every graph can
+    /// bind.
     Frame,
     /// Content of another material at the end of the previous frame.
     Previous,

@@ -78,8 +78,12 @@ impl Graph {
     ///
     /// If this finds no mistake, the graph is planned again for other values of each param that an
     /// `if` depends on, one at a time: each word, true and false, or `min` and `max`; and with and
-    /// without each device feature that an `if` asks for. Returns the graph, and the plan for
-    /// `request` itself.
+    /// without each device feature that an `if` asks for.
+    ///
+    /// Returns the graph, and the plan for the values of `request`. The plan contains the assumed
+    /// inputs and, with [`any_adapter`](crate::Request::any_adapter), features that the device may
+    /// lack. Where either applies, only look at it, and make the plan to execute with
+    /// [`Graph::plan`]; else it is the plan that `Graph::plan` makes.
     ///
     /// # Errors
     /// All mistakes of loading and planning. Reads before writes, and cycles, are only reported for
@@ -157,7 +161,7 @@ impl Graph {
 
     /// Returns the names of the outputs that a plan computes if its request has no list of
     /// [`outputs`](crate::Request::outputs): those in [`Graph::outputs`] that are not marked
-    /// `on_request`.
+    /// `on_request`. An output whose `if` is false in the plan is left out by the plan, not here.
     pub fn default_outputs(&self) -> Vec<&str> {
         let outputs = self.0.document.material_outputs();
         let outputs = outputs.filter(|output| !output.on_request);

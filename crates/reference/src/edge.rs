@@ -73,7 +73,8 @@ impl Distances {
         all
     }
 
-    /// Returns the distances of the union of two sets of pixels.
+    /// Returns the distances of two sets of pixels together. The sets share no pixel, such as those
+    /// of two frames.
     pub fn with(self, other: Self) -> Self {
         let count = self.count + other.count;
         let mean = |one: f64, another: f64| {

@@ -55,7 +55,8 @@ pub struct Receiver {
     /// Dot product of the interpolated, unnormalised vertex normal and the unit vector towards the
     /// light. The normal is turned round for the back of a double-sided primitive.
     pub n_dot_l: f64,
-    /// Bound on the f32 error of `n_dot_l`.
+    /// Bound on the f32 error of `n_dot_l`; infinite for a primitive seen edge-on, and for a
+    /// receiver at the position of a spot or point light.
     pub n_dot_l_error: f64,
     /// Region in which f32 arithmetic may put the receiver; `None` for a primitive seen edge-on,
     /// where f32 may put it anywhere.

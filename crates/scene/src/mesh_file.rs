@@ -26,7 +26,7 @@ pub struct MeshFile {
     pub views: Vec<View>,
     /// Lights of the file; empty for an OBJ file.
     pub lights: Vec<Light>,
-    /// Animations of the file; empty for an OBJ file.
+    /// Animations of the file, which move its `views`, `lights` and parts; empty for an OBJ file.
     pub clips: Vec<Clip>,
     /// Changes that the import made, and parts of the file that it left out.
     pub report: ImportReport,

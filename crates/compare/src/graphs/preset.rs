@@ -135,7 +135,7 @@ pub fn named_or_all(arguments: &[String], sources: &dyn Sources) -> Vec<String> 
 pub struct Preset {
     /// The preset's name, or the graph's path as given.
     pub name: String,
-    /// The graph.
+    /// Graph of the preset's document, loaded and not yet planned.
     pub graph: Graph,
     /// Hash of the files from which the graph was read.
     pub fingerprint: Fingerprint,

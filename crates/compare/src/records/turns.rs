@@ -18,15 +18,20 @@
 use crate::records::statistics::FrameTimes;
 use serde::{Deserialize, Serialize};
 
-/// Group of methods that took turns frame by frame: each method of the group draws one frame in
-/// each turn.
+/// The group of a run. The runs of a group took turns frame by frame: in each turn the method of
+/// each run drew one frame, so frame `i` of one run and frame `i` of another belong to one turn.
+///
+/// Two runs are in one group if they have the same [`session`](super::results::Run::session), view,
+/// viewport and [`group`](Self::group). Runs of two groups of a session are compared by their
+/// anchors: multiply the time of frame `i` of the one by the ratio of the other group's to its own
+/// `anchor` in frame `i`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Turns {
-    /// Index of the group among the groups of the same view and viewport, from 0. A group holds as
-    /// many methods as fit into the memory at once.
+    /// Index of the group among the groups of the same session, view and viewport, from 0. A group
+    /// holds as many methods as fit into the memory at once.
     pub group: u32,
-    /// Times of the frames of the group's first method. It is the same method in all groups of the
-    /// view and viewport, so that groups can be compared.
+    /// Times of the frames that the anchor drew in this group, one per turn. The anchor is the
+    /// first method of each group, the same in all groups of the session, view and viewport.
     pub anchor: FrameTimes,
 }
 

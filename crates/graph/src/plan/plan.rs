@@ -316,8 +316,8 @@ impl Plan {
     }
 
     /// Returns true if the outputs may differ from frame to frame although the host changes
-    /// nothing: a live pass uses a resource with `keep` or content of the frame before, or binds
-    /// the uniform `frame`.
+    /// nothing: a live pass uses a resource with `keep`, reads a material of the graph as it was in
+    /// the frame before (`.previous`), or binds the uniform `frame`.
     pub fn remembers(&self) -> bool {
         self.used().any(|resource| match resource.kind {
             _ if resource.keep => true,

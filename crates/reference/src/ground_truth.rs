@@ -97,7 +97,7 @@ impl GroundTruthPixels {
             .collect()
     }
 
-    /// Returns the reference's status of each pixel, a value of [`status`](crate::status), as a
+    /// Returns the reference's status of each pixel, a value of [`status`], as a
     /// method would output it; it is never uncertain.
     pub fn status(&self) -> Vec<u8> {
         let status = |class: &Class| match class {

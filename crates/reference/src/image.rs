@@ -181,7 +181,7 @@ impl Image {
 
     /// Draws a method's output alone: white = lit, black = shadow, grey for shares in between,
     /// green = facing away, grey-blue = background. `status` holds values of
-    /// [`status`](crate::status), which say where a pixel faces away or shows the background.
+    /// [`status`], which say where a pixel faces away or shows the background.
     ///
     /// # Errors
     /// [`Error::PixelCount`] if a buffer does not fit `viewport`.

@@ -31,7 +31,7 @@ pub struct PixelCounts {
 }
 
 /// Number of PFL pixels (facing the light by the reference) that the method calls certain, right or
-/// wrong: those with the [status](crate::status) *certain light* or *certain shadow*.
+/// wrong: those with the [status] *certain light* or *certain shadow*.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CertainCounts {
     /// Pixels with the status *certain light*.
@@ -58,7 +58,7 @@ pub struct WrongCounts {
 }
 
 /// Number of the pixels that the reference lights, or of those in its shadow, by the method's
-/// [status](crate::status). `certain_right + certain_wrong + uncertain` is their number less the
+/// [status]. `certain_right + certain_wrong + uncertain` is their number less the
 /// pixels whose status is background or facing away. Indeterminate pixels are included.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ClassSplit {

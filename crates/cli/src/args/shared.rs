@@ -8,6 +8,8 @@ use skiagraph_compare::graphs::argument::Assignment;
 use skiagraph_compare::graphs::method::{self, ParamValues};
 use skiagraph_compare::graphs::preset::Preset;
 use skiagraph_compare::measuring::device::GpuRequest;
+use skiagraph_compare::own_camera::OwnCamera;
+use skiagraph_compare::own_scene::MeshSceneOptions;
 use skiagraph_compare::size::Size;
 use skiagraph_graph::Sources;
 use skiagraph_scene::{Concave, MaterialUse, MeshFileOptions, QuadDiagonal};
@@ -167,12 +169,29 @@ impl From<ConcavePolygons> for Concave {
 }
 
 impl SceneArgs {
-    /// How they have a mesh file read.
-    pub fn mesh_file_options(&self) -> MeshFileOptions {
-        MeshFileOptions {
-            quads: QuadDiagonal::default(),
-            concave: self.concave.map_or_else(Concave::default, Into::into),
-            materials: self.materials.map_or_else(MaterialUse::default, Into::into),
+    /// How a mesh file becomes a scene.
+    pub fn mesh_scene(&self) -> MeshSceneOptions {
+        MeshSceneOptions {
+            file: MeshFileOptions {
+                quads: QuadDiagonal::default(),
+                concave: self.concave.map_or_else(Concave::default, Into::into),
+                materials: self.materials.map_or_else(MaterialUse::default, Into::into),
+            },
+            camera: self.camera(),
+            sun: self.own_light(),
+            ground: self.ground,
+        }
+    }
+
+    /// The parts of a view's camera that they replace.
+    pub fn camera(&self) -> OwnCamera {
+        OwnCamera {
+            eye: self.eye,
+            direction: self.look,
+            up: self.up,
+            fov_y_degrees: self.fov,
+            near: self.near,
+            far: self.far,
         }
     }
 
@@ -182,12 +201,6 @@ impl SceneArgs {
             Some(LightArgument::Direction(direction)) => Some(*direction),
             Some(LightArgument::Name(_)) | None => None,
         }
-    }
-
-    /// Returns true if they say anything of the camera.
-    pub fn has_own_camera(&self) -> bool {
-        [self.eye, self.look, self.up].iter().any(Option::is_some)
-            || [self.fov, self.near, self.far].iter().any(Option::is_some)
     }
 
     /// The name of the light that they ask for, if it is one of the scene's.

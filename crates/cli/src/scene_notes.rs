@@ -18,7 +18,7 @@ pub fn of_mesh(args: &SceneArgs, own: &OwnScene) -> Vec<String> {
     ];
     let notes = notes.into_iter().flatten();
     notes
-        .map(|text| format!("{}: {text}", args.scene))
+        .map(|text| format!("{}: {text}", args.scene()))
         .collect()
 }
 

@@ -35,31 +35,31 @@ impl SceneSelection {
     /// If the scene cannot be loaded, lacks a named view, or the camera of the arguments is
     /// invalid.
     pub fn load(args: &SceneArgs) -> Result<Self, CliError> {
-        let is_mesh = MeshFile::is_one(Path::new(&args.scene));
+        let is_mesh = MeshFile::is_one(Path::new(args.scene()));
         if !is_mesh && (args.materials.is_some() || args.concave.is_some() || args.ground) {
             return Err(CliError::Usage(format!(
                 "--materials, --concave and --ground are of a mesh file (.obj, .gltf, .glb); a \
                  scene file says `materials`, `concave` and `ground` itself, so leave them out \
                  with --scene {}",
-                args.scene
+                args.scene()
             )));
         }
         let library = SceneLibrary::from_environment();
-        if let Some(file) = library.stand_in(&args.scene) {
+        if let Some(file) = library.stand_in(args.scene()) {
             note(&format!(
                 "{} stands in for the built-in scene `{}`, which differs",
                 file.display(),
-                args.scene
+                args.scene()
             ));
         }
         let (options, explain) = (args.mesh_scene(), |error| explain(error, args, &library));
         let own = if is_mesh {
-            let own = OwnScene::of_mesh(Path::new(&args.scene), &options).map_err(explain)?;
+            let own = OwnScene::of_mesh(Path::new(args.scene()), &options).map_err(explain)?;
             of_mesh(args, &own).iter().for_each(|text| note(text));
             own
         } else {
             let request = SceneRequest {
-                argument: args.scene.clone(),
+                argument: args.scene().to_owned(),
                 obj: None,
             };
             library.load(&request).map_err(explain)?.into()
@@ -74,21 +74,21 @@ impl SceneSelection {
         let standing = views.first();
         let (paths, failed) = standing.map_or_else(Default::default, |view| own.paths(view));
         for text in failed {
-            note(&format!("{}: {text}: left out", args.scene));
+            note(&format!("{}: {text}: left out", args.scene()));
         }
         if !paths.is_empty() {
             let names = paths.iter().map(|path| path.view.name.as_str());
             let names = names.collect::<Vec<_>>().join(", ");
             note(&format!(
                 "{}: its animations, for --path: {names}",
-                args.scene
+                args.scene()
             ));
         }
         if let Some(path) = &args.write_scene {
             let file = if is_mesh {
-                own.file(&args.scene, &options, paths.clone())
+                own.file(args.scene(), &options, paths.clone())
             } else {
-                library.scene_file(&args.scene).map_err(explain)?
+                library.scene_file(args.scene()).map_err(explain)?
             };
             write(path, file, &views)?;
         }
@@ -111,7 +111,7 @@ fn warn(args: &SceneArgs, report: &ImportReport) {
         let text = text.trim_end();
         let begin = if text.contains('\n') { "\n  " } else { " " };
         let text = text.replace('\n', "\n  ");
-        note(&format!("{}:{begin}{text}", args.scene));
+        note(&format!("{}:{begin}{text}", args.scene()));
     }
 }
 
@@ -135,15 +135,15 @@ fn explain(error: SceneError, args: &SceneArgs, library: &SceneLibrary) -> CliEr
         SceneError::BadView { .. } => CliError::Usage(error.to_string()),
         SceneError::UnknownScene { .. } => {
             let known = library.list();
-            let hint = did_you_mean(&args.scene, known.iter().map(|scene| scene.name.as_str()));
+            let hint = did_you_mean(args.scene(), known.iter().map(|scene| scene.name.as_str()));
             CliError::Input(format!("{error}{hint}"))
         }
         SceneError::SceneFile(found) => CliError::Compare(CompareError::Diagnostics {
             faults: vec![found.iter().cloned().collect()],
-            summary: format!("cannot load the scene `{}`", args.scene),
+            summary: format!("cannot load the scene `{}`", args.scene()),
         }),
         error => CliError::Scene {
-            name: args.scene.clone(),
+            name: args.scene().to_owned(),
             source: Box::new(error),
         },
     }
@@ -167,10 +167,10 @@ pub fn paths(
              --near, --far and --light x,y,z"
         )));
     }
-    let paths = if MeshFile::is_one(Path::new(&args.scene)) {
+    let paths = if MeshFile::is_one(Path::new(args.scene())) {
         own.to_vec()
     } else {
-        let paths = SceneLibrary::from_environment().paths(&args.scene);
+        let paths = SceneLibrary::from_environment().paths(args.scene());
         paths.map_err(|error| CliError::Input(error.to_string()))?
     };
     Ok(ViewOrPath::paths(scene, paths, name, light)?)

@@ -24,6 +24,17 @@ pub fn html(
     row: impl Fn(usize) -> String,
     cell: impl Fn(usize, usize) -> String,
 ) -> String {
+    html_with(table, row, cell, |_, text| text)
+}
+
+/// Returns a table as [`html`] does; `content` returns the content of a number cell, given its
+/// column and its text as HTML.
+pub fn html_with(
+    table: &Table,
+    row: impl Fn(usize) -> String,
+    cell: impl Fn(usize, usize) -> String,
+    content: impl Fn(usize, String) -> String,
+) -> String {
     let heads = table.heads.iter();
     let heads = heads.map(|head| format!("<th scope=\"col\">{}</th>", xml(head)));
     let mut body = String::new();
@@ -33,7 +44,8 @@ pub fn html(
             body += &if column < table.words {
                 format!("<th scope=\"row\">{text}</th>")
             } else {
-                format!("<td {}>{text}</td>", cell(index, column))
+                let (of, content) = (cell(index, column), content(column, text));
+                format!("<td {of}>{content}</td>")
             };
         }
         body += "</tr>\n";

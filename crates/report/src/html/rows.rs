@@ -2,12 +2,15 @@
 
 use crate::html::shown::{Shown, part};
 use crate::html::sources::Source;
+use crate::matrices::by_light;
+use crate::overview::{Overview, scene_names};
 use crate::summary::Row;
-use crate::summary_table::{NOT_THERE, WRONG, by_light};
-use crate::table::html;
+use crate::summary_table::{NOT_THERE, Summary, WRONG};
+use crate::table::{html, html_with};
 use skiagraph_chart::xml;
 use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::size;
+use std::path::{Path, PathBuf};
 
 /// Returns one HTML table with the rows of all tables.
 pub fn tables(tables: &[Shown]) -> String {
@@ -62,6 +65,53 @@ pub fn lights(sources: &[Source]) -> String {
         tables.map(table).collect::<String>()
     };
     sources.iter().map(of_source).collect()
+}
+
+/// Returns the overview of the sources' scenes as HTML: tables whose cells link to the table of
+/// their scene, and the verdicts. It is empty for results of one scene. `all` holds the summaries
+/// of the page's tables, each with the index of its source.
+pub fn overview(sources: &[Source], all: &[(usize, Summary)]) -> String {
+    let scenes = sources.iter().map(|source| {
+        let folder = source.folders.first().map(PathBuf::as_path);
+        (folder.unwrap_or(Path::new("")), &source.results)
+    });
+    let scenes: Vec<_> = scenes.collect();
+    let names = scene_names(&scenes);
+    let columns = all.iter();
+    let columns = columns.map(|(source, summary)| (names[*source].as_str(), summary));
+    let columns: Vec<(&str, &Summary)> = columns.collect();
+    let Some(overview) = Overview::new(&columns) else {
+        return String::new();
+    };
+    let matrices = overview.matrices().into_iter();
+    let mut page: String = matrices
+        .map(|of| {
+            let none = |_, _| String::new();
+            let link = |column: usize, text: String| {
+                let (table, text) = (of.summaries[column - 1], text.replace("&#10;", "<br>"));
+                format!("<a href=\"#table-section\" data-choose=\"{table}\">{text}</a>")
+            };
+            let table = html_with(&of.table, |_| String::new(), none, link);
+            format!("<h3>{}</h3>{table}", size(of.viewport))
+        })
+        .collect();
+    for sentence in overview.sentences() {
+        page += &format!("<p>{}</p>\n", with_names(&sentence));
+    }
+    page
+}
+
+/// A sentence as HTML; text between backquotes is a name.
+fn with_names(sentence: &str) -> String {
+    let parts = sentence.split('`').enumerate().map(|(index, part)| {
+        let part = xml(part);
+        if index % 2 == 1 {
+            format!("<code>{part}</code>")
+        } else {
+            part.to_string()
+        }
+    });
+    parts.collect()
 }
 
 /// Attributes of each row.

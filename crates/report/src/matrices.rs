@@ -2,7 +2,7 @@
 
 use crate::summary::{Row, by_wall};
 use crate::summary_table::{Summary, summaries};
-use crate::table::terminal;
+use crate::table::{or_dash, terminal};
 use itertools::Itertools;
 use skiagraph_compare::lists::unique;
 use skiagraph_compare::records::results::{Results, Run};
@@ -57,11 +57,6 @@ pub fn by_light(results: &Results) -> Vec<([u32; 2], Table)> {
     tables
 }
 
-/// Returns a value as text, or a dash without one.
-pub fn or_dash<T>(value: Option<T>, text: impl Fn(T) -> String) -> String {
-    value.map_or("–".into(), text)
-}
-
 /// Returns the GPU time of each pass as text: a table for each method, with a row for each pass and
 /// a column for each viewport and map size. Cells are medians in milliseconds; several views are
 /// averaged.
@@ -103,4 +98,20 @@ fn matrix(method: &str, runs: &[&Run]) -> String {
         [name.to_owned()].into_iter().chain(cells).collect()
     });
     terminal(&Table::new(heads, 1, rows))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::samples::results as sample;
+
+    #[test]
+    fn a_pass_has_a_column_for_each_size() {
+        let mut results = sample();
+        let mut larger = results.runs[0].clone();
+        larger.map_size = Some(2048);
+        larger.measured.as_mut().unwrap().passes.pop();
+        results.runs.push(larger);
+        insta::assert_snapshot!(passes(&results));
+    }
 }

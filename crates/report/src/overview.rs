@@ -1,10 +1,10 @@
 //! The overview of several scenes: a table of methods and scenes, the verdict on each scene, and
 //! what holds of all of them. Nothing is averaged over scenes or lights.
 
-use crate::matrices::{by_summary, or_dash};
+use crate::matrices::by_summary;
 use crate::summary::{Row, by_wall};
 use crate::summary_table::Summary;
-use crate::table::terminal;
+use crate::table::{or_dash, terminal};
 use crate::verdict::{Verdict, is_conditioned};
 use itertools::Itertools;
 use skiagraph_compare::lists::unique;
@@ -224,72 +224,58 @@ mod tests {
     use crate::samples::results as sample;
     use crate::summary_table::summaries;
 
-    /// Three scenes: on the second `nsm` is right as well, on the third nothing is.
+    /// `rt` is right on the first two of three scenes, `nsm` on the second.
     fn three() -> [Results; 3] {
-        let scenes = ["park", "sponza", "room"];
-        let mut all = scenes.map(|scene| {
+        let mut all = ["park", "sponza", "room"].map(|scene| {
             let mut results = sample();
             results.scene.name = scene.into();
             results
         });
-        let measured = all[1].runs[0].measured.as_mut().unwrap();
-        (measured.wrong.total, measured.wrong.in_band) = (6, 6);
-        measured.graded.rmse_outside_band = 0.0;
+        for (scene, run) in [(0, 1), (1, 0), (1, 1)] {
+            let measured = all[scene].runs[run].measured.as_mut().unwrap();
+            (measured.wrong.total, measured.wrong.in_band) = (6, 6);
+        }
         all[2].runs.truncate(1);
         all
     }
 
-    fn of<'a>(results: &'a [Results], names: &'a [String]) -> Vec<(&'a str, Vec<Summary<'a>>)> {
-        let names = names.iter().map(String::as_str);
-        names.zip(results.iter().map(summaries)).collect()
-    }
-
-    fn names(results: &[Results]) -> Vec<String> {
-        let scenes: Vec<_> = results.iter().map(|of| (Path::new("out"), of)).collect();
-        scene_names(&scenes)
+    /// Calls `check` with the overview of results, or none.
+    fn with_overview(results: &[Results], check: impl FnOnce(Option<Overview>)) {
+        let all: Vec<Vec<Summary>> = results.iter().map(summaries).collect();
+        let names = results.iter().map(|results| results.scene.name.as_str());
+        let columns = names.zip(&all);
+        let columns = columns.flat_map(|(name, of)| of.iter().map(move |it| (name, it)));
+        check(Overview::new(&columns.collect::<Vec<_>>()));
     }
 
     #[test]
     fn methods_and_scenes_stand_in_one_table_and_each_scene_has_its_verdict() {
-        let results = three();
-        let names = names(&results);
-        let summaries = of(&results, &names);
-        let flat = summaries.iter();
-        let flat: Vec<(&str, &Summary)> = flat
-            .flat_map(|(name, of)| of.iter().map(move |summary| (*name, summary)))
-            .collect();
-        let overview = Overview::new(&flat).unwrap();
-        let text = overview.text();
-        let width = text.lines().filter(|line| line.starts_with('│'));
-        assert!(
-            width.map(|line| line.chars().count()).max() <= Some(80),
-            "{text}"
-        );
-        insta::assert_snapshot!(text);
-        insta::assert_snapshot!("in_a_document", overview.markdown());
-        assert_eq!(overview.matrices()[0].summaries, [0, 1, 2]);
-        assert!(Overview::new(&flat[..1]).is_none());
+        with_overview(&three(), |overview| {
+            let overview = overview.unwrap();
+            let text = overview.text();
+            let lines = text.lines().filter(|line| line.starts_with('│'));
+            let width = lines.map(|line| line.chars().count()).max();
+            assert!(width <= Some(80), "{text}");
+            insta::assert_snapshot!(text);
+            insta::assert_snapshot!("in_a_document", overview.markdown());
+            assert_eq!(overview.matrices()[0].summaries, [0, 1, 2]);
+        });
+        with_overview(&three()[..1], |overview| assert!(overview.is_none()));
     }
 
     #[test]
-    fn pixels_that_cannot_be_judged_make_nothing_exact_on_all() {
-        let mut results = three();
-        results[1].runs[0].band = 50_000;
-        let names = names(&results[..2]);
-        let summaries = of(&results[..2], &names);
-        let flat: Vec<(&str, &Summary)> = summaries
-            .iter()
-            .flat_map(|(name, of)| of.iter().map(move |summary| (*name, summary)))
-            .collect();
-        let said = Overview::new(&flat).unwrap().sentences();
-        let last = said
-            .iter()
-            .find(|line| line.contains("both scenes"))
-            .unwrap();
-        assert_eq!(
-            last,
-            "On both scenes right wherever that can be judged: `rt`."
-        );
+    fn what_is_exact_on_all_is_named_unless_pixels_cannot_be_judged() {
+        let said = |results: &[Results]| {
+            let mut said = Vec::new();
+            with_overview(results, |overview| said = overview.unwrap().sentences());
+            said.into_iter().find(|line| line.contains("both scenes"))
+        };
+        let [park, mut sponza, _] = three();
+        let exact = said(&[park.clone(), sponza.clone()]);
+        assert_eq!(exact.as_deref(), Some("On both scenes exact: `rt`."));
+        sponza.runs[0].band = 50_000;
+        let right = "On both scenes right wherever that can be judged: `rt`.";
+        assert_eq!(said(&[park, sponza]).as_deref(), Some(right));
     }
 
     #[test]

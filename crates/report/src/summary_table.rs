@@ -1,13 +1,13 @@
 //! The summary of a comparison: a table with a row for each method and setting over all views, the
 //! fastest first, and a verdict.
 
-use crate::matrices::or_dash;
 use crate::notes::{
     band_warning, blocked_by, load_warning, path_costs, remembering, surface_warning, times_missing,
 };
 use crate::summary::{Row, by_wall, rows};
+use crate::table::{or_dash, terminal};
 use crate::verdict::{Verdict, verdict};
-use crate::{graded, results_table::timed_frames, table::terminal};
+use crate::{graded, results_table::timed_frames};
 use itertools::Itertools;
 use skiagraph_compare::lists::unique;
 use skiagraph_compare::measuring::date::is_another_hour;
@@ -379,7 +379,7 @@ impl<'a> Summary<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::matrices::{by_light, passes};
+    use crate::matrices::by_light;
     use crate::samples::results as sample;
     use skiagraph_compare::records::results::Promise;
     use skiagraph_compare::records::steady::{Cycle, Steady};
@@ -449,15 +449,5 @@ mod tests {
     #[test]
     fn a_document_ends_with_it() {
         insta::assert_snapshot!(summaries(&sample())[0].markdown());
-    }
-
-    #[test]
-    fn a_pass_has_a_column_for_each_size() {
-        let mut results = sample();
-        let mut larger = results.runs[0].clone();
-        larger.map_size = Some(2048);
-        larger.measured.as_mut().unwrap().passes.pop();
-        results.runs.push(larger);
-        insta::assert_snapshot!(passes(&results));
     }
 }

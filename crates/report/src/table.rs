@@ -16,6 +16,11 @@ pub fn terminal(table: &Table) -> String {
     drawn.to_string()
 }
 
+/// Returns a value as text, or a dash without one.
+pub fn or_dash<T>(value: Option<T>, text: impl Fn(T) -> String) -> String {
+    value.map_or("–".into(), text)
+}
+
 /// Returns a table as HTML. Cells in the word columns become row headers. `row` returns the
 /// attributes of the row with this index, `cell` those of the number cell at these indices of row
 /// and column.

@@ -141,7 +141,7 @@ impl Target {
     }
 }
 
-/// What has come of the scenes so far.
+/// Results of the scenes so far.
 #[derive(Default)]
 struct Measured {
     /// Results of the scenes that have any, in the order of the scenes.
@@ -342,7 +342,7 @@ fn print_summary(args: &CompareArgs, results: &Results) -> Result<(), CliError> 
             }
             Ok(())
         }
-        // Of several scenes they are printed as one list.
+        // Those of several scenes are printed as one list.
         Format::Json if args.scene.scenes.len() > 1 => Ok(()),
         Format::Json => print(&json::to_text(results)),
     }

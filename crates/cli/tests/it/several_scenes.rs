@@ -19,7 +19,7 @@ fn folder() -> TempDir {
     folder
 }
 
-/// What the program prints on standard output and standard error, and its exit code.
+/// Returns standard output and standard error of the program, and its exit code.
 fn printed(folder: &TempDir, line: &str) -> (String, String, Option<i32>) {
     let Output {
         status,
@@ -38,8 +38,7 @@ fn each_scene_has_a_folder_and_all_stand_in_one_overview() {
     assert_eq!(code, Some(0), "{told}");
     let overview = &table[table.find("Overview, 64x64: ").unwrap()..];
     for part in [
-        "┆ room",
-        "┆ objects",
+        "┆    room ┆ objects │",
         "room: ",
         "objects: ",
         "On both scenes exact: `rt`.",

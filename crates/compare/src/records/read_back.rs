@@ -96,8 +96,8 @@ fn read(limit: &Limit, path: &Path) -> Result<Option<SourceFile>, String> {
 }
 
 /// Returns the folders of results that `folders` stand for. A folder stands for itself, or if it
-/// holds no results itself, for the folders directly in it that do, sorted by name: `compare` writes
-/// these for several scenes.
+/// holds no results itself, for the folders directly in it that do, sorted by name: `compare`
+/// writes these for several scenes.
 pub fn with_scenes(folders: &[PathBuf]) -> Vec<PathBuf> {
     let has = |folder: &Path, file: &str| folder.join(file).is_file();
     let each = folders.iter().flat_map(|folder| {

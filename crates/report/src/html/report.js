@@ -82,6 +82,12 @@ if (data.tables.length > 0) {
 }
 hide(byId('stress-section'), all('#stress table').length === 0);
 hide(byId('overview-section'), all('#overview table').length === 0);
-for (const link of all('#overview [data-choose]')) link.addEventListener('click', () => chooseTable(Number(link.dataset.choose)));
+for (const link of all('#overview [data-choose]')) {
+  link.addEventListener('click', (event) => {
+    event.preventDefault();
+    chooseTable(Number(link.dataset.choose));
+    byId('table-section').scrollIntoView();
+  });
+}
 hide(byId('lights-section'), all('#lights table').length === 0);
 drawConditions();

@@ -3,10 +3,11 @@
 use crate::html::shown::{Shown, part};
 use crate::html::sources::Source;
 use crate::matrices::by_light;
-use crate::overview::{Overview, scene_names};
+use crate::overview::{Matrix, Overview, scene_names};
 use crate::summary::Row;
 use crate::summary_table::{NOT_THERE, Summary, WRONG};
 use crate::table::{html, html_with};
+use itertools::Itertools;
 use skiagraph_chart::xml;
 use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::size;
@@ -76,29 +77,33 @@ pub fn overview(sources: &[Source], all: &[(usize, Summary)]) -> String {
         (folder.unwrap_or(Path::new("")), &source.results)
     });
     let scenes: Vec<_> = scenes.collect();
+    // One scene on several machines has several sources.
+    let mut known = sources.iter().map(|source| &source.results.scene);
+    if known.all_equal() {
+        return String::new();
+    }
     let names = scene_names(&scenes);
     let columns = all.iter();
     let columns = columns.map(|(source, summary)| (names[*source].as_str(), summary));
-    let columns: Vec<(&str, &Summary)> = columns.collect();
-    let Some(overview) = Overview::new(&columns) else {
+    let Some(overview) = Overview::new(&columns.collect::<Vec<_>>()) else {
         return String::new();
     };
-    let matrices = overview.matrices().into_iter();
-    let mut page: String = matrices
-        .map(|of| {
-            let none = |_, _| String::new();
-            let link = |column: usize, text: String| {
-                let (table, text) = (of.summaries[column - 1], text.replace("&#10;", "<br>"));
-                format!("<a href=\"#table-section\" data-choose=\"{table}\">{text}</a>")
-            };
-            let table = html_with(&of.table, |_| String::new(), none, link);
-            format!("<h3>{}</h3>{table}", size(of.viewport))
-        })
-        .collect();
-    for sentence in overview.sentences() {
-        page += &format!("<p>{}</p>\n", with_names(&sentence));
-    }
-    page
+    let matrix = |of: Matrix| {
+        let head = format!("<h3>{}</h3>", size(of.viewport));
+        let class = |row: usize, column: usize| {
+            let is_exact = of.table.rows[row][column].contains('*');
+            if is_exact { "class=\"zero\"" } else { "" }.to_owned()
+        };
+        let link = |column: usize, text: String| {
+            let (table, text) = (of.summaries[column - 1], text.replace("&#10;", "<br>"));
+            format!("<a href=\"#table-section\" data-choose=\"{table}\">{text}</a>")
+        };
+        head + &html_with(&of.table, |_| String::new(), class, link)
+    };
+    let matrices = overview.matrices().into_iter().map(matrix);
+    let sentences = overview.sentences().into_iter();
+    let sentences = sentences.map(|sentence| format!("<p>{}</p>\n", with_names(&sentence)));
+    matrices.chain(sentences).collect()
 }
 
 /// A sentence as HTML; text between backquotes is a name.
@@ -108,7 +113,7 @@ fn with_names(sentence: &str) -> String {
         if index % 2 == 1 {
             format!("<code>{part}</code>")
         } else {
-            part.to_string()
+            part
         }
     });
     parts.collect()

@@ -7,10 +7,9 @@
 mod args;
 mod commands;
 mod error;
-mod own_mesh;
+mod scene_notes;
 mod scene_selection;
 mod terminal;
-mod write_scene;
 
 use args::cli::{Cli, Command};
 use clap::Parser;

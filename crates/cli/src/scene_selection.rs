@@ -2,15 +2,15 @@
 
 use crate::args::shared::SceneArgs;
 use crate::error::CliError;
-use crate::own_mesh::{self, Chosen, OwnMesh};
+use crate::scene_notes::{from_below, of_mesh};
 use crate::terminal::console::note;
-use crate::write_scene;
-use glam::DVec3;
 use skiagraph_compare::error::CompareError;
+use skiagraph_compare::files::scene::write_scene;
 use skiagraph_compare::measuring::view_or_path::{ViewOrPath, under_lights};
-use skiagraph_compare::wording::{did_you_mean, unknown};
+use skiagraph_compare::own_scene::OwnScene;
+use skiagraph_compare::wording::did_you_mean;
 use skiagraph_scene::{
-    CameraPath, DirectionalLight, Light, MeshFile, Scene, SceneError, SceneLibrary, SceneRequest,
+    CameraPath, ImportReport, MeshFile, Scene, SceneError, SceneFile, SceneLibrary, SceneRequest,
     View,
 };
 use std::path::Path;
@@ -35,56 +35,64 @@ impl SceneSelection {
     /// If the scene cannot be loaded, lacks a named view, or the camera of the arguments is
     /// invalid.
     pub fn load(args: &SceneArgs) -> Result<Self, CliError> {
-        let is_mesh = MeshFile::is_one(Path::new(&args.scene));
+        let is_mesh = MeshFile::is_one(Path::new(args.scene()));
         if !is_mesh && (args.materials.is_some() || args.concave.is_some() || args.ground) {
             return Err(CliError::Usage(format!(
                 "--materials, --concave and --ground are of a mesh file (.obj, .gltf, .glb); a \
                  scene file says `materials`, `concave` and `ground` itself, so leave them out \
                  with --scene {}",
-                args.scene
+                args.scene()
             )));
         }
         let library = SceneLibrary::from_environment();
-        if let Some(file) = library.stand_in(&args.scene) {
+        if let Some(file) = library.stand_in(args.scene()) {
             note(&format!(
                 "{} stands in for the built-in scene `{}`, which differs",
                 file.display(),
-                args.scene
+                args.scene()
             ));
         }
-        let loaded = if is_mesh {
-            own_mesh::load(args)
+        let (options, explain) = (args.mesh_scene(), |error| explain(error, args, &library));
+        let own = if is_mesh {
+            let own = OwnScene::of_mesh(Path::new(args.scene()), &options).map_err(explain)?;
+            of_mesh(args, &own).iter().for_each(|text| note(text));
+            own
         } else {
-            library.load(&request(args)).map(OwnMesh::from)
+            let request = SceneRequest {
+                argument: args.scene().to_owned(),
+                obj: None,
+            };
+            library.load(&request).map_err(explain)?.into()
         };
-        let own = loaded.map_err(|error| explain(error, args, &library))?;
-        let OwnMesh { scene, report, .. } = &own;
-        if report.has_warnings() {
-            let text = report.to_string();
-            let text = text.trim_end();
-            // Several stand below each other.
-            let begin = if text.contains('\n') { "\n  " } else { " " };
-            note(&format!(
-                "{}:{begin}{}",
-                args.scene,
-                text.replace('\n', "\n  ")
+        warn(args, &own.report);
+        if args.eye.is_some() && args.view.as_deref() == Some("all") && own.scene.views.len() > 1 {
+            return Err(CliError::Usage(
+                "--eye is one view of your own: leave out --view all, or --eye".into(),
             ));
         }
-        let views = choose(scene, args.view.as_deref())?;
-        let views = override_views(scene, views, args, own.chosen)?;
-        let paths = views
-            .first()
-            .map_or_else(Vec::new, |view| own.paths(args, view));
+        let views = own.views(args.view.as_deref(), &options.camera, options.sun)?;
+        let standing = views.first();
+        let (paths, failed) = standing.map_or_else(Default::default, |view| own.paths(view));
+        for text in failed {
+            note(&format!("{}: {text}: left out", args.scene()));
+        }
+        if !paths.is_empty() {
+            let names = paths.iter().map(|path| path.view.name.as_str());
+            let names = names.collect::<Vec<_>>().join(", ");
+            note(&format!(
+                "{}: its animations, for --path: {names}",
+                args.scene()
+            ));
+        }
         if let Some(path) = &args.write_scene {
             let file = if is_mesh {
-                write_scene::of_mesh(args, scene, own.chosen, &paths)
+                own.file(args.scene(), &options, paths.clone())
             } else {
-                let file = library.scene_file(&args.scene);
-                file.map_err(|error| explain(error, args, &library))?
+                library.scene_file(args.scene()).map_err(explain)?
             };
-            write_scene::write(path, file, &views)?;
+            write(path, file, &views)?;
         }
-        let views = under_lights(scene, views, args.light_name())?;
+        let views = under_lights(&own.scene, views, args.light_name())?;
         if let Some(text) = from_below(&views, args) {
             note(&text);
         }
@@ -96,26 +104,30 @@ impl SceneSelection {
     }
 }
 
-fn request(args: &SceneArgs) -> SceneRequest {
-    SceneRequest {
-        argument: args.scene.clone(),
-        obj: None,
+/// Prints the repairs of an import, several below each other.
+fn warn(args: &SceneArgs, report: &ImportReport) {
+    if report.has_warnings() {
+        let text = report.to_string();
+        let text = text.trim_end();
+        let begin = if text.contains('\n') { "\n  " } else { " " };
+        let text = text.replace('\n', "\n  ");
+        note(&format!("{}:{begin}{text}", args.scene()));
     }
 }
 
-/// That a sun of one's own shines upwards, which most often is its direction turned round.
-fn from_below(views: &[View], args: &SceneArgs) -> Option<String> {
-    let direction = args.own_light()?;
-    let up = views.first()?.up;
-    let three = |v: DVec3| format!("{},{},{}", v.x, v.y, v.z);
-    (direction.dot(up) > 0.0).then(|| {
-        format!(
-            "warning: --light {} shines from below: it is the direction in which the light \
-             travels; --light {} shines from above",
-            three(direction),
-            three(-direction + DVec3::ZERO)
-        )
-    })
+/// Writes the file of `--write-scene`.
+fn write(path: &Path, file: SceneFile, views: &[View]) -> Result<(), CliError> {
+    let is_new = write_scene(path, file, views).map_err(|error| match error {
+        CompareError::Request(text) => CliError::Usage(format!("--write-scene {text}")),
+        error => error.into(),
+    })?;
+    if is_new {
+        let path = path.display();
+        note(&format!(
+            "wrote {path}, to be edited (docs/scenes.md); use it with --scene {path}"
+        ));
+    }
+    Ok(())
 }
 
 fn explain(error: SceneError, args: &SceneArgs, library: &SceneLibrary) -> CliError {
@@ -123,22 +135,19 @@ fn explain(error: SceneError, args: &SceneArgs, library: &SceneLibrary) -> CliEr
         SceneError::BadView { .. } => CliError::Usage(error.to_string()),
         SceneError::UnknownScene { .. } => {
             let known = library.list();
-            let hint = did_you_mean(&args.scene, known.iter().map(|scene| scene.name.as_str()));
+            let hint = did_you_mean(args.scene(), known.iter().map(|scene| scene.name.as_str()));
             CliError::Input(format!("{error}{hint}"))
         }
         SceneError::SceneFile(found) => CliError::Compare(CompareError::Diagnostics {
             faults: vec![found.iter().cloned().collect()],
-            summary: format!("cannot load the scene `{}`", args.scene),
+            summary: format!("cannot load the scene `{}`", args.scene()),
         }),
         error => CliError::Scene {
-            name: args.scene.clone(),
+            name: args.scene().to_owned(),
             source: Box::new(error),
         },
     }
 }
-
-/// A depth buffer of 32-bit floats tells depths apart well over this range.
-const NEAR_TO_FAR: f64 = 1e4;
 
 /// Returns the camera paths that `name`, the value of `--path`, selects, under the lights that
 /// `light` selects. `own` holds the paths of a mesh file; other scenes list theirs in their file.
@@ -152,97 +161,17 @@ pub fn paths(
     name: &str,
     light: Option<&str>,
 ) -> Result<Vec<ViewOrPath>, CliError> {
-    if args.has_own_camera() || args.own_light().is_some() {
+    if !args.camera().is_empty() || args.own_light().is_some() {
         return Err(CliError::Usage(format!(
             "--path {name} brings its camera and its light: leave out --eye, --look, --up, --fov, \
              --near, --far and --light x,y,z"
         )));
     }
-    let paths = if MeshFile::is_one(Path::new(&args.scene)) {
+    let paths = if MeshFile::is_one(Path::new(args.scene())) {
         own.to_vec()
     } else {
-        let paths = SceneLibrary::from_environment().paths(&args.scene);
+        let paths = SceneLibrary::from_environment().paths(args.scene());
         paths.map_err(|error| CliError::Input(error.to_string()))?
     };
     Ok(ViewOrPath::paths(scene, paths, name, light)?)
-}
-
-/// Puts what the arguments say of the camera and the light into views, which are then called
-/// `own`, but for one that was chosen.
-fn override_views(
-    scene: &Scene,
-    views: Vec<View>,
-    args: &SceneArgs,
-    chosen: Chosen,
-) -> Result<Vec<View>, CliError> {
-    let light = args.own_light().filter(|_| !chosen.light);
-    if !args.has_own_camera() && light.is_none() && !chosen.view {
-        return Ok(views);
-    }
-    if args.eye.is_some() && views.len() > 1 {
-        return Err(CliError::Usage(
-            "--eye is one view of your own: leave out --view all, or --eye".into(),
-        ));
-    }
-    let several = views.len() > 1;
-    let own = |view: View| {
-        let mut own = View {
-            name: match (chosen.view, several) {
-                (true, _) => view.name.clone(),
-                (_, true) => format!("{}-own", view.name),
-                (_, false) => "own".into(),
-            },
-            eye: args.eye.unwrap_or(view.eye),
-            direction: args.look.unwrap_or(view.direction),
-            up: args.up.unwrap_or(view.up),
-            fov_y_degrees: args.fov.unwrap_or(view.fov_y_degrees),
-            ..view
-        };
-        if let Some(direction) = light {
-            own.light = Some(Light {
-                name: "own".into(),
-                kind: DirectionalLight::new(direction).into(),
-            });
-        }
-        if args.eye.is_some() || chosen.view {
-            fit_planes(&mut own, scene, args);
-        } else {
-            own.far = args.far.unwrap_or(own.far);
-            own.near = args.near.unwrap_or(own.near);
-        }
-        let light = own.light.as_ref().map_or(Ok(()), Light::check);
-        own.check().and(light).map_err(CliError::Usage)?;
-        Ok(own)
-    };
-    views.into_iter().map(own).collect()
-}
-
-/// Clip planes where none are given: far just behind the mesh, near a ten-thousandth of it.
-fn fit_planes(view: &mut View, scene: &Scene, args: &SceneArgs) {
-    let farthest = scene.mesh.bounds().map_or(1.0, |(min, max)| {
-        let (min, max) = (min.as_dvec3(), max.as_dvec3());
-        (max - view.eye).abs().max((view.eye - min).abs()).length()
-    });
-    view.far = args.far.unwrap_or_else(|| {
-        (farthest * 1.01)
-            .max(args.near.unwrap_or(0.0) * 2.0)
-            .max(f64::MIN_POSITIVE)
-    });
-    view.near = args.near.unwrap_or(view.far / NEAR_TO_FAR);
-}
-
-fn choose(scene: &Scene, name: Option<&str>) -> Result<Vec<View>, CliError> {
-    match name {
-        Some("all") => Ok(scene.views.clone()),
-        None => Ok(scene.views.iter().take(1).cloned().collect()),
-        Some(name) => match scene.view(name) {
-            Some(view) => Ok(vec![view.clone()]),
-            None => {
-                let names: Vec<&str> = scene.views.iter().map(|view| view.name.as_str()).collect();
-                let what = format!("the scene `{}` has no view `{name}`", scene.name);
-                let text = unknown(&what, name, "views", &names) + ", or all of them: all";
-                Err(CliError::Input(text))
-            }
-        },
-    }
 }

@@ -44,6 +44,8 @@ pub mod files;
 pub mod graphs;
 pub mod lists;
 pub mod measuring;
+pub mod own_camera;
+pub mod own_scene;
 pub mod pictures;
 pub mod records;
 pub mod sink;

@@ -63,6 +63,25 @@ pub fn thousands(number: u64) -> String {
     text
 }
 
+/// Returns a length, which has no sign, with three significant digits, and whole from 100 on:
+/// `3,200`, `12.3`, `0.0123`.
+pub fn length(length: f64) -> String {
+    if length >= 100.0 {
+        return thousands(length.round() as u64);
+    }
+    let digits = if length > 0.0 {
+        (2 - length.log10().floor() as i32).clamp(0, 15)
+    } else {
+        0
+    };
+    let text = format!("{length:.*}", digits as usize);
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
 /// Returns a count with its noun in singular or plural: `1 frame`, `2 frames`.
 pub fn plural(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
@@ -132,6 +151,21 @@ mod tests {
             [(0, 9), (1, 1_000_000), (1, 3), (0, 0)].map(|(n, d)| percent(n, d)),
             ["0 %", "<0.001 %", "33.333 %", "–"]
         );
+    }
+
+    #[test]
+    fn lengths_are_said_with_three_digits() {
+        for (number, text) in [
+            (3199.7, "3,200"),
+            (8.0, "8"),
+            (0.012345, "0.0123"),
+            (12.34, "12.3"),
+            (99.96, "100"),
+            (0.0, "0"),
+            (1e12, "1,000,000,000,000"),
+        ] {
+            assert_eq!(length(number), text);
+        }
     }
 
     #[test]

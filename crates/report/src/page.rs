@@ -21,7 +21,8 @@ pub fn write_beside(folder: &Path, sink: &dyn Sink) -> Result<(), CompareError> 
     write(&[folder.to_path_buf()], &folder.join(FILE), sink)
 }
 
-/// Writes the page of several folders of results to `file`. The sink gets a note about pictures
+/// Writes the page of several folders of results to `file`; a folder without results stands for the
+/// folders of results in it. The sink gets a note about pictures
 /// that did not fit into the page. If `file` lies in one of the folders, that folder's lock is
 /// held, so the page is never older than the results beside it.
 ///
@@ -37,7 +38,7 @@ pub fn write(folders: &[PathBuf], file: &Path, sink: &dyn Sink) -> Result<(), Co
         None => None,
     };
     let (mut kept, mut matrices) = (Vec::new(), Vec::new());
-    for folder in folders {
+    for folder in &read_back::with_scenes(folders) {
         let matrix = read_back::stress(folder)?;
         // A folder may be of `stress` alone.
         if matrix.is_none() || folder.join("results.json").exists() {

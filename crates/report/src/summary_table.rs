@@ -5,8 +5,9 @@ use crate::notes::{
     band_warning, blocked_by, load_warning, path_costs, remembering, surface_warning, times_missing,
 };
 use crate::summary::{Row, by_wall, rows};
+use crate::table::{or_dash, terminal};
 use crate::verdict::{Verdict, verdict};
-use crate::{graded, results_table::timed_frames, table::terminal};
+use crate::{graded, results_table::timed_frames};
 use itertools::Itertools;
 use skiagraph_compare::lists::unique;
 use skiagraph_compare::measuring::date::is_another_hour;
@@ -23,7 +24,7 @@ pub struct Summary<'a> {
     /// Width and height of the viewport in pixels.
     pub viewport: [u32; 2],
     /// The light, if the comparison has several; results of different lights are never averaged.
-    light: Option<&'a str>,
+    pub light: Option<&'a str>,
     runs: Vec<&'a Run>,
     /// A row for each method and setting, the fastest first.
     pub rows: Vec<Row<'a>>,
@@ -39,47 +40,6 @@ pub fn summaries(results: &Results) -> Vec<Summary<'_>> {
         Summary::new(results, runs.collect())
     };
     all.map(summary).collect()
-}
-
-/// Returns, for each viewport with several lights, its size in pixels and a table with a row for
-/// each method and a column for each light. Cells show the percentage of wrong pixels outside the
-/// band, the milliseconds of a frame, and the memory.
-pub fn by_light(results: &Results) -> Vec<([u32; 2], Table)> {
-    let summaries = summaries(results);
-    let mut tables = Vec::new();
-    for viewport in unique(summaries.iter().map(|summary| summary.viewport)) {
-        let of = summaries
-            .iter()
-            .filter(|summary| summary.viewport == viewport);
-        let lights: Vec<(&str, &Summary)> = of
-            .filter_map(|summary| Some((summary.light?, summary)))
-            .collect();
-        if lights.len() < 2 {
-            continue;
-        }
-        let rows = lights.iter().flat_map(|(_, summary)| &summary.rows);
-        let labels = unique(rows.map(|row| &row.label));
-        let cells = labels.into_iter().map(|label| {
-            let cell = |(_, summary): &(&str, &Summary)| {
-                let by_wall = by_wall(&summary.rows);
-                let mut rows = summary.rows.iter().filter(|row| row.views() > 0);
-                let row = rows.find(|row| row.label == *label);
-                or_dash(row, |row| {
-                    let wrong = row.wrong();
-                    let share = percent(wrong.outside_band, wrong.facing_light);
-                    let time = or_dash(row.frame_ms(by_wall), ms);
-                    format!("{share}, {time} ms, {}", bytes(row.bytes()))
-                })
-            };
-            let cells = lights.iter().map(cell);
-            [label.clone()].into_iter().chain(cells).collect()
-        });
-        let heads = ["method"]
-            .into_iter()
-            .chain(lights.iter().map(|(light, _)| *light));
-        tables.push((viewport, Table::new(heads, 1, cells)));
-    }
-    tables
 }
 
 /// Beginning of lines that warn; the page makes them stand out by it.
@@ -416,56 +376,10 @@ impl<'a> Summary<'a> {
     }
 }
 
-fn or_dash<T>(value: Option<T>, text: impl Fn(T) -> String) -> String {
-    value.map_or("–".into(), text)
-}
-
-/// Returns the GPU time of each pass as text: a table for each method, with a row for each pass and
-/// a column for each viewport and map size. Cells are medians in milliseconds; several views are
-/// averaged.
-pub fn passes(results: &Results) -> String {
-    let measured = results.runs.iter().filter(|run| run.measured.is_some());
-    let methods = unique(measured.map(|run| &run.preset));
-    let mut tables = methods.into_iter().map(|method| {
-        let runs = results.runs.iter().filter(|run| run.preset == *method);
-        matrix(method, &runs.collect::<Vec<_>>())
-    });
-    tables.join("\n")
-}
-
-fn matrix(method: &str, runs: &[&Run]) -> String {
-    let measured = || {
-        runs.iter()
-            .filter_map(|run| Some((*run, run.measured.as_ref()?)))
-    };
-    let column = |run: &Run| (run.viewport, run.map_size);
-    let columns = unique(measured().map(|(run, _)| column(run)));
-    let passes = measured().flat_map(|(_, of)| &of.passes);
-    let passes = unique(passes.map(|pass| pass.name.as_str()));
-    let head = |(viewport, map): &([u32; 2], Option<u32>)| match map {
-        Some(map) => format!("{}\nmap {map}", size(*viewport)),
-        None => size(*viewport),
-    };
-    let heads = [format!("{method}, GPU ms")].into_iter();
-    let heads = heads.chain(columns.iter().map(head));
-    let rows = passes.into_iter().map(|name| {
-        let cell = |of_column: &([u32; 2], Option<u32>)| {
-            let runs = measured().filter(|(run, _)| column(run) == *of_column);
-            let passes = runs.flat_map(|(_, of)| &of.passes);
-            let times = passes.filter(|pass| pass.name == name);
-            let times: Vec<f64> = times.filter_map(|pass| Some(pass.gpu_ms?.median)).collect();
-            let mean = || times.iter().sum::<f64>() / times.len() as f64;
-            or_dash((!times.is_empty()).then(mean), ms)
-        };
-        let cells = columns.iter().map(cell);
-        [name.to_owned()].into_iter().chain(cells).collect()
-    });
-    terminal(&Table::new(heads, 1, rows))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::matrices::by_light;
     use crate::samples::results as sample;
     use skiagraph_compare::records::results::Promise;
     use skiagraph_compare::records::steady::{Cycle, Steady};
@@ -535,15 +449,5 @@ mod tests {
     #[test]
     fn a_document_ends_with_it() {
         insta::assert_snapshot!(summaries(&sample())[0].markdown());
-    }
-
-    #[test]
-    fn a_pass_has_a_column_for_each_size() {
-        let mut results = sample();
-        let mut larger = results.runs[0].clone();
-        larger.map_size = Some(2048);
-        larger.measured.as_mut().unwrap().passes.pop();
-        results.runs.push(larger);
-        insta::assert_snapshot!(passes(&results));
     }
 }

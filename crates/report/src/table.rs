@@ -16,6 +16,11 @@ pub fn terminal(table: &Table) -> String {
     drawn.to_string()
 }
 
+/// Returns a value as text, or a dash without one.
+pub fn or_dash<T>(value: Option<T>, text: impl Fn(T) -> String) -> String {
+    value.map_or("–".into(), text)
+}
+
 /// Returns a table as HTML. Cells in the word columns become row headers. `row` returns the HTML
 /// attributes of the row with this index; `cell` returns those of the number cell with this index
 /// of row and column.
@@ -23,6 +28,17 @@ pub fn html(
     table: &Table,
     row: impl Fn(usize) -> String,
     cell: impl Fn(usize, usize) -> String,
+) -> String {
+    html_with(table, row, cell, |_, text| text)
+}
+
+/// Returns a table as [`html`] does; `content` returns the content of a number cell, given its
+/// column and its text as HTML.
+pub fn html_with(
+    table: &Table,
+    row: impl Fn(usize) -> String,
+    cell: impl Fn(usize, usize) -> String,
+    content: impl Fn(usize, String) -> String,
 ) -> String {
     let heads = table.heads.iter();
     let heads = heads.map(|head| format!("<th scope=\"col\">{}</th>", xml(head)));
@@ -33,7 +49,8 @@ pub fn html(
             body += &if column < table.words {
                 format!("<th scope=\"row\">{text}</th>")
             } else {
-                format!("<td {}>{text}</td>", cell(index, column))
+                let (of, content) = (cell(index, column), content(column, text));
+                format!("<td {of}>{content}</td>")
             };
         }
         body += "</tr>\n";

@@ -15,6 +15,12 @@ pub struct Verdict {
     /// Index of the fastest row without errors where the right answer is certain, for frames in
     /// which light or meshes move. `None` if no row qualifies, or shares of light are compared.
     pub fastest_exact: Option<usize>,
+    /// Indices of the rows that are taken, or else of the least wrong ones: the fastest, then those
+    /// whose times cannot be told apart from it. Of frames in which light or meshes move. It is
+    /// empty if no row keeps to the budgets or nothing can be judged.
+    pub first: Vec<usize>,
+    /// True if the rows in `first` are taken: they are exact, or right enough by the budgets.
+    pub is_taken: bool,
     /// The verdict in words, a sentence for each entry. It is empty if nothing can be judged.
     pub sentences: Vec<String>,
 }
@@ -60,6 +66,12 @@ pub fn verdict(rows: &[Row], budgets: &Budgets) -> Verdict {
         verdict.sentences = conditioned(condition, verdict.sentences, &full);
     }
     verdict
+}
+
+/// True if the right answer of more than 1 % of the pixels hangs on rounding, so that a verdict
+/// holds of the others alone.
+pub fn is_conditioned(wrong: Wrong) -> bool {
+    Condition::new(wrong).is_some()
 }
 
 /// The pixels that a verdict is of, where it is not of nearly all that face the light.
@@ -224,10 +236,7 @@ fn hard(all: &[Contender]) -> Verdict {
     let fastest = |when: When| least(&exact, |of| of.time(when));
     let (Some(best), Some(kept)) = (fastest(When::AnythingMoves), fastest(When::CameraMoves))
     else {
-        return Verdict {
-            fastest_exact: None,
-            sentences: none_exact(all),
-        };
+        return none_exact(all);
     };
     let any_keeps = all.iter().any(|of| of.kept < of.frame);
     let is_one = kept.index == best.index || !best.is_told_apart(kept, When::CameraMoves);
@@ -248,8 +257,22 @@ fn hard(all: &[Contender]) -> Verdict {
     };
     Verdict {
         fastest_exact: Some(best.index),
+        first: with_level(best, &exact, |_| true),
+        is_taken: true,
         sentences,
     }
+}
+
+/// The best, and those of others that cannot be told apart from it in time.
+fn with_level(
+    best: &Contender,
+    of: &[Contender],
+    counts: impl Fn(&Contender) -> bool,
+) -> Vec<usize> {
+    let others = of.iter().filter(|of| of.index != best.index && counts(of));
+    let level = others.filter(|of| !of.is_told_apart(best, When::AnythingMoves));
+    let level = level.map(|of| of.index);
+    [best.index].into_iter().chain(level).collect()
 }
 
 /// One method to take, with those that cannot be told apart from it, beside the next exact one and
@@ -315,7 +338,7 @@ fn per_frame(of: &Contender, when: When) -> String {
     format!("{} ms a frame", ms(of.time(when)))
 }
 
-fn none_exact(all: &[Contender]) -> Vec<String> {
+fn none_exact(all: &[Contender]) -> Verdict {
     let none = match all.iter().find_map(|of| of.condition) {
         Some(_) => "Each method is wrong on some",
         None => "None is exact here",
@@ -325,18 +348,21 @@ fn none_exact(all: &[Contender]) -> Vec<String> {
         |of| of.wrong.share(),
         ["is the least wrong", "are the least wrong"],
     );
-    said.map(|said| format!("{none}. {said}."))
-        .into_iter()
-        .collect()
+    said.map_or_else(Verdict::default, |(said, first)| Verdict {
+        first,
+        sentences: vec![format!("{none}. {said}.")],
+        ..Verdict::default()
+    })
 }
 
 /// The method with the least error, those that are as right and cannot be told apart from it in
-/// time, and the fastest one beside it. `words` say of one and of several that they are it.
+/// time, and the fastest one beside it; with the indices of the former. `words` say of one and of
+/// several that they are it.
 fn by_error(
     all: &[Contender],
     error: impl Fn(&Contender) -> f64,
     words: [&str; 2],
-) -> Option<String> {
+) -> Option<(String, Vec<usize>)> {
     let when = When::AnythingMoves;
     let least_error = error(least(all, &error)?);
     let best = least(all.iter().filter(|of| error(of) == least_error), |of| {
@@ -364,7 +390,8 @@ fn by_error(
         Some(_) => ". No other is faster".into(),
         None => String::new(),
     };
-    Some(text)
+    let first = with_level(best, all, |of| error(of) == least_error);
+    Some((text, first))
 }
 
 /// How much faster another method is, and its error.
@@ -381,7 +408,7 @@ fn faster(fastest: &Contender, than: &Contender, when: When) -> String {
 /// Judges errors of shares: the least one, and the fastest.
 fn graded(all: &[Contender], rows: &[Row]) -> Verdict {
     let words = ["has the least error", "have the least error"];
-    let (Some(right), Some(mut text)) =
+    let (Some(right), Some((mut text, first))) =
         (least(all, |of| of.rmse), by_error(all, |of| of.rmse, words))
     else {
         return Verdict::default();
@@ -397,8 +424,9 @@ fn graded(all: &[Contender], rows: &[Row]) -> Verdict {
         );
     }
     Verdict {
-        fastest_exact: None,
+        first,
         sentences: vec![text + "."],
+        ..Verdict::default()
     }
 }
 
@@ -419,6 +447,8 @@ fn right_enough(all: &[Contender]) -> Verdict {
     };
     Verdict {
         fastest_exact: best.is_exact.then_some(best.index),
+        first: with_level(best, all, |_| true),
+        is_taken: true,
         sentences: vec![format!("Take {}{level}.", figures(best))],
     }
 }
@@ -445,8 +475,8 @@ fn none_within(all: &[Contender], budgets: &Budgets) -> Verdict {
         });
     }
     Verdict {
-        fastest_exact: None,
         sentences: vec![text + "."],
+        ..Verdict::default()
     }
 }
 

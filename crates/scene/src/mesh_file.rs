@@ -12,6 +12,7 @@ use crate::{
         read::load_obj,
     },
     report::ImportReport,
+    scene_file::MeshSource,
 };
 use std::path::Path;
 
@@ -41,6 +42,28 @@ pub struct MeshFileOptions {
     pub concave: Concave,
     /// Parts of the file's materials that are read.
     pub materials: MaterialUse,
+}
+
+impl MeshFileOptions {
+    /// Returns the mesh of a scene file that has `file`, a path, read in this way.
+    pub fn source(&self, file: &str) -> MeshSource {
+        let file = file.to_owned();
+        if has_extension(Path::new(&file), "obj") {
+            return MeshSource::Obj {
+                file,
+                leave_out: Vec::new(),
+                quads: self.quads,
+                concave: self.concave,
+                materials: self.materials.into(),
+                source: None,
+            };
+        }
+        MeshSource::Gltf {
+            file,
+            materials: self.materials,
+            source: None,
+        }
+    }
 }
 
 impl MeshFile {

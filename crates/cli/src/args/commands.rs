@@ -4,7 +4,7 @@ use crate::args::{
     shared::{MethodArgs, SceneArgs},
     values::{bytes, frames, gate, milliseconds, percent, texels},
 };
-use clap::{Args, ValueEnum};
+use clap::{ArgAction, Args, ValueEnum};
 use skiagraph_compare::graphs::argument::Assignment;
 use skiagraph_compare::measuring::ground_truth::REFERENCE_SAMPLES;
 use skiagraph_compare::pictures::save::Save;
@@ -16,6 +16,10 @@ use std::path::PathBuf;
 
 /// `skiagraph compare`.
 #[derive(Args, Debug)]
+#[command(mut_arg("scenes", |scenes| scenes.action(ArgAction::Append).help(
+    "Built-in scene, scene file (.ron), name in scenes/, or a mesh (.obj, .gltf, .glb). Given \
+     several times, each scene is compared by itself into DIR/SCENE, with an overview"
+)))]
 pub struct CompareArgs {
     /// Presets by name, or graphs (.ron) with the output `visibility`, and perhaps `status`.
     /// With settings of its own a method stands beside itself: `crsm@n=1,depth=plane`. Without any:
@@ -92,7 +96,8 @@ pub struct CompareArgs {
     /// `flip > 0.02`, `frame > 3ms`, `memory > 64MiB`. May be repeated.
     #[arg(long, value_name = "METHOD: FIGURE > VALUE", value_parser = gate)]
     pub fail_if: Vec<Gate>,
-    /// Folder for results.json, results.csv and the pictures.
+    /// Folder for report.html, results.json, results.csv and the pictures; of several scenes for
+    /// report.html and a folder for each.
     #[arg(long, default_value = "compare", value_name = "DIR")]
     pub out: PathBuf,
     /// Keep the runs in DIR/results.json whose graph, shaders, params, scene and view are still the
@@ -139,7 +144,7 @@ pub enum Format {
     /// For a document: the command, the conditions, and a table per view and viewport with the
     /// times of steps.
     Markdown,
-    /// The contents of results.json.
+    /// The contents of results.json; of several scenes a list of them.
     Json,
 }
 

@@ -1,13 +1,16 @@
 //! Arguments that several commands share.
 
 use crate::args::values::{self, LightArgument, texels};
-use clap::{Args, ValueEnum};
+use crate::error::CliError;
+use clap::{ArgAction, Args, ValueEnum};
 use glam::DVec3;
 use skiagraph_compare::error::CompareError;
 use skiagraph_compare::graphs::argument::Assignment;
 use skiagraph_compare::graphs::method::{self, ParamValues};
 use skiagraph_compare::graphs::preset::Preset;
 use skiagraph_compare::measuring::device::GpuRequest;
+use skiagraph_compare::own_camera::OwnCamera;
+use skiagraph_compare::own_scene::MeshSceneOptions;
 use skiagraph_compare::size::Size;
 use skiagraph_graph::Sources;
 use skiagraph_scene::{Concave, MaterialUse, MeshFileOptions, QuadDiagonal};
@@ -81,8 +84,8 @@ const MAX_SECONDS: u64 = 86_400;
 #[command(next_help_heading = "Scene")]
 pub struct SceneArgs {
     /// Built-in scene, scene file (.ron), name in scenes/, or a mesh (.obj, .gltf, .glb).
-    #[arg(long, default_value = "park", value_name = "SCENE")]
-    pub scene: String,
+    #[arg(long = "scene", default_value = "park", value_name = "SCENE", action = ArgAction::Set)]
+    pub scenes: Vec<String>,
     /// A view of the scene, or `all`. Without it: the scene's first view. Cameras of a glTF file
     /// are views.
     #[arg(long, value_name = "NAME")]
@@ -167,12 +170,64 @@ impl From<ConcavePolygons> for Concave {
 }
 
 impl SceneArgs {
-    /// How they have a mesh file read.
-    pub fn mesh_file_options(&self) -> MeshFileOptions {
-        MeshFileOptions {
-            quads: QuadDiagonal::default(),
-            concave: self.concave.map_or_else(Concave::default, Into::into),
-            materials: self.materials.map_or_else(MaterialUse::default, Into::into),
+    /// The scene; of several the first.
+    pub fn scene(&self) -> &str {
+        self.scenes.first().map_or("park", String::as_str)
+    }
+
+    /// Returns the same arguments for another scene alone.
+    pub fn of(&self, scene: &str) -> Self {
+        Self {
+            scenes: vec![scene.to_owned()],
+            ..self.clone()
+        }
+    }
+
+    /// Each scene with the arguments, which must not be of one scene only.
+    ///
+    /// # Errors
+    /// If there are several scenes, and an argument that is of one.
+    pub fn each(&self) -> Result<Vec<Self>, CliError> {
+        let single = [
+            ("--eye", self.eye.is_some()),
+            ("--look", self.look.is_some()),
+            ("--write-scene", self.write_scene.is_some()),
+        ];
+        let single = single.iter().find(|(_, is_given)| *is_given);
+        if let Some((name, _)) = single.filter(|_| self.scenes.len() > 1) {
+            return Err(CliError::Usage(format!(
+                "{name} is of one scene, and {} are asked for; write a scene file of each with its \
+                 own view (skiagraph run rt --scene SCENE --eye … --look … --write-scene \
+                 FILE.ron), and compare these",
+                self.scenes.len()
+            )));
+        }
+        Ok(self.scenes.iter().map(|scene| self.of(scene)).collect())
+    }
+
+    /// How a mesh file becomes a scene.
+    pub fn mesh_scene(&self) -> MeshSceneOptions {
+        MeshSceneOptions {
+            file: MeshFileOptions {
+                quads: QuadDiagonal::default(),
+                concave: self.concave.map_or_else(Concave::default, Into::into),
+                materials: self.materials.map_or_else(MaterialUse::default, Into::into),
+            },
+            camera: self.camera(),
+            sun: self.own_light(),
+            ground: self.ground,
+        }
+    }
+
+    /// The parts of a view's camera that they replace.
+    pub fn camera(&self) -> OwnCamera {
+        OwnCamera {
+            eye: self.eye,
+            direction: self.look,
+            up: self.up,
+            fov_y_degrees: self.fov,
+            near: self.near,
+            far: self.far,
         }
     }
 
@@ -182,12 +237,6 @@ impl SceneArgs {
             Some(LightArgument::Direction(direction)) => Some(*direction),
             Some(LightArgument::Name(_)) | None => None,
         }
-    }
-
-    /// Returns true if they say anything of the camera.
-    pub fn has_own_camera(&self) -> bool {
-        [self.eye, self.look, self.up].iter().any(Option::is_some)
-            || [self.fov, self.near, self.far].iter().any(Option::is_some)
     }
 
     /// The name of the light that they ask for, if it is one of the scene's.

@@ -4,8 +4,7 @@ use crate::args::commands::{ChartArgs, ChartKind};
 use crate::error::CliError;
 use crate::terminal::console::{note, print};
 use skiagraph_compare::files::write::{check_folder, check_writable, write_whole};
-use skiagraph_compare::records::published;
-use skiagraph_compare::records::published_row::PublishedFile;
+use skiagraph_compare::records::{published, published_row::PublishedFile, read_back};
 use skiagraph_compare::size::Size;
 use skiagraph_compare::wording::plural;
 use skiagraph_report::charts::{self, Kept};
@@ -53,8 +52,9 @@ pub fn chart(args: &ChartArgs) -> Result<(), CliError> {
 }
 
 fn kept(args: &ChartArgs) -> Result<Vec<Kept>, CliError> {
-    let folders = args.folders.iter();
-    folders.map(|folder| Ok(Kept::read(folder)?)).collect()
+    let folders = read_back::with_scenes(&args.folders);
+    let kept = folders.iter().map(|folder| Ok(Kept::read(folder)?));
+    kept.collect()
 }
 
 /// Writes the charts of published figures and ours.

@@ -1,7 +1,7 @@
 //! `skiagraph compare`: measures speed and error of methods on every view, viewport and map size.
 
 use crate::args::commands::{CompareArgs, Format, Images};
-use crate::args::shared::GpuArgs;
+use crate::args::shared::{GpuArgs, SceneArgs};
 use crate::error::CliError;
 use crate::scene_selection::{SceneSelection, paths};
 use crate::terminal::{
@@ -22,32 +22,36 @@ use skiagraph_compare::measuring::{
     date, device,
     ground_truth::PrimaryVisibility,
     resume::Kept,
+    scene_folders::scene_folders,
     series::Series,
     view_or_path::{ViewOrPath, under_lights},
 };
 use skiagraph_compare::pictures::run_pictures::graph_name;
 use skiagraph_compare::records::{budgets::Budgets, published, results::Results};
-use skiagraph_compare::sink::Session;
+use skiagraph_compare::sink::{Session, Silent};
 use skiagraph_compare::size::Size;
-use skiagraph_compare::wording::{command_line, size, unknown};
+use skiagraph_compare::wording::{command_line, plural, size, unknown};
 use skiagraph_draw::{from_plan, to_svg};
 use skiagraph_passes::SceneProvider;
 use skiagraph_report::{
     gate::Gate,
-    markdown, page, results_table,
+    markdown, matrices,
+    overview::Overview,
+    page, results_table,
     summary_table::{self, Summary},
     table::terminal,
 };
 use skiagraph_scene::Scene;
-use std::sync::Arc;
+use std::{path::PathBuf, sync::Arc};
 
-/// Checks all arguments, then measures the methods and prints and saves the results.
+/// Checks all arguments, then measures the methods on each scene and prints and saves the results.
 ///
 /// # Errors
 /// If a graph has errors, a scene cannot be loaded, no GPU can be opened, earlier results cannot be
 /// continued, Ctrl-C stops the command, no method runs on this adapter, or a limit of `--fail-if`
 /// is exceeded.
 pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
+    let scenes = args.scene.each()?;
     let published = published::read(&args.published)?;
     let sources = preset::sources(&Terminal);
     let names = if args.presets.is_empty() && !args.all {
@@ -62,63 +66,154 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let loaded = methods.iter().map(|method| &method.preset.graph);
     let gpu = device::open(&gpu.request(), loaded)?;
     let session = Session::new(&gpu, &Terminal);
+    let targets = Target::all(args);
+    let mut comparisons = Vec::new();
+    for (scene, target) in scenes.iter().zip(&targets) {
+        let (scene, views) = views(args, scene, &methods, session)?;
+        let comparison = Comparison {
+            views,
+            viewports: unique(args.size.iter().map(|Size(size)| *size)),
+            methods: methods.clone(),
+            protocol: Protocol {
+                frames: args.frames,
+                warmup: args.warmup,
+                cached_frames: args.cached_frames.unwrap_or(args.frames),
+                jitter: args.jitter,
+                oracle: args.oracle,
+                reference_samples: args.reference_samples,
+                pictures: args.images == Images::All,
+            },
+            primary: primary.clone(),
+            budgets: Budgets {
+                frame_ms: args.under,
+                wrong_percent: args.below,
+                memory_bytes: args.memory,
+            },
+            published: published.clone(),
+            command: Some(command_line(std::env::args_os())),
+            scene,
+        };
+        comparison.check(session)?;
+        check_folder(&target.folder)?;
+        if targets.len() > 1 {
+            // Earlier results of the last scene may be refused: then the first is not measured.
+            let silent = Session::new(&gpu, &Silent);
+            Series::new(&comparison, silent, Some((&target.folder, kept(args))))?;
+        }
+        comparisons.push(comparison);
+    }
+    interrupt::install()?;
+    let mut measured = Measured::default();
+    let mut all = comparisons.into_iter().zip(&targets);
+    let outcome = all.try_for_each(|(comparison, target)| {
+        measure(args, &comparison, target, session, &mut measured)
+    });
+    if targets.len() > 1 {
+        overview(args, &targets, &measured.results)?;
+    }
+    outcome?;
+    match &measured.failures[..] {
+        [] => Ok(()),
+        failures => Err(CliError::Gate(failures.join("\n"))),
+    }
+}
+
+/// A scene's folder for results.
+struct Target {
+    folder: PathBuf,
+    /// The folder's name below that of all scenes; `None` of a single scene.
+    name: Option<String>,
+}
+
+impl Target {
+    /// The folder of each scene.
+    fn all(args: &CompareArgs) -> Vec<Self> {
+        if args.scene.scenes.len() == 1 {
+            let folder = args.out.clone();
+            return vec![Self { folder, name: None }];
+        }
+        let names = scene_folders(&args.scene.scenes).into_iter();
+        let target = |name: String| Self {
+            folder: args.out.join(&name),
+            name: Some(name),
+        };
+        names.map(target).collect()
+    }
+}
+
+/// Results of the scenes so far.
+#[derive(Default)]
+struct Measured {
+    /// Results of the scenes that have any, in the order of the scenes.
+    results: Vec<Results>,
+    /// Conditions of `--fail-if` that do not hold.
+    failures: Vec<String>,
+    /// Number of scenes that are done.
+    finished: usize,
+}
+
+/// A scene with the views or paths that the arguments select.
+fn views(
+    args: &CompareArgs,
+    of: &SceneArgs,
+    methods: &[Method],
+    session: Session,
+) -> Result<(Arc<Scene>, Vec<ViewOrPath>), CliError> {
     let SceneSelection {
         scene,
         views,
         paths: own,
-    } = SceneSelection::load(&args.scene)?;
+    } = SceneSelection::load(of)?;
     let scene = Arc::new(scene);
-    let light = light_name(args, &methods, &scene, session);
-    let views = match (&args.path, &args.scene.light) {
-        (Some(name), _) => paths(&args.scene, &scene, &own, name, light)?,
+    let light = light_name(of, methods, &scene, session);
+    let views = match (&args.path, &of.light) {
+        (Some(name), _) => paths(of, &scene, &own, name, light)?,
         (None, Some(_)) => views.into_iter().map(ViewOrPath::Still).collect(),
         (None, None) => {
             let views = under_lights(&scene, views, light)?.into_iter();
             views.map(ViewOrPath::Still).collect()
         }
     };
-    let comparison = Comparison {
-        views,
-        viewports: unique(args.size.iter().map(|Size(size)| *size)),
-        methods,
-        protocol: Protocol {
-            frames: args.frames,
-            warmup: args.warmup,
-            cached_frames: args.cached_frames.unwrap_or(args.frames),
-            jitter: args.jitter,
-            oracle: args.oracle,
-            reference_samples: args.reference_samples,
-            pictures: args.images == Images::All,
-        },
-        primary,
-        budgets: Budgets {
-            frame_ms: args.under,
-            wrong_percent: args.below,
-            memory_bytes: args.memory,
-        },
-        published,
-        command: Some(command_line(std::env::args_os())),
-        scene,
-    };
-    comparison.check(session)?;
-    check_folder(&args.out)?;
-    let graphs = match args.images {
-        Images::All => graphs(&comparison, session),
-        Images::None => Vec::new(),
-    };
-    let kept = match (args.replace, args.resume) {
+    Ok((scene, views))
+}
+
+/// The earlier results that are kept.
+fn kept(args: &CompareArgs) -> Kept {
+    match (args.replace, args.resume) {
         (true, _) => Kept::Nothing,
         (_, true) => Kept::All,
         _ => Kept::Others,
-    };
-    // Earlier results may be refused: nothing of theirs is overwritten then.
-    let mut series = Series::new(&comparison, session, Some((&args.out, kept)))?;
-    for (name, svg) in &graphs {
-        write_whole(&args.out.join(name), svg.as_bytes())?;
     }
-    interrupt::install()?;
-    let outcome = run(args, &comparison, &mut series);
-    finish(args, series, outcome)
+}
+
+/// Measures a scene, prints and saves its results.
+fn measure(
+    args: &CompareArgs,
+    comparison: &Comparison,
+    target: &Target,
+    session: Session,
+    measured: &mut Measured,
+) -> Result<(), CliError> {
+    let folder = &target.folder;
+    if let Some(name) = &target.name {
+        let number = measured.finished + 1;
+        note(&format!(
+            "{name}, scene {number} of {}",
+            args.scene.scenes.len()
+        ));
+    }
+    let graphs = match args.images {
+        Images::All => graphs(comparison, session),
+        Images::None => Vec::new(),
+    };
+    let mut series = Series::new(comparison, session, Some((folder, kept(args))))?;
+    for (name, svg) in &graphs {
+        write_whole(&folder.join(name), svg.as_bytes())?;
+    }
+    let outcome = run(args, comparison, &mut series);
+    finish(args, target, series, outcome, measured)?;
+    measured.finished += 1;
+    Ok(())
 }
 
 /// Refuses conditions on methods that are not compared.
@@ -173,7 +268,7 @@ fn graphs(comparison: &Comparison, session: Session) -> Vec<(String, String)> {
 /// The light by its name: where a method answers for every light it is judged under every light,
 /// unless one is named.
 fn light_name<'a>(
-    args: &'a CompareArgs,
+    args: &'a SceneArgs,
     methods: &[Method],
     scene: &Arc<Scene>,
     session: Session,
@@ -181,9 +276,9 @@ fn light_name<'a>(
     let provider = SceneProvider::new(scene.clone());
     let device = Capabilities::new(session.gpu);
     let is_layered = |method: &Method| shadow_method::is_layered(method, &device, &provider);
-    match args.scene.light {
+    match args.light {
         None if methods.iter().any(is_layered) => Some("all"),
-        _ => args.scene.light_name(),
+        _ => args.light_name(),
     }
 }
 
@@ -227,18 +322,18 @@ fn print_summary(args: &CompareArgs, results: &Results) -> Result<(), CliError> 
     match args.format {
         Format::Table => {
             print(&summaries.iter().map(Summary::text).join("\n"))?;
-            for (viewport, lights) in summary_table::by_light(results) {
+            for (viewport, lights) in matrices::by_light(results) {
                 let head = format!("By light, {}: wrong pixels, frame, memory", size(viewport));
                 print(&format!("\n{head}\n{}\n", terminal(&lights)))?;
             }
             if args.passes {
-                print(&format!("\n{}\n", summary_table::passes(results)))?;
+                print(&format!("\n{}\n", matrices::passes(results)))?;
             }
             Ok(())
         }
         Format::Markdown => {
             print(&summaries.iter().map(Summary::markdown).collect::<String>())?;
-            for (viewport, lights) in summary_table::by_light(results) {
+            for (viewport, lights) in matrices::by_light(results) {
                 print(&format!(
                     "\n## By light, {}\n\n{}",
                     size(viewport),
@@ -247,31 +342,64 @@ fn print_summary(args: &CompareArgs, results: &Results) -> Result<(), CliError> 
             }
             Ok(())
         }
+        // Those of several scenes are printed as one list.
+        Format::Json if args.scene.scenes.len() > 1 => Ok(()),
         Format::Json => print(&json::to_text(results)),
     }
 }
 
-/// Says what came of it.
+/// Prints the scenes that have results beside each other, and writes the page of all.
+fn overview(args: &CompareArgs, targets: &[Target], all: &[Results]) -> Result<(), CliError> {
+    let names = targets.iter().filter_map(|target| target.name.as_deref());
+    let summaries: Vec<Vec<Summary>> = all.iter().map(summary_table::summaries).collect();
+    let summaries = names.zip(&summaries);
+    let summaries = summaries.flat_map(|(name, of)| of.iter().map(move |summary| (name, summary)));
+    let overview = Overview::new(&summaries.collect::<Vec<_>>());
+    match (args.format, overview) {
+        (Format::Json, _) => print(&json::to_text(&all))?,
+        (Format::Table, Some(overview)) => print(&format!("\n{}", overview.text()))?,
+        (Format::Markdown, Some(overview)) => print(&overview.markdown())?,
+        (_, None) => {}
+    }
+    let folders = targets.iter().map(|target| target.folder.clone());
+    let folders: Vec<PathBuf> = folders.take(all.len()).collect();
+    if !folders.is_empty() {
+        let page = args.out.join(page::FILE);
+        page::write(&folders, &page, &Terminal)?;
+        let scenes = plural(folders.len(), "scene");
+        note(&format!("{} shows {scenes}", page.display()));
+    }
+    Ok(())
+}
+
+/// Says what came of a scene.
 fn finish(
     args: &CompareArgs,
+    target: &Target,
     mut series: Series,
     outcome: Result<(), CliError>,
+    measured: &mut Measured,
 ) -> Result<(), CliError> {
-    let planned = series.planned();
+    let (planned, folder) = (series.planned(), &target.folder);
     if !series.results.runs.is_empty() {
-        print_summary(args, &series.whole())?;
+        let whole = series.whole();
+        print_summary(args, &whole)?;
         series.save(&[])?;
-        page::write_beside(&args.out, &Terminal)?;
+        page::write_beside(folder, &Terminal)?;
+        measured.results.push(whole);
     }
     let Series {
         results, broken, ..
     } = series;
     let kept = match results.runs.len() {
+        0 if measured.finished > 0 => {
+            "no run was finished; the same command with --resume goes on from there".into()
+        }
         0 => "no run was finished".into(),
         done => format!(
             "{done} of {planned} runs are kept in {}; the same command with --resume goes on \
              from there",
-            args.out.join("results.json").display()
+            folder.join("results.json").display()
         ),
     };
     match outcome {
@@ -291,6 +419,17 @@ fn finish(
             results.adapter.name
         )));
     }
+    tell_files(args, target, &results);
+    let failures = args.fail_if.iter().flat_map(|gate| gate.failures(&results));
+    let scene = target.name.as_ref().map(|name| format!("{name}: "));
+    let scene = scene.unwrap_or_default();
+    let failures = failures.map(|line| format!("{scene}{line}"));
+    measured.failures.extend(failures);
+    Ok(())
+}
+
+/// Says which files are there, and what they lack.
+fn tell_files(args: &CompareArgs, target: &Target, results: &Results) {
     let files = match args.images {
         Images::All => "report.html, results.json, results.csv and the pictures",
         Images::None => "report.html, results.json and results.csv",
@@ -301,9 +440,7 @@ fn finish(
              maps and presets",
         );
     }
-    note(&format!("{files} are in {}", args.out.display()));
-    let failures = args.fail_if.iter().flat_map(|gate| gate.failures(&results));
-    let failures: Vec<String> = failures.collect();
+    note(&format!("{files} are in {}", target.folder.display()));
     let runs = results.runs.iter().filter_map(|run| run.measured.as_ref());
     let bare = runs.filter(|run| run.images.is_none()).count();
     if args.images == Images::All && bare > 0 {
@@ -312,8 +449,4 @@ fn finish(
              none"
         ));
     }
-    if !failures.is_empty() {
-        return Err(CliError::Gate(failures.join("\n")));
-    }
-    Ok(())
 }

@@ -20,16 +20,13 @@ pub fn view(args: &ViewArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         params: args.params.clone(),
         map_size: args.map_size,
         size: args.size.0,
-        scene: named.scene.clone(),
+        scene: named.scene().to_owned(),
         // The arguments say of camera and light what holds for the scene that they name.
         load_scene: Box::new(move |scene| {
-            let loaded = if scene == named.scene {
+            let loaded = if scene == named.scene() {
                 SceneSelection::load(&named)
             } else {
-                SceneSelection::load(&SceneArgs {
-                    scene: scene.to_owned(),
-                    ..SceneArgs::default()
-                })
+                SceneSelection::load(&SceneArgs::default().of(scene))
             };
             let SceneSelection { scene, views, .. } = loaded?;
             Ok((scene, views))

@@ -16,6 +16,7 @@ mod paths;
 mod profile;
 mod recording;
 mod report;
+mod several_scenes;
 mod stress;
 mod together;
 mod tutorial;

@@ -83,6 +83,15 @@ fn pages(folder: &Path) {
         run["band"] = 100.into();
     }
     fs::write(folder.join("far/results.json"), far.to_string()).unwrap();
+    // Another scene's, each with its own times.
+    fs::create_dir(folder.join("level")).unwrap();
+    far["scene"]["name"] = "level".into();
+    fs::write(folder.join("level/results.json"), far.to_string()).unwrap();
+    assert!(
+        skiagraph(folder, "report out level --out scenes.html")
+            .status
+            .success()
+    );
     // A matrix in which a band is too large and a method could not run.
     let text = fs::read_to_string(folder.join("hard/stress.json")).unwrap();
     let mut matrix: Value = serde_json::from_str(&text).unwrap();
@@ -138,15 +147,14 @@ fn the_page_works_in_a_browser() {
         assert_eq!(outcome["theme"], theme);
         assert_eq!(outcome["width"], width);
     }
-    let outcome = browsed(
-        folder,
-        "all.html",
-        1280,
-        false,
-        include_str!("report/merged.js"),
-    );
-    assert_eq!(outcome["faults"], Value::Array(Vec::new()));
-    assert_eq!(outcome["failed"], Value::Array(Vec::new()));
+    for (page, script) in [
+        ("all.html", include_str!("report/merged.js")),
+        ("scenes.html", include_str!("report/scenes.js")),
+    ] {
+        let outcome = browsed(folder, page, 1280, false, script);
+        assert_eq!(outcome["faults"], Value::Array(Vec::new()), "{page}");
+        assert_eq!(outcome["failed"], Value::Array(Vec::new()), "{page}");
+    }
 }
 
 #[test]

@@ -17,5 +17,6 @@ pub mod fingerprint;
 pub mod json;
 pub mod lock;
 pub(crate) mod picture_sources;
+pub mod scene;
 pub mod watch;
 pub mod write;

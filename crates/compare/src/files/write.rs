@@ -83,7 +83,8 @@ fn is_replaced(path: &Path) -> bool {
     fs::metadata(path).map_or(true, |found| found.is_file())
 }
 
-fn folder_of(file: &Path) -> &Path {
+/// Returns the folder that a file is in; `.` for a bare name.
+pub(crate) fn folder_of(file: &Path) -> &Path {
     match file.parent() {
         Some(parent) if parent != Path::new("") => parent,
         _ => Path::new("."),

@@ -42,6 +42,7 @@ const GBUFFER: &str = "pipelines/shared/gbuffer.ron";
 
 /// Graph that renders the id of each pixel's visible primitive (triangle) in the same way as every
 /// method's G-buffer, so that methods are judged on the surfaces that they show.
+#[derive(Clone)]
 pub struct PrimaryVisibility {
     graph: Graph,
     /// Hash of the files from which the graph was read.

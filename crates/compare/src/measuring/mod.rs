@@ -35,6 +35,7 @@ pub mod profiling;
 mod results_folder;
 pub mod resume;
 mod run;
+pub mod scene_folders;
 mod sequence;
 pub mod series;
 mod steady;

@@ -187,8 +187,8 @@ pub fn reference_name(view: &str, viewport: [u32; 2]) -> String {
     format!("{}-visibility.png", reference_stem(view, viewport))
 }
 
-/// A name as part of a file name: `my/method.ron` becomes `my-method`.
-fn slug(name: &str) -> String {
+/// Returns a name as part of a file name: `my/method.ron` becomes `my-method`.
+pub(crate) fn slug(name: &str) -> String {
     let stem = name.strip_suffix(".ron").unwrap_or(name);
     let plain = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.');
     let text: String = stem

@@ -24,7 +24,10 @@ use serde::{Deserialize, de::DeserializeOwned};
 use serde_json::Value;
 use skiagraph_graph::SourceFile;
 use skiagraph_scene::Limit;
-use std::{io, path::Path};
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+};
 
 /// Advice for messages on a `results.json` that cannot be used: how to go on without it.
 pub const WITHOUT_RESULTS: &str =
@@ -90,6 +93,26 @@ fn read(limit: &Limit, path: &Path) -> Result<Option<SourceFile>, String> {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
         Err(error) => Err(format!("{name}: {error}")),
     }
+}
+
+/// Returns the folders of results that `folders` stand for. A folder stands for itself, or if it
+/// holds no results itself, for the folders directly in it that do, sorted by name: `compare`
+/// writes these for several scenes.
+pub fn with_scenes(folders: &[PathBuf]) -> Vec<PathBuf> {
+    let has = |folder: &Path, file: &str| folder.join(file).is_file();
+    let each = folders.iter().flat_map(|folder| {
+        let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+        let mut scenes: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
+        scenes.retain(|scene| has(scene, "results.json"));
+        scenes.sort();
+        let is_own = has(folder, "results.json") || has(folder, "stress.json");
+        if is_own || scenes.is_empty() {
+            vec![folder.clone()]
+        } else {
+            scenes
+        }
+    });
+    each.collect()
 }
 
 /// Reads the finished results.json in a folder, for example to write a report of it.

@@ -38,10 +38,12 @@ impl Table {
         }
     }
 
-    /// Returns the table as Markdown, with numbers aligned to the right.
+    /// Returns the table as Markdown, with numbers aligned to the right. Lines of a cell are joined
+    /// by commas.
     pub fn markdown(&self) -> String {
+        let cell = |text: &String| text.replace('|', "\\|").replace('\n', ", ");
         let line = |cells: &[String]| {
-            let cells: Vec<String> = cells.iter().map(|cell| cell.replace('|', "\\|")).collect();
+            let cells: Vec<String> = cells.iter().map(cell).collect();
             format!("| {} |\n", cells.join(" | "))
         };
         let rule = |column| if column < self.words { "---|" } else { "---:|" };
@@ -65,12 +67,12 @@ mod tests {
 
     #[test]
     fn a_cell_may_hold_what_separates_cells() {
-        let table = Table::new(["name", "n"], 1, [vec!["a|b, c".into(), "1".into()]]);
+        let table = Table::new(["name", "n"], 1, [vec!["a|b, c".into(), "1\n2".into()]]);
         assert_eq!(
             table.markdown(),
-            "| name | n |\n|---|---:|\n| a\\|b, c | 1 |\n"
+            "| name | n |\n|---|---:|\n| a\\|b, c | 1, 2 |\n"
         );
-        assert_eq!(table.csv().unwrap(), "name,n\n\"a|b, c\",1\n");
+        assert_eq!(table.csv().unwrap(), "name,n\n\"a|b, c\",\"1\n2\"\n");
         let short = Table::new(["name", "n"], 1, [vec!["a".into()]]);
         assert!(short.csv().is_err());
     }

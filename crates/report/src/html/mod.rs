@@ -69,6 +69,7 @@ fn page_within(sources: &[Source], reports: &[Report], limit: usize) -> Page {
         .replace("<!--LEGEND-->", &charts::legends(&tables))
         .replace("<!--TABLES-->", &rows::tables(&tables))
         .replace("<!--LIGHTS-->", &rows::lights(sources))
+        .replace("<!--OVERVIEW-->", &rows::overview(sources, &all))
         .replace("<!--STEPS-->", &steps::bars(&tables))
         .replace("<!--GROWTHS-->", &charts::growths(&tables))
         .replace("<!--PATHS-->", &charts::paths(&tables))

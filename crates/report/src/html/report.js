@@ -16,15 +16,19 @@ function drawHead() {
 /** Warnings stand out. */
 const lineClass = (text) => (text.startsWith('warning: ') ? 'warning' : 'quiet');
 
+function chooseTable(chosen) {
+  state.table = chosen;
+  state.row = null;
+  viewer.scale = null;
+  const choice = byId('table-choice');
+  if (choice) choice.selectedIndex = chosen;
+  changed();
+}
+
 function headControls() {
   const names = data.tables.map((of) => of.of);
   if (names.length > 1) {
-    byId('choice').replaceChildren(choice('table-choice', 'Shown', names, state.table, (chosen) => {
-      state.table = chosen;
-      state.row = null;
-      viewer.scale = null;
-      changed();
-    }));
+    byId('choice').replaceChildren(choice('table-choice', 'Shown', names, state.table, chooseTable));
   }
   if (all('[data-kept="true"]').length > 0) {
     byId('front-controls').replaceChildren(toggle('time', [
@@ -77,5 +81,13 @@ if (data.tables.length > 0) {
   for (const id of ['front', 'table', 'pictures', 'passes', 'paths', 'growth', 'graph']) byId(`${id}-section`).hidden = true;
 }
 hide(byId('stress-section'), all('#stress table').length === 0);
+hide(byId('overview-section'), all('#overview table').length === 0);
+for (const link of all('#overview [data-choose]')) {
+  link.addEventListener('click', (event) => {
+    event.preventDefault();
+    chooseTable(Number(link.dataset.choose));
+    byId('table-section').scrollIntoView();
+  });
+}
 hide(byId('lights-section'), all('#lights table').length === 0);
 drawConditions();

@@ -2,12 +2,16 @@
 
 use crate::html::shown::{Shown, part};
 use crate::html::sources::Source;
+use crate::matrices::by_light;
+use crate::overview::{Matrix, Overview, scene_names};
 use crate::summary::Row;
-use crate::summary_table::{NOT_THERE, WRONG, by_light};
-use crate::table::html;
+use crate::summary_table::{NOT_THERE, Summary, WRONG};
+use crate::table::{html, html_with};
+use itertools::Itertools;
 use skiagraph_chart::xml;
 use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::size;
+use std::path::{Path, PathBuf};
 
 /// Returns one HTML table with the rows of all tables.
 pub fn tables(tables: &[Shown]) -> String {
@@ -62,6 +66,57 @@ pub fn lights(sources: &[Source]) -> String {
         tables.map(table).collect::<String>()
     };
     sources.iter().map(of_source).collect()
+}
+
+/// Returns the overview of the sources' scenes as HTML: tables whose cells link to the table of
+/// their scene, and the verdicts. It is empty for results of one scene. `all` holds the summaries
+/// of the page's tables, each with the index of its source.
+pub fn overview(sources: &[Source], all: &[(usize, Summary)]) -> String {
+    let scenes = sources.iter().map(|source| {
+        let folder = source.folders.first().map(PathBuf::as_path);
+        (folder.unwrap_or(Path::new("")), &source.results)
+    });
+    let scenes: Vec<_> = scenes.collect();
+    // One scene on several machines has several sources.
+    let mut known = sources.iter().map(|source| &source.results.scene);
+    if known.all_equal() {
+        return String::new();
+    }
+    let names = scene_names(&scenes);
+    let columns = all.iter();
+    let columns = columns.map(|(source, summary)| (names[*source].as_str(), summary));
+    let Some(overview) = Overview::new(&columns.collect::<Vec<_>>()) else {
+        return String::new();
+    };
+    let matrix = |of: Matrix| {
+        let head = format!("<h3>{}</h3>", size(of.viewport));
+        let class = |row: usize, column: usize| {
+            let is_exact = of.table.rows[row][column].contains('*');
+            if is_exact { "class=\"zero\"" } else { "" }.to_owned()
+        };
+        let link = |column: usize, text: String| {
+            let (table, text) = (of.summaries[column - 1], text.replace("&#10;", "<br>"));
+            format!("<a href=\"#table-section\" data-choose=\"{table}\">{text}</a>")
+        };
+        head + &html_with(&of.table, |_| String::new(), class, link)
+    };
+    let matrices = overview.matrices().into_iter().map(matrix);
+    let sentences = overview.sentences().into_iter();
+    let sentences = sentences.map(|sentence| format!("<p>{}</p>\n", with_names(&sentence)));
+    matrices.chain(sentences).collect()
+}
+
+/// A sentence as HTML; text between backquotes is a name.
+fn with_names(sentence: &str) -> String {
+    let parts = sentence.split('`').enumerate().map(|(index, part)| {
+        let part = xml(part);
+        if index % 2 == 1 {
+            format!("<code>{part}</code>")
+        } else {
+            part
+        }
+    });
+    parts.collect()
 }
 
 /// Attributes of each row.

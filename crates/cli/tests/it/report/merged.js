@@ -3,6 +3,7 @@ try {
   await settled();
   const choices = [...find('#table-choice').options].map((option) => option.text);
   check('both machines', choices.some((text) => text.includes('Far GPU')) && choices.some((text) => text.includes('llvmpipe')), choices);
+  check('no overview of one scene', seen('#overview-section').length === 0);
   find('#all-tables').click();
   check('rows of both', cells('of').some((text) => text.includes('Far GPU')), cells('of'));
   check('the matrix', find('#stress').textContent.includes('box_on_floor'), find('#stress').textContent);

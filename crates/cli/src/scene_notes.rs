@@ -1,0 +1,121 @@
+//! Notes on a scene before it is drawn: what its mesh file holds, and what was chosen for it.
+
+use crate::args::shared::SceneArgs;
+use glam::DVec3;
+use itertools::Itertools;
+use skiagraph_compare::own_scene::{Chosen, OwnScene};
+use skiagraph_compare::wording::length;
+use skiagraph_scene::{Scene, View};
+
+/// Returns the notes on a mesh file: its views and lights, its size, and how to choose otherwise.
+pub fn of_mesh(args: &SceneArgs, own: &OwnScene) -> Vec<String> {
+    let chosen = &own.chosen;
+    let notes = [
+        held(&own.scene, chosen),
+        chosen.size.map(|size| extent(size, args.up)),
+        options(args, &own.scene, chosen),
+        floor(args, chosen),
+    ];
+    let notes = notes.into_iter().flatten();
+    notes
+        .map(|text| format!("{}: {text}", args.scene()))
+        .collect()
+}
+
+/// The views and lights that a file holds.
+fn held(scene: &Scene, chosen: &Chosen) -> Option<String> {
+    let views = scene.views.iter().map(|view| view.name.as_str()).join(", ");
+    let mut lights = scene.lights.iter().map(|light| light.name.as_str());
+    let lights = lights.join(", ");
+    let views = (!chosen.view).then(|| format!("its cameras, for --view: {views}"));
+    let lights = (!chosen.light).then(|| format!("its lights, for --light: {lights}"));
+    let held = [views, lights].into_iter().flatten().join("; ");
+    (!held.is_empty()).then_some(held)
+}
+
+/// How large a mesh is, and which way it stands.
+fn extent(size: DVec3, up: Option<DVec3>) -> String {
+    let [x, y, z] = size.to_array().map(length);
+    match up {
+        None => format!(
+            "the mesh is {x} units wide (x), {y} high (y) and {z} deep (z), right-handed; if z is \
+             up, give --up 0,0,1"
+        ),
+        Some(up) => format!(
+            "the mesh is {x} × {y} × {z} units (x, y, z), right-handed, with {},{},{} up",
+            up.x, up.y, up.z
+        ),
+    }
+}
+
+/// Which options would choose what was chosen.
+fn options(args: &SceneArgs, scene: &Scene, chosen: &Chosen) -> Option<String> {
+    let mut said = Vec::new();
+    if let Some(view) = scene.views.first().filter(|_| chosen.view) {
+        let eye = || format!("--eye {}", three(view.eye));
+        let look = || format!("--look {}", three(view.direction.normalize()));
+        said.extend(args.eye.is_none().then(eye));
+        said.extend(args.look.is_none().then(look));
+    }
+    let light = scene.lights.first().filter(|_| chosen.light);
+    if let (Some(light), None) = (light, args.own_light()) {
+        let sun = light.kind.directional();
+        let sun = sun.map(|sun| format!("--light {}", three(sun.direction)));
+        let lamp = light.kind.position();
+        let lamp = lamp.map(|lamp| format!("and a lamp at {}, for no sun comes in", three(lamp)));
+        said.extend(sun.or(lamp));
+    }
+    let lacks = match (chosen.view, chosen.light) {
+        _ if said.is_empty() => return None,
+        (true, true) => "no camera and no light",
+        (true, false) => "no camera",
+        (false, _) => "no light",
+    };
+    let inside = if chosen.is_inside {
+        ", from inside, for the mesh surrounds the camera"
+    } else {
+        ""
+    };
+    let said = said.join(" ");
+    Some(format!("it holds {lacks}; chosen{inside}: {said}"))
+}
+
+/// A ground that was added, or that is missing.
+fn floor(args: &SceneArgs, chosen: &Chosen) -> Option<String> {
+    match &chosen.ground {
+        Some(ground) => Some(format!(
+            "a ground was added, a square of {} units at the height {}, just below the lowest \
+             point",
+            length(ground.edge),
+            ground.height as f32
+        )),
+        None if args.ground && chosen.has_floor => Some(
+            "--ground adds none, for the mesh has a floor: half of its outline from above, in the \
+             lowest twentieth"
+                .into(),
+        ),
+        None if !args.ground && chosen.view && !chosen.is_inside && !chosen.has_floor => {
+            Some("it has no floor for its shadow to fall on; --ground adds one".into())
+        }
+        None => None,
+    }
+}
+
+/// That a sun of one's own shines upwards, which most often is its direction turned round.
+pub fn from_below(views: &[View], args: &SceneArgs) -> Option<String> {
+    let direction = args.own_light()?;
+    let up = views.first()?.up;
+    let three = |v: DVec3| format!("{},{},{}", v.x, v.y, v.z);
+    (direction.dot(up) > 0.0).then(|| {
+        format!(
+            "warning: --light {} shines from below: it is the direction in which the light \
+             travels; --light {} shines from above",
+            three(direction),
+            three(-direction + DVec3::ZERO)
+        )
+    })
+}
+
+fn three(v: DVec3) -> String {
+    format!("{:.4},{:.4},{:.4}", v.x, v.y, v.z)
+}

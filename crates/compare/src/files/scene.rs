@@ -1,0 +1,83 @@
+//! Writes scene files that a user may change afterwards.
+//!
+//! ```
+//! use skiagraph_compare::files::scene::write_scene;
+//! use skiagraph_scene::SceneLibrary;
+//!
+//! let folder = tempfile::tempdir()?;
+//! let path = folder.path().join("my_park.ron");
+//! let park = SceneLibrary::default().scene_file("park")?;
+//! assert!(write_scene(&path, park.clone(), &[])?);
+//! assert!(!write_scene(&path, park.clone(), &[])?, "it says the same");
+//! let other = skiagraph_scene::SceneFile { name: "mine".into(), ..park };
+//! assert!(write_scene(&path, other, &[]).is_err(), "it may have been changed");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use crate::error::CompareError;
+use crate::files::write::{folder_of, write_new};
+use skiagraph_scene::{MeshSource, SceneFile, View, scene_text};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+/// Writes a scene file whole or not at all, with the views `first` before its other ones. The path
+/// of its mesh is written relative to the file's folder if the mesh is below that folder, else from
+/// the root. Returns false if the file was there already and says the same.
+///
+/// # Errors
+/// The path does not end with `.ron`, a file of other content exists there (the user may have
+/// changed it), or the file cannot be written.
+pub fn write_scene(
+    path: &Path,
+    mut scene: SceneFile,
+    first: &[View],
+) -> Result<bool, CompareError> {
+    let refused = |text: String| CompareError::Request(format!("{}: {text}", path.display()));
+    let is_scene = path
+        .extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("ron"));
+    if !is_scene {
+        return Err(refused("a scene file is called NAME.ron".into()));
+    }
+    let others = std::mem::take(&mut scene.views).into_iter();
+    let others = others.filter(|view| first.iter().all(|chosen| chosen.name != view.name));
+    scene.views = first.iter().cloned().chain(others).collect();
+    if let MeshSource::Obj { file, .. } | MeshSource::Gltf { file, .. } = &mut scene.mesh {
+        *file = mesh_beside(path, file).map_err(refused)?;
+    }
+    let text = scene_text(&scene).map_err(refused)?;
+    if write_new(path, text.as_bytes())? {
+        return Ok(true);
+    }
+    match fs::read(path) {
+        Ok(there) if there == text.as_bytes() => Ok(false),
+        _ => Err(refused(
+            "it is there already and says something else; name another file, or delete it".into(),
+        )),
+    }
+}
+
+/// The path of a mesh as a scene file says it: from its own folder if the mesh is below that, else
+/// from the root.
+fn mesh_beside(scene: &Path, mesh: &str) -> Result<String, String> {
+    let absolute = |path: &Path| {
+        let found = path.canonicalize();
+        found.map_err(|why| format!("{}: {why}", path.display()))
+    };
+    let (folder, mesh) = (absolute(folder_of(scene))?, absolute(Path::new(mesh))?);
+    let below = mesh.strip_prefix(&folder).map(PathBuf::from);
+    let path = below.unwrap_or(mesh);
+    let text = path.to_str().ok_or_else(|| {
+        format!(
+            "the path of the mesh has bytes that are not UTF-8: {}",
+            path.display()
+        )
+    })?;
+    Ok(if cfg!(windows) {
+        text.replace('\\', "/")
+    } else {
+        text.to_owned()
+    })
+}

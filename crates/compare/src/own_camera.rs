@@ -1,0 +1,73 @@
+//! Changes the camera of a view: eye, direction, field of view and clip planes of one's own.
+//!
+//! ```
+//! use glam::DVec3;
+//! use skiagraph_compare::own_camera::OwnCamera;
+//! use skiagraph_scene::{SceneLibrary, SceneRequest};
+//!
+//! let request = SceneRequest { argument: "park".into(), obj: None };
+//! let (scene, _) = SceneLibrary::default().load(&request)?;
+//! let camera = OwnCamera { eye: Some(DVec3::new(0.0, 90.0, 0.0)), ..OwnCamera::default() };
+//! let view = camera.of_view(&scene.views[0], &scene.mesh, true);
+//! assert!(view.eye.y == 90.0 && view.far > 90.0);
+//! assert_eq!(view.direction, scene.views[0].direction);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use glam::DVec3;
+use skiagraph_scene::{Mesh, View};
+
+/// A depth buffer of 32-bit floats tells depths apart well over this range.
+const NEAR_TO_FAR: f64 = 1e4;
+
+/// Parts of a camera that take the place of a view's. `None` keeps the view's part. Lengths are in
+/// the scene's units.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct OwnCamera {
+    /// Position of the eye.
+    pub eye: Option<DVec3>,
+    /// Direction in which the eye looks, of any length above 0.
+    pub direction: Option<DVec3>,
+    /// Up direction, of any length above 0.
+    pub up: Option<DVec3>,
+    /// Vertical field of view in degrees, between 0 and 180.
+    pub fov_y_degrees: Option<f64>,
+    /// Distance of the near plane.
+    pub near: Option<f64>,
+    /// Distance of the far plane.
+    pub far: Option<f64>,
+}
+
+impl OwnCamera {
+    /// True if it keeps all parts of a view's camera.
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Returns a view with these parts in the place of its own. If `fits` is true, clip planes that
+    /// are `None` are fitted to the mesh: far just behind it, near at a ten-thousandth of far.
+    pub fn of_view(&self, view: &View, mesh: &Mesh, fits: bool) -> View {
+        let mut own = View {
+            eye: self.eye.unwrap_or(view.eye),
+            direction: self.direction.unwrap_or(view.direction),
+            up: self.up.unwrap_or(view.up),
+            fov_y_degrees: self.fov_y_degrees.unwrap_or(view.fov_y_degrees),
+            near: self.near.unwrap_or(view.near),
+            far: self.far.unwrap_or(view.far),
+            ..view.clone()
+        };
+        if fits {
+            let farthest = mesh.bounds().map_or(1.0, |(min, max)| {
+                let (min, max) = (min.as_dvec3(), max.as_dvec3());
+                (max - own.eye).abs().max((own.eye - min).abs()).length()
+            });
+            own.far = self.far.unwrap_or_else(|| {
+                (farthest * 1.01)
+                    .max(self.near.unwrap_or(0.0) * 2.0)
+                    .max(f64::MIN_POSITIVE)
+            });
+            own.near = self.near.unwrap_or(own.far / NEAR_TO_FAR);
+        }
+        own
+    }
+}

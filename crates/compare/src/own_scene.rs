@@ -1,0 +1,288 @@
+//! Loads a mesh file as a scene: with the views and lights of the file, and chosen ones where it
+//! has none.
+//!
+//! ```
+//! use skiagraph_compare::own_camera::OwnCamera;
+//! use skiagraph_compare::own_scene::{MeshSceneOptions, OwnScene};
+//!
+//! let folder = tempfile::tempdir()?;
+//! let file = folder.path().join("tile.obj");
+//! std::fs::write(&file, "v 0 0 0\nv 0 0 1\nv 1 0 0\nf 1 2 3\n")?;
+//! let own = OwnScene::of_mesh(&file, &MeshSceneOptions::default())?;
+//! assert!(own.chosen.view && own.chosen.light && own.chosen.has_floor);
+//! let views = own.views(None, &OwnCamera::default(), None)?;
+//! assert_eq!(views[0].name, "main");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use crate::default_view::default_view;
+use crate::error::CompareError;
+use crate::own_camera::OwnCamera;
+use crate::wording::unknown;
+use glam::DVec3;
+use itertools::Itertools;
+use skiagraph_scene::gltf::Clip;
+use skiagraph_scene::{
+    CameraPath, DirectionalLight, Ground, ImportReport, Light, Mesh, MeshFile, MeshFileOptions,
+    PointLight, Scene, SceneError, SceneFile, View, add_ground, has_ground,
+};
+use std::path::Path;
+
+/// The direction in which light travels over a mesh by default: a high sun, from the side.
+const FALLBACK_LIGHT: DVec3 = DVec3::new(-0.4, -1.0, -0.55);
+
+/// Vertical field of view of a view that is chosen, degrees.
+const DEFAULT_FOV: f64 = 60.0;
+
+/// Settings that turn a mesh file into a scene.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct MeshSceneOptions {
+    /// How the file is read.
+    pub file: MeshFileOptions,
+    /// Camera of the view that is chosen for a file without cameras; its clip planes are not used.
+    pub camera: OwnCamera,
+    /// Direction in which a sun shines on a file without lights; `None` chooses a sun or a lamp.
+    pub sun: Option<DVec3>,
+    /// True to add a ground below a mesh that has no floor.
+    pub ground: bool,
+}
+
+impl MeshSceneOptions {
+    fn up(&self) -> DVec3 {
+        self.camera.up.unwrap_or(DVec3::Y)
+    }
+}
+
+/// Parts of a scene that its mesh file lacked, and facts about the mesh.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Chosen {
+    /// True if the file has no camera, and the only view was chosen.
+    pub view: bool,
+    /// True if the chosen view is from inside the mesh, with surfaces all around the eye.
+    pub is_inside: bool,
+    /// True if the file has no light, and the only light was chosen or is the options' sun.
+    pub light: bool,
+    /// Size of the mesh's box along x, y and z in scene units, without an added ground; `None` for
+    /// a mesh without triangles.
+    pub size: Option<DVec3>,
+    /// True if the mesh has a floor of its own.
+    pub has_floor: bool,
+    /// The ground that was added; `None` if none was.
+    pub ground: Option<Ground>,
+}
+
+/// A loaded scene, with the parts that were chosen for it. A scene that no mesh file alone makes up
+/// has nothing chosen and no clips.
+#[derive(Debug)]
+pub struct OwnScene {
+    /// The loaded scene.
+    pub scene: Scene,
+    /// Changes that the import made, and parts that it left out.
+    pub report: ImportReport,
+    /// Parts of the scene that the file lacked.
+    pub chosen: Chosen,
+    /// Animations of the mesh file.
+    pub clips: Vec<Clip>,
+}
+
+impl From<(Scene, ImportReport)> for OwnScene {
+    /// Wraps a scene whose file holds all parts.
+    fn from((scene, report): (Scene, ImportReport)) -> Self {
+        Self {
+            scene,
+            report,
+            chosen: Chosen::default(),
+            clips: Vec::new(),
+        }
+    }
+}
+
+impl OwnScene {
+    /// Loads a mesh file, and chooses the parts of a scene that it lacks.
+    ///
+    /// # Errors
+    /// The file cannot be read, or the options' sun is not a valid light.
+    pub fn of_mesh(path: &Path, options: &MeshSceneOptions) -> Result<Self, SceneError> {
+        let MeshFile {
+            name,
+            mut mesh,
+            mut views,
+            mut lights,
+            clips,
+            report,
+        } = MeshFile::load(path, &options.file)?;
+        let mut chosen = Chosen {
+            view: views.is_empty(),
+            light: lights.is_empty(),
+            size: mesh
+                .bounds()
+                .map(|(min, max)| max.as_dvec3() - min.as_dvec3()),
+            has_floor: has_ground(&mesh, options.up()),
+            ..Chosen::default()
+        };
+        if chosen.light {
+            let sun = Light::from(DirectionalLight::new(options.sun.unwrap_or(FALLBACK_LIGHT)));
+            sun.check().map_err(|reason| SceneError::BadView {
+                path: path.to_owned(),
+                reason,
+            })?;
+            lights.push(sun);
+        }
+        if chosen.view {
+            let takes_lamp = chosen.light && options.sun.is_none();
+            let (view, lamp);
+            (view, chosen.is_inside, lamp) = choose_view(&mesh, lights.first(), options);
+            views.push(view);
+            if let Some(position) = lamp.filter(|_| takes_lamp) {
+                let radius = 0.0;
+                lights = vec![Light::only(PointLight { position, radius })];
+            }
+        }
+        if options.ground && !chosen.has_floor {
+            chosen.ground = add_ground(&mut mesh, options.up());
+        }
+        let scene = Scene {
+            name,
+            mesh,
+            views,
+            lights,
+        };
+        Ok(Self {
+            scene,
+            report,
+            chosen,
+            clips,
+        })
+    }
+
+    /// Returns the views of the scene that `name` selects: the first one without a name, `all` for
+    /// every view. `camera` and `sun`, the direction in which a sun shines, take the place of
+    /// theirs; the views are then named `own`, or `VIEW-own` if there are several, except for a
+    /// view that was chosen.
+    ///
+    /// # Errors
+    /// The scene has no such view, or `camera` or `sun` does not make a valid view or light.
+    pub fn views(
+        &self,
+        name: Option<&str>,
+        camera: &OwnCamera,
+        sun: Option<DVec3>,
+    ) -> Result<Vec<View>, CompareError> {
+        let views = self.named_views(name)?;
+        let sun = sun.filter(|_| !self.chosen.light);
+        if camera.is_empty() && sun.is_none() && !self.chosen.view {
+            return Ok(views);
+        }
+        let several = views.len() > 1;
+        let own = |view: View| {
+            let fits = camera.eye.is_some() || self.chosen.view;
+            let mut own = camera.of_view(&view, &self.scene.mesh, fits);
+            own.name = match (self.chosen.view, several) {
+                (true, _) => view.name,
+                (_, true) => format!("{}-own", view.name),
+                (_, false) => "own".into(),
+            };
+            if let Some(direction) = sun {
+                own.light = Some(Light {
+                    name: "own".into(),
+                    kind: DirectionalLight::new(direction).into(),
+                });
+            }
+            let light = own.light.as_ref().map_or(Ok(()), Light::check);
+            own.check().and(light).map_err(CompareError::Request)?;
+            Ok(own)
+        };
+        views.into_iter().map(own).collect()
+    }
+
+    fn named_views(&self, name: Option<&str>) -> Result<Vec<View>, CompareError> {
+        let Scene {
+            name: scene, views, ..
+        } = &self.scene;
+        match name {
+            Some("all") => Ok(views.clone()),
+            None => Ok(views.iter().take(1).cloned().collect()),
+            Some(name) => match self.scene.view(name) {
+                Some(view) => Ok(vec![view.clone()]),
+                None => {
+                    let names: Vec<&str> = views.iter().map(|view| view.name.as_str()).collect();
+                    let what = format!("the scene `{scene}` has no view `{name}`");
+                    let text = unknown(&what, name, "views", &names) + ", or all of them: all";
+                    Err(CompareError::Input(text))
+                }
+            },
+        }
+    }
+
+    /// Returns the camera paths of the scene's animations, and the reasons why others are left out.
+    /// A path without a moving camera is seen from `standing`.
+    pub fn paths(&self, standing: &View) -> (Vec<CameraPath>, Vec<String>) {
+        let Scene { views, lights, .. } = &self.scene;
+        let clips = self.clips.iter();
+        let paths = clips.flat_map(|clip| clip.paths(views, lights, standing));
+        paths.partition_result()
+    }
+
+    /// Returns the scene file of a scene that was loaded with `options` from the mesh file `mesh`,
+    /// with `paths` as its camera paths.
+    pub fn file(
+        &self,
+        mesh: &str,
+        options: &MeshSceneOptions,
+        paths: Vec<CameraPath>,
+    ) -> SceneFile {
+        SceneFile {
+            format: 1,
+            name: self.scene.name.clone(),
+            description: String::new(),
+            mesh: options.file.source(mesh),
+            ground: self.chosen.ground.map(|_| options.up()),
+            lights: self.scene.lights.clone(),
+            views: self.scene.views.clone(),
+            paths,
+        }
+    }
+}
+
+/// Chooses a view of a mesh: the view, whether it is from inside, and the place of a lamp if no
+/// light comes in there. An eye of the options looks at the middle of the mesh.
+fn choose_view(
+    mesh: &Mesh,
+    light: Option<&Light>,
+    options: &MeshSceneOptions,
+) -> (View, bool, Option<DVec3>) {
+    let camera = &options.camera;
+    let fov = camera.fov_y_degrees.unwrap_or(DEFAULT_FOV);
+    let found = match (camera.eye, light) {
+        (None, Some(light)) => default_view(mesh, &light.kind, options.up(), fov),
+        _ => None,
+    };
+    match found {
+        Some(found) => {
+            let lamp = found.is_dark.then_some(found.lamp);
+            (found.view, found.is_inside, lamp)
+        }
+        None => (towards(mesh, camera.eye.unwrap_or_default()), false, None),
+    }
+}
+
+/// A view from an eye to the middle of a mesh. Its clip planes are not fitted.
+fn towards(mesh: &Mesh, eye: DVec3) -> View {
+    let bounds = mesh.bounds();
+    let middle = bounds.map(|(min, max)| (min.as_dvec3() + max.as_dvec3()) * 0.5);
+    let direction = middle.unwrap_or_default() - eye;
+    View {
+        name: "main".into(),
+        eye,
+        direction: if direction == DVec3::ZERO {
+            DVec3::NEG_Z
+        } else {
+            direction
+        },
+        up: DVec3::Y,
+        fov_y_degrees: DEFAULT_FOV,
+        near: 1.0,
+        far: 2.0,
+        light: None,
+    }
+}

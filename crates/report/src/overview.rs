@@ -1,0 +1,295 @@
+//! The overview of several scenes: a table of methods and scenes, the verdict on each scene, and
+//! what holds of all of them. Nothing is averaged over scenes or lights.
+
+use crate::matrices::by_summary;
+use crate::summary::{Row, by_wall};
+use crate::summary_table::Summary;
+use crate::table::{or_dash, terminal};
+use crate::verdict::{Verdict, is_conditioned};
+use itertools::Itertools;
+use skiagraph_compare::lists::unique;
+use skiagraph_compare::records::results::Results;
+use skiagraph_compare::records::table::Table;
+use skiagraph_compare::wording::{ms, percent, size};
+use std::path::Path;
+
+/// Summaries of several scenes beside each other.
+pub struct Overview<'a> {
+    columns: Vec<Column<'a>>,
+    /// Number of scenes.
+    scenes: usize,
+}
+
+/// A column of the table.
+struct Column<'a> {
+    /// Name of the scene, with the light if it has several.
+    head: String,
+    summary: &'a Summary<'a>,
+    verdict: Verdict,
+}
+
+/// The table of one viewport.
+pub struct Matrix {
+    /// Width and height of the viewport in pixels.
+    pub viewport: [u32; 2],
+    /// A row for each method and a column for each scene and light. Cells show the percentage of
+    /// wrong pixels outside the band with a star for none, or under a light with an extent the
+    /// root mean square error, and in a second line the milliseconds of a frame.
+    pub table: Table,
+    /// For each column behind the methods, the index of its summary in the list that the overview
+    /// was created from.
+    pub summaries: Vec<usize>,
+}
+
+/// Returns a name for each scene, given with the folder of its results: the scene's own, or where
+/// several have that, the folder's.
+pub fn scene_names<'a>(scenes: &[(&'a Path, &'a Results)]) -> Vec<String> {
+    let scene = |results: &'a Results| results.scene.name.as_str();
+    let last = |folder: &'a Path| folder.file_name().map(|name| name.to_string_lossy());
+    let name = |(folder, results): &(&'a Path, &'a Results)| {
+        let alike = scenes
+            .iter()
+            .filter(|(_, other)| scene(other) == scene(results));
+        let folders: Vec<&Path> = alike.map(|(folder, _)| *folder).collect();
+        match last(folder) {
+            _ if folders.len() == 1 => scene(results).to_owned(),
+            Some(name) if folders.iter().map(|other| last(other)).all_unique() => name.into(),
+            _ => folder.display().to_string(),
+        }
+    };
+    scenes.iter().map(name).collect()
+}
+
+impl<'a> Overview<'a> {
+    /// Creates the overview of summaries, each with the name of its scene; `None` if all are of one
+    /// scene.
+    pub fn new(summaries: &[(&str, &'a Summary<'a>)]) -> Option<Self> {
+        let scenes = summaries.iter().map(|(scene, _)| *scene).unique().count();
+        let column = |(scene, summary): &(&str, &'a Summary<'a>)| Column {
+            head: match summary.light {
+                Some(light) => format!("{scene} under {light}"),
+                None => (*scene).to_owned(),
+            },
+            verdict: summary.verdict(),
+            summary,
+        };
+        (scenes > 1).then(|| Self {
+            columns: summaries.iter().map(column).collect(),
+            scenes,
+        })
+    }
+
+    /// Returns the table of each viewport.
+    pub fn matrices(&self) -> Vec<Matrix> {
+        let matrix = |viewport: [u32; 2]| {
+            let columns = self.columns.iter().enumerate();
+            let columns = columns.filter(|(_, column)| column.summary.viewport == viewport);
+            let (summaries, columns): (Vec<usize>, Vec<_>) = columns
+                .map(|(index, column)| (index, (column.head.as_str(), column.summary)))
+                .unzip();
+            Matrix {
+                viewport,
+                table: by_summary(&columns, cell),
+                summaries,
+            }
+        };
+        self.viewports().into_iter().map(matrix).collect()
+    }
+
+    /// Returns the verdict on each scene, then which methods are exact on all scenes, and which
+    /// method the verdict takes on each.
+    pub fn sentences(&self) -> Vec<String> {
+        let verdict = |column: &Column| {
+            let name = self.name(column);
+            let sentences = column.verdict.sentences.iter();
+            let said = sentences.map(|sentence| format!("{name}: {sentence}"));
+            said.collect::<Vec<_>>()
+        };
+        let mut said: Vec<String> = self.columns.iter().flat_map(verdict).collect();
+        said.push(self.exact_on_all());
+        said.extend(self.taken());
+        said
+    }
+
+    /// Returns the overview as text for a terminal: tables and sentences.
+    pub fn text(&self) -> String {
+        let matrices = self.matrices().into_iter();
+        let tables = matrices.map(|of| {
+            let viewport = size(of.viewport);
+            format!("Overview, {viewport}: {LEGEND}\n{}\n", terminal(&of.table))
+        });
+        tables.collect::<String>() + &self.sentences().join("\n") + "\n"
+    }
+
+    /// Returns the overview as a section in Markdown.
+    pub fn markdown(&self) -> String {
+        let matrices = self.matrices().into_iter();
+        let tables = matrices.map(|of| {
+            let (viewport, table) = (size(of.viewport), of.table.markdown());
+            format!("\n## Overview, {viewport}\n\n{LEGEND}\n\n{table}")
+        });
+        let sentences = self.sentences().into_iter();
+        let sentences = sentences.map(|sentence| format!("- {sentence}\n"));
+        tables.collect::<String>() + "\n" + &sentences.collect::<String>()
+    }
+
+    fn viewports(&self) -> Vec<[u32; 2]> {
+        unique(self.columns.iter().map(|column| column.summary.viewport))
+    }
+
+    /// A column in words, with its viewport where there are several.
+    fn name(&self, column: &Column) -> String {
+        match self.viewports().len() {
+            1 => column.head.clone(),
+            _ => format!("{} at {}", column.head, size(column.summary.viewport)),
+        }
+    }
+
+    /// Which methods have no wrong pixel on any scene.
+    fn exact_on_all(&self) -> String {
+        let rows = self.columns.iter().flat_map(|of| &of.summary.rows);
+        let labels = unique(rows.map(|row| row.label.as_str()));
+        let is_exact = |label: &&str| {
+            self.columns.iter().all(|Column { summary, .. }| {
+                let mut rows = summary.rows.iter();
+                rows.any(|row| row.label == *label && is_exact(summary, row))
+            })
+        };
+        let exact = labels.into_iter().filter(is_exact);
+        let exact = exact.map(|label| format!("`{label}`")).join(", ");
+        let mut rows = self.columns.iter().flat_map(|of| &of.summary.rows);
+        let right = if rows.any(|row| is_conditioned(row.wrong())) {
+            "right wherever that can be judged"
+        } else {
+            "exact"
+        };
+        match (self.scenes, exact.as_str()) {
+            (2, "") => format!("No method is {right} on both scenes."),
+            (count, "") => format!("No method is {right} on all {count} scenes."),
+            (2, exact) => format!("On both scenes {right}: {exact}."),
+            (count, exact) => format!("On all {count} scenes {right}: {exact}."),
+        }
+    }
+
+    /// Which methods the verdicts name first; `None` if none names any.
+    fn taken(&self) -> Option<String> {
+        let named = |is_taken: bool| {
+            let columns = self.columns.iter();
+            let columns = columns.filter(move |of| of.verdict.is_taken == is_taken);
+            let first = columns.filter(|of| !of.verdict.first.is_empty());
+            let named = first.map(|column| {
+                let rows = column.verdict.first.iter();
+                let rows = rows.map(|row| format!("`{}`", column.summary.rows[*row].label));
+                let names = rows.collect::<Vec<_>>().join(" or ");
+                format!("{names} on {}", self.name(column))
+            });
+            named.collect::<Vec<_>>().join(", ")
+        };
+        let parts = [(true, "taken"), (false, "the least wrong")];
+        let parts = parts.map(|(is_taken, what)| (what, named(is_taken)));
+        let said = parts.iter().filter(|(_, named)| !named.is_empty());
+        let said: Vec<String> = said
+            .map(|(what, named)| format!("{what}: {named}"))
+            .collect();
+        let mut text = said.join("; ");
+        let first = text.get_mut(..1)?;
+        first.make_ascii_uppercase();
+        Some(text + ".")
+    }
+}
+
+/// Says what the cells of an overview show.
+pub const LEGEND: &str = "wrong pixels outside the band (* none) or RMSE, and a frame";
+
+fn cell(summary: &Summary, row: &Row) -> String {
+    let wrong = row.wrong();
+    let error = if summary.is_soft() {
+        or_dash(row.rmse(), |rmse| format!("RMSE {rmse:.4}"))
+    } else {
+        percent(wrong.outside_band, wrong.facing_light)
+    };
+    let star = if is_exact(summary, row) { " *" } else { "" };
+    let time = or_dash(row.frame_ms(by_wall(&summary.rows)), ms);
+    format!("{error}{star}\n{time} ms")
+}
+
+/// True if a method was measured on all views and is wrong on none.
+fn is_exact(summary: &Summary, row: &Row) -> bool {
+    row.views() == summary.views().len() && row.is_exact()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::samples::results as sample;
+    use crate::summary_table::summaries;
+
+    /// `rt` is right on the first two of three scenes, `nsm` on the second.
+    fn three() -> [Results; 3] {
+        let mut all = ["park", "sponza", "room"].map(|scene| {
+            let mut results = sample();
+            results.scene.name = scene.into();
+            results
+        });
+        for (scene, run) in [(0, 1), (1, 0), (1, 1)] {
+            let measured = all[scene].runs[run].measured.as_mut().unwrap();
+            (measured.wrong.total, measured.wrong.in_band) = (6, 6);
+        }
+        all[2].runs.truncate(1);
+        all
+    }
+
+    /// Calls `check` with the overview of results, or none.
+    fn with_overview(results: &[Results], check: impl FnOnce(Option<Overview>)) {
+        let all: Vec<Vec<Summary>> = results.iter().map(summaries).collect();
+        let names = results.iter().map(|results| results.scene.name.as_str());
+        let columns = names.zip(&all);
+        let columns = columns.flat_map(|(name, of)| of.iter().map(move |it| (name, it)));
+        check(Overview::new(&columns.collect::<Vec<_>>()));
+    }
+
+    #[test]
+    fn methods_and_scenes_stand_in_one_table_and_each_scene_has_its_verdict() {
+        with_overview(&three(), |overview| {
+            let overview = overview.unwrap();
+            let text = overview.text();
+            let lines = text.lines().filter(|line| line.starts_with('│'));
+            let width = lines.map(|line| line.chars().count()).max();
+            assert!(width <= Some(80), "{text}");
+            insta::assert_snapshot!(text);
+            insta::assert_snapshot!("in_a_document", overview.markdown());
+            assert_eq!(overview.matrices()[0].summaries, [0, 1, 2]);
+        });
+        with_overview(&three()[..1], |overview| assert!(overview.is_none()));
+    }
+
+    #[test]
+    fn what_is_exact_on_all_is_named_unless_pixels_cannot_be_judged() {
+        let said = |results: &[Results]| {
+            let mut said = Vec::new();
+            with_overview(results, |overview| said = overview.unwrap().sentences());
+            said.into_iter().find(|line| line.contains("both scenes"))
+        };
+        let [park, mut sponza, _] = three();
+        let exact = said(&[park.clone(), sponza.clone()]);
+        assert_eq!(exact.as_deref(), Some("On both scenes exact: `rt`."));
+        sponza.runs[0].band = 50_000;
+        let right = "On both scenes right wherever that can be judged: `rt`.";
+        assert_eq!(said(&[park, sponza]).as_deref(), Some(right));
+    }
+
+    #[test]
+    fn scenes_of_one_name_are_told_apart_by_their_folders() {
+        let [park, sponza, _] = three();
+        let names = |folders: [&str; 3]| {
+            let [a, b, c] = folders.map(Path::new);
+            scene_names(&[(a, &park), (b, &sponza), (c, &park)])
+        };
+        assert_eq!(
+            names(["o/park", "o/s", "o/park-2"]),
+            ["park", "sponza", "park-2"]
+        );
+        let machines = names(["desk/park", "desk/s", "laptop/park"]);
+        assert_eq!(machines, ["desk/park", "sponza", "laptop/park"]);
+    }
+}

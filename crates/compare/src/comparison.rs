@@ -88,7 +88,9 @@ pub struct Comparison {
     pub protocol: Protocol,
     /// Graph that finds the visible triangle of each pixel for the reference.
     pub primary: PrimaryVisibility,
-    /// Limits on frame time, wrong pixels and memory that an acceptable method keeps.
+    /// Limits on frame time, wrong pixels and memory. All methods are measured whether they keep
+    /// to them or not; the results record the limits, and a report's verdict takes no method that
+    /// exceeds one.
     pub budgets: Budgets,
     /// Published figures. Those that apply to a run are shown beside the run's own figures.
     pub published: Vec<Row>,

@@ -28,7 +28,7 @@ pub enum Figure {
     /// FLIP error (perceptual difference) of the shaded pictures, 0 to 1, as the mean of the views.
     Flip,
     /// Milliseconds of a frame in which every pass runs, as the mean of the views' medians: GPU
-    /// time, or wall time if any row has no GPU time.
+    /// time, or wall time if any method has no GPU time in the same viewport under the same light.
     Frame,
     /// Bytes of the textures and buffers of the method and of the scene buffers that it reads; the
     /// largest value of all views.

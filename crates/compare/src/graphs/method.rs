@@ -51,13 +51,15 @@ pub struct Method {
 
 impl Method {
     /// Creates a method of a preset with `params`, in 1024×1024 pixels on an adapter with all
-    /// features.
+    /// features. The method is named like the preset ([`on`](Self::on)).
     pub fn new(preset: Arc<Preset>, params: ParamValues) -> Self {
         Self::on(preset, params, [1024, 1024], wgpu::Features::all())
     }
 
     /// Creates a method of a preset with `params`, for a viewport in pixels on an adapter with
-    /// `features`. Params are checked when the method is planned.
+    /// `features`. Params are checked when the method is planned. The method is named like the
+    /// preset, without `params`: results are kept by name, so give each of several settings of a
+    /// preset its own with [`named`](Self::named).
     pub fn on(
         preset: Arc<Preset>,
         params: ParamValues,

@@ -93,6 +93,9 @@ pub struct Comparison {
     /// Command line that the results record, so that they can be measured again; `None` to record
     /// none.
     pub command: Option<String>,
+    /// Commit that the measuring program was built from, for the results to record; `None` to
+    /// record none.
+    pub commit: Option<String>,
 }
 
 impl Comparison {
@@ -112,6 +115,7 @@ impl Comparison {
             budgets: Budgets::default(),
             published: Vec::new(),
             command: None,
+            commit: None,
             scene,
         })
     }

@@ -92,6 +92,10 @@ pub struct CompareArgs {
     /// `flip > 0.02`, `frame > 3ms`, `memory > 64MiB`. May be repeated.
     #[arg(long, value_name = "METHOD: FIGURE > VALUE", value_parser = gate)]
     pub fail_if: Vec<Gate>,
+    /// Compare with older results, cell by cell: a results.json or its folder. End with exit code 5
+    /// if a method has become more wrong or slower.
+    #[arg(long, value_name = "RESULTS.json|DIR")]
+    pub baseline: Option<PathBuf>,
     /// Folder for results.json, results.csv and the pictures.
     #[arg(long, default_value = "compare", value_name = "DIR")]
     pub out: PathBuf,
@@ -196,6 +200,24 @@ pub struct ReportArgs {
     /// The page. Without it: report.html in the first folder.
     #[arg(long, value_name = "FILE.html")]
     pub out: Option<PathBuf>,
+}
+
+/// `skiagraph merge`.
+#[derive(Args, Debug)]
+pub struct MergeArgs {
+    /// Folders that `compare --out` or `merge --out` wrote, or their results.json.
+    #[arg(value_name = "DIR|FILE.json", required = true)]
+    pub places: Vec<PathBuf>,
+    /// Folder for results.json, results.csv and report.html.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+/// `skiagraph completions`.
+#[derive(Args, Debug)]
+pub struct CompletionsArgs {
+    /// The shell.
+    pub shell: clap_complete::Shell,
 }
 
 /// `skiagraph new`.

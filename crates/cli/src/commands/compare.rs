@@ -26,13 +26,16 @@ use skiagraph_compare::measuring::{
     view_or_path::{ViewOrPath, under_lights},
 };
 use skiagraph_compare::pictures::run_pictures::graph_name;
-use skiagraph_compare::records::{budgets::Budgets, published, results::Results};
+use skiagraph_compare::records::{
+    budgets::Budgets, published, results::Results, results_baseline::Baseline,
+};
 use skiagraph_compare::sink::Session;
 use skiagraph_compare::size::Size;
 use skiagraph_compare::wording::{command_line, size, unknown};
 use skiagraph_draw::{from_plan, to_svg};
 use skiagraph_passes::SceneProvider;
 use skiagraph_report::{
+    baseline_text,
     gate::Gate,
     markdown, page, results_table,
     summary_table::{self, Summary},
@@ -45,10 +48,11 @@ use std::sync::Arc;
 ///
 /// # Errors
 /// If a graph has errors, a scene cannot be loaded, no GPU can be opened, earlier results cannot be
-/// continued, Ctrl-C stops the command, no method runs on this adapter, or a limit of `--fail-if`
-/// is exceeded.
+/// continued, Ctrl-C stops the command, no method runs on this adapter, a limit of `--fail-if` is
+/// exceeded, or a method is worse than in `--baseline`.
 pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let published = published::read(&args.published)?;
+    let baseline = args.baseline.as_deref().map(Baseline::read).transpose()?;
     let sources = preset::sources(&Terminal);
     let names = if args.presets.is_empty() && !args.all {
         preset::shipped_and_own(&sources)
@@ -98,6 +102,7 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         },
         published,
         command: Some(command_line(std::env::args_os())),
+        commit: option_env!("SKIAGRAPH_COMMIT").map(str::to_owned),
         scene,
     };
     comparison.check(session)?;
@@ -113,12 +118,16 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     };
     // Earlier results may be refused: nothing of theirs is overwritten then.
     let mut series = Series::new(&comparison, session, Some((&args.out, kept)))?;
+    if let Some(baseline) = &baseline {
+        baseline.check(&series.results, series.planned_runs())?;
+    }
     for (name, svg) in &graphs {
         write_whole(&args.out.join(name), svg.as_bytes())?;
     }
     interrupt::install()?;
     let outcome = run(args, &comparison, &mut series);
-    finish(args, series, outcome)
+    let results = finish(args, series, outcome)?;
+    judge(args, baseline.as_ref(), &results)
 }
 
 /// Refuses conditions on methods that are not compared.
@@ -251,12 +260,12 @@ fn print_summary(args: &CompareArgs, results: &Results) -> Result<(), CliError> 
     }
 }
 
-/// Says what came of it.
+/// Says what came of it, and returns the results.
 fn finish(
     args: &CompareArgs,
     mut series: Series,
     outcome: Result<(), CliError>,
-) -> Result<(), CliError> {
+) -> Result<Results, CliError> {
     let planned = series.planned();
     if !series.results.runs.is_empty() {
         print_summary(args, &series.whole())?;
@@ -302,8 +311,6 @@ fn finish(
         );
     }
     note(&format!("{files} are in {}", args.out.display()));
-    let failures = args.fail_if.iter().flat_map(|gate| gate.failures(&results));
-    let failures: Vec<String> = failures.collect();
     let runs = results.runs.iter().filter_map(|run| run.measured.as_ref());
     let bare = runs.filter(|run| run.images.is_none()).count();
     if args.images == Images::All && bare > 0 {
@@ -312,8 +319,29 @@ fn finish(
              none"
         ));
     }
-    if !failures.is_empty() {
-        return Err(CliError::Gate(failures.join("\n")));
+    Ok(results)
+}
+
+/// Shows what has changed since the baseline, and holds the results against it and the gates.
+fn judge(
+    args: &CompareArgs,
+    baseline: Option<&Baseline>,
+    results: &Results,
+) -> Result<(), CliError> {
+    let failures = args.fail_if.iter().flat_map(|gate| gate.failures(results));
+    let failures: Vec<String> = failures.collect();
+    let mut worse = Vec::new();
+    if let Some(baseline) = baseline {
+        let changes = baseline.against(results)?;
+        worse = baseline_text::failures(&changes);
+        match args.format {
+            Format::Json => note(&baseline_text::text(&changes)),
+            _ => print(&format!("\n{}", baseline_text::text(&changes)))?,
+        }
     }
-    Ok(())
+    match (&failures[..], &worse[..]) {
+        ([], []) => Ok(()),
+        ([], worse) => Err(CliError::Baseline(worse.join("\n"))),
+        (failures, worse) => Err(CliError::Gate([failures, worse].concat().join("\n"))),
+    }
 }

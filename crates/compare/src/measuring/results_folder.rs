@@ -128,6 +128,7 @@ fn differences(earlier: &Results, now: &Results) -> Vec<String> {
             ("frames", results.frames.to_string()),
             ("warmup", results.warmup.to_string()),
             ("cached frames", results.cached_frames.to_string()),
+            ("joined results", results.others.len().to_string()),
         ]
     };
     let pairs = facts(earlier).into_iter().zip(facts(now));

@@ -3,6 +3,7 @@
 mod support;
 
 mod checking;
+mod columns;
 mod diagnostics;
 mod dissertation;
 mod engine;

@@ -1,11 +1,11 @@
 //! All rows: the tables of the terminal, joined.
 
 use crate::html::shown::{Shown, part};
-use crate::html::sources::Source;
 use crate::summary::Row;
 use crate::summary_table::{NOT_THERE, WRONG, by_light};
 use crate::table::html;
 use skiagraph_chart::xml;
+use skiagraph_compare::records::sources::Source;
 use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::size;
 

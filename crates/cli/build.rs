@@ -1,10 +1,10 @@
 //! Tells the program the commit that it is built from, as `SKIAGRAPH_COMMIT`: of a package the one
-//! that cargo has noted in it, else the one that is checked out. Without both there is none. Changes
-//! that are not committed do not show.
+//! that cargo has noted in it, else the one that is checked out. Without both there is none.
+//! Changes that are not committed do not show.
 
 use std::{fs, path::Path, process::Command};
 
-/// What `cargo package` notes of a repository.
+/// Name of the file in which `cargo package` notes the repository's commit.
 const NOTE: &str = ".cargo_vcs_info.json";
 
 /// The folder of this crate in its repository.

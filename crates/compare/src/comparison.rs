@@ -25,6 +25,7 @@ use crate::graphs::planning::Capabilities;
 use crate::graphs::shadow_method;
 use crate::measuring::ground_truth::{PrimaryVisibility, REFERENCE_SAMPLES};
 use crate::measuring::view_or_path::ViewOrPath;
+use crate::pictures::data::DataFormat;
 use crate::pictures::run_pictures::{check_stems, reference_stem, stem};
 use crate::records::budgets::Budgets;
 use crate::records::published_row::Row;
@@ -55,6 +56,9 @@ pub struct Protocol {
     pub reference_samples: u32,
     /// True if pictures of every run are drawn into the folder of the results.
     pub pictures: bool,
+    /// Format in which the answers of every run and of the reference are written into that folder;
+    /// `None` to write none.
+    pub data: Option<DataFormat>,
 }
 
 impl Default for Protocol {
@@ -67,7 +71,15 @@ impl Default for Protocol {
             oracle: OracleMode::Exact,
             reference_samples: REFERENCE_SAMPLES,
             pictures: false,
+            data: None,
         }
+    }
+}
+
+impl Protocol {
+    /// True if runs have files of their own, pictures or data.
+    pub fn has_files(&self) -> bool {
+        self.pictures || self.data.is_some()
     }
 }
 
@@ -129,7 +141,7 @@ impl Comparison {
     pub fn check(&self, session: Session) -> Result<(), CompareError> {
         let device = Capabilities::new(session.gpu);
         let mut provider = SceneProvider::new(self.scene.clone());
-        if self.protocol.pictures {
+        if self.protocol.has_files() {
             self.check_pictures(session)?;
         }
         for &viewport in &self.viewports {

@@ -37,11 +37,12 @@ pub fn text(changes: &Changes) -> String {
         lines.push(format!("{cells} of the baseline not in this comparison"));
     }
     lines.extend(changes.notes.iter().cloned());
-    lines.push(
-        "Wrong pixels outside the band, RMSE outside the band. Slower or faster: by 3 % and more, \
-         and the interval (99.9 %) of the ratio of new to old frames does not hold 1."
-            .into(),
-    );
+    let has_times = cells.iter().any(|cell| cell.ratio.is_some());
+    if has_times {
+        let text = "Slower or faster: by 3 % and more, and the interval (99.9 %) of the ratio of \
+                    new to old frames does not hold 1.";
+        lines.push(text.into());
+    }
     lines.join("\n") + "\n"
 }
 
@@ -86,7 +87,7 @@ fn place(cell: &CellChange) -> String {
     format!("{} {}", cell.view, size(cell.viewport))
 }
 
-/// What is worse or better, in words.
+/// The change of a cell in words.
 fn words(cell: &CellChange) -> String {
     let errors = match cell.errors {
         _ if cell.now.is_none() => "cannot run any more",

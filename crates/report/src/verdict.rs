@@ -373,7 +373,7 @@ fn by_error(
     Some(text)
 }
 
-/// What can be said of methods whose frames are too few to tell their times apart.
+/// The sentences on methods whose frames are too few to tell their times apart.
 fn without_times(all: &[Contender], frames: usize) -> Vec<String> {
     let is_soft = all.iter().any(|of| of.is_soft);
     let error = |of: &Contender| if is_soft { of.rmse } else { of.wrong.share() };

@@ -1,6 +1,6 @@
 //! The program, its commands and their examples. Exit codes: 0 fine, 1 the input is wrong, 2 usage,
-//! 3 no usable GPU, or it was lost or hangs, 4 a condition of `--fail-if` does not hold, 5 worse than
-//! `--baseline`.
+//! 3 no usable GPU, or it was lost or hangs, 4 a condition of `--fail-if` does not hold, 5 worse
+//! than `--baseline`.
 
 use crate::args::{
     commands::{

@@ -7,7 +7,7 @@ use crate::args::{
 use clap::{Args, ValueEnum};
 use skiagraph_compare::graphs::argument::Assignment;
 use skiagraph_compare::measuring::ground_truth::REFERENCE_SAMPLES;
-use skiagraph_compare::pictures::save::Save;
+use skiagraph_compare::pictures::{data::DataFormat, save::Save};
 use skiagraph_compare::records::published_row::PublishedFile;
 use skiagraph_compare::size::Size;
 use skiagraph_reference::OracleMode;
@@ -115,6 +115,9 @@ pub struct CompareArgs {
     /// Which pictures are written.
     #[arg(long, value_enum, default_value_t = Images::All)]
     pub images: Images,
+    /// Write the answers and the reference as arrays, too: NumPy's or OpenEXR's.
+    #[arg(long, value_name = "npy|exr")]
+    pub data: Option<DataFormat>,
     /// Format of the results on standard output.
     #[arg(long, value_enum, default_value_t = Format::Table)]
     pub format: Format,
@@ -281,8 +284,8 @@ pub struct RunArgs {
     #[command(flatten)]
     pub scene: SceneArgs,
     /// Save an output, a material or a view of one, after a pass or at the end: .png a picture,
-    /// .bin raw bytes, .csv the words of a buffer. After a pass it is as much as has been written
-    /// by then. May be repeated.
+    /// .npy or .exr values, .bin raw bytes, .csv the words of a buffer. After a pass it is as much
+    /// as has been written by then. May be repeated.
     #[arg(long, value_name = "MATERIAL[@PASS]=FILE")]
     pub save: Vec<Save>,
     /// Render so many frames one after the other and save each: `--save visibility=v.png` writes

@@ -93,6 +93,7 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
             oracle: args.oracle,
             reference_samples: args.reference_samples,
             pictures: args.images == Images::All,
+            data: args.data,
         },
         primary,
         budgets: Budgets {

@@ -17,6 +17,7 @@ mod profile;
 mod recording;
 mod report;
 mod stress;
+mod teams;
 mod together;
 mod tutorial;
 mod verdict;

@@ -192,7 +192,7 @@ mod tests {
         again.runs[0].band = 77;
         let picture = PictureFile {
             name: "a.png".into(),
-            png: vec![1],
+            bytes: vec![1],
         };
         one.save(&again, &[picture], &Silent).unwrap();
         assert_eq!(kept(folder), ["nsm"]);

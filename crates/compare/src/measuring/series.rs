@@ -242,7 +242,7 @@ impl<'a> Series<'a> {
             light: self.provider.light_number(),
             own,
             protocol,
-            pictures: protocol.pictures.then(RefCell::default),
+            pictures: protocol.has_files().then(RefCell::default),
         };
         let missing = places.zip(&methods);
         let missing: Vec<(usize, &Method)> =

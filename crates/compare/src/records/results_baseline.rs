@@ -139,7 +139,7 @@ impl Baseline {
         };
         if baseline.runs().all(|(_, run)| run.cell.is_empty()) {
             return Err(CompareError::Input(format!(
-                "{} has no ids of cells: it is empty, or an older version wrote it; measure it anew",
+                "{} has no ids of cells: it is empty, or of an older version; measure it anew",
                 baseline.name
             )));
         }
@@ -417,7 +417,7 @@ fn ratio(then: Measurement, now: Measurement) -> Result<UnpairedRatio, String> {
     })
 }
 
-/// What tells cells apart, with its name.
+/// A fact that tells cells apart, behind its name.
 type Fact = (String, String);
 
 fn facts((results, run): (&Results, &Run)) -> Vec<Fact> {

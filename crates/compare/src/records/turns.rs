@@ -44,8 +44,8 @@ pub struct PairedRatio {
 /// The confidence of an interval.
 const CONFIDENCE: f64 = 0.99;
 
-/// Least number of turns for which there is an interval: of fewer, even if all agree, the confidence
-/// is lower.
+/// Least number of turns for which there is an interval: of fewer, even if all agree, the
+/// confidence is lower.
 pub const LEAST_TURNS: usize = 8;
 
 /// Times that differ by less than this share are level whatever the interval says: it knows nothing

@@ -4,6 +4,7 @@ mod support;
 
 mod checking;
 mod columns;
+mod data;
 mod diagnostics;
 mod dissertation;
 mod engine;

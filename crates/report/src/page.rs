@@ -195,7 +195,7 @@ mod tests {
         let hosts: Vec<_> = hosts.map(|of| of.machine.host.unwrap()).collect();
         assert_eq!(hosts, ["bench", "far", "third"]);
         // What `report` makes of it has the same rows.
-        write(&[out.clone()], &out.join(FILE), &Silent).unwrap();
+        write(std::slice::from_ref(&out), &out.join(FILE), &Silent).unwrap();
         assert!(read(FILE).contains(" · third, Some CPU"));
     }
 

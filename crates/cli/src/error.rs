@@ -27,6 +27,9 @@ pub enum CliError {
     /// A figure beyond a limit of `--fail-if`.
     #[error("{0}")]
     Gate(String),
+    /// A method that has become more wrong or slower than in `--baseline`.
+    #[error("{0}")]
+    Baseline(String),
     /// A write to standard output failed.
     #[error("cannot write to standard output")]
     Stdout(#[source] io::Error),
@@ -60,6 +63,7 @@ impl CliError {
             Self::Compare(CompareError::NoGpu(_)) => 3,
             Self::Compare(CompareError::Gpu { source, .. }) if is_fatal(source) => 3,
             Self::Gate(_) => 4,
+            Self::Baseline(_) => 5,
             Self::Interrupted { .. } => 130,
             // The reader had enough, for example `skiagraph presets | head -1`.
             Self::Stdout(cause) if cause.kind() == io::ErrorKind::BrokenPipe => 0,
@@ -88,6 +92,7 @@ mod tests {
             (CompareError::NoGpu("x".into()).into(), 3),
             (lost.into(), 3),
             (CliError::Gate("x".into()), 4),
+            (CliError::Baseline("x".into()), 5),
             (CompareError::interrupted().into(), 130),
         ];
         for (error, code) in codes {

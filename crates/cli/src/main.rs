@@ -43,6 +43,8 @@ fn main() -> ExitCode {
         Command::Run(args) => commands::run::run(args, gpu),
         Command::Chart(args) => commands::chart::chart(args),
         Command::Report(args) => commands::report::report(args),
+        Command::Merge(args) => commands::merge::merge(args),
+        Command::Completions(args) => commands::completions::completions(args),
         Command::Profile(args) => commands::profile::profile(args, gpu),
         Command::Stress(args) => commands::stress::stress(args, gpu),
         Command::Check(args) => commands::check::check(args, gpu),

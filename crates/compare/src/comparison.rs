@@ -25,6 +25,7 @@ use crate::graphs::planning::Capabilities;
 use crate::graphs::shadow_method;
 use crate::measuring::ground_truth::{PrimaryVisibility, REFERENCE_SAMPLES};
 use crate::measuring::view_or_path::ViewOrPath;
+use crate::pictures::data::DataFormat;
 use crate::pictures::run_pictures::{check_stems, reference_stem, stem};
 use crate::records::budgets::Budgets;
 use crate::records::published_row::Row;
@@ -57,6 +58,9 @@ pub struct Protocol {
     pub reference_samples: u32,
     /// True if pictures of every run are drawn into the folder of the results.
     pub pictures: bool,
+    /// Format in which the answers of every run and of the reference are written into that folder;
+    /// `None` to write none.
+    pub data: Option<DataFormat>,
 }
 
 impl Default for Protocol {
@@ -69,7 +73,15 @@ impl Default for Protocol {
             oracle: OracleMode::Exact,
             reference_samples: REFERENCE_SAMPLES,
             pictures: false,
+            data: None,
         }
+    }
+}
+
+impl Protocol {
+    /// True if runs have files of their own, pictures or data.
+    pub fn has_files(&self) -> bool {
+        self.pictures || self.data.is_some()
     }
 }
 
@@ -97,6 +109,9 @@ pub struct Comparison {
     /// Command line that the results record, so that they can be measured again; `None` to record
     /// none.
     pub command: Option<String>,
+    /// Commit that the measuring program was built from, for the results to record; `None` to
+    /// record none.
+    pub commit: Option<String>,
 }
 
 impl Comparison {
@@ -116,6 +131,7 @@ impl Comparison {
             budgets: Budgets::default(),
             published: Vec::new(),
             command: None,
+            commit: None,
             scene,
         })
     }
@@ -129,7 +145,7 @@ impl Comparison {
     pub fn check(&self, session: Session) -> Result<(), CompareError> {
         let device = Capabilities::new(session.gpu);
         let mut provider = SceneProvider::new(self.scene.clone());
-        if self.protocol.pictures {
+        if self.protocol.has_files() {
             self.check_pictures(session)?;
         }
         for &viewport in &self.viewports {

@@ -5,36 +5,11 @@ use itertools::Itertools;
 use skiagraph_chart::{Figure, Kind, Mark, Panel, Series};
 use skiagraph_compare::error::CompareError;
 use skiagraph_compare::lists::{entry, place, unique};
-use skiagraph_compare::records::read_back;
 use skiagraph_compare::records::results::{Measured, Results, Run};
 use skiagraph_compare::records::sequence::SequenceFrame;
+use skiagraph_compare::records::sources::Kept;
 use skiagraph_compare::wording::{frames, size};
-use std::{
-    collections::BTreeSet,
-    path::{Path, PathBuf},
-};
-
-/// Results of `compare`, read back from the folder that it wrote.
-#[derive(Debug)]
-pub struct Kept {
-    /// The folder that the results were read from.
-    pub folder: PathBuf,
-    /// Content of the folder's `results.json`.
-    pub results: Results,
-}
-
-impl Kept {
-    /// Reads the results of a folder.
-    ///
-    /// # Errors
-    /// If the folder or its `results.json` is missing or cannot be read; the error names the file.
-    pub fn read(folder: &Path) -> Result<Self, CompareError> {
-        Ok(Self {
-            results: read_back::kept(folder)?,
-            folder: folder.to_path_buf(),
-        })
-    }
-}
+use std::collections::BTreeSet;
 
 const TIME: &str = "GPU ms of a frame less its G-buffer";
 

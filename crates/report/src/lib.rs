@@ -1,6 +1,7 @@
 //! Presents measurements as tables, documents, charts, CSV and traces. It reads the records of
 //! `skiagraph-compare`, and measures nothing itself.
 
+pub mod baseline_text;
 pub mod charts;
 pub mod gate;
 pub mod graded;

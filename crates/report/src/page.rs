@@ -1,13 +1,20 @@
-//! Writes `report.html`, the page of results, to a file.
+//! Writes `report.html`, the page of results, to a file, and joins results of several folders.
 
-use crate::charts::Kept;
-use crate::html::{page, sources};
+use crate::html::page;
+use itertools::Itertools;
 use skiagraph_compare::error::CompareError;
 use skiagraph_compare::files::lock;
-use skiagraph_compare::files::write::write_whole;
+use skiagraph_compare::files::write::{check_folder, write_whole};
 use skiagraph_compare::records::read_back;
+use skiagraph_compare::records::results_csv;
+use skiagraph_compare::records::sources::{Kept, Source, merged, sources};
+use skiagraph_compare::records::stress::Report;
 use skiagraph_compare::sink::Sink;
-use std::path::{Path, PathBuf};
+use skiagraph_compare::wording::plural;
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
 
 /// Name of the page's file in a folder of results.
 pub const FILE: &str = "report.html";
@@ -21,34 +28,191 @@ pub fn write_beside(folder: &Path, sink: &dyn Sink) -> Result<(), CompareError> 
     write(&[folder.to_path_buf()], &folder.join(FILE), sink)
 }
 
-/// Writes the page of several folders of results to `file`; a folder without results stands for the
-/// folders of results in it. The sink gets a note about pictures
-/// that did not fit into the page. If `file` lies in one of the folders, that folder's lock is
-/// held, so the page is never older than the results beside it.
+/// Writes the page of several folders or files of results to `file`. A folder without results stands
+/// for the folders of results in it. The sink gets a note about pictures that did not fit into the
+/// page. If `file` lies in one of the folders, that folder's lock is held, so the page is never
+/// older than the results beside it.
 ///
 /// # Errors
 /// If a folder has no results, results cannot be read, or the file cannot be written.
-pub fn write(folders: &[PathBuf], file: &Path, sink: &dyn Sink) -> Result<(), CompareError> {
+pub fn write(places: &[PathBuf], file: &Path, sink: &dyn Sink) -> Result<(), CompareError> {
     let beside = file.parent();
-    let beside = folders
-        .iter()
-        .find(|folder| beside == Some(folder.as_path()));
+    let beside = places.iter().find(|place| beside == Some(place.as_path()));
     let _locked = match beside.filter(|folder| folder.is_dir()) {
         Some(folder) => Some(lock::wait_for(folder, lock::RESULTS, sink)?),
         None => None,
     };
+    let (sources, matrices) = read(places)?;
+    write_page(&sources, &matrices, file, sink)
+}
+
+/// Joins the results of several folders or files, and writes results.json, results.csv and the page
+/// into the folder `out`, which is made if it is missing. Results that it holds already stay in it.
+/// Pictures stay where they are; the page shows them. The sink is told which results are joined and
+/// which are kept apart.
+///
+/// # Errors
+/// If nothing of a place is results, results cannot be read, or a file cannot be written.
+pub fn merge(places: &[PathBuf], out: &Path, sink: &dyn Sink) -> Result<(), CompareError> {
+    // All is read before anything is written.
+    read(places)?;
+    check_folder(out)?;
+    let _locked = lock::wait_for(out, lock::RESULTS, sink)?;
+    let mut places = places.to_vec();
+    if out.join("results.json").exists() {
+        places.insert(0, out.to_path_buf());
+        let out = out.display();
+        sink.note(&format!("the results that {out} holds already stay in it"));
+    }
+    let (sources, matrices) = read(&places)?;
+    let Some(results) = merged(&sources, out) else {
+        let text =
+            "there is nothing to join: name folders that `skiagraph compare --out DIR` wrote";
+        return Err(CompareError::Input(text.into()));
+    };
+    for source in &sources {
+        sink.note(&told(source));
+    }
+    if sources.len() > 1 {
+        let count = plural(sources.len(), "group");
+        sink.note(&format!(
+            "{count} of results, which differ in scene, adapter, machine, program or protocol, are \
+             kept apart"
+        ));
+    }
+    results_csv::save(&results, out)?;
+    write_page(&sources, &matrices, &out.join(FILE), sink)
+}
+
+/// Describes what was joined.
+fn told(source: &Source) -> String {
+    let results = &source.results;
+    let runs = plural(results.runs.len(), "run");
+    let folders = plural(source.folders.len(), "folder");
+    let mut text = format!("{}: {runs} of {folders}", results.scene.name);
+    text += &format!(" · {} · {}", results.adapter, results.machine);
+    if source.replaced > 0 {
+        text += &format!(
+            "; of {} that were there twice the newer count",
+            source.replaced
+        );
+    }
+    text
+}
+
+/// Reads the results and matrices of folders or files; one that is named twice is read once.
+fn read(places: &[PathBuf]) -> Result<(Vec<Source>, Vec<Report>), CompareError> {
     let (mut kept, mut matrices) = (Vec::new(), Vec::new());
-    for folder in &read_back::with_scenes(folders) {
-        let matrix = read_back::stress(folder)?;
+    let places = read_back::with_scenes(places);
+    for place in places.iter().unique_by(|place| of_place(place)) {
+        let matrix = if place.is_dir() {
+            read_back::stress(place)?
+        } else {
+            None
+        };
         // A folder may be of `stress` alone.
-        if matrix.is_none() || folder.join("results.json").exists() {
-            kept.push(Kept::read(folder)?);
+        if matrix.is_none() || place.join("results.json").exists() {
+            kept.extend(Kept::read(place)?);
         }
         matrices.extend(matrix);
     }
-    let page = page(&sources(kept), &matrices);
+    Ok((sources(kept), matrices))
+}
+
+/// The file of the results of a folder, or the file itself, by the one name that all its names lead
+/// to.
+fn of_place(place: &Path) -> PathBuf {
+    let file = if place.is_dir() {
+        place.join("results.json")
+    } else {
+        place.to_path_buf()
+    };
+    fs::canonicalize(&file).unwrap_or(file)
+}
+
+fn write_page(
+    sources: &[Source],
+    matrices: &[Report],
+    file: &Path,
+    sink: &dyn Sink,
+) -> Result<(), CompareError> {
+    let page = page(sources, matrices);
     for line in &page.left_out {
         sink.note(line);
     }
     write_whole(file, page.html.as_bytes())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::samples::results as sample;
+    use skiagraph_compare::records::results::Results;
+    use skiagraph_compare::sink::Silent;
+
+    /// A folder with these results and a picture of the first run.
+    fn folder(place: &Path, results: &Results) -> PathBuf {
+        fs::create_dir(place).unwrap();
+        results_csv::save(results, place).unwrap();
+        let images = results.runs[0].measured.as_ref().unwrap().images.as_ref();
+        fs::write(place.join(&images.unwrap().shaded), [7; 99]).unwrap();
+        place.to_path_buf()
+    }
+
+    #[test]
+    fn two_machines_are_joined_to_json_csv_and_page_and_again_with_a_third() {
+        let all = tempfile::tempdir().unwrap();
+        let place = |name: &str| all.path().join(name);
+        let here = folder(&place("here"), &sample());
+        let on = |host: &str| {
+            let mut results = sample();
+            results.machine.host = Some(host.into());
+            results
+        };
+        let far = folder(&place("far"), &on("far"));
+        let out = place("out");
+        // A folder, a file, and the folder by another name.
+        let again = all.path().join(".").join("here");
+        let places = [here, far.join("results.json"), again];
+        merge(&places, &out, &Silent).unwrap();
+        let read = |file: &str| fs::read_to_string(out.join(file)).unwrap();
+        assert_eq!(read("results.csv").lines().count(), 1 + 6);
+        let page = read(FILE);
+        for host in ["bench", "far"] {
+            assert!(
+                page.contains(&format!("512x256 · {host}, Some CPU, 8 cores")),
+                "{host}"
+            );
+        }
+        let picture = "BwcHBwcHBwcH";
+        assert!(page.contains(picture), "pictures of both folders are in it");
+        let joined = read_back::kept(&out).unwrap();
+        let images = |of: &Results| of.runs[0].measured.as_ref().unwrap().images.clone();
+        assert!(joined.clone().each().iter().all(|of| images(of).is_none()));
+        assert_eq!(joined.others.len(), 1);
+
+        let third = folder(&place("third"), &on("third"));
+        merge(&[third], &out, &Silent).unwrap();
+        let hosts = read_back::kept(&out).unwrap().each().into_iter();
+        let hosts: Vec<_> = hosts.map(|of| of.machine.host.unwrap()).collect();
+        assert_eq!(hosts, ["bench", "far", "third"]);
+        // What `report` makes of it has the same rows.
+        write(std::slice::from_ref(&out), &out.join(FILE), &Silent).unwrap();
+        assert!(read(FILE).contains(" · third, Some CPU"));
+    }
+
+    #[test]
+    fn nothing_and_foreign_files_are_not_joined() {
+        let all = tempfile::tempdir().unwrap();
+        let out = all.path().join("out");
+        let refused = |places: &[PathBuf]| merge(places, &out, &Silent).unwrap_err().to_string();
+        assert!(refused(&[]).contains("there is nothing to join"));
+        let missing = all.path().join("missing");
+        assert!(refused(&[missing]).contains("there is no folder"));
+        let foreign = all.path().join("foreign.json");
+        fs::write(&foreign, "{\"schema\": 1}").unwrap();
+        let told = refused(&[foreign]);
+        assert!(told.contains("is not a results.json"), "{told}");
+        assert!(!out.join("results.json").exists());
+    }
 }

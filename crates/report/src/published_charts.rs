@@ -1,7 +1,7 @@
 //! Charts published figures beside measured ones: published left, measured right, on the same axes.
 //! There is a chart for each quantity that both sides have, by map size and by viewport.
 
-use crate::charts::{Kept, conditions};
+use crate::charts::conditions;
 use crate::published_left_out::{views_left_out, without_counterpart};
 use crate::published_panels::{Bar, Cell, Groups, PanelRow, cells, published, rows};
 use skiagraph_chart::{Figure, Panel};
@@ -9,6 +9,7 @@ use skiagraph_compare::lists::unique;
 use skiagraph_compare::records::columns::{figure, head_of, quantities};
 use skiagraph_compare::records::published_row::Row;
 use skiagraph_compare::records::results::Run;
+use skiagraph_compare::records::sources::Kept;
 
 /// Charts of published and measured figures, and the list of figures that only one side has.
 pub struct Charts {

@@ -199,6 +199,12 @@ impl<'a> Row<'a> {
         self.mean(|_, of| of.ms_without_gbuffer())
     }
 
+    /// Returns the number of timed frames of the view that has the fewest; 0 without runs.
+    pub fn frames(&self) -> usize {
+        let frames = self.runs.iter().map(|(_, of)| full(of).wall_frames.len());
+        frames.min().unwrap_or_default()
+    }
+
     /// True if the frame times of two rows differ by more than chance. Both rows have the same
     /// views in the same order. `is_kept` compares frames in which only the camera moved (all
     /// frames of a row that keeps nothing), otherwise frames in which every pass ran; `by_wall`

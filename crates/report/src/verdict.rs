@@ -3,6 +3,7 @@
 use crate::summary::{Row, Wrong, by_wall};
 use skiagraph_compare::measuring::date::is_another_hour;
 use skiagraph_compare::records::budgets::Budgets;
+use skiagraph_compare::records::turns::LEAST_TURNS;
 use skiagraph_compare::wording::{bytes, ms, percent, plural};
 
 /// The share of pixels in the band beyond which a verdict holds of the others alone: the right
@@ -56,6 +57,11 @@ pub fn verdict(rows: &[Row], budgets: &Budgets) -> Verdict {
     } else {
         hard(&within)
     };
+    let frames = within.iter().map(|of| of.row.frames()).min();
+    let too_few = frames.filter(|frames| within.len() > 1 && *frames < LEAST_TURNS);
+    if let Some(frames) = too_few {
+        verdict.sentences = without_times(&within, frames);
+    }
     if !budgets.is_empty() && !within.is_empty() {
         let (count, all) = (within.len(), plural(full.len(), "method"));
         verdict
@@ -394,6 +400,42 @@ fn by_error(
     Some((text, first))
 }
 
+/// The sentences on methods whose frames are too few to tell their times apart.
+fn without_times(all: &[Contender], frames: usize) -> Vec<String> {
+    let is_soft = all.iter().any(|of| of.is_soft);
+    let error = |of: &Contender| if is_soft { of.rmse } else { of.wrong.share() };
+    let by = |is_named: &dyn Fn(&Contender) -> bool| {
+        let named: Vec<String> = all
+            .iter()
+            .filter(|of| is_named(of))
+            .map(Contender::name)
+            .collect();
+        let are = if named.len() == 1 { "is" } else { "are" };
+        format!("{} {are}", named.join(" and "))
+    };
+    let exact = all.iter().find(|of| of.is_exact && !is_soft);
+    let said = match (exact, least(all, error)) {
+        (Some(exact), _) => Some(format!("{} {}", by(&|of| of.is_exact), exact.right())),
+        (None, Some(best)) => {
+            let named = by(&|of| error(of) == error(best));
+            Some(format!("{named} the least wrong ({})", best.error()))
+        }
+        (None, None) => None,
+    };
+    let frames = plural(frames, "frame");
+    let are = if frames.starts_with("1 ") {
+        "is"
+    } else {
+        "are"
+    };
+    let few =
+        format!("{frames} {are} too few to tell times apart: give --frames {LEAST_TURNS} or more.");
+    [few]
+        .into_iter()
+        .chain(said.map(|said| said + "."))
+        .collect()
+}
+
 /// How much faster another method is, and its error.
 fn faster(fastest: &Contender, than: &Contender, when: When) -> String {
     let (name, error) = (fastest.name(), fastest.error());
@@ -644,6 +686,57 @@ mod tests {
         assert!(outcome(&twice(0)).1[0].starts_with("Take `nsm` or `nsm@bias=0`: their times"));
         let soft = [graded("pcf", 0.1, 10.0), graded("pcf@bias=0", 0.1, 10.1)];
         assert!(outcome(&soft).1[0].starts_with("`pcf` and `pcf@bias=0` have the least error"));
+    }
+
+    #[test]
+    fn of_fewer_than_eight_frames_no_times_are_told_apart_or_called_level() {
+        let few = |of: &mut Run, frames: usize| {
+            let times = &mut of.measured.as_mut().unwrap().frame;
+            times.wall_frames.truncate(frames);
+            times.gpu_frames.as_mut().unwrap().truncate(frames);
+        };
+        let said = |runs: &[Run], frames: usize| {
+            let mut runs = runs.to_vec();
+            few(&mut runs[0], frames);
+            let (marked, said) = outcome(&runs);
+            assert!(
+                !said.iter().any(|said| said.contains("told apart,")),
+                "{said:?}"
+            );
+            (marked, said)
+        };
+        let exact = [run("rt", 0, 100.0, 100.0), run("nsm", 9, 10.0, 10.0)];
+        let (marked, told) = said(&exact, 3);
+        assert_eq!(marked.as_deref(), Some("rt"));
+        let few = "frames are too few to tell times apart: give --frames 8 or more.";
+        assert_eq!(told, [format!("3 {few}"), "`rt` is exact here.".into()]);
+        assert!(said(&exact, 8).1[0].starts_with("Take `rt`"));
+        let wrong = [
+            run("crsm", 20, 40.0, 40.0),
+            run("crsma", 20, 40.0, 40.0),
+            run("nsm", 500, 1.0, 1.0),
+        ];
+        assert_eq!(
+            said(&wrong, 7).1,
+            [
+                format!("7 {few}"),
+                "`crsm` and `crsma` are the least wrong (wrong on 0.020 % of the surfaces that \
+                 face the light)."
+                    .into()
+            ]
+        );
+        let soft = [graded("pcf", 0.1, 10.0), graded("vsm", 0.2, 10.0)];
+        assert_eq!(
+            said(&soft, 1).1,
+            [
+                few.replace("frames are", "1 frame is"),
+                "`pcf` is the least wrong (RMSE 0.1000).".into()
+            ]
+        );
+        assert_eq!(
+            said(&exact[..1], 1).1[0],
+            "Take `rt`: 100 ms a frame. It is exact here."
+        );
     }
 
     #[test]

@@ -1,10 +1,11 @@
 //! The program, its commands and their examples. Exit codes: 0 fine, 1 the input is wrong, 2 usage,
-//! 3 no usable GPU, or it was lost or hangs, 4 a condition of `--fail-if` does not hold.
+//! 3 no usable GPU, or it was lost or hangs, 4 a condition of `--fail-if` does not hold, 5 worse
+//! than `--baseline`.
 
 use crate::args::{
     commands::{
-        ChartArgs, CheckArgs, CompareArgs, GraphArgs, NewArgs, PresetsArgs, ProfileArgs,
-        ReportArgs, RunArgs, SchemaArgs, ShowArgs, StressArgs, ViewArgs,
+        ChartArgs, CheckArgs, CompareArgs, CompletionsArgs, GraphArgs, MergeArgs, NewArgs,
+        PresetsArgs, ProfileArgs, ReportArgs, RunArgs, SchemaArgs, ShowArgs, StressArgs, ViewArgs,
     },
     shared::GpuArgs,
 };
@@ -20,7 +21,8 @@ use clap::{Parser, Subcommand};
         Progress goes to standard error: a bar on a terminal, a line every five seconds in a \
         pipe, or with SKIAGRAPH_PROGRESS=lines one at the begin and the end of each step.\n\n\
         Exit codes: 0 fine, 1 the input is wrong, 2 wrong usage, 3 no usable GPU, \
-        or it was lost or hangs, 4 a condition of --fail-if does not hold, 130 stopped by Ctrl-C."
+        or it was lost or hangs, 4 a condition of --fail-if does not hold, 5 worse than \
+        --baseline, 130 stopped by Ctrl-C."
 )]
 pub struct Cli {
     /// Command to run.
@@ -42,7 +44,8 @@ pub enum Command {
         skiagraph compare nsm --scene house.obj --eye 0,2,8 --look 0,0,-1 --light 0.3,-1,-0.2\n  \
         skiagraph compare rt my_method.ron --oracle offset:0.03 --format markdown\n  \
         skiagraph compare --view all --map-size 512,1024,2048 --out park --resume   \
-            # after Ctrl-C: only what is missing")]
+            # after Ctrl-C: only what is missing\n  \
+        skiagraph compare nsm --baseline before/results.json")]
     Compare(CompareArgs),
     /// Draw what compare kept as SVG: time against error with its Pareto front, or growth with the
     /// number of triangles. Needs no GPU.
@@ -59,6 +62,15 @@ pub enum Command {
             # two machines in one page\n\n\
         `compare` writes the page into its folder by itself.")]
     Report(ReportArgs),
+    /// Join the results of several folders and machines to one results.json, results.csv and page.
+    /// Needs no GPU.
+    #[command(
+        after_help = "Example:\n  skiagraph merge desk/park laptop/park.json --out all\n\n\
+        Of a cell that was measured twice on one machine the newer run counts. Other machines, \
+            adapters, scenes and protocols\nare kept apart. Results that --out holds already stay. \
+            Pictures stay where they are; the page shows them."
+    )]
+    Merge(MergeArgs),
     /// Render one frame with one graph and save any of its materials. Buffers and textures that
     /// grow have room for all that the frame needs: frames before it, which it counts, find out how
     /// much that is.
@@ -144,6 +156,11 @@ pub enum Command {
         text, a tuple is a list."
     )]
     Schema(SchemaArgs),
+    /// Print a script that completes commands and options in a shell.
+    #[command(after_help = "Examples:\n  \
+        skiagraph completions bash > ~/.local/share/bash-completion/completions/skiagraph\n  \
+        skiagraph completions fish > ~/.config/fish/completions/skiagraph.fish")]
+    Completions(CompletionsArgs),
     /// List the scenes and their views.
     #[command(after_help = "Example:\n  skiagraph scenes")]
     Scenes,
@@ -290,6 +307,9 @@ mod tests {
             "skiagraph profile nsm --frames 0",
             "skiagraph check a.ron --format yaml",
             "skiagraph chart",
+            "skiagraph merge --out all",
+            "skiagraph merge park",
+            "skiagraph completions cmd",
             "skiagraph chart out --kind pie",
             "skiagraph doctor --memory-limit lots",
             "skiagraph doctor --timeout -1",

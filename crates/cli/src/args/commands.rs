@@ -7,7 +7,7 @@ use crate::args::{
 use clap::{ArgAction, Args, ValueEnum};
 use skiagraph_compare::graphs::argument::Assignment;
 use skiagraph_compare::measuring::ground_truth::REFERENCE_SAMPLES;
-use skiagraph_compare::pictures::save::Save;
+use skiagraph_compare::pictures::{data::DataFormat, save::Save};
 use skiagraph_compare::records::published_row::PublishedFile;
 use skiagraph_compare::size::Size;
 use skiagraph_reference::OracleMode;
@@ -96,6 +96,10 @@ pub struct CompareArgs {
     /// `flip > 0.02`, `frame > 3ms`, `memory > 64MiB`. May be repeated.
     #[arg(long, value_name = "METHOD: FIGURE > VALUE", value_parser = gate)]
     pub fail_if: Vec<Gate>,
+    /// Compare with older results, cell by cell: a results.json or its folder. End with exit code 5
+    /// if a method has become more wrong or slower.
+    #[arg(long, value_name = "RESULTS.json|DIR")]
+    pub baseline: Option<PathBuf>,
     /// Folder for report.html, results.json, results.csv and the pictures; of several scenes for
     /// report.html and a folder for each.
     #[arg(long, default_value = "compare", value_name = "DIR")]
@@ -116,6 +120,9 @@ pub struct CompareArgs {
     /// Which pictures are written.
     #[arg(long, value_enum, default_value_t = Images::All)]
     pub images: Images,
+    /// Write the answers and the reference as arrays, too: NumPy's or OpenEXR's.
+    #[arg(long, value_name = "npy|exr")]
+    pub data: Option<DataFormat>,
     /// Format of the results on standard output.
     #[arg(long, value_enum, default_value_t = Format::Table)]
     pub format: Format,
@@ -203,6 +210,24 @@ pub struct ReportArgs {
     pub out: Option<PathBuf>,
 }
 
+/// `skiagraph merge`.
+#[derive(Args, Debug)]
+pub struct MergeArgs {
+    /// Folders that `compare --out` or `merge --out` wrote, or their results.json.
+    #[arg(value_name = "DIR|FILE.json", required = true)]
+    pub places: Vec<PathBuf>,
+    /// Folder for results.json, results.csv and report.html.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+/// `skiagraph completions`.
+#[derive(Args, Debug)]
+pub struct CompletionsArgs {
+    /// The shell.
+    pub shell: clap_complete::Shell,
+}
+
 /// `skiagraph new`.
 #[derive(Args, Debug)]
 pub struct NewArgs {
@@ -264,8 +289,8 @@ pub struct RunArgs {
     #[command(flatten)]
     pub scene: SceneArgs,
     /// Save an output, a material or a view of one, after a pass or at the end: .png a picture,
-    /// .bin raw bytes, .csv the words of a buffer. After a pass it is as much as has been written
-    /// by then. May be repeated.
+    /// .npy or .exr values, .bin raw bytes, .csv the words of a buffer. After a pass it is as much
+    /// as has been written by then. May be repeated.
     #[arg(long, value_name = "MATERIAL[@PASS]=FILE")]
     pub save: Vec<Save>,
     /// Render so many frames one after the other and save each: `--save visibility=v.png` writes

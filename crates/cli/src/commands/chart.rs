@@ -4,11 +4,12 @@ use crate::args::commands::{ChartArgs, ChartKind};
 use crate::error::CliError;
 use crate::terminal::console::{note, print};
 use skiagraph_compare::files::write::{check_folder, check_writable, write_whole};
-use skiagraph_compare::records::{published, published_row::PublishedFile, read_back};
+use skiagraph_compare::records::{
+    published, published_row::PublishedFile, read_back, sources::Kept,
+};
 use skiagraph_compare::size::Size;
 use skiagraph_compare::wording::plural;
-use skiagraph_report::charts::{self, Kept};
-use skiagraph_report::{published_charts, raster};
+use skiagraph_report::{charts, published_charts, raster};
 use std::path::Path;
 
 /// Reads results, draws a chart of them, and prints what could not be drawn.
@@ -53,8 +54,8 @@ pub fn chart(args: &ChartArgs) -> Result<(), CliError> {
 
 fn kept(args: &ChartArgs) -> Result<Vec<Kept>, CliError> {
     let folders = read_back::with_scenes(&args.folders);
-    let kept = folders.iter().map(|folder| Ok(Kept::read(folder)?));
-    kept.collect()
+    let kept = folders.iter().map(|folder| Kept::read(folder));
+    Ok(kept.collect::<Result<Vec<_>, _>>()?.concat())
 }
 
 /// Writes the charts of published figures and ours.

@@ -27,13 +27,17 @@ use skiagraph_compare::measuring::{
     view_or_path::{ViewOrPath, under_lights},
 };
 use skiagraph_compare::pictures::run_pictures::graph_name;
-use skiagraph_compare::records::{budgets::Budgets, published, results::Results};
+use skiagraph_compare::records::{
+    budgets::Budgets, published, results::Results, results_baseline::Baseline,
+};
 use skiagraph_compare::sink::{Session, Silent};
 use skiagraph_compare::size::Size;
 use skiagraph_compare::wording::{command_line, plural, size, unknown};
 use skiagraph_draw::{from_plan, to_svg};
+use skiagraph_gpu::device::Gpu;
 use skiagraph_passes::SceneProvider;
 use skiagraph_report::{
+    baseline_text,
     gate::Gate,
     markdown, matrices,
     overview::Overview,
@@ -48,11 +52,12 @@ use std::{path::PathBuf, sync::Arc};
 ///
 /// # Errors
 /// If a graph has errors, a scene cannot be loaded, no GPU can be opened, earlier results cannot be
-/// continued, Ctrl-C stops the command, no method runs on this adapter, or a limit of `--fail-if`
-/// is exceeded.
+/// continued, Ctrl-C stops the command, no method runs on this adapter, a limit of `--fail-if` is
+/// exceeded, or a method is worse than in `--baseline`.
 pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let scenes = args.scene.each()?;
     let published = published::read(&args.published)?;
+    let baseline = args.baseline.as_deref().map(Baseline::read).transpose()?;
     let sources = preset::sources(&Terminal);
     let names = if args.presets.is_empty() && !args.all {
         preset::shipped_and_own(&sources)
@@ -82,6 +87,7 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
                 oracle: args.oracle,
                 reference_samples: args.reference_samples,
                 pictures: args.images == Images::All,
+                data: args.data,
             },
             primary: primary.clone(),
             budgets: Budgets {
@@ -91,31 +97,50 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
             },
             published: published.clone(),
             command: Some(command_line(std::env::args_os())),
+            commit: option_env!("SKIAGRAPH_COMMIT").map(str::to_owned),
             scene,
         };
         comparison.check(session)?;
         check_folder(&target.folder)?;
-        if targets.len() > 1 {
-            // Earlier results of the last scene may be refused: then the first is not measured.
-            let silent = Session::new(&gpu, &Silent);
-            Series::new(&comparison, silent, Some((&target.folder, kept(args))))?;
-        }
+        check_earlier(args, &comparison, baseline.as_ref(), target, &gpu)?;
         comparisons.push(comparison);
     }
     interrupt::install()?;
     let mut measured = Measured::default();
     let mut all = comparisons.into_iter().zip(&targets);
     let outcome = all.try_for_each(|(comparison, target)| {
-        measure(args, &comparison, target, session, &mut measured)
+        let baseline = baseline.as_ref();
+        measure(args, &comparison, baseline, target, session, &mut measured)
     });
     if targets.len() > 1 {
         overview(args, &targets, &measured.results)?;
     }
     outcome?;
-    match &measured.failures[..] {
-        [] => Ok(()),
-        failures => Err(CliError::Gate(failures.join("\n"))),
+    let Measured {
+        failures, worse, ..
+    } = measured;
+    match (&failures[..], &worse[..]) {
+        ([], []) => Ok(()),
+        ([], worse) => Err(CliError::Baseline(worse.join("\n"))),
+        (failures, worse) => Err(CliError::Gate([failures, worse].concat().join("\n"))),
     }
+}
+
+/// Checks that the earlier results of a scene can be continued, and that the baseline has some of
+/// its cells, before the first scene is measured.
+fn check_earlier(
+    args: &CompareArgs,
+    comparison: &Comparison,
+    baseline: Option<&Baseline>,
+    target: &Target,
+    gpu: &Gpu,
+) -> Result<(), CliError> {
+    let silent = Session::new(gpu, &Silent);
+    let series = Series::new(comparison, silent, Some((&target.folder, kept(args))))?;
+    if let Some(baseline) = baseline {
+        baseline.check(&series.results, series.planned_runs())?;
+    }
+    Ok(())
 }
 
 /// A scene's folder for results.
@@ -148,6 +173,8 @@ struct Measured {
     results: Vec<Results>,
     /// Conditions of `--fail-if` that do not hold.
     failures: Vec<String>,
+    /// Methods that are worse than in `--baseline`.
+    worse: Vec<String>,
     /// Number of scenes that are done.
     finished: usize,
 }
@@ -190,6 +217,7 @@ fn kept(args: &CompareArgs) -> Kept {
 fn measure(
     args: &CompareArgs,
     comparison: &Comparison,
+    baseline: Option<&Baseline>,
     target: &Target,
     session: Session,
     measured: &mut Measured,
@@ -211,7 +239,8 @@ fn measure(
         write_whole(&folder.join(name), svg.as_bytes())?;
     }
     let outcome = run(args, comparison, &mut series);
-    finish(args, target, series, outcome, measured)?;
+    let results = finish(args, target, series, outcome, measured)?;
+    judge(args, target, baseline, &results, measured)?;
     measured.finished += 1;
     Ok(())
 }
@@ -372,14 +401,14 @@ fn overview(args: &CompareArgs, targets: &[Target], all: &[Results]) -> Result<(
     Ok(())
 }
 
-/// Says what came of a scene.
+/// Says what came of a scene, and returns its results.
 fn finish(
     args: &CompareArgs,
     target: &Target,
     mut series: Series,
     outcome: Result<(), CliError>,
     measured: &mut Measured,
-) -> Result<(), CliError> {
+) -> Result<Results, CliError> {
     let (planned, folder) = (series.planned(), &target.folder);
     if !series.results.runs.is_empty() {
         let whole = series.whole();
@@ -420,12 +449,7 @@ fn finish(
         )));
     }
     tell_files(args, target, &results);
-    let failures = args.fail_if.iter().flat_map(|gate| gate.failures(&results));
-    let scene = target.name.as_ref().map(|name| format!("{name}: "));
-    let scene = scene.unwrap_or_default();
-    let failures = failures.map(|line| format!("{scene}{line}"));
-    measured.failures.extend(failures);
-    Ok(())
+    Ok(results)
 }
 
 /// Says which files are there, and what they lack.
@@ -449,4 +473,31 @@ fn tell_files(args: &CompareArgs, target: &Target, results: &Results) {
              none"
         ));
     }
+}
+
+/// Holds the results of a scene against the gates, and shows what has changed since the baseline.
+fn judge(
+    args: &CompareArgs,
+    target: &Target,
+    baseline: Option<&Baseline>,
+    results: &Results,
+    measured: &mut Measured,
+) -> Result<(), CliError> {
+    let scene = target.name.as_ref().map(|name| format!("{name}: "));
+    let scene = scene.unwrap_or_default();
+    let failures = args.fail_if.iter().flat_map(|gate| gate.failures(results));
+    let failures = failures.map(|line| format!("{scene}{line}"));
+    measured.failures.extend(failures);
+    if let Some(baseline) = baseline {
+        let changes = baseline.against(results)?;
+        let worse = baseline_text::failures(&changes).into_iter();
+        measured
+            .worse
+            .extend(worse.map(|line| format!("{scene}{line}")));
+        match args.format {
+            Format::Json => note(&baseline_text::text(&changes)),
+            _ => print(&format!("\n{}", baseline_text::text(&changes)))?,
+        }
+    }
+    Ok(())
 }

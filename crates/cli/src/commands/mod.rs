@@ -3,8 +3,10 @@
 pub mod chart;
 pub mod check;
 pub mod compare;
+pub mod completions;
 pub mod doctor;
 pub mod graph;
+pub mod merge;
 pub mod new;
 pub mod presets;
 pub mod profile;

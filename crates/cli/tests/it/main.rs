@@ -18,6 +18,7 @@ mod recording;
 mod report;
 mod several_scenes;
 mod stress;
+mod teams;
 mod together;
 mod tutorial;
 mod verdict;

@@ -49,7 +49,7 @@ fn a_doubled_tree_has_no_exact_method_and_no_winner_without_its_condition() {
     let folder = tempfile::tempdir().unwrap();
     doubled_tree(&folder.path().join("tree.obj"));
     let line = "compare nsm light_buffer rt --scene tree.obj --size 96x96 --map-size 256 \
-                --frames 2 --warmup 0 --images none --out out";
+                --frames 8 --warmup 0 --images none --out out";
     let output = skiagraph(folder.path(), line);
     let told = String::from_utf8_lossy(&output.stdout);
     let (_, answer) = told.rsplit_once('┘').unwrap();

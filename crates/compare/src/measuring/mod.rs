@@ -22,6 +22,7 @@
 //! ```
 
 pub mod camera_pose;
+pub mod cell;
 pub mod date;
 pub mod device;
 mod diagnostics;

@@ -128,6 +128,7 @@ fn differences(earlier: &Results, now: &Results) -> Vec<String> {
             ("frames", results.frames.to_string()),
             ("warmup", results.warmup.to_string()),
             ("cached frames", results.cached_frames.to_string()),
+            ("joined results", results.others.len().to_string()),
         ]
     };
     let pairs = facts(earlier).into_iter().zip(facts(now));
@@ -191,7 +192,7 @@ mod tests {
         again.runs[0].band = 77;
         let picture = PictureFile {
             name: "a.png".into(),
-            png: vec![1],
+            bytes: vec![1],
         };
         one.save(&again, &[picture], &Silent).unwrap();
         assert_eq!(kept(folder), ["nsm"]);

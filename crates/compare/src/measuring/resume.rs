@@ -91,7 +91,11 @@ pub fn earlier(
                 && (&planned.params, &planned.fingerprint) == (&run.params, &run.fingerprint)
         };
         let index = runs.iter().position(|run| resumes && is_same(run))?;
-        Some(runs.swap_remove(index))
+        let cell = planned.cell.clone();
+        Some(Run {
+            cell, // an older version may have kept none
+            ..runs.swap_remove(index)
+        })
     };
     let kept: Vec<Option<Run>> = planned.iter().map(take).collect();
     if resumes {
@@ -154,7 +158,7 @@ mod tests {
     #[test]
     fn other_conditions_are_named_with_the_way_out() {
         type Change = fn(&mut Results);
-        let changes: [(Change, &str); 8] = [
+        let changes: [(Change, &str); 9] = [
             (|now| now.program = "x".into(), "program: there"),
             (|now| now.adapter.driver = "x".into(), "adapter: there"),
             (
@@ -165,6 +169,10 @@ mod tests {
             (|now| now.oracle = "offset:1".into(), "here offset:1"),
             (|now| now.frames = 7, "frames: there 10, here 7"),
             (|now| now.warmup = 0, "warmup: there 2, here 0"),
+            (
+                |now| now.others = vec![sample()],
+                "joined results: there 0, here 1",
+            ),
             (
                 |now| now.cached_frames = 0,
                 "cached frames: there 10, here 0",

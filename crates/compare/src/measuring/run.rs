@@ -16,7 +16,7 @@ use crate::measuring::{
     frame::{self, Contents},
     guarantee,
 };
-use crate::pictures::run_pictures::{PictureFile, PicturePlace, draw_pictures, stem};
+use crate::pictures::run_pictures::{PictureFile, PicturePlace, data_files, draw_pictures, stem};
 use crate::records::results::{Answer, AreaReference, Images, Measured, Run};
 use crate::records::statistics::FrameTimes;
 use crate::records::steady::Steady;
@@ -47,7 +47,7 @@ pub struct MeasureContext<'a> {
     pub own: Statistics,
     /// Settings of how methods are run and timed.
     pub protocol: Protocol,
-    /// Pictures of the last run; `None` to draw no pictures.
+    /// Pictures and data files of the last run; `None` to make none.
     pub pictures: Option<RefCell<Vec<PictureFile>>>,
 }
 
@@ -349,7 +349,8 @@ impl MeasureContext<'_> {
         Ok(bytes)
     }
 
-    /// Draws the pictures of a view, or of a frame of a path, where there are to be any.
+    /// Makes the pictures and data files of a view, or of a frame of a path, where there are to be
+    /// any. Returns the names of the pictures.
     ///
     /// # Errors
     /// Outputs that do not fit the reference.
@@ -368,14 +369,18 @@ impl MeasureContext<'_> {
             view: self.view.name(),
             frame,
         };
-        let (images, files) = draw_pictures(
-            &place,
-            ground_truth,
-            (outputs, judgement),
-            found.footprints.as_deref(),
-        )?;
+        let (mut images, mut files) = (None, Vec::new());
+        if self.protocol.pictures {
+            let footprints = found.footprints.as_deref();
+            let answers = (outputs, judgement);
+            let (drawn, pictures) = draw_pictures(&place, ground_truth, answers, footprints)?;
+            (images, files) = (Some(drawn), pictures);
+        }
+        if let Some(format) = self.protocol.data {
+            files.extend(data_files(&place, ground_truth, outputs, format)?);
+        }
         pictures.replace(files);
-        Ok(Some(images))
+        Ok(images)
     }
 
     /// The run with nothing measured.

@@ -38,7 +38,7 @@ use crate::measuring::run::{Judged, MeasureContext};
 use crate::measuring::sequence::follow;
 use crate::measuring::stop::{Stop, attempt};
 use crate::measuring::view_or_path::ViewOrPath;
-use crate::measuring::{date, device};
+use crate::measuring::{cell, date, device};
 use crate::pictures::run_pictures::{PictureFile, conditions};
 use crate::records::published::attach;
 use crate::records::results::{PROGRAM, Results, Run};
@@ -115,13 +115,20 @@ impl<'a> Series<'a> {
     ) -> Result<Self, CompareError> {
         let methods = comparison.settled(session);
         let began = date::now();
-        let planned = planned(comparison, &methods, &began);
+        let machine = device::machine();
+        let template = Run {
+            session: began.clone(),
+            commit: comparison.commit.clone(),
+            machine: Some(machine.clone()),
+            ..Run::default()
+        };
+        let planned = planned(comparison, &methods, &template);
         let protocol = &comparison.protocol;
         let results = Results {
             schema: 1,
             program: PROGRAM.into(),
             adapter: device::describe(session.gpu, device::timestamp_trust(session.gpu)),
-            machine: device::machine(),
+            machine,
             scene: (&*comparison.scene).into(),
             oracle: protocol.oracle.to_string(),
             frames: protocol.frames,
@@ -131,6 +138,7 @@ impl<'a> Series<'a> {
             budgets: comparison.budgets,
             commands: comparison.command.iter().cloned().collect(),
             runs: Vec::new(),
+            others: Vec::new(),
         };
         let mut series = Self {
             comparison,
@@ -166,6 +174,11 @@ impl<'a> Series<'a> {
     /// Returns the number of all planned runs, finished or not.
     pub fn planned(&self) -> usize {
         self.planned.len()
+    }
+
+    /// Returns all planned runs with nothing measured, in the order of the results.
+    pub fn planned_runs(&self) -> &[Run] {
+        &self.planned
     }
 
     /// Returns the finished runs of a view and viewport, which are indices into the lists of the
@@ -229,7 +242,7 @@ impl<'a> Series<'a> {
             light: self.provider.light_number(),
             own,
             protocol,
-            pictures: protocol.pictures.then(RefCell::default),
+            pictures: protocol.has_files().then(RefCell::default),
         };
         let missing = places.zip(&methods);
         let missing: Vec<(usize, &Method)> =
@@ -500,23 +513,23 @@ impl<'a> Series<'a> {
     }
 }
 
-/// Every run with nothing measured, in the order of the results.
-fn planned(comparison: &Comparison, methods: &[Method], began: &str) -> Vec<Run> {
+/// Every run with nothing measured, in the order of the results. `template` has the session.
+fn planned(comparison: &Comparison, methods: &[Method], template: &Run) -> Vec<Run> {
     let (mut planned, fingerprint) = (Vec::new(), comparison.fingerprint());
-    for view in &comparison.views {
-        let fingerprint = view.fingerprint(fingerprint);
+    for place in &comparison.views {
+        let fingerprint = place.fingerprint(fingerprint);
         for &viewport in &comparison.viewports {
             let methods = methods.iter().map(|method| method.at(viewport));
             planned.extend(methods.map(|method| Run {
                 preset: method.name.clone(),
-                view: view.name().to_owned(),
-                light: view.one_of_lights().map(str::to_owned),
+                view: place.name().to_owned(),
+                light: place.one_of_lights().map(str::to_owned),
                 viewport,
                 map_size: method.map_size,
                 params: method.all_params(),
                 fingerprint: method.fingerprint(fingerprint),
-                session: began.to_owned(),
-                ..Run::default()
+                cell: cell::id(comparison, place, viewport, &method),
+                ..template.clone()
             }));
         }
     }

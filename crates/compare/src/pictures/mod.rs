@@ -12,6 +12,7 @@
 
 pub mod buffer_csv;
 pub mod colours;
+pub mod data;
 pub mod material;
 mod png;
 pub mod run_pictures;

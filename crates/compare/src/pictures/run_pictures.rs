@@ -13,6 +13,7 @@ use crate::files::write::write_whole;
 use crate::graphs::ground_truth::Judgement;
 use crate::graphs::method::Method;
 use crate::graphs::shadow_method::Outputs;
+use crate::pictures::data::{self, DataFormat};
 use crate::pictures::png;
 use crate::records::results::Images;
 use crate::wording::size;
@@ -22,12 +23,13 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// A picture that is drawn but not written yet. It is written together with the figures of its run.
+/// A picture or data file that is made but not written yet. It is written together with the figures
+/// of its run.
 pub struct PictureFile {
     /// File name in the folder of the results.
     pub name: String,
-    /// Bytes of the PNG file.
-    pub png: Vec<u8>,
+    /// Content of the file.
+    pub bytes: Vec<u8>,
 }
 
 /// Writes pictures into a folder, each whole or not at all.
@@ -36,7 +38,7 @@ pub struct PictureFile {
 /// A picture that cannot be written.
 pub fn write_pictures(folder: &Path, files: &[PictureFile]) -> Result<(), CompareError> {
     let mut files = files.iter();
-    files.try_for_each(|file| write_whole(&folder.join(&file.name), &file.png))
+    files.try_for_each(|file| write_whole(&folder.join(&file.name), &file.bytes))
 }
 
 /// Place of a method's pictures in the results: the view and frame that they show, and the
@@ -81,7 +83,7 @@ pub fn draw_pictures(
         let png = png::encode(Path::new(&name), &image)?;
         files.push(PictureFile {
             name: name.clone(),
-            png,
+            bytes: png,
         });
         Ok(name)
     };
@@ -119,6 +121,31 @@ pub fn draw_pictures(
         images.projection = Some(heat("projection", |of| of.projection)?);
     }
     Ok((images, files))
+}
+
+/// Encodes what a method answered in a frame and what is right, as [`data::judged`] lists it.
+/// Returns the files to write.
+///
+/// # Errors
+/// A file that cannot be encoded.
+pub fn data_files(
+    place: &PicturePlace,
+    ground_truth: &GroundTruth,
+    outputs: &Outputs,
+    format: DataFormat,
+) -> Result<Vec<PictureFile>, CompareError> {
+    let reference = reference_stem(place.view, ground_truth.pixels.viewport);
+    let arrays = [place.stem.clone(), reference].into_iter();
+    let arrays = arrays.zip(data::judged(outputs, ground_truth));
+    let files = arrays.flat_map(|(stem, arrays)| {
+        arrays.into_iter().map(move |(kind, array)| {
+            let name = place.file(format!("{stem}-{kind}.{}", format.extension()));
+            let bytes = array.encode(format);
+            let bytes = bytes.map_err(|why| CompareError::Input(format!("{name} {why}")))?;
+            Ok(PictureFile { name, bytes })
+        })
+    });
+    files.collect()
 }
 
 /// Returns the name of the file for the frame with the index `frame`: `visibility.0003.png` for

@@ -18,6 +18,7 @@
 use crate::error::CompareError;
 use crate::files::write::write_whole;
 use crate::pictures::colours::ClipPlanes;
+use crate::pictures::data::{Array, DataFormat};
 use crate::pictures::material::Picture;
 use crate::pictures::{buffer_csv, png};
 use crate::wording::{bytes, size, thousands};
@@ -36,9 +37,11 @@ pub enum Encoding {
     Raw,
     /// A table with a line per item of a buffer, `.csv`.
     Csv,
+    /// Values of a texture's texels, `.npy` or `.exr`.
+    Data(DataFormat),
 }
 
-/// A material to save and its file, `MATERIAL[@PASS]=FILE.png|.bin|.csv`.
+/// A material to save and its file, `MATERIAL[@PASS]=FILE.png|.bin|.csv|.npy|.exr`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Save {
     /// Name of the output or other material, and the pass after which it is read; without a pass it
@@ -70,10 +73,12 @@ impl FromStr for Save {
             Some("png") => Encoding::Png,
             Some("bin") => Encoding::Raw,
             Some("csv") => Encoding::Csv,
+            Some("npy") => Encoding::Data(DataFormat::Npy),
+            Some("exr") => Encoding::Data(DataFormat::Exr),
             _ => {
                 return Err(format!(
-                    "`{}` must end in .png (a picture), .bin (raw bytes) or .csv (the items of a \
-                     buffer)",
+                    "`{}` must end in .png (a picture), .npy or .exr (values of texels), .bin (raw \
+                     bytes) or .csv (the items of a buffer)",
                     file.display()
                 ));
             }
@@ -110,7 +115,10 @@ pub fn check_encodings(plan: &Plan, saves: &[Save]) -> Result<(), CompareError> 
         };
         let refused = match (save.encoding, output.format) {
             (Encoding::Png, None) => "is a buffer and has no picture; save it as .csv or .bin",
-            (Encoding::Csv, Some(_)) => "is a texture and has no items; save it as .png or .bin",
+            (Encoding::Data(_), None) => "is a buffer and has no texels; save it as .csv or .bin",
+            (Encoding::Csv, Some(_)) => {
+                "is a texture and has no items; save it as .png, .npy, .exr or .bin"
+            }
             _ => continue,
         };
         return Err(CompareError::Input(format!("`{name}` {refused}")));
@@ -214,6 +222,13 @@ pub fn write(save: &Save, content: &Content, reading: &Decoding) -> Result<Strin
             })?;
             png::save(&save.file, &image)?;
             format!("{}, {part}{legend}", size(image.size))
+        }
+        Encoding::Data(format) => {
+            let name = &save.capture.material;
+            let refused = |why| CompareError::Input(format!("`{name}` {why}"));
+            let array = Array::from_content(content).map_err(refused)?;
+            write_whole(&save.file, &array.encode(format).map_err(refused)?)?;
+            format!("{part}{}", array.text())
         }
         Encoding::Csv => {
             let raw = content.bytes();

@@ -87,7 +87,7 @@ const CSV: &[Figure] = &[
     ("memory_bytes", Measure(|of| Count(of.memory_bytes))),
     ("saved_bytes", Measure(|of| Count(of.saved_bytes))),
     ("unavailable", Always(|_, run| run.unavailable.as_deref().map_or(Unknown, text))),
-    ("cached_gpu_ms", Measure(|of| median(of.cached.as_ref().and_then(|of| of.frame.gpu_ms)))),
+    ("cached_gpu_ms", Measure(|of| median(cached(of, false)))),
     ("lit_certain_right", Measure(|of| Count(of.split.lit.certain_right))),
     ("lit_certain_wrong", Measure(|of| Count(of.split.lit.certain_wrong))),
     ("lit_certain_wrong_outside_band",
@@ -164,6 +164,39 @@ const CSV: &[Figure] = &[
     ("layer_differ", Measure(|of| layers(of, |by| Real(by.across)))),
     ("layer_differ_elsewhere", Measure(|of| layers(of, |by| Real(by.elsewhere)))),
     ("layer_jump", Measure(|of| layers(of, |by| Real(by.jump())))),
+    ("light", Always(|_, run| run.light.as_deref().map_or(Unknown, text))),
+    ("params", Always(|_, run| Text(run.assignments()))),
+    ("frames", Always(|results, _| Count(results.frames.into()))),
+    ("warmup", Always(|results, _| Count(results.warmup.into()))),
+    ("cached_frames", Always(|results, _| Count(results.cached_frames.into()))),
+    ("gpu_min_ms", Measure(|of| spread(of.frame.gpu_ms, |of| of.min))),
+    ("gpu_q1_ms", Measure(|of| spread(of.frame.gpu_ms, |of| of.q1))),
+    ("gpu_q3_ms", Measure(|of| spread(of.frame.gpu_ms, |of| of.q3))),
+    ("gpu_p95_ms", Measure(|of| spread(of.frame.gpu_ms, |of| of.p95))),
+    ("wall_min_ms", Measure(|of| spread(Some(of.frame.wall_ms), |of| of.min))),
+    ("wall_q1_ms", Measure(|of| spread(Some(of.frame.wall_ms), |of| of.q1))),
+    ("wall_q3_ms", Measure(|of| spread(Some(of.frame.wall_ms), |of| of.q3))),
+    ("wall_p95_ms", Measure(|of| spread(Some(of.frame.wall_ms), |of| of.p95))),
+    ("cached_gpu_q1_ms", Measure(|of| spread(cached(of, false), |of| of.q1))),
+    ("cached_gpu_q3_ms", Measure(|of| spread(cached(of, false), |of| of.q3))),
+    ("cached_wall_ms", Measure(|of| median(cached(of, true)))),
+    ("cached_wall_q1_ms", Measure(|of| spread(cached(of, true), |of| of.q1))),
+    ("cached_wall_q3_ms", Measure(|of| spread(cached(of, true), |of| of.q3))),
+    ("backend", Always(|results, _| text(&results.adapter.backend))),
+    ("driver", Always(|results, _| text(&results.adapter.driver))),
+    ("device_type", Always(|results, _| text(&results.adapter.device_type))),
+    ("host", Always(|results, run| {
+        results.machine_of(run).host.as_deref().map_or(Unknown, text)
+    })),
+    ("processor", Always(|results, run| text(&results.machine_of(run).processor))),
+    ("cores", Always(|results, run| Count(results.machine_of(run).cores.into()))),
+    ("load", Always(|results, run| results.machine_of(run).load.map_or(Unknown, Rate))),
+    ("date", Always(|_, run| text(&run.date))),
+    ("hour", Always(|_, run| text(&run.session))),
+    ("program", Always(|results, _| text(&results.program))),
+    ("commit", Always(|_, run| run.commit.as_deref().map_or(Unknown, text))),
+    ("cell", Always(|_, run| text(&run.cell))),
+    ("fingerprint", Always(|_, run| text(&run.fingerprint))),
 ];
 
 /// Figures that only tables show.
@@ -300,7 +333,16 @@ fn text(text: &str) -> Value {
 }
 
 fn median(times: Option<Spread>) -> Value {
-    times.map_or(Unknown, |spread| Time(spread.median))
+    spread(times, |of| of.median)
+}
+
+fn spread(times: Option<Spread>, figure: fn(&Spread) -> f64) -> Value {
+    times.map_or(Unknown, |of| Time(figure(&of)))
+}
+
+/// Times of frames in which only the camera moved, by the CPU's clock or the GPU's.
+fn cached(measured: &Measured, by_wall: bool) -> Option<Spread> {
+    measured.cached.as_ref()?.frame.spread(by_wall)
 }
 
 /// Certain wrong pixels of one kind of blocker; unknown of graded answers.

@@ -115,19 +115,25 @@ pub fn with_scenes(folders: &[PathBuf]) -> Vec<PathBuf> {
     each.collect()
 }
 
-/// Reads the finished results.json in a folder, for example to write a report of it.
+/// Reads the finished results.json in a folder, or a file of that kind, for example to write a
+/// report of it.
 ///
 /// # Errors
 /// No such folder or results.json; a file that cannot be read, or is not a results.json. The
 /// message shows the place.
-pub fn kept(folder: &Path) -> Result<Results, CompareError> {
+pub fn kept(place: &Path) -> Result<Results, CompareError> {
     let refused = |why: String| CompareError::Input(format!("{why}; {COMPARE_FIRST}"));
-    if !folder.is_dir() {
-        return Err(refused(format!("there is no folder {}", folder.display())));
-    }
-    let found = read(&KEPT, &folder.join("results.json")).map_err(refused)?;
-    let missing = || refused(format!("there is no results.json in {}", folder.display()));
-    let file = found.ok_or_else(missing)?;
+    let shown = place.display();
+    let (file, missing) = if place.is_dir() {
+        let missing = format!("there is no results.json in {shown}");
+        (place.join("results.json"), missing)
+    } else if place.extension().is_some_and(|it| it == "json") {
+        (place.to_path_buf(), format!("there is no file {shown}"))
+    } else {
+        return Err(refused(format!("there is no folder {shown}")));
+    };
+    let found = read(&KEPT, &file).map_err(refused)?;
+    let file = found.ok_or_else(|| refused(missing))?;
     parse_results(&file.text).map_err(|mistake| {
         let summary = "the results cannot be used";
         mistake.in_file(&file, "results.json", COMPARE_FIRST, summary)

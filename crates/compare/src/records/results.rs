@@ -64,6 +64,23 @@ pub struct Results {
     pub commands: Vec<String>,
     /// One entry per view, viewport, preset and map size, in this order.
     pub runs: Vec<Run>,
+    /// Results of other machines, adapters, scenes or protocols that `merge` put into the same
+    /// file; absent where all runs were measured alike. None of them has others of its own.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub others: Vec<Results>,
+}
+
+impl Results {
+    /// Splits joined results: returns these without `others`, and behind them each of `others`.
+    pub fn each(mut self) -> Vec<Self> {
+        let others = std::mem::take(&mut self.others);
+        [self].into_iter().chain(others).collect()
+    }
+
+    /// Returns the machine on which a run of these results was measured.
+    pub fn machine_of<'a>(&'a self, run: &'a Run) -> &'a Machine {
+        run.machine.as_ref().unwrap_or(&self.machine)
+    }
 }
 
 /// GPU on which something was measured.
@@ -102,6 +119,17 @@ impl Machine {
     pub fn is_loaded(&self) -> bool {
         self.load
             .is_some_and(|load| load >= 0.5 * f64::from(self.cores))
+    }
+
+    /// True if both are the same machine, whatever its load was.
+    pub fn is_same(&self, other: &Self) -> bool {
+        let Self {
+            host,
+            processor,
+            cores,
+            ..
+        } = self;
+        (host, processor, cores) == (&other.host, &other.processor, &other.cores)
     }
 }
 
@@ -156,6 +184,14 @@ impl fmt::Display for Adapter {
     }
 }
 
+impl fmt::Display for Machine {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let s = if self.cores == 1 { "" } else { "s" };
+        let host = self.host.as_deref().unwrap_or("a host without a name");
+        write!(f, "{host}, {}, {} core{s}", self.processor, self.cores)
+    }
+}
+
 impl fmt::Display for Scene {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let s = if self.triangles == 1 { "" } else { "s" };
@@ -189,6 +225,17 @@ pub struct Run {
     pub date: String,
     /// Start of the comparison that measured the run, in UTC: `2026-11-21T04:30:12Z`.
     pub session: String,
+    /// Id of the cell, 16 hexadecimal digits, the same on every machine
+    /// ([`cell::id`](crate::measuring::cell::id)); empty in results of older versions.
+    #[serde(default)]
+    pub cell: String,
+    /// Commit that the measuring program was built from; absent where the program does not know.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub commit: Option<String>,
+    /// Machine on which the run was measured, with its load at the start of the comparison; absent
+    /// in results of older versions, whose machine is that of the results.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub machine: Option<Machine>,
     /// Promise of the method's document about its answers with these params; absent if it makes
     /// none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -258,6 +305,34 @@ impl Run {
     pub fn is_in_place_of(&self, other: &Self) -> bool {
         (&self.preset, &self.view, self.viewport, self.map_size)
             == (&other.preset, &other.view, other.viewport, other.map_size)
+    }
+
+    /// True if both runs are in one place and of one cell, so that of the two the newer one counts.
+    pub fn is_same_cell(&self, other: &Self) -> bool {
+        let are_known = !self.cell.is_empty() && !other.cell.is_empty();
+        let is_same = if are_known {
+            self.cell == other.cell
+        } else {
+            self.params == other.params
+        };
+        is_same && self.is_in_place_of(other)
+    }
+
+    /// Returns all params as assignments, as `--set` takes them: `cull=front;slope_bias=1.5`.
+    pub fn assignments(&self) -> String {
+        let text = |value: &serde_json::Value| match value {
+            serde_json::Value::String(word) => word.clone(),
+            serde_json::Value::Array(numbers) => {
+                let numbers: Vec<String> = numbers.iter().map(ToString::to_string).collect();
+                numbers.join(",")
+            }
+            value => value.to_string(),
+        };
+        let params = self.params.iter();
+        let params: Vec<String> = params
+            .map(|(name, value)| format!("{name}={}", text(value)))
+            .collect();
+        params.join(";")
     }
 
     /// Returns preset and map size as the name of a row: `nsm 1024`.
@@ -553,6 +628,16 @@ pub(crate) mod tests {
         }
     }
 
+    /// A machine that is hardly loaded.
+    fn machine() -> Machine {
+        Machine {
+            host: Some("bench".into()),
+            processor: "Some CPU".into(),
+            cores: 8,
+            load: Some(0.25),
+        }
+    }
+
     /// A scene of open and closed parts.
     pub(crate) fn scene() -> Scene {
         Scene {
@@ -596,6 +681,9 @@ pub(crate) mod tests {
             fingerprint: "85944171f73967e8".into(),
             date: "2026-11-20".into(),
             session: "2026-11-20T04:30:12Z".into(),
+            cell: format!("c0ffee{:010x}", preset.len()),
+            commit: Some("0123456789abcdef0123456789abcdef01234567".into()),
+            machine: Some(machine()),
             promise: None,
             pixels: PixelCounts {
                 background: 72,
@@ -715,12 +803,7 @@ pub(crate) mod tests {
             schema: 1,
             program: "skiagraph 0.1.0".into(),
             adapter: adapter(),
-            machine: Machine {
-                host: Some("bench".into()),
-                processor: "Some CPU".into(),
-                cores: 8,
-                load: Some(0.25),
-            },
+            machine: machine(),
             scene: scene(),
             oracle: "exact".into(),
             frames: 10,
@@ -748,6 +831,7 @@ pub(crate) mod tests {
                     ..run("rt_hw", None)
                 },
             ],
+            others: Vec::new(),
         }
     }
 
@@ -761,6 +845,29 @@ pub(crate) mod tests {
         ] {
             assert_eq!(step(pass), of);
         }
+    }
+
+    #[test]
+    fn joined_results_are_split_and_older_files_lack_cell_commit_and_machine() {
+        let mut joined = sample();
+        joined.others = vec![sample(), sample()];
+        let text = json::to_text(&joined);
+        let read: Results = serde_json::from_str(&text).unwrap();
+        assert_eq!(read.each(), [sample(), sample(), sample()]);
+        let mut older = serde_json::to_value(sample()).unwrap();
+        for run in older["runs"].as_array_mut().unwrap() {
+            let run = run.as_object_mut().unwrap();
+            for field in ["cell", "commit", "machine"] {
+                assert!(run.remove(field).is_some(), "{field}");
+            }
+        }
+        let older: Results = serde_json::from_value(older).unwrap();
+        assert_eq!(older.machine_of(&older.runs[0]), &machine());
+        assert!(
+            older.runs[0].is_same_cell(&sample().runs[0]),
+            "by its params"
+        );
+        assert_eq!(older.runs[0].assignments(), "cull=front;slope_bias=1.5");
     }
 
     #[test]

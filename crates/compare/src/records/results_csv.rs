@@ -1,4 +1,18 @@
 //! `results.csv`, one line per run for spreadsheets, and `results.json` beside it.
+//!
+//! ```
+//! use skiagraph_compare::records::{read_back, results_csv};
+//!
+//! # let out = tempfile::tempdir()?;
+//! # let name = "skiagraph_compare__records__results__tests__the_schema_is_pinned_and_reads_back";
+//! # let pinned = std::fs::read_to_string(format!("src/records/snapshots/{name}.snap"))?;
+//! # std::fs::write(out.path().join("results.json"), &pinned[pinned.find('{').unwrap_or(0)..])?;
+//! let results = read_back::kept(out.path())?;
+//! results_csv::save(&results, out.path())?;
+//! let csv = std::fs::read_to_string(out.path().join("results.csv"))?;
+//! assert_eq!(csv.lines().count(), 1 + results.runs.len());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::error::CompareError;
 use crate::files::json;
@@ -8,17 +22,19 @@ use crate::records::results::Results;
 use crate::records::table::Table;
 use std::path::Path;
 
-/// The contents of `results.csv`: times are medians, empty cells are nulls.
+/// The contents of `results.csv`, with the runs of all joined results: empty cells are nulls.
 fn to_csv(results: &Results) -> Result<String, ::csv::Error> {
     let columns = columns::csv();
     let heads = columns.iter().map(|column| column.head);
-    let row = |run| {
+    let all = [results].into_iter().chain(&results.others);
+    let all = all.flat_map(|of| of.runs.iter().map(move |run| (of, run)));
+    let row = |(of, run)| {
         columns
             .iter()
-            .map(|column| column.csv_cell(results, run))
+            .map(|column| column.csv_cell(of, run))
             .collect()
     };
-    Table::new(heads, 0, results.runs.iter().map(row)).csv()
+    Table::new(heads, 0, all.map(row)).csv()
 }
 
 /// Writes `results.json` and `results.csv` into `folder`, each whole or not at all. Returns the
@@ -52,5 +68,28 @@ mod tests {
                 .collect::<Vec<_>>(),
             [columns::csv().len(); 3]
         );
+    }
+
+    #[test]
+    fn runs_of_joined_results_have_lines_with_their_own_conditions() {
+        let mut joined = sample();
+        let mut far = sample();
+        far.adapter.name = "Far GPU".into();
+        far.runs[0].machine = None;
+        far.machine.host = Some("far".into());
+        joined.others = vec![far];
+        let csv = to_csv(&joined).unwrap();
+        let mut reader = ::csv::Reader::from_reader(csv.as_bytes());
+        let heads = reader.headers().unwrap().clone();
+        let place = |name| heads.iter().position(|head| head == name).unwrap();
+        let lines: Vec<_> = reader.records().map(Result::unwrap).collect();
+        let cells = |index: usize| {
+            let names = ["adapter", "host", "preset", "params"];
+            names.map(|name| lines[index][place(name)].to_owned())
+        };
+        let params = "cull=front;slope_bias=1.5";
+        assert_eq!(lines.len(), 6);
+        assert_eq!(cells(0), ["Some GPU", "bench", "nsm", params]);
+        assert_eq!(cells(3), ["Far GPU", "far", "nsm", params]);
     }
 }

@@ -50,16 +50,20 @@ pub struct PairedRatio {
 /// The confidence of an interval.
 const CONFIDENCE: f64 = 0.99;
 
+/// Least number of turns for which there is an interval: of fewer, even if all agree, the
+/// confidence is lower.
+pub const LEAST_TURNS: usize = 8;
+
 /// Times that differ by less than this share are level whatever the interval says: it knows nothing
 /// of how memory happens to lie.
-const LEVEL: f64 = 0.03;
+pub(crate) const LEVEL: f64 = 0.03;
 
 /// One nanosecond in milliseconds, so that nothing is divided by zero.
-const RESOLUTION_MS: f64 = 1e-6;
+pub(crate) const RESOLUTION_MS: f64 = 1e-6;
 
 impl PairedRatio {
     /// Divides the times of `one` by those of `other`, which are in the order of the same turns.
-    /// Returns `None` for fewer than eight turns.
+    /// Returns `None` for fewer than [`LEAST_TURNS`].
     pub fn new(one: &[f64], other: &[f64]) -> Option<Self> {
         let pairs = one.iter().zip(other);
         let ratio = |(one, other): (&f64, &f64)| one.max(RESOLUTION_MS) / other.max(RESOLUTION_MS);
@@ -107,6 +111,7 @@ mod tests {
         // 12 on: 1 - 2 * 13/4096 = 0.9937.
         let ranks = [7, 8, 11, 12, 20, 100].map(rank);
         assert_eq!(ranks, [None, Some(0), Some(0), Some(1), Some(3), Some(36)]);
+        assert!(rank(LEAST_TURNS - 1).is_none() && rank(LEAST_TURNS).is_some());
     }
 
     #[test]

@@ -3,6 +3,8 @@
 mod support;
 
 mod checking;
+mod columns;
+mod data;
 mod diagnostics;
 mod dissertation;
 mod engine;

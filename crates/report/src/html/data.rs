@@ -2,11 +2,11 @@
 
 use crate::html::pictures::Pictures;
 use crate::html::shown::Shown;
-use crate::html::sources::Source;
 use crate::results_table::timed_frames;
 use crate::summary::Row;
 use serde::Serialize;
 use skiagraph_compare::records::results::PROGRAM;
+use skiagraph_compare::records::sources::Source;
 use std::collections::BTreeSet;
 
 /// All of it.
@@ -25,6 +25,8 @@ struct Conditions<'a> {
     scene: &'a str,
     triangles: u64,
     adapter: String,
+    /// Host and processor.
+    machine: String,
     device_type: &'a str,
     oracle: &'a str,
     /// How many were timed of each run, in words.
@@ -78,6 +80,7 @@ fn conditions(source: &Source) -> Conditions<'_> {
         scene: &results.scene.name,
         triangles: results.scene.triangles,
         adapter: results.adapter.to_string(),
+        machine: results.machine.to_string(),
         device_type: &results.adapter.device_type,
         oracle: &results.oracle,
         frames: timed_frames(results, &results.runs),

@@ -4,7 +4,6 @@
 //!
 //! | | |
 //! |-|-|
-//! | `sources` | combines folders that were measured under the same conditions |
 //! | `shown` | tables to choose from, and parts of the page that belong to some of them |
 //! | `charts`, `steps`, `rows` | these parts: charts, bars of steps, tables |
 //! | `stress` | matrices of stress cases |
@@ -17,15 +16,13 @@ mod data;
 mod pictures;
 mod rows;
 mod shown;
-mod sources;
 mod steps;
 mod stress;
-
-pub use sources::{Source, sources};
 
 use crate::summary_table::{Summary, summaries};
 use pictures::Pictures;
 use shown::shown;
+use skiagraph_compare::records::sources::Source;
 use skiagraph_compare::records::stress::Report;
 
 /// Greatest size of a page in bytes. A larger one would be slow to open and too large for a mail.
@@ -89,10 +86,10 @@ fn page_within(sources: &[Source], reports: &[Report], limit: usize) -> Page {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::charts::Kept;
     use crate::samples::{results as sample, stress};
     use serde_json::Value;
     use skiagraph_compare::records::results::Results;
+    use skiagraph_compare::records::sources::{Kept, sources};
     use std::path::Path;
 
     fn source(folder: &Path, results: Results) -> Vec<Source> {
@@ -156,36 +153,6 @@ mod tests {
         assert!(set["error"].is_u64() && set["shaded"].is_u64(), "{set}");
         assert!(set["uncertain"].is_null() && set["texels"].is_null());
         assert_eq!(data["left_out"][0], line.as_str());
-    }
-
-    #[test]
-    fn folders_that_were_measured_alike_are_one_and_the_newer_run_counts() {
-        let mut newer = sample();
-        newer.runs.truncate(1);
-        newer.runs[0].date = "2026-12-24".into();
-        let mut other_machine = sample();
-        other_machine.adapter.name = "Another GPU".into();
-        let kept = |folder: &str, results| {
-            let folder = folder.into();
-            Kept { folder, results }
-        };
-        let merged = sources(vec![
-            kept("old", sample()),
-            kept("new", newer),
-            kept("far", other_machine),
-        ]);
-        let [here, far] = &merged[..] else {
-            panic!("{}", merged.len())
-        };
-        assert_eq!(here.results.runs.len(), sample().runs.len());
-        let dates = here.results.runs.iter().map(|run| run.date.as_str());
-        assert_eq!(
-            dates.collect::<Vec<_>>(),
-            ["2026-12-24", "2026-11-20", "2026-11-20"]
-        );
-        assert_eq!(here.folder_of(0), Path::new("new"));
-        assert_eq!(here.folder_of(1), Path::new("old"));
-        assert_eq!(far.results.adapter.name, "Another GPU");
     }
 
     #[test]

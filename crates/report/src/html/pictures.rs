@@ -1,12 +1,12 @@
 //! The pictures of a page, the most telling first, as far as there is room.
 
-use crate::html::sources::Source;
 use crate::notes::map_figures;
 use base64::{Engine, engine::general_purpose::STANDARD};
 use itertools::Itertools;
 use serde::Serialize;
 use skiagraph_compare::pictures::run_pictures::graph_name;
 use skiagraph_compare::records::results::{Images, Run};
+use skiagraph_compare::records::sources::Source;
 use skiagraph_compare::wording::plural;
 use std::{collections::BTreeMap, fs};
 

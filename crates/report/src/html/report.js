@@ -60,6 +60,7 @@ function drawConditions() {
     el('dl', {}, ...Object.entries({
       scene: `${source.scene}, ${source.triangles.toLocaleString('en-US')} triangles`,
       adapter: `${source.adapter} (${source.device_type})`,
+      machine: source.machine,
       measured: source.dates.join(', ') || 'on an unknown day',
       frames: `${source.frames}, timed after ${source.warmup} to warm up`,
       reference: `oracle ${source.oracle}`,

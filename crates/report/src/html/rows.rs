@@ -1,7 +1,6 @@
 //! All rows: the tables of the terminal, joined.
 
 use crate::html::shown::{Shown, part};
-use crate::html::sources::Source;
 use crate::matrices::by_light;
 use crate::overview::{Matrix, Overview, scene_names};
 use crate::summary::Row;
@@ -9,6 +8,7 @@ use crate::summary_table::{NOT_THERE, Summary, WRONG};
 use crate::table::{html, html_with};
 use itertools::Itertools;
 use skiagraph_chart::xml;
+use skiagraph_compare::records::sources::Source;
 use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::size;
 use std::path::{Path, PathBuf};

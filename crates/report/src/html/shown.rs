@@ -1,12 +1,13 @@
 //! Tables of the page, and parts of the page that belong to some of them. Every part stands in the
 //! page; its script shows those of the chosen tables.
 
-use crate::html::sources::Source;
 use crate::summary::{Row, by_wall};
 use crate::summary_table::Summary;
 use itertools::Itertools;
+use skiagraph_compare::records::results::Results;
+use skiagraph_compare::records::sources::Source;
 use skiagraph_compare::records::table::Table;
-use skiagraph_compare::wording::size;
+use skiagraph_compare::wording::{frames, size};
 use std::collections::BTreeSet;
 
 /// A table of the page: all rows of one source and viewport.
@@ -25,8 +26,13 @@ pub struct Shown<'a> {
 
 /// Returns a table for each summary. Each summary comes with the index of its source.
 pub fn shown<'a>(sources: &[Source], all: &'a [(usize, Summary<'a>)]) -> Vec<Shown<'a>> {
-    let adapters = sources.iter().map(|source| &source.results.adapter);
-    let adapters: BTreeSet<String> = adapters.map(ToString::to_string).collect();
+    let different = |of: fn(&Results) -> String| {
+        let values = sources.iter().map(|source| of(&source.results));
+        values.collect::<BTreeSet<String>>().len() > 1
+    };
+    let adapters = different(|results| results.adapter.to_string());
+    let machines = different(|results| results.machine.to_string());
+    let protocols = different(protocol);
     let table = |source: usize, summary: &'a Summary| {
         let results = &sources[source].results;
         let mut title = format!(
@@ -35,8 +41,14 @@ pub fn shown<'a>(sources: &[Source], all: &'a [(usize, Summary<'a>)]) -> Vec<Sho
             summary.what(),
             size(summary.viewport)
         );
-        if adapters.len() > 1 {
+        if adapters {
             title += &format!(" · {}", results.adapter);
+        }
+        if machines {
+            title += &format!(" · {}", results.machine);
+        }
+        if protocols {
+            title += &format!(" · {}", protocol(results));
         }
         Shown {
             source,
@@ -50,6 +62,12 @@ pub fn shown<'a>(sources: &[Source], all: &'a [(usize, Summary<'a>)]) -> Vec<Sho
     tables
         .map(|(source, summary)| table(*source, summary))
         .collect()
+}
+
+/// The protocol of results in words.
+fn protocol(of: &Results) -> String {
+    let frames = frames(of.frames);
+    format!("{frames} after {}, oracle {}", of.warmup, of.oracle)
 }
 
 impl Shown<'_> {

@@ -1,0 +1,683 @@
+//! `compare --baseline`: compares results with older ones, cell by cell, aware of noise.
+//!
+//! Errors repeat to the pixel on one adapter and driver, so there any growth is worse; on another
+//! one a [`Tolerance`] is granted. Times are compared on one machine, adapter and driver that was
+//! not loaded, by [`UnpairedRatio`], and never scaled.
+//!
+//! ```
+//! use skiagraph_compare::records::results_baseline::{Baseline, Change};
+//! use skiagraph_compare::records::read_back;
+//!
+//! # let out = tempfile::tempdir()?;
+//! # let name = "skiagraph_compare__records__results__tests__the_schema_is_pinned_and_reads_back";
+//! # let pinned = std::fs::read_to_string(format!("src/records/snapshots/{name}.snap"))?;
+//! # std::fs::write(out.path().join("results.json"), &pinned[pinned.find('{').unwrap_or(0)..])?;
+//! let mut now = read_back::kept(out.path())?;
+//! let baseline = Baseline::read(out.path())?;
+//! baseline.check(&now, &now.runs)?;
+//! now.runs[0].measured.as_mut().ok_or("it ran")?.wrong.total += 1;
+//! let changes = baseline.against(&now)?;
+//! assert_eq!(changes.cells[0].verdict(), Change::Worse);
+//! assert_eq!(changes.cells[1].verdict(), Change::Same);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use crate::error::CompareError;
+use crate::lists::unique;
+use crate::records::read_back;
+use crate::records::results::{Measured, Results, Run};
+use crate::records::statistics::FrameTimes;
+use crate::records::turns::LEAST_TURNS;
+use crate::records::unpaired::UnpairedRatio;
+use crate::wording::{plural, size, thousands};
+use itertools::Itertools;
+use std::path::Path;
+
+/// Older results, to compare newer ones with.
+#[derive(Debug)]
+pub struct Baseline {
+    /// Path of the file or folder, for messages.
+    name: String,
+    /// The results, of several machines and scenes if they were joined.
+    all: Vec<Results>,
+}
+
+/// Comparison of results with a baseline.
+#[derive(Debug)]
+pub struct Changes {
+    /// Path of the baseline's file or folder.
+    pub baseline: String,
+    /// Start of the comparison that measured the newest runs of the baseline, in UTC.
+    pub began: String,
+    /// Cells that both have, in the order of the new results.
+    pub cells: Vec<CellChange>,
+    /// Number of cells of the scene that only the baseline has.
+    pub only_then: usize,
+    /// Names of the new runs that the baseline does not have, or that could not run then.
+    pub only_now: Vec<String>,
+    /// Remarks: tolerances, and why times were not compared.
+    pub notes: Vec<String>,
+}
+
+/// One cell then and now.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CellChange {
+    /// Name of the method with its map size.
+    pub method: String,
+    /// Name of the view or path.
+    pub view: String,
+    /// Width and height of the viewport in pixels.
+    pub viewport: [u32; 2],
+    /// Figures of the baseline.
+    pub then: Figures,
+    /// New figures; `None` for a method that cannot run any more.
+    pub now: Option<Figures>,
+    /// Change of the errors; a method that cannot run any more is worse.
+    pub errors: Change,
+    /// Ratio of the new time to the old one; `None` if they are not compared.
+    pub ratio: Option<UnpairedRatio>,
+}
+
+/// Figures of a cell that are compared.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Figures {
+    /// Wrong pixels outside the band; of a method that remembers the mean of its pictures, rounded
+    /// up.
+    pub wrong: u64,
+    /// Root mean square error of the shares of light outside the band.
+    pub rmse: f64,
+    /// Median of a frame with every pass run, milliseconds.
+    pub ms: f64,
+}
+
+/// Direction of a change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Change {
+    /// Fewer errors or less time.
+    Better,
+    /// No difference that counts.
+    Same,
+    /// More errors or more time.
+    Worse,
+}
+
+/// Growth of errors that does not count as a change.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerance {
+    /// Number of wrong pixels.
+    pub pixels: u64,
+    /// Root mean square error.
+    pub rmse: f64,
+}
+
+/// Share of the pixels facing the light by which errors may differ from adapter to adapter.
+const OTHER_ADAPTER: f64 = 0.0005;
+
+/// Root mean square error by which shares may differ from adapter to adapter.
+const OTHER_ADAPTER_RMSE: f64 = 0.001;
+
+/// Rounding of a mean over all pixels.
+const ROUNDING: f64 = 1e-9;
+
+/// A run with measurements, and the results that it is of.
+#[derive(Clone, Copy)]
+struct Measurement<'a> {
+    results: &'a Results,
+    run: &'a Run,
+    measured: &'a Measured,
+}
+
+impl Baseline {
+    /// Reads the results of a folder or file, or of the folders in it
+    /// ([`with_scenes`](read_back::with_scenes)).
+    ///
+    /// # Errors
+    /// The errors of [`read_back::kept`]; results of an older version, whose cells have no ids.
+    pub fn read(place: &Path) -> Result<Self, CompareError> {
+        let mut all = Vec::new();
+        for place in read_back::with_scenes(&[place.to_path_buf()]) {
+            all.extend(read_back::kept(&place)?.each());
+        }
+        let baseline = Self {
+            name: place.display().to_string(),
+            all,
+        };
+        if baseline.runs().all(|(_, run)| run.cell.is_empty()) {
+            return Err(CompareError::Input(format!(
+                "{} has no ids of cells: it is empty, or of an older version; measure it anew",
+                baseline.name
+            )));
+        }
+        Ok(baseline)
+    }
+
+    fn runs(&self) -> impl Iterator<Item = (&Results, &Run)> {
+        let all = self.all.iter();
+        all.flat_map(|results| results.runs.iter().map(move |run| (results, run)))
+    }
+
+    /// Checks that the baseline has cells of a comparison. `planned` are the comparison's runs, and
+    /// `now` holds its conditions.
+    ///
+    /// # Errors
+    /// No cell is in both; the message lists how scene, protocol, views and methods differ.
+    pub fn check(&self, now: &Results, planned: &[Run]) -> Result<(), CompareError> {
+        let is_known = |run: &Run| self.runs().any(|(_, then)| then.cell == run.cell);
+        if planned.iter().any(is_known) {
+            return Ok(());
+        }
+        let here = planned.iter().map(|run| (now, run));
+        let lines = differences(self.runs().map(facts), here.map(facts));
+        Err(CompareError::Input(format!(
+            "the baseline {} has no cell of this comparison\n  {}\n  measure it anew, or name \
+             another one",
+            self.name,
+            lines.join("\n  ")
+        )))
+    }
+
+    /// Compares new results with the baseline.
+    ///
+    /// # Errors
+    /// On one adapter and driver the reference counts other pixels than then: the scene has
+    /// changed.
+    pub fn against(&self, now: &Results) -> Result<Changes, CompareError> {
+        let mut changes = Changes {
+            baseline: self.name.clone(),
+            began: self
+                .all
+                .iter()
+                .map(|of| of.began.clone())
+                .max()
+                .unwrap_or_default(),
+            cells: Vec::new(),
+            only_then: 0,
+            only_now: Vec::new(),
+            notes: Vec::new(),
+        };
+        let mut notes = Vec::new();
+        for run in &now.runs {
+            let Some(then) = self.of(now, run) else {
+                changes
+                    .only_now
+                    .extend(run.measured.as_ref().map(|_| run.label()));
+                continue;
+            };
+            let cell = self.cell(then, now, run, &mut notes)?;
+            changes.cells.push(cell);
+        }
+        let is_now = |then: &Run| now.runs.iter().any(|run| run.cell == then.cell);
+        let here = self.runs().filter(|(of, _)| of.scene == now.scene);
+        changes.only_then = here.filter(|(_, then)| !is_now(then)).count();
+        for (note, of) in notes.iter().counts().into_iter().sorted() {
+            changes
+                .notes
+                .push(format!("{note} ({})", plural(of, "cell")));
+        }
+        Ok(changes)
+    }
+
+    /// The baseline's run of a cell: of several the one that was measured the most alike.
+    fn of<'a>(&'a self, now: &Results, run: &Run) -> Option<Measurement<'a>> {
+        let same = self.runs().filter(|(_, then)| then.cell == run.cell);
+        let measured = same.filter_map(|(results, run)| {
+            let measured = run.measured.as_ref()?;
+            Some(Measurement {
+                results,
+                run,
+                measured,
+            })
+        });
+        measured.max_by_key(|then| {
+            let machine = then.results.machine_of(then.run);
+            let is_same_adapter = then.is_on_adapter_of(now);
+            let is_same_machine = machine.is_same(now.machine_of(run));
+            let is_same_label = then.run.preset == run.preset;
+            (is_same_adapter, is_same_machine, is_same_label)
+        })
+    }
+
+    fn cell(
+        &self,
+        then: Measurement,
+        now: &Results,
+        run: &Run,
+        notes: &mut Vec<String>,
+    ) -> Result<CellChange, CompareError> {
+        let mut cell = CellChange {
+            method: run.method_label(),
+            view: run.view.clone(),
+            viewport: run.viewport,
+            then: then.figures(),
+            now: None,
+            errors: Change::Worse,
+            ratio: None,
+        };
+        let Some(measured) = &run.measured else {
+            return Ok(cell);
+        };
+        let now = Measurement {
+            results: now,
+            run,
+            measured,
+        };
+        let tolerance = Tolerance::new(then, now);
+        if !then.is_on_adapter_of(now.results) {
+            notes.push(format!(
+                "measured on another adapter then ({}): errors within 0.05 % of the pixels that \
+                 face the light, or the band, and RMSE within {OTHER_ADAPTER_RMSE} are the same",
+                then.results.adapter
+            ));
+        }
+        self.check_reference(then, now, tolerance)?;
+        let figures = now.figures();
+        (cell.now, cell.errors) = (Some(figures), tolerance.change(cell.then, figures));
+        match ratio(then, now) {
+            Ok(ratio) => cell.ratio = Some(ratio),
+            Err(why) => notes.push(format!("times are not compared: {why}")),
+        }
+        Ok(cell)
+    }
+
+    /// Refuses a baseline whose reference has other pixels.
+    fn check_reference(
+        &self,
+        then: Measurement,
+        now: Measurement,
+        tolerance: Tolerance,
+    ) -> Result<(), CompareError> {
+        let counts = |of: Measurement| {
+            let pixels = &of.run.pixels;
+            [pixels.facing_light, pixels.lit, pixels.shadow]
+        };
+        let mut pairs = counts(then).into_iter().zip(counts(now));
+        if pairs.all(|(then, now)| then.abs_diff(now) <= tolerance.pixels) {
+            return Ok(());
+        }
+        let text = |of| {
+            let [facing, lit, shadow] = counts(of).map(thousands);
+            format!("{facing} pixels face the light, {lit} lit and {shadow} in shadow")
+        };
+        Err(CompareError::Input(format!(
+            "the baseline {} is of another scene: on {} at {} {} there, and {} here\n  measure it \
+             anew",
+            self.name,
+            now.run.view,
+            size(now.run.viewport),
+            text(then),
+            text(now)
+        )))
+    }
+}
+
+impl CellChange {
+    /// Returns the change of the times; `Same` if they are not compared.
+    pub fn times(&self) -> Change {
+        match self.ratio.filter(UnpairedRatio::is_told_apart) {
+            None => Change::Same,
+            Some(ratio) if ratio.median < 1.0 => Change::Better,
+            Some(_) => Change::Worse,
+        }
+    }
+
+    /// Returns the verdict on the cell: worse if errors or times are worse, else better if one of
+    /// both is better.
+    pub fn verdict(&self) -> Change {
+        let both = [self.errors, self.times()];
+        let is = |change: &Change| both.contains(change);
+        let order = [Change::Worse, Change::Better];
+        order.into_iter().find(is).unwrap_or(Change::Same)
+    }
+}
+
+impl Changes {
+    /// Returns the cells with a verdict.
+    pub fn with(&self, verdict: Change) -> Vec<&CellChange> {
+        let cells = self.cells.iter();
+        cells.filter(|cell| cell.verdict() == verdict).collect()
+    }
+}
+
+impl Tolerance {
+    /// Returns the tolerance between two runs of a cell: none on one adapter and driver.
+    fn new(then: Measurement, now: Measurement) -> Self {
+        if then.is_on_adapter_of(now.results) {
+            return Self {
+                pixels: 0,
+                rmse: ROUNDING,
+            };
+        }
+        let share = OTHER_ADAPTER * then.run.pixels.facing_light as f64;
+        Self {
+            pixels: then.run.band.max(now.run.band).max(share.ceil() as u64),
+            rmse: OTHER_ADAPTER_RMSE,
+        }
+    }
+
+    fn change(self, then: Figures, now: Figures) -> Change {
+        let grows = |then: Figures, now: Figures| {
+            now.wrong > then.wrong + self.pixels || now.rmse > then.rmse + self.rmse
+        };
+        if grows(then, now) {
+            Change::Worse
+        } else if grows(now, then) {
+            Change::Better
+        } else {
+            Change::Same
+        }
+    }
+}
+
+impl Measurement<'_> {
+    fn is_on_adapter_of(&self, other: &Results) -> bool {
+        self.results.adapter.to_string() == other.adapter.to_string()
+    }
+
+    /// Times of frames with every pass run.
+    fn times(&self) -> &FrameTimes {
+        let path = self.measured.sequence.as_ref();
+        let every_pass = path.and_then(|path| path.every_pass.as_ref());
+        every_pass.unwrap_or(&self.measured.frame)
+    }
+
+    fn figures(&self) -> Figures {
+        let (measured, times) = (self.measured, self.times());
+        let cycle = measured.steady.as_ref().and_then(|steady| steady.judged);
+        let wrong = cycle.map(|cycle| cycle.wrong_outside_band_mean.ceil() as u64);
+        let rmse = measured.graded.rmse_outside_band;
+        Figures {
+            wrong: wrong.unwrap_or_else(|| measured.wrong_outside_band()),
+            rmse: cycle.map_or(rmse, |cycle| cycle.rmse_mean),
+            ms: times.gpu_ms.unwrap_or(times.wall_ms).median,
+        }
+    }
+}
+
+/// The ratio of the new times to the old ones, or why there is none.
+fn ratio(then: Measurement, now: Measurement) -> Result<UnpairedRatio, String> {
+    let machines = [then, now].map(|of| of.results.machine_of(of.run));
+    if !machines[0].is_same(machines[1]) {
+        let [there, here] = machines;
+        return Err(format!("another machine ({there} then, {here} now)"));
+    }
+    if !then.is_on_adapter_of(now.results) {
+        return Err("another adapter or driver".into());
+    }
+    for (of, when) in machines.into_iter().zip(["then", "now"]) {
+        if of.is_loaded() {
+            let cores = plural(of.cores as usize, "core");
+            let load = of.load.unwrap_or_default();
+            return Err(format!(
+                "the machine was busy {when} (load {load:.1} on {cores})"
+            ));
+        }
+    }
+    let by_wall = [then, now].iter().any(|of| of.times().gpu_frames.is_none());
+    let [then, now] = [&then, &now].map(|of| of.times().frames(by_wall).unwrap_or(&[]));
+    UnpairedRatio::new(now, then).ok_or_else(|| {
+        format!(
+            "{} then and {} now, and both must be {LEAST_TURNS} or more",
+            plural(then.len(), "frame"),
+            now.len()
+        )
+    })
+}
+
+/// A fact that tells cells apart, behind its name.
+type Fact = (String, String);
+
+fn facts((results, run): (&Results, &Run)) -> Vec<Fact> {
+    let mut facts = vec![
+        ("scene", results.scene.to_string()),
+        ("oracle", results.oracle.clone()),
+        ("frames", results.frames.to_string()),
+        ("warmup", results.warmup.to_string()),
+        ("cached frames", results.cached_frames.to_string()),
+        ("views", run.view.clone()),
+        ("viewports", size(run.viewport)),
+        ("methods", run.method_label()),
+    ];
+    let of = format!("params of {}", run.method_label());
+    facts.push((&of, run.assignments()));
+    let facts = facts.into_iter();
+    facts
+        .map(|(what, value)| (what.to_owned(), value))
+        .collect()
+}
+
+/// Lists the facts of which both sides have no value in common.
+fn differences(
+    there: impl Iterator<Item = Vec<Fact>>,
+    here: impl Iterator<Item = Vec<Fact>>,
+) -> Vec<String> {
+    let (there, here) = (unique(there.flatten()), unique(here.flatten()));
+    let values = |of: &[Fact], what: &str| -> Vec<String> {
+        let of = of.iter().filter(|(known, _)| known == what);
+        of.map(|(_, value)| value.clone()).collect()
+    };
+    let mut lines = Vec::new();
+    for what in unique(here.iter().map(|(what, _)| what.clone())) {
+        let [there, here] = [&there, &here].map(|of| values(of, &what));
+        if !there.is_empty() && !here.iter().any(|value| there.contains(value)) {
+            lines.push(format!(
+                "{what}: there {}, here {}",
+                there.join(", "),
+                here.join(", ")
+            ));
+        }
+    }
+    if lines.is_empty() {
+        let unseen = "camera, light, jitter or number of reference samples: not the same";
+        lines.push(unseen.to_owned());
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::records::results::{Answer, tests::sample};
+    use std::time::Duration;
+
+    /// `sample()` with ten frames of around so many milliseconds.
+    fn timed(ms: f64) -> Results {
+        let mut results = sample();
+        for measured in results
+            .runs
+            .iter_mut()
+            .filter_map(|run| run.measured.as_mut())
+        {
+            let frame =
+                |turn: u32| Duration::from_secs_f64((ms + f64::from(turn % 3) * 0.01) / 1e3);
+            let frames: Vec<Duration> = (0..10).map(frame).collect();
+            let gpu: Vec<Option<Duration>> = frames.iter().copied().map(Some).collect();
+            measured.frame = FrameTimes::new(&gpu, &frames).unwrap();
+        }
+        results
+    }
+
+    fn baseline(results: Results) -> Baseline {
+        Baseline {
+            name: "old.json".into(),
+            all: results.each(),
+        }
+    }
+
+    fn changes(then: Results, now: &Results) -> Changes {
+        baseline(then).against(now).unwrap()
+    }
+
+    /// Errors and times of the first cell.
+    fn first(then: Results, change: impl Fn(&mut Results)) -> (Change, Change) {
+        let mut now = timed(10.0);
+        change(&mut now);
+        let changes = changes(then, &now);
+        (changes.cells[0].errors, changes.cells[0].times())
+    }
+
+    fn measured(results: &mut Results) -> &mut Measured {
+        results.runs[0].measured.as_mut().unwrap()
+    }
+
+    #[test]
+    fn any_growth_of_errors_is_worse_on_one_adapter() {
+        use Change::{Better, Same, Worse};
+        let errors = |change: fn(&mut Measured)| first(timed(10.0), |now| change(measured(now))).0;
+        assert_eq!(errors(|_| ()), Same);
+        assert_eq!(errors(|of| of.wrong.total += 1), Worse);
+        assert_eq!(errors(|of| of.wrong.total -= 1), Better);
+        assert_eq!(
+            errors(|of| (of.wrong.total, of.wrong.in_band) = (504, 7)),
+            Same,
+            "in the band"
+        );
+        assert_eq!(errors(|of| of.graded.rmse_outside_band += 1e-6), Worse);
+        // Fewer wrong pixels, but worse shades: no trade.
+        let both = |of: &mut Measured| {
+            (of.answer, of.wrong.total) = (Answer::Graded, 400);
+            of.graded.rmse_outside_band += 0.1;
+        };
+        assert_eq!(errors(both), Worse);
+    }
+
+    #[test]
+    fn another_adapter_has_a_tolerance_and_no_times() {
+        let far = |results: &mut Results| results.adapter.driver = "driver 2".into();
+        let wrong = |by: u64| {
+            let change = |now: &mut Results| {
+                far(now);
+                measured(now).wrong.total += by;
+            };
+            first(timed(5.0), change)
+        };
+        // 0.05 % of 100,000 pixels.
+        assert_eq!(wrong(50), (Change::Same, Change::Same));
+        assert_eq!(wrong(51), (Change::Worse, Change::Same));
+        let mut now = timed(10.0);
+        far(&mut now);
+        let notes = changes(timed(5.0), &now).notes;
+        assert_eq!(
+            notes,
+            [
+                "measured on another adapter then (Some GPU · vulkan · driver 1.2): errors within \
+                 0.05 % of the pixels that face the light, or the band, and RMSE within 0.001 are \
+                 the same (2 cells)",
+                "times are not compared: another adapter or driver (2 cells)"
+            ]
+        );
+    }
+
+    #[test]
+    fn times_are_told_apart_or_it_is_said_why_not() {
+        let times = |then: f64| first(timed(then), |_| ()).1;
+        assert_eq!(times(8.0), Change::Worse);
+        assert_eq!(times(12.0), Change::Better);
+        assert_eq!([9.8, 10.0, 10.2].map(times), [Change::Same; 3], "level");
+        type Spoil = fn(&mut Results);
+        let spoils: [(Spoil, &str); 3] = [
+            (
+                |of| of.runs[0].machine.as_mut().unwrap().host = Some("far".into()),
+                "another machine (bench, Some CPU, 8 cores then, far, Some CPU, 8 cores now)",
+            ),
+            (
+                |of| of.runs[0].machine.as_mut().unwrap().load = Some(6.0),
+                "the machine was busy now (load 6.0 on 8 cores)",
+            ),
+            (
+                |of| measured(of).frame.gpu_frames = Some(vec![1.0; 3]),
+                "10 frames then and 3 now, and both must be 8 or more",
+            ),
+        ];
+        for (spoil, why) in spoils {
+            let mut now = timed(20.0);
+            spoil(&mut now);
+            let changes = changes(timed(10.0), &now);
+            assert_eq!(changes.cells[0].ratio, None);
+            assert_eq!(
+                changes.notes,
+                [format!("times are not compared: {why} (1 cell)")]
+            );
+            assert_eq!(changes.with(Change::Worse).len(), 1, "the other cell");
+        }
+    }
+
+    #[test]
+    fn a_method_that_cannot_run_any_more_is_worse_and_new_ones_are_named() {
+        let mut now = timed(10.0);
+        (now.runs[0].measured, now.runs[0].unavailable) = (None, Some("no ray queries".into()));
+        now.runs[1].cell = "1".into();
+        let changes = changes(timed(10.0), &now);
+        assert_eq!(
+            (changes.cells.len(), changes.cells[0].verdict()),
+            (1, Change::Worse)
+        );
+        assert_eq!(changes.only_now, ["rt on main 512x256"]);
+        assert_eq!(changes.only_then, 1);
+    }
+
+    #[test]
+    fn of_a_joined_baseline_the_run_of_this_machine_counts() {
+        let mut joined = timed(5.0);
+        joined.adapter.name = "Far GPU".into();
+        joined.others = vec![timed(10.0)];
+        assert_eq!(first(joined, |_| ()), (Change::Same, Change::Same));
+    }
+
+    #[test]
+    fn a_baseline_of_something_else_says_what_differs() {
+        let refused = |change: fn(&mut Results)| {
+            let mut now = sample();
+            for (index, run) in now.runs.iter_mut().enumerate() {
+                run.cell = format!("{index}");
+            }
+            change(&mut now);
+            baseline(sample())
+                .check(&now, &now.runs)
+                .unwrap_err()
+                .to_string()
+        };
+        type Change = fn(&mut Results);
+        let changes: [(Change, &str); 6] = [
+            (
+                |now| now.scene.name = "sponza".into(),
+                "scene: there park, 55,000 triangles, here sponza, 55,000 triangles",
+            ),
+            (|now| now.frames = 3, "frames: there 10, here 3"),
+            (
+                |now| now.oracle = "offset:1".into(),
+                "oracle: there exact, here offset:1",
+            ),
+            (
+                |now| now.runs.iter_mut().for_each(|run| run.view = "down".into()),
+                "views: there main, here down",
+            ),
+            (
+                |now| {
+                    now.runs
+                        .iter_mut()
+                        .for_each(|run| drop(run.params.remove("cull")))
+                },
+                "params of nsm 1024: there cull=front;slope_bias=1.5, here slope_bias=1.5",
+            ),
+            (
+                |_| (),
+                "camera, light, jitter or number of reference samples: not the same",
+            ),
+        ];
+        for (change, part) in changes {
+            let told = refused(change);
+            assert!(
+                told.contains(part) && told.contains("measure it anew"),
+                "{told}"
+            );
+        }
+        assert!(baseline(sample()).check(&sample(), &sample().runs).is_ok());
+        let mut moved = sample();
+        moved.runs[0].pixels.lit += 1;
+        let told = baseline(sample()).against(&moved).unwrap_err().to_string();
+        assert!(
+            told.contains("is of another scene: on main at 512x256"),
+            "{told}"
+        );
+    }
+}

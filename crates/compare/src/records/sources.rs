@@ -1,0 +1,238 @@
+//! Joins the results of several folders and machines. What was measured alike becomes one source;
+//! results of other machines, adapters, scenes or protocols stay apart.
+//!
+//! ```
+//! use skiagraph_compare::records::sources::{Kept, merged, sources};
+//!
+//! # let out = tempfile::tempdir()?;
+//! # let name = "skiagraph_compare__records__results__tests__the_schema_is_pinned_and_reads_back";
+//! # let pinned = std::fs::read_to_string(format!("src/records/snapshots/{name}.snap"))?;
+//! # std::fs::write(out.path().join("results.json"), &pinned[pinned.find('{').unwrap_or(0)..])?;
+//! let mut kept = Kept::read(out.path())?;
+//! let mut far = Kept::read(out.path())?;
+//! far[0].results.machine.host = Some("far".into());
+//! kept.append(&mut far);
+//! let sources = sources(kept);
+//! assert_eq!(sources.len(), 2);
+//! let results = merged(&sources, out.path()).ok_or("there are sources")?;
+//! assert_eq!(results.others[0].machine.host.as_deref(), Some("far"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use crate::error::CompareError;
+use crate::lists::unique;
+use crate::records::read_back;
+use crate::records::results::{Results, Run};
+use std::path::{Path, PathBuf};
+
+/// Results of `compare`, read back from the folder that it wrote.
+#[derive(Clone, Debug)]
+pub struct Kept {
+    /// The folder that the results were read from, with their pictures.
+    pub folder: PathBuf,
+    /// Results from the folder's `results.json` that were measured alike: `others` is empty.
+    pub results: Results,
+}
+
+impl Kept {
+    /// Reads the results of a folder, or of a results.json whose folder has its pictures. A file
+    /// that `merge` wrote may hold several.
+    ///
+    /// # Errors
+    /// The errors of [`read_back::kept`].
+    pub fn read(place: &Path) -> Result<Vec<Self>, CompareError> {
+        let results = read_back::kept(place)?;
+        let folder = if place.is_dir() {
+            Some(place)
+        } else {
+            place.parent()
+        };
+        let folder = folder.unwrap_or(Path::new(""));
+        let each = results.each().into_iter().map(|results| Self {
+            folder: folder.to_path_buf(),
+            results,
+        });
+        Ok(each.collect())
+    }
+}
+
+/// Measurements of one scene on one machine and adapter under one protocol.
+#[derive(Debug)]
+pub struct Source {
+    /// All runs of the source, with their conditions.
+    pub results: Results,
+    /// The folders that the runs come from.
+    pub folders: Vec<PathBuf>,
+    /// Index of each run's folder.
+    places: Vec<usize>,
+    /// Number of runs that were left out, as a newer one of the same cell is there.
+    pub replaced: usize,
+}
+
+impl Source {
+    /// Returns the folder with the pictures of the run with this index in the results.
+    pub fn folder_of(&self, run: usize) -> &Path {
+        &self.folders[self.places[run]]
+    }
+
+    fn new(results: &Results) -> Self {
+        Self {
+            results: Results {
+                runs: Vec::new(),
+                commands: Vec::new(),
+                ..results.clone()
+            },
+            folders: Vec::new(),
+            places: Vec::new(),
+            replaced: 0,
+        }
+    }
+
+    fn is_like(&self, other: &Results) -> bool {
+        let conditions = |of: &Results| {
+            let adapter = (of.adapter.to_string(), of.adapter.gpu_unavailable.is_some());
+            let protocol = (of.oracle.clone(), of.frames, of.warmup, of.cached_frames);
+            (of.program.clone(), adapter, of.scene.clone(), protocol)
+        };
+        let results = &self.results;
+        results.machine.is_same(&other.machine) && conditions(results) == conditions(other)
+    }
+
+    fn add(&mut self, folder: PathBuf, other: Results) {
+        let place = self.folders.len();
+        self.folders.push(folder);
+        let commands = [&self.results.commands[..], &other.commands].concat();
+        let machine = other.machine.clone();
+        if self.results.began < other.began {
+            // Load, budgets and hour are those of the newest comparison.
+            self.results = Results {
+                runs: std::mem::take(&mut self.results.runs),
+                ..other.clone()
+            };
+        }
+        self.results.commands = unique(commands);
+        for mut run in other.runs {
+            run.machine.get_or_insert_with(|| machine.clone());
+            // Times are written so that they sort.
+            let when = |run: &Run| (run.session.clone(), run.date.clone());
+            let known = &mut self.results.runs;
+            match known.iter().position(|known| known.is_same_cell(&run)) {
+                Some(at) => {
+                    self.replaced += 1;
+                    if when(&known[at]) <= when(&run) {
+                        (known[at], self.places[at]) = (run, place);
+                    }
+                }
+                None => {
+                    known.push(run);
+                    self.places.push(place);
+                }
+            }
+        }
+    }
+}
+
+/// Joins kept results into sources, one for each scene, machine, adapter and protocol, in the order
+/// of the folders. Of the runs of one cell in a source the newest one counts.
+pub fn sources(kept: Vec<Kept>) -> Vec<Source> {
+    let mut sources: Vec<Source> = Vec::new();
+    for Kept { folder, results } in kept {
+        let index = sources.iter().position(|source| source.is_like(&results));
+        let index = index.unwrap_or_else(|| {
+            sources.push(Source::new(&results));
+            sources.len() - 1
+        });
+        sources[index].add(folder, results);
+    }
+    sources
+}
+
+/// Returns the content of one results.json with all sources, for the folder `out`; `None` without
+/// sources. Runs whose pictures are in other folders have none in it.
+pub fn merged(sources: &[Source], out: &Path) -> Option<Results> {
+    let mut each = sources.iter().map(|source| {
+        let mut results = source.results.clone();
+        for (index, run) in results.runs.iter_mut().enumerate() {
+            if source.folder_of(index) != out
+                && let Some(measured) = &mut run.measured
+            {
+                measured.images = None;
+            }
+        }
+        results
+    });
+    let mut first = each.next()?;
+    first.others = each.collect();
+    Some(first)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::records::results::tests::sample;
+
+    fn kept(folder: &str, results: Results) -> Kept {
+        let folder = folder.into();
+        Kept { folder, results }
+    }
+
+    /// The first run of `sample()`, measured in a later hour on a busier machine.
+    fn later() -> Results {
+        let mut later = sample();
+        later.runs.truncate(1);
+        later.runs[0].session = "2026-11-21T04:30:12Z".into();
+        (later.began, later.machine.load) = (later.runs[0].session.clone(), Some(7.0));
+        later.runs[0].machine = None;
+        later.runs[0].band = 77;
+        later.commands = vec!["later".into()];
+        later
+    }
+
+    #[test]
+    fn of_one_cell_on_one_machine_the_newer_run_counts_whatever_the_order() {
+        for order in [[0, 1], [1, 0]] {
+            let both = [("old", sample()), ("new", later())];
+            let both = order.map(|index| both[index].clone());
+            let all = both.map(|(folder, results)| kept(folder, results));
+            let [source] = &sources(all.into())[..] else {
+                panic!("one machine, scene and protocol")
+            };
+            let runs = &source.results.runs;
+            assert_eq!((runs.len(), source.replaced), (3, 1));
+            let newer = runs.iter().position(|run| run.band == 77).unwrap();
+            assert_eq!(source.folder_of(newer), Path::new("new"));
+            assert_eq!(source.results.began, later().began);
+            assert_eq!(source.results.commands.len(), 2);
+            let load = |run: usize| source.results.machine_of(&runs[run]).load;
+            assert_eq!(load(newer), Some(7.0), "that of its own comparison");
+            assert_eq!((newer, load(1)), (0, Some(0.25)));
+        }
+    }
+
+    #[test]
+    fn other_cells_machines_scenes_and_protocols_stay_apart() {
+        let mut other_cell = later();
+        other_cell.runs[0].cell = "1".into();
+        let joined = sources(vec![kept("a", sample()), kept("b", other_cell)]);
+        assert_eq!(joined[0].results.runs.len(), 4);
+        type Change = fn(&mut Results);
+        let changes: [Change; 5] = [
+            |of| of.machine.host = Some("far".into()),
+            |of| of.adapter.driver = "driver 2".into(),
+            |of| of.scene.name = "sponza".into(),
+            |of| of.oracle = "offset:1".into(),
+            |of| of.frames = 3,
+        ];
+        for change in changes {
+            let mut other = sample();
+            change(&mut other);
+            let joined = sources(vec![kept("a", sample()), kept("b", other.clone())]);
+            assert_eq!(joined.len(), 2);
+            let whole = merged(&joined, Path::new("a")).unwrap();
+            let images = |of: &Results| of.runs[0].measured.as_ref().unwrap().images.is_some();
+            assert!(images(&whole) && !images(&whole.others[0]));
+            assert_eq!(whole.each().len(), 2);
+        }
+        assert_eq!(merged(&[], Path::new("a")), None);
+    }
+}

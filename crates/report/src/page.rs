@@ -28,10 +28,10 @@ pub fn write_beside(folder: &Path, sink: &dyn Sink) -> Result<(), CompareError> 
     write(&[folder.to_path_buf()], &folder.join(FILE), sink)
 }
 
-/// Writes the page of several folders or files of results to `file`. A folder without results stands
-/// for the folders of results in it. The sink gets a note about pictures that did not fit into the
-/// page. If `file` lies in one of the folders, that folder's lock is held, so the page is never
-/// older than the results beside it.
+/// Writes the page of several folders or files of results to `file`. A folder without results
+/// stands for the folders of results in it. The sink gets a note about pictures that did not fit
+/// into the page. If `file` lies in one of the folders, that folder's lock is held, so the page is
+/// never older than the results beside it.
 ///
 /// # Errors
 /// If a folder has no results, results cannot be read, or the file cannot be written.

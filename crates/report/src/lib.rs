@@ -23,4 +23,5 @@ pub mod summary;
 pub mod summary_table;
 pub mod table;
 pub mod trace;
+mod tuning;
 pub mod verdict;

@@ -1,6 +1,7 @@
 //! The verdict of a comparison: which method to take, in one or two sentences.
 
 use crate::summary::{Row, Wrong, by_wall};
+use crate::tuning;
 use skiagraph_compare::measuring::date::is_another_hour;
 use skiagraph_compare::records::budgets::Budgets;
 use skiagraph_compare::wording::{bytes, ms, percent, plural};
@@ -19,8 +20,7 @@ pub struct Verdict {
     pub sentences: Vec<String>,
 }
 
-/// Judges rows that were measured on the same views; `rows` must be sorted with the fastest first.
-/// A row takes no part if it has fewer views than others, is of another hour (the machine may have
+/// Judges rows that were measured on the same views. A row takes no part if it has fewer views than others, is of another hour (the machine may have
 /// been loaded differently), was cut short, or could not run. Rows beyond a budget are not
 /// recommended.
 pub fn verdict(rows: &[Row], budgets: &Budgets) -> Verdict {
@@ -59,6 +59,7 @@ pub fn verdict(rows: &[Row], budgets: &Budgets) -> Verdict {
     if let Some(condition) = full.iter().find_map(|of| of.condition) {
         verdict.sentences = conditioned(condition, verdict.sentences, &full);
     }
+    verdict.sentences.extend(tuning::sentences(rows));
     verdict
 }
 

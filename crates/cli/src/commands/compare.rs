@@ -23,6 +23,7 @@ use skiagraph_compare::measuring::{
     ground_truth::PrimaryVisibility,
     resume::Kept,
     series::Series,
+    tune::tune,
     view_or_path::{ViewOrPath, under_lights},
 };
 use skiagraph_compare::pictures::run_pictures::graph_name;
@@ -77,10 +78,11 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
             views.map(ViewOrPath::Still).collect()
         }
     };
-    let comparison = Comparison {
+    let mut comparison = Comparison {
         views,
         viewports: unique(args.size.iter().map(|Size(size)| *size)),
         methods,
+        tuned: Default::default(),
         protocol: Protocol {
             frames: args.frames,
             warmup: args.warmup,
@@ -100,8 +102,12 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         command: Some(command_line(std::env::args_os())),
         scene,
     };
-    comparison.check(session)?;
     check_folder(&args.out)?;
+    interrupt::install()?;
+    if args.tune {
+        tune(&mut comparison, session)?;
+    }
+    comparison.check(session)?;
     let graphs = match args.images {
         Images::All => graphs(&comparison, session),
         Images::None => Vec::new(),
@@ -116,7 +122,6 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     for (name, svg) in &graphs {
         write_whole(&args.out.join(name), svg.as_bytes())?;
     }
-    interrupt::install()?;
     let outcome = run(args, &comparison, &mut series);
     finish(args, series, outcome)
 }

@@ -87,6 +87,24 @@ pub fn judged(
     Ok((outputs, judgement))
 }
 
+/// Returns how wrong a preset's decoded outputs are, in pixels: the number of wrong pixels outside
+/// the band, or under a light with an extent the sum of the squared errors of the shares of light.
+///
+/// # Errors
+/// Those of [`judged`].
+pub fn error(
+    preset: &Preset,
+    outputs: Result<Outputs, String>,
+    ground_truth: &GroundTruth,
+) -> Result<f64, CompareError> {
+    let (_, judgement) = judged(preset, outputs, ground_truth)?;
+    let counts = &judgement.counts;
+    Ok(match &ground_truth.area {
+        None => counts.wrong.total.saturating_sub(counts.wrong.in_band) as f64,
+        Some(_) => judgement.graded.rmse.powi(2) * counts.pixels.facing_light as f64,
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -507,7 +507,8 @@ fn planned(comparison: &Comparison, methods: &[Method], began: &str) -> Vec<Run>
         let fingerprint = view.fingerprint(fingerprint);
         for &viewport in &comparison.viewports {
             let methods = methods.iter().map(|method| method.at(viewport));
-            planned.extend(methods.map(|method| Run {
+            planned.extend(methods.enumerate().map(|(index, method)| Run {
+                tuned: comparison.tuned.get(&index).cloned(),
                 preset: method.name.clone(),
                 view: view.name().to_owned(),
                 light: view.one_of_lights().map(str::to_owned),

@@ -35,4 +35,5 @@ pub mod statistics;
 pub mod steady;
 pub mod stress;
 pub mod table;
+pub mod tuned;
 pub mod turns;

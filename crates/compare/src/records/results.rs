@@ -22,6 +22,7 @@ use crate::records::budgets::Budgets;
 use crate::records::sequence::Sequence;
 use crate::records::statistics::{FrameTimes, Spread};
 use crate::records::steady::Steady;
+use crate::records::tuned::Tuned;
 use crate::records::turns::Turns;
 use crate::wording::{size, thousands};
 use serde::{Deserialize, Serialize};
@@ -189,6 +190,9 @@ pub struct Run {
     pub date: String,
     /// Start of the comparison that measured the run, in UTC: `2026-11-21T04:30:12Z`.
     pub session: String,
+    /// Search for good settings that ended in these params; absent for a method that was not tuned.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tuned: Option<Tuned>,
     /// Promise of the method's document about its answers with these params; absent if it makes
     /// none.
     #[serde(default, skip_serializing_if = "Option::is_none")]

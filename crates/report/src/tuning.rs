@@ -21,14 +21,9 @@ pub fn sentences(rows: &[Row]) -> Vec<String> {
     let (changed, kept): (Vec<_>, Vec<_>) =
         tuned.into_iter().partition(|(_, of)| !of.set.is_empty());
     let brought = |(row, of): &(&Row, &Tuned)| {
-        let before = rows.iter().find(|other| is_default_of(other, row, of))?;
-        Some(format!(
-            "With {} `{}` is {} here instead of {}.",
-            of.words(),
-            of.of,
-            error(row),
-            error(before)
-        ))
+        let before = rows.iter().find(|other| is_default_of(other, row))?;
+        let (with, name, now, before) = (of.words(), &of.of, error(row), error(before));
+        Some(format!("With {with} `{name}` is {now} here, with its defaults {before}."))
     };
     said.extend(changed.iter().filter_map(brought));
     if !changed.is_empty() {
@@ -67,7 +62,10 @@ pub fn sentences(rows: &[Row]) -> Vec<String> {
 }
 
 /// True if `other` is the method of `row` before it was tuned.
-fn is_default_of(other: &Row, row: &Row, of: &Tuned) -> bool {
+pub fn is_default_of(other: &Row, row: &Row) -> bool {
+    let Some(of) = row.tuned() else {
+        return false;
+    };
     let is_same_map = of.set.contains_key("map_size") || other.map_size() == row.map_size();
     other.method == of.of && is_same_map && other.tuned().is_none_or(|of| of.set.is_empty())
 }
@@ -84,18 +82,9 @@ fn is_exact_anyway(row: &Row) -> bool {
 
 /// The views on which settings were chosen.
 fn chosen_on(of: &Tuned) -> String {
-    let views = of.chosen_on.len();
-    match of.is_generated {
-        true => format!(
-            "Settings were chosen on {}, generated for that, and are judged on those above.",
-            plural(views, "other view")
-        ),
-        false => format!(
-            "Settings were chosen on {} ({}), and are judged on the others.",
-            plural(views, "view"),
-            of.chosen_on.join(", ")
-        ),
-    }
+    let views = plural(of.chosen_on.len(), "other view");
+    let names = of.chosen_on.join(", ");
+    format!("Tuned settings were chosen on {views} ({names}) than those they are judged on here.")
 }
 
 /// How wrong a row is.

@@ -34,11 +34,9 @@ pub fn verdict(rows: &[Row], budgets: &Budgets) -> Verdict {
         .filter(|(_, row)| !is_another_hour(row.session(), newest))
         .filter_map(|(index, row)| Contender::new(index, row, by_wall))
         .collect();
-    let within: Vec<Contender> = full
-        .iter()
-        .filter(|of| of.is_within(budgets))
-        .cloned()
-        .collect();
+    let within = full.iter().filter(|of| of.is_within(budgets));
+    let within = better_settings(within.cloned().collect());
+    let full = better_settings(full);
     let mut verdict = if full.is_empty() {
         Verdict::default()
     } else if within.is_empty() {
@@ -61,6 +59,18 @@ pub fn verdict(rows: &[Row], budgets: &Budgets) -> Verdict {
     }
     verdict.sentences.extend(tuning::sentences(rows));
     verdict
+}
+
+/// The contenders without those that are beaten by another setting of the same method: of a method
+/// and what it was tuned to, the one with the greater error is left out, and never recommended.
+fn better_settings(all: Vec<Contender>) -> Vec<Contender> {
+    let is_beaten = |of: &Contender| {
+        let others = all.iter().filter(|other| of.is_other_setting_of(other));
+        let mut others = others.map(|other| other.error_to_rank().total_cmp(&of.error_to_rank()));
+        others.any(|order| order.is_lt() || (order.is_eq() && of.is_tuned()))
+    };
+    let better = all.iter().filter(|of| !is_beaten(of));
+    better.cloned().collect()
 }
 
 /// The pixels that a verdict is of, where it is not of nearly all that face the light.
@@ -165,6 +175,27 @@ impl<'a> Contender<'a> {
                 let share = percent(outside_band, facing_light);
                 format!("wrong on {share} of the surfaces that face the light")
             }
+        }
+    }
+
+    /// True if it is a setting that was searched for, other than the defaults.
+    fn is_tuned(&self) -> bool {
+        self.row.tuned().is_some_and(|of| !of.set.is_empty())
+    }
+
+    /// True if one of the two is what the other one was tuned to.
+    fn is_other_setting_of(&self, other: &Self) -> bool {
+        let is_of = |tuned: &Self, of: &Self| {
+            tuned.is_tuned() && !of.is_tuned() && tuning::is_default_of(of.row, tuned.row)
+        };
+        is_of(self, other) || is_of(other, self)
+    }
+
+    /// The figure by which settings of one method are ranked.
+    fn error_to_rank(&self) -> f64 {
+        match self.is_soft {
+            true => self.rmse,
+            false => self.wrong.share(),
         }
     }
 

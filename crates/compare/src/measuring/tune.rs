@@ -44,16 +44,21 @@ use skiagraph_reference::Oracle;
 use skiagraph_scene::{Scene, View};
 use std::{rc::Rc, sync::Arc};
 
+/// Work of a new executor with its pipelines, as a multiple of that of a frame. Of each run there
+/// are two, for answers and for diagnostics of the map; a search has one, and changes it.
+const NEW_EXECUTOR: u64 = 8;
+
 /// Cost of a comparison with a search, as a multiple of that of the same comparison without one.
 const MOST_COST: u64 = 10;
 
-/// Views that are generated where a comparison has fewer than two.
-const GENERATED: usize = 2;
+/// Views on which settings are chosen where a comparison has fewer than two: at least, so that one
+/// odd view does not decide, and at most.
+const OTHERS: [usize; 2] = [2, 4];
 
 /// Searches good settings for the methods of a comparison, and adds each as a method behind the one
 /// that it is a setting of. If the comparison has several views, every second one is taken out of
-/// it, and settings are chosen on these; otherwise they are chosen on views that are generated.
-/// Params that a method sets stay as they are. A method that promises to be exact for all casters
+/// it, and settings are chosen on these; otherwise they are chosen on other views of the scene, and
+/// on generated ones where it has fewer than two. Params that a method sets stay as they are. A method that promises to be exact for all casters
 /// needs no search.
 ///
 /// The work is bounded: plans and frames of a method, those of its tuned setting included, are at
@@ -68,11 +73,7 @@ pub fn tune(comparison: &mut Comparison, session: Session) -> Result<(), Compare
     let methods = comparison.settled(session);
     check_methods(&methods)?;
     let most = most_work(comparison);
-    let Split {
-        chosen_on,
-        judged,
-        is_generated,
-    } = Split::new(&comparison.views, &scene)?;
+    let Split { chosen_on, judged } = Split::new(&comparison.views, &scene)?;
     let viewport = comparison.viewports.first().copied().unwrap_or([512; 2]);
     let mut provider = SceneProvider::new(scene.clone());
     let views = trial_views(comparison, &scene, session, &mut provider, (chosen_on, viewport))?;
@@ -91,7 +92,6 @@ pub fn tune(comparison: &mut Comparison, session: Session) -> Result<(), Compare
         };
         let found = Tuned {
             chosen_on: names.clone(),
-            is_generated,
             ..found
         };
         if !found.set.is_empty() {
@@ -153,8 +153,8 @@ fn axes(method: &Method) -> Vec<Values> {
 fn most_work(comparison: &Comparison) -> u64 {
     let protocol = &comparison.protocol;
     let timed = protocol.warmup + protocol.frames + protocol.cached_frames;
-    // Two plans, for answers and for diagnostics; a frame of each, and one that an early end keeps.
-    let run = 2 + 3 + u64::from(timed);
+    // A frame is judged, one tells of the map, and one is kept by an early end.
+    let run = 2 * NEW_EXECUTOR + 3 + u64::from(timed);
     let runs = (comparison.views.len() * comparison.viewports.len()) as u64;
     (MOST_COST - 1) * runs * run
 }
@@ -165,8 +165,6 @@ struct Split {
     chosen_on: Vec<View>,
     /// Views on which they are judged.
     judged: Vec<ViewOrPath>,
-    /// True if the views of `chosen_on` are none of the comparison's.
-    is_generated: bool,
 }
 
 impl Split {
@@ -182,33 +180,40 @@ impl Split {
             let place = &still.name[..still.name.len() - light];
             entry(&mut places, place).push(still);
         }
-        let is_generated = places.len() < 2;
-        let is_judged = |index: usize| is_generated || index % 2 == 0;
-        let places = places.into_iter().enumerate();
-        let (judged, mut chosen_on): (Vec<_>, Vec<_>) =
-            places.partition(|(index, _)| is_judged(*index));
-        let of = |places: Vec<(usize, (&str, Vec<&View>))>| {
-            let views = places.into_iter().flat_map(|(_, (_, views))| views);
-            views.cloned().collect::<Vec<View>>()
-        };
-        let judged = of(judged);
-        let chosen_on = match is_generated {
-            true => generated(&judged, scene)?,
-            false => of(std::mem::take(&mut chosen_on)),
-        };
+        let is_one = places.len() < 2;
+        let (mut judged, mut chosen_on) = (Vec::new(), Vec::new());
+        for (index, (_, views)) in places.into_iter().enumerate() {
+            let part = match is_one || index % 2 == 0 {
+                true => &mut judged,
+                false => &mut chosen_on,
+            };
+            part.extend(views.into_iter().cloned());
+        }
+        if is_one {
+            chosen_on = others(&judged, scene)?;
+        }
         Ok(Self {
             chosen_on,
             judged: judged.into_iter().map(ViewOrPath::Still).collect(),
-            is_generated,
         })
     }
 }
 
-/// Other views of the scene, each under the lights of the given ones.
-fn generated(views: &[View], scene: &Scene) -> Result<Vec<View>, CompareError> {
+/// Other views than a given one, which stands there once for each of its lights: those of the
+/// scene, and generated ones. They are under the same lights.
+fn others(views: &[View], scene: &Scene) -> Result<Vec<View>, CompareError> {
     let none = || CompareError::Input("no view of the scene to tune methods on".into());
     let like = views.first().ok_or_else(none)?;
-    let others = more_views(&scene.mesh, &scene.light_of(like), like, GENERATED);
+    let [least, most] = OTHERS;
+    let is_other = |other: &&View| (other.eye, other.direction) != (like.eye, like.direction);
+    let mut others: Vec<View> = scene.views.iter().filter(is_other).take(most).cloned().collect();
+    let missing = least.saturating_sub(others.len());
+    let generated = more_views(&scene.mesh, &scene.light_of(like), like, missing);
+    let generated = generated.into_iter().enumerate();
+    others.extend(generated.map(|(number, view)| View {
+        name: format!("generated {}", number + 1),
+        ..view
+    }));
     if others.is_empty() {
         return Err(CompareError::Input(format!(
             "view `{}` is the only one that shows the scene: settings are chosen on other views \
@@ -216,19 +221,15 @@ fn generated(views: &[View], scene: &Scene) -> Result<Vec<View>, CompareError> {
             like.name
         )));
     }
-    let under = |(number, other): (usize, &View)| {
-        let name = format!("generated {}", number + 1);
-        let under = views.iter().map(move |view| View {
-            name: match (views.len(), &view.light) {
-                (2.., Some(light)) => format!("{name}@{}", light.name),
-                _ => name.clone(),
-            },
-            light: view.light.clone(),
-            ..other.clone()
-        });
-        under.collect::<Vec<_>>()
+    let under = |(other, view): (&View, &View)| View {
+        name: match (views.len(), &view.light) {
+            (2.., Some(light)) => format!("{}@{}", other.name, light.name),
+            _ => other.name.clone(),
+        },
+        light: view.light.clone().or_else(|| other.light.clone()),
+        ..other.clone()
     };
-    Ok(others.iter().enumerate().flat_map(under).collect())
+    Ok(others.iter().cartesian_product(views).map(under).collect())
 }
 
 /// The ground truth of views in a viewport.

@@ -26,8 +26,6 @@ pub struct Tuned {
     pub set: BTreeMap<String, serde_json::Value>,
     /// Names of the views on which the settings were chosen. The runs are of other views.
     pub chosen_on: Vec<String>,
-    /// True if these views were generated, as the comparison has fewer than two.
-    pub is_generated: bool,
     /// Number of settings that were tried, the defaults included.
     pub tried: u32,
     /// True if the search came to its own end; false if it ended at the bound of its cost.
@@ -54,10 +52,18 @@ impl Tuned {
 
     fn assignments(&self) -> impl Iterator<Item = String> {
         let set = self.set.iter();
-        set.map(|(name, value)| match value.as_str() {
-            Some(word) => format!("{name}={word}"),
-            None => format!("{name}={}", value.to_string().trim_matches(['[', ']'])),
-        })
+        set.map(|(name, value)| format!("{name}={}", text(value)))
+    }
+}
+
+/// A value as the command line writes it: `none`, `2`, `0.5`, `1,0,0`.
+fn text(value: &serde_json::Value) -> String {
+    use serde_json::Value;
+    match value {
+        Value::String(word) => word.clone(),
+        Value::Array(list) => list.iter().map(text).join(","),
+        Value::Number(number) => number.as_f64().map_or(String::new(), |n| n.to_string()),
+        other => other.to_string(),
     }
 }
 

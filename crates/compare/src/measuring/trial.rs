@@ -38,6 +38,8 @@ impl TrialView<'_> {
 pub struct Trials<'a> {
     session: Session<'a>,
     method: &'a Method,
+    /// The views, those first on which the last whole trial was most wrong: a setting that is
+    /// worse is then found out soon.
     views: Vec<&'a TrialView<'a>>,
     viewport: [u32; 2],
     provider: &'a mut SceneProvider,
@@ -128,6 +130,7 @@ impl<'a> Trials<'a> {
 
     fn judged(&mut self, set: &Method, best: f64) -> Result<Trial, Stop> {
         let (mut error, mut planned) = (0.0, None);
+        let mut errors: Vec<(f64, &TrialView)> = Vec::new();
         for view in self.views.clone() {
             self.provider.set_view(&view.view, self.viewport);
             let kind = view.light.word();
@@ -137,11 +140,15 @@ impl<'a> Trials<'a> {
                 }
                 planned = Some(kind);
             }
-            error += self.error_on(set, view)? / self.facing_light.max(1.0);
+            let wrong = self.error_on(set, view)?;
+            errors.push((wrong, view));
+            error += wrong / self.facing_light.max(1.0);
             if error > best {
                 return Ok(Trial::Worse);
             }
         }
+        errors.sort_by(|(one, _), (other, _)| other.total_cmp(one));
+        self.views = errors.into_iter().map(|(_, view)| view).collect();
         Ok(Trial::Error(error))
     }
 

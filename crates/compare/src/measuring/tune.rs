@@ -46,14 +46,14 @@ use std::{rc::Rc, sync::Arc};
 
 /// Work of a new executor with its pipelines, as a multiple of that of a frame. Of each run there
 /// are two, for answers and for diagnostics of the map; a search has one, and changes it.
-const NEW_EXECUTOR: u64 = 8;
+const NEW_EXECUTOR: u64 = 4;
 
 /// Cost of a comparison with a search, as a multiple of that of the same comparison without one.
 const MOST_COST: u64 = 10;
 
 /// Views on which settings are chosen where a comparison has fewer than two: at least, so that one
 /// odd view does not decide, and at most.
-const OTHERS: [usize; 2] = [2, 4];
+const OTHERS: [usize; 2] = [2, 3];
 
 /// Searches good settings for the methods of a comparison, and adds each as a method behind the one
 /// that it is a setting of. If the comparison has several views, every second one is taken out of
@@ -146,7 +146,10 @@ fn axes(method: &Method) -> Vec<Values> {
             is_word: matches!(param.ty, ParamType::Choice(_) | ParamType::Bool),
         })
     };
-    free.filter_map(axis).collect()
+    let mut axes: Vec<Values> = free.filter_map(axis).collect();
+    // The param with most values first: it decides the most, and later ones only refine.
+    axes.sort_by_key(|axis| std::cmp::Reverse(axis.values.len()));
+    axes
 }
 
 /// The work that a search for one method may do: plans and frames.

@@ -4,7 +4,7 @@
 //! use skiagraph_compare::{comparison::Comparison, graphs::shadow_method::load_methods};
 //! use skiagraph_passes::EmbeddedSources;
 //! use skiagraph_scene::{SceneLibrary, SceneRequest};
-//! use std::sync::Arc;
+//! use std::{collections::BTreeMap, sync::Arc};
 //!
 //! let request = SceneRequest { argument: "park".into(), obj: None };
 //! let (scene, _) = SceneLibrary::default().load(&request)?;
@@ -29,12 +29,13 @@ use crate::pictures::data::DataFormat;
 use crate::pictures::run_pictures::{check_stems, reference_stem, stem};
 use crate::records::budgets::Budgets;
 use crate::records::published_row::Row;
+use crate::records::tuned::Tuned;
 use crate::sink::Session;
 use itertools::Itertools;
 use skiagraph_passes::{EmbeddedSources, SceneProvider};
 use skiagraph_reference::OracleMode;
 use skiagraph_scene::{LightKind, Scene};
-use std::sync::Arc;
+use std::{collections::BTreeMap, sync::Arc};
 
 /// Settings of how methods are run, timed and judged.
 #[derive(Clone, Copy, Debug)]
@@ -98,6 +99,9 @@ pub struct Comparison {
     pub methods: Vec<Method>,
     /// Settings of how the methods are run, timed and judged.
     pub protocol: Protocol,
+    /// Searches for good settings that ended in methods of the list, by the index of the method:
+    /// see [`tune`](crate::measuring::tune::tune). Empty if none was made.
+    pub tuned: BTreeMap<usize, Tuned>,
     /// Graph that finds the visible triangle of each pixel for the reference.
     pub primary: PrimaryVisibility,
     /// Limits on frame time, wrong pixels and memory. All methods are measured whether they keep
@@ -127,6 +131,7 @@ impl Comparison {
             viewports: vec![[512, 512]],
             methods,
             protocol: Protocol::default(),
+            tuned: BTreeMap::new(),
             primary: PrimaryVisibility::load(&EmbeddedSources)?,
             budgets: Budgets::default(),
             published: Vec::new(),

@@ -11,7 +11,7 @@
 //! assert!(default_view(&Mesh::default(), &sun, DVec3::Y, 60.0).is_none());
 //! ```
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use itertools::Itertools;
 use skiagraph_reference::{
     BACKGROUND, Class, Oracle, OracleMode, Progress, sight::Sight, sight::sights,
@@ -88,15 +88,7 @@ pub fn default_view(
     fov_y_degrees: f64,
 ) -> Option<DefaultView> {
     let (min, max) = mesh.bounds()?;
-    let (min, max) = (min.as_dvec3(), max.as_dvec3());
-    let up = up.try_normalize()?;
-    let room = Room {
-        oracle: Oracle::new(mesh),
-        middle: (min + max) * 0.5,
-        half: (max - min) * 0.5,
-        up,
-        across: up.any_orthonormal_pair().into(),
-    };
+    let room = Room::new(mesh, [min.as_dvec3(), max.as_dvec3()], up.try_normalize()?);
     let seen = |view: &View| room.worth(view, light);
     let turns = (0..DIRECTIONS).map(|turn| TAU * f64::from(turn) / f64::from(DIRECTIONS));
     let Some(eyes) = room.eyes() else {
@@ -118,6 +110,33 @@ pub fn default_view(
         }
         (_, view) => Some(room.chosen(view, true, false)),
     }
+}
+
+/// Turns by which another view may look elsewhere than the given one, and angle in radians below
+/// which two views from one place show the same.
+const TURNS: u32 = 8;
+const SAME_ANGLE: f64 = 0.7;
+
+/// Chooses at most `count` other views of a mesh that show it as `like` does, for a method that is
+/// to be tried on several: from the same place in other directions, and from other places inside
+/// the mesh, or around it where it surrounds none. Those with most light beside shadow and the
+/// farthest sight win. They have no name. The list is shorter if fewer show any surface.
+pub fn more_views(mesh: &Mesh, light: &LightKind, like: &View, count: usize) -> Vec<View> {
+    let (Some((min, max)), Some(up)) = (mesh.bounds(), like.up.try_normalize()) else {
+        return Vec::new();
+    };
+    let room = Room::new(mesh, [min.as_dvec3(), max.as_dvec3()], up);
+    let candidates = room.turned(like).chain(room.elsewhere(like));
+    let candidates = candidates.filter_map(|view| Some((room.worth(&view, light)?.total(), view)));
+    let candidates = candidates.filter(|(total, _)| *total > 0.0);
+    let candidates = candidates.sorted_by(|(one, _), (other, _)| other.total_cmp(one));
+    let mut chosen = vec![like.clone()];
+    for (_, view) in candidates {
+        if chosen.len() <= count && chosen.iter().all(|other| room.differ(&view, other)) {
+            chosen.push(view);
+        }
+    }
+    chosen.split_off(1)
 }
 
 fn bulb(position: DVec3) -> LightKind {
@@ -170,7 +189,61 @@ struct Room<'a> {
     across: [DVec3; 2],
 }
 
-impl Room<'_> {
+impl<'a> Room<'a> {
+    fn new(mesh: &'a Mesh, [min, max]: [DVec3; 2], up: DVec3) -> Self {
+        Self {
+            oracle: Oracle::new(mesh),
+            middle: (min + max) * 0.5,
+            half: (max - min) * 0.5,
+            up,
+            across: up.any_orthonormal_pair().into(),
+        }
+    }
+
+    /// Views from the place of another one, in other directions.
+    fn turned(&self, like: &View) -> impl Iterator<Item = View> {
+        let turns = (1..TURNS).map(|turn| TAU * f64::from(turn) / f64::from(TURNS));
+        turns.map(|turn| View {
+            name: String::new(),
+            direction: DQuat::from_axis_angle(self.up, turn) * like.direction,
+            ..like.clone()
+        })
+    }
+
+    /// Views from other places inside the mesh, or else from around it.
+    fn elsewhere(&self, like: &View) -> Vec<View> {
+        let turns = (0..TURNS).map(|turn| TAU * f64::from(turn) / f64::from(TURNS));
+        let fov = like.fov_y_degrees;
+        let views: Vec<View> = match self.eyes() {
+            Some(eyes) => {
+                let views = eyes.iter().cartesian_product(turns);
+                let view = |(eye, turn): (&Eye, f64)| {
+                    self.view(eye.place, self.around(turn) - self.up * SLOPE, fov)
+                };
+                views.map(view).collect()
+            }
+            None => {
+                let around = |turn| {
+                    let turned = DQuat::from_axis_angle(self.up, turn);
+                    let eye = self.middle + turned * (like.eye - self.middle);
+                    self.view(eye, turned * like.direction, fov)
+                };
+                turns.skip(1).map(around).collect()
+            }
+        };
+        let lit = views.into_iter().map(|view| View {
+            light: like.light.clone(),
+            ..view
+        });
+        lit.collect()
+    }
+
+    /// True if two views show different parts of the mesh.
+    fn differ(&self, one: &View, other: &View) -> bool {
+        let is_near = one.eye.distance(other.eye) < 0.05 * self.half.length();
+        !is_near || one.direction.angle_between(other.direction) > SAME_ANGLE
+    }
+
     /// Half the extent of the box along an axis.
     fn reach(&self, axis: DVec3) -> f64 {
         axis.abs().dot(self.half)
@@ -437,6 +510,36 @@ mod tests {
         let seen = view(&mesh(&[plate, wall], None)).unwrap();
         assert_eq!((seen.is_inside, seen.view.name.as_str()), (false, "main"));
         assert!(seen.view.eye.z < 0.0 && seen.view.eye.y > 0.0, "{seen:?}");
+    }
+
+    #[test]
+    fn other_views_of_a_room_are_inside_and_those_of_a_table_around_it() {
+        let sun = DirectionalLight::new(DVec3::new(-0.3, -1.0, -0.4)).into();
+        let room = mesh(&[WALLS, TABLE], Some(3));
+        let like = view(&room).unwrap().view;
+        let others = more_views(&room, &sun, &like, 3);
+        assert_eq!(others.len(), 3);
+        assert_eq!(others, more_views(&room, &sun, &like, 3), "the same again");
+        for other in &others {
+            other.check().unwrap();
+            assert!(
+                other.eye.x.abs() < 4.0 && other.eye.z.abs() < 3.0,
+                "{other:?}"
+            );
+            assert!(other.eye.y > 0.0 && other.eye.y < 3.0, "{other:?}");
+            let same = other.eye == like.eye && other.direction == like.direction;
+            assert!(!same && other.fov_y_degrees == like.fov_y_degrees);
+        }
+        let plate = ([-9.0, -0.2, -9.0], [9.0, 0.0, 9.0], false);
+        let table = mesh(&[plate, TABLE], None);
+        let like = view(&table).unwrap().view;
+        for other in more_views(&table, &sun, &like, 2) {
+            assert!(
+                (other.eye.length() - like.eye.length()).abs() < 1.0,
+                "{other:?}"
+            );
+        }
+        assert!(more_views(&Mesh::default(), &sun, &like, 2).is_empty());
     }
 
     #[test]

@@ -176,6 +176,9 @@ pub struct Param {
     /// document excludes them: each word with the reason that the document gives. Empty for other
     /// types.
     pub refused: BTreeMap<String, String>,
+    /// Values that a search for good settings tries, all different; empty if it leaves the param
+    /// alone.
+    pub tune: Vec<ParamValue>,
 }
 
 /// Reason why a value does not fit a param.
@@ -226,6 +229,14 @@ impl Param {
             .words()
             .filter(|word| kept.iter().all(|kept| kept.value != **word));
         let gone: Vec<String> = gone.map(Name::to_string).collect();
+        self.tune.retain(|value| {
+            !gone
+                .iter()
+                .any(|word| *value == ParamValue::Choice(word.clone()))
+        });
+        if self.tune.len() < 2 {
+            self.tune.clear();
+        }
         self.refused
             .extend(gone.into_iter().map(|word| (word, because.to_owned())));
         Ok(())
@@ -455,6 +466,7 @@ mod tests {
             max: Some(0.7),
             description: String::new(),
             refused: BTreeMap::new(),
+            tune: Vec::new(),
         };
         for (text, inside) in [
             ("0.51", true),

@@ -26,4 +26,5 @@ pub mod summary;
 pub mod summary_table;
 pub mod table;
 pub mod trace;
+mod tuning;
 pub mod verdict;

@@ -6,6 +6,7 @@ use skiagraph_compare::records::results::{Measured, Part, Run, step};
 use skiagraph_compare::records::sequence::SequenceFrame;
 use skiagraph_compare::records::statistics::FrameTimes;
 use skiagraph_compare::records::steady::Cycle;
+use skiagraph_compare::records::tuned::Tuned;
 use skiagraph_compare::records::turns::{PairedRatio, Turns};
 use skiagraph_reference::Shimmer;
 
@@ -70,6 +71,12 @@ impl<'a> Row<'a> {
     /// Returns the runs with measurements, one for each view.
     pub fn runs(&self) -> impl Iterator<Item = (&'a Run, &'a Measured)> {
         self.runs.iter().copied()
+    }
+
+    /// Returns the search for good settings that ended in this row; `None` if the method was not
+    /// tuned, or could not run.
+    pub fn tuned(&self) -> Option<&'a Tuned> {
+        self.runs.first().and_then(|(run, _)| run.tuned.as_ref())
     }
 
     /// Returns the number of views on which the method was measured; 0 if it could not run.
@@ -343,7 +350,7 @@ fn median(times: &FrameTimes, by_wall: bool) -> Option<f64> {
 }
 
 /// Combines the runs of one viewport (pixels) into rows, the fastest first. Rows that could not run
-/// come last.
+/// come last. A tuned method stands behind the one that it is a setting of.
 pub fn rows<'a>(runs: impl IntoIterator<Item = &'a Run>, viewport: [u32; 2]) -> Vec<Row<'a>> {
     let mut cells: Vec<(String, Vec<&Run>)> = Vec::new();
     for run in runs.into_iter().filter(|run| run.viewport == viewport) {
@@ -356,6 +363,13 @@ pub fn rows<'a>(runs: impl IntoIterator<Item = &'a Run>, viewport: [u32; 2]) -> 
     let by_wall = by_wall(&rows);
     let time = |row: &Row| row.frame_ms(by_wall).unwrap_or(f64::INFINITY);
     rows.sort_by(|one, other| time(one).total_cmp(&time(other)));
+    let is_changed = |row: &Row| row.tuned().is_some_and(|of| !of.set.is_empty());
+    let (tuned, mut rows): (Vec<Row>, Vec<Row>) = rows.into_iter().partition(is_changed);
+    for row in tuned {
+        let of = row.tuned().map(|tuned| &tuned.of);
+        let before = rows.iter().rposition(|other| Some(&other.method) == of);
+        rows.insert(before.map_or(rows.len(), |before| before + 1), row);
+    }
     rows
 }
 

@@ -198,6 +198,9 @@ impl<'a> Summary<'a> {
             if row.views() != views && row.views() > 0 {
                 label += &format!(" ({} of {})", row.views(), plural(views, "view"));
             }
+            if row.tuned().is_some_and(|of| !of.set.is_empty()) {
+                label += " (tuned)";
+            }
             if !row.is_whole() {
                 label += " (1 frame)";
             }

@@ -1,6 +1,7 @@
 //! The verdict of a comparison: which method to take, in one or two sentences.
 
 use crate::summary::{Row, Wrong, by_wall};
+use crate::tuning;
 use skiagraph_compare::measuring::date::is_another_hour;
 use skiagraph_compare::records::budgets::Budgets;
 use skiagraph_compare::records::turns::LEAST_TURNS;
@@ -26,8 +27,7 @@ pub struct Verdict {
     pub sentences: Vec<String>,
 }
 
-/// Judges rows that were measured on the same views; `rows` must be sorted with the fastest first.
-/// A row takes no part if it has fewer views than others, is of another hour (the machine may have
+/// Judges rows that were measured on the same views. A row takes no part if it has fewer views than others, is of another hour (the machine may have
 /// been loaded differently), was cut short, or could not run. Rows beyond a budget are not
 /// recommended.
 pub fn verdict(rows: &[Row], budgets: &Budgets) -> Verdict {
@@ -41,11 +41,9 @@ pub fn verdict(rows: &[Row], budgets: &Budgets) -> Verdict {
         .filter(|(_, row)| !is_another_hour(row.session(), newest))
         .filter_map(|(index, row)| Contender::new(index, row, by_wall))
         .collect();
-    let within: Vec<Contender> = full
-        .iter()
-        .filter(|of| of.is_within(budgets))
-        .cloned()
-        .collect();
+    let within = full.iter().filter(|of| of.is_within(budgets));
+    let within = better_settings(within.cloned().collect());
+    let full = better_settings(full);
     let mut verdict = if full.is_empty() {
         Verdict::default()
     } else if within.is_empty() {
@@ -71,6 +69,7 @@ pub fn verdict(rows: &[Row], budgets: &Budgets) -> Verdict {
     if let Some(condition) = full.iter().find_map(|of| of.condition) {
         verdict.sentences = conditioned(condition, verdict.sentences, &full);
     }
+    verdict.sentences.extend(tuning::sentences(rows));
     verdict
 }
 
@@ -78,6 +77,18 @@ pub fn verdict(rows: &[Row], budgets: &Budgets) -> Verdict {
 /// holds of the others alone.
 pub fn is_conditioned(wrong: Wrong) -> bool {
     Condition::new(wrong).is_some()
+}
+
+/// The contenders without those that are beaten by another setting of the same method: of a method
+/// and what it was tuned to, the one with the greater error is left out, and never recommended.
+fn better_settings(all: Vec<Contender>) -> Vec<Contender> {
+    let is_beaten = |of: &Contender| {
+        let others = all.iter().filter(|other| of.is_other_setting_of(other));
+        let mut others = others.map(|other| other.error_to_rank().total_cmp(&of.error_to_rank()));
+        others.any(|order| order.is_lt() || (order.is_eq() && of.is_tuned()))
+    };
+    let better = all.iter().filter(|of| !is_beaten(of));
+    better.cloned().collect()
 }
 
 /// The pixels that a verdict is of, where it is not of nearly all that face the light.
@@ -182,6 +193,27 @@ impl<'a> Contender<'a> {
                 let share = percent(outside_band, facing_light);
                 format!("wrong on {share} of the surfaces that face the light")
             }
+        }
+    }
+
+    /// True if it is a setting that was searched for, other than the defaults.
+    fn is_tuned(&self) -> bool {
+        self.row.tuned().is_some_and(|of| !of.set.is_empty())
+    }
+
+    /// True if one of the two is what the other one was tuned to.
+    fn is_other_setting_of(&self, other: &Self) -> bool {
+        let is_of = |tuned: &Self, of: &Self| {
+            tuned.is_tuned() && !of.is_tuned() && tuning::is_default_of(of.row, tuned.row)
+        };
+        is_of(self, other) || is_of(other, self)
+    }
+
+    /// The figure by which settings of one method are ranked.
+    fn error_to_rank(&self) -> f64 {
+        match self.is_soft {
+            true => self.rmse,
+            false => self.wrong.share(),
         }
     }
 

@@ -92,6 +92,10 @@ pub struct CompareArgs {
     /// Take no method that needs more memory, with what it reads of the scene: `64MiB`.
     #[arg(long, value_name = "SIZE", value_parser = bytes)]
     pub memory: Option<u64>,
+    /// Search the params that documents mark with `tune`, and measure each method with its best
+    /// setting, too. Settings are chosen on every second view and judged on the others.
+    #[arg(long, conflicts_with = "path")]
+    pub tune: bool,
     /// End with exit code 4 if a figure of a method is greater: `nsm: wrong > 0.1%`, `rmse > 0.05`,
     /// `flip > 0.02`, `frame > 3ms`, `memory > 64MiB`. May be repeated.
     #[arg(long, value_name = "METHOD: FIGURE > VALUE", value_parser = gate)]

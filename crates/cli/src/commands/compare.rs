@@ -24,6 +24,7 @@ use skiagraph_compare::measuring::{
     resume::Kept,
     scene_folders::scene_folders,
     series::Series,
+    tune::tune,
     view_or_path::{ViewOrPath, under_lights},
 };
 use skiagraph_compare::pictures::run_pictures::graph_name;
@@ -71,14 +72,16 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let loaded = methods.iter().map(|method| &method.preset.graph);
     let gpu = device::open(&gpu.request(), loaded)?;
     let session = Session::new(&gpu, &Terminal);
+    interrupt::install()?;
     let targets = Target::all(args);
     let mut comparisons = Vec::new();
     for (scene, target) in scenes.iter().zip(&targets) {
         let (scene, views) = views(args, scene, &methods, session)?;
-        let comparison = Comparison {
+        let mut comparison = Comparison {
             views,
             viewports: unique(args.size.iter().map(|Size(size)| *size)),
             methods: methods.clone(),
+            tuned: Default::default(),
             protocol: Protocol {
                 frames: args.frames,
                 warmup: args.warmup,
@@ -100,12 +103,14 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
             commit: option_env!("SKIAGRAPH_COMMIT").map(str::to_owned),
             scene,
         };
-        comparison.check(session)?;
         check_folder(&target.folder)?;
+        if args.tune {
+            tune(&mut comparison, session)?;
+        }
+        comparison.check(session)?;
         check_earlier(args, &comparison, baseline.as_ref(), target, &gpu)?;
         comparisons.push(comparison);
     }
-    interrupt::install()?;
     let mut measured = Measured::default();
     let mut all = comparisons.into_iter().zip(&targets);
     let outcome = all.try_for_each(|(comparison, target)| {

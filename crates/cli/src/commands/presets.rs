@@ -36,7 +36,13 @@ fn describe(name: &str, graph: &Graph) -> String {
             Some(default) => format!("--set {name}={}", default.text()),
             None => format!("--set {name}=…"),
         };
-        text += &format!("  {setting:<24} {}{}\n", param.ty, range(param));
+        let tune = param.tune.iter().join(", ");
+        let tune = if tune.is_empty() {
+            tune
+        } else {
+            format!("; tune: {tune}")
+        };
+        text += &format!("  {setting:<24} {}{}{tune}\n", param.ty, range(param));
         if !param.description.is_empty() {
             text += &format!("      {}\n", param.description);
         }

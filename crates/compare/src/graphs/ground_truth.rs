@@ -88,6 +88,28 @@ pub fn judged(
     Ok((outputs, judgement))
 }
 
+/// Returns how wrong a preset's decoded outputs are, in pixels: the number of wrong pixels outside
+/// the band, or under a light with an extent the sum of the squared errors of the shares of light.
+///
+/// # Errors
+/// Those of [`judged`].
+pub fn error(
+    preset: &Preset,
+    outputs: Result<Outputs, String>,
+    ground_truth: &GroundTruth,
+) -> Result<f64, CompareError> {
+    if let (Ok(of), None) = (&outputs, &ground_truth.area) {
+        // The errors of shares, FLIP among them, would take the most of the time.
+        let counts = Statistics::judged(&of.visibility, &of.status, &ground_truth.pixels);
+        if let Ok(Statistics { wrong, .. }) = counts {
+            return Ok(wrong.total.saturating_sub(wrong.in_band) as f64);
+        }
+    }
+    let (_, judgement) = judged(preset, outputs, ground_truth)?;
+    let facing_light = judgement.counts.pixels.facing_light;
+    Ok(judgement.graded.rmse.powi(2) * facing_light as f64)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

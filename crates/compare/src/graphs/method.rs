@@ -143,6 +143,11 @@ impl Method {
         scene.with_all(self.preset.fingerprint).to_string()
     }
 
+    /// Returns the value that a param of the method runs with; `None` for an unknown name.
+    pub fn value(&self, name: &str) -> Option<&ParamValue> {
+        self.values.get(name)
+    }
+
     /// Returns all params with the values that the method runs with, as JSON values.
     pub fn all_params(&self) -> BTreeMap<String, serde_json::Value> {
         let entry = |(name, value): (&String, &ParamValue)| (name.clone(), json(value));

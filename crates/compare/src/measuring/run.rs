@@ -243,7 +243,7 @@ impl MeasureContext<'_> {
         frame::grow(self.session, &mut executor, provider)?;
         let plan = executor.plan();
         let memory = [plan.memory_bytes(), plan.saved_bytes()];
-        let scene_bytes = self.scene_bytes(plan, provider)?;
+        let scene_bytes = scene_bytes(self.session, plan, provider)?;
         let remembers = plan.remembers();
         let settle = || steady::settle(self.session, &mut executor);
         let steady = remembers.then(settle).transpose()?;
@@ -330,25 +330,6 @@ impl MeasureContext<'_> {
         Outputs::from_contents(contents, self.light, &truth_view.ground_truth.pixels)
     }
 
-    /// Bytes of what the scene gives to the plan.
-    fn scene_bytes(&self, plan: &Plan, provider: &mut dyn Provider) -> Result<u64, ExecuteError> {
-        let mut bytes = 0;
-        let provided = plan.provided().into_iter();
-        // Last frame's camera is a copy of the executor's own.
-        for name in provided
-            .filter(|name| provider.describe(name).is_some())
-            .collect::<Vec<_>>()
-        {
-            let built = provider.build(name, &self.session.gpu.device, &self.session.gpu.queue);
-            let buffer = built.map_err(|error| ExecuteError::Provider {
-                name: name.to_owned(),
-                why: error.to_string(),
-            })?;
-            bytes += buffer.size();
-        }
-        Ok(bytes)
-    }
-
     /// Makes the pictures and data files of a view, or of a frame of a path, where there are to be
     /// any. Returns the names of the pictures.
     ///
@@ -398,4 +379,30 @@ impl MeasureContext<'_> {
             ..planned.clone()
         }
     }
+}
+
+/// Returns the bytes of the resources that the scene gives to a plan.
+///
+/// # Errors
+/// A resource that cannot be built.
+pub fn scene_bytes(
+    session: Session,
+    plan: &Plan,
+    provider: &mut dyn Provider,
+) -> Result<u64, ExecuteError> {
+    let mut bytes = 0;
+    let provided = plan.provided().into_iter();
+    // Last frame's camera is a copy of the executor's own.
+    for name in provided
+        .filter(|name| provider.describe(name).is_some())
+        .collect::<Vec<_>>()
+    {
+        let built = provider.build(name, &session.gpu.device, &session.gpu.queue);
+        let buffer = built.map_err(|error| ExecuteError::Provider {
+            name: name.to_owned(),
+            why: error.to_string(),
+        })?;
+        bytes += buffer.size();
+    }
+    Ok(bytes)
 }

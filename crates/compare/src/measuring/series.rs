@@ -520,7 +520,8 @@ fn planned(comparison: &Comparison, methods: &[Method], template: &Run) -> Vec<R
         let fingerprint = place.fingerprint(fingerprint);
         for &viewport in &comparison.viewports {
             let methods = methods.iter().map(|method| method.at(viewport));
-            planned.extend(methods.map(|method| Run {
+            planned.extend(methods.enumerate().map(|(index, method)| Run {
+                tuned: comparison.tuned.get(&index).cloned(),
                 preset: method.name.clone(),
                 view: place.name().to_owned(),
                 light: place.one_of_lights().map(str::to_owned),

@@ -37,5 +37,6 @@ pub mod statistics;
 pub mod steady;
 pub mod stress;
 pub mod table;
+pub mod tuned;
 pub mod turns;
 pub mod unpaired;

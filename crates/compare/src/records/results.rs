@@ -22,6 +22,7 @@ use crate::records::budgets::Budgets;
 use crate::records::sequence::Sequence;
 use crate::records::statistics::{FrameTimes, Spread};
 use crate::records::steady::Steady;
+use crate::records::tuned::Tuned;
 use crate::records::turns::Turns;
 use crate::wording::{size, thousands};
 use serde::{Deserialize, Serialize};
@@ -236,6 +237,9 @@ pub struct Run {
     /// in results of older versions, whose machine is that of the results.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub machine: Option<Machine>,
+    /// Search for good settings that ended in these params; absent for a method that was not tuned.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tuned: Option<Tuned>,
     /// Promise of the method's document about its answers with these params; absent if it makes
     /// none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -680,6 +684,7 @@ pub(crate) mod tests {
             ]),
             fingerprint: "85944171f73967e8".into(),
             date: "2026-11-20".into(),
+            tuned: None,
             session: "2026-11-20T04:30:12Z".into(),
             cell: format!("c0ffee{:010x}", preset.len()),
             commit: Some("0123456789abcdef0123456789abcdef01234567".into()),

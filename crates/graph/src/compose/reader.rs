@@ -341,7 +341,10 @@ impl<'a> Reader<'a> {
                     document.declared -= 1;
                     let default = known.default;
                     let is_edited = |default: &Expr| document.rank(&default.span) < declared;
-                    param.default = default.filter(is_edited).or(param.default);
+                    if let Some(default) = default.filter(is_edited) {
+                        param.default = Some(default);
+                        param.tune.clear();
+                    }
                     document.params.push(param);
                     continue;
                 }
@@ -360,7 +363,11 @@ impl<'a> Reader<'a> {
         for (name, value) in std::mem::take(&mut document.defaults) {
             let mut params = document.params.iter_mut();
             match params.find(|param| *param.name.value == *name) {
-                Some(param) => param.default = Some(value),
+                // It is the document's decision now, and no longer to be searched for.
+                Some(param) => {
+                    param.default = Some(value);
+                    param.tune.clear();
+                }
                 None => self.no_param(name, document),
             }
         }

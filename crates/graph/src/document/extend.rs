@@ -49,11 +49,12 @@ pub(crate) fn extend(base: RawDocument, own: RawDocument, reports: &mut Reports)
     for (name, value) in own.set {
         let known = |item: &&mut RawItem| item.name().is_some_and(|own| *own == *name);
         match document.params.iter_mut().find(known) {
-            Some(param) => put(
-                &mut param.fields,
-                [default_field(&name, value)],
-                is_same_field,
-            ),
+            // What the document sets is not searched for.
+            Some(param) => {
+                param.fields.retain(|field| *field.name != *"tune");
+                let default = default_field(&name, value);
+                put(&mut param.fields, [default], is_same_field);
+            }
             None => {
                 document.set.retain(|(known, _)| **known != *name);
                 document.set.push((name, value));

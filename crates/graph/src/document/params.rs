@@ -4,8 +4,12 @@ use crate::fields::prose;
 use crate::{
     diagnostics::diagnostic::Diagnostic,
     errors::document::DocumentError,
-    language::{name::Name, syntax::Expr},
-    param::{Param, ParamType},
+    language::{
+        name::Name,
+        syntax::{Expr, ExprKind},
+        value::{Value, Word},
+    },
+    param::{Param, ParamType, ParamValue},
     source::span::Located,
 };
 use serde::Deserialize;
@@ -32,6 +36,9 @@ pub(crate) struct ParamFields {
     /// Greatest value of a number, or of each component of a vector.
     #[serde(default)]
     max: Option<f64>,
+    /// Values that `compare --tune` tries, two at least: words of a `Choice`, booleans or numbers.
+    #[serde(default)]
+    tune: Vec<Expr>,
     /// Description of its effect, for those who set it.
     #[serde(default, deserialize_with = "prose")]
     description: String,
@@ -75,7 +82,7 @@ pub(super) fn read(tag: &Located<String>, fields: &[Field]) -> Result<Param, Dia
         let why = "`index` is that of a repetition, and no param";
         return Err(wrong(why).into());
     }
-    Ok(Param {
+    let mut param = Param {
         name: fields.name.text(),
         ty,
         default: fields.default,
@@ -83,5 +90,50 @@ pub(super) fn read(tag: &Located<String>, fields: &[Field]) -> Result<Param, Dia
         max: fields.max,
         description: fields.description,
         refused: BTreeMap::new(),
+        tune: Vec::new(),
+    };
+    param.tune = tuned(&param, &fields.tune)?;
+    Ok(param)
+}
+
+/// The values of `tune`: all different, each a value of the param.
+fn tuned(param: &Param, written: &[Expr]) -> Result<Vec<ParamValue>, Diagnostic> {
+    let mut values: Vec<ParamValue> = Vec::new();
+    let mistake = |expr: &Expr, why: String| {
+        let name = param.name.value.clone();
+        DocumentError::Tune(name, expr.span.clone(), why)
+    };
+    for expr in written {
+        let value = constant(expr).ok_or_else(|| {
+            let why = "write a number, `true`, `false` or a word without quotes";
+            mistake(expr, why.to_owned())
+        })?;
+        let value = param.convert(&value);
+        let value = value.map_err(|why| mistake(expr, why.to_string()))?;
+        if values.contains(&value) {
+            return Err(mistake(expr, "this value is listed twice".to_owned()).into());
+        }
+        values.push(value);
+    }
+    match written {
+        [one] => Err(mistake(one, "list two values at least".to_owned()).into()),
+        _ => Ok(values),
+    }
+}
+
+/// The value of an expression that asks for nothing; `None` for any other.
+fn constant(expr: &Expr) -> Option<Value> {
+    let scalar = |expr: &Expr| match constant(expr) {
+        Some(Value::Scalar(scalar)) => Some(scalar),
+        _ => None,
+    };
+    Some(match &expr.kind {
+        ExprKind::Literal(value) => value.clone(),
+        ExprKind::Word(word) => Value::Word(Word {
+            word: word.clone(),
+            of: None,
+        }),
+        ExprKind::Tuple(list) => Value::List(list.iter().map(scalar).collect::<Option<_>>()?),
+        _ => return None,
     })
 }

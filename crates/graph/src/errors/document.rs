@@ -121,6 +121,10 @@ mistakes! {
 
     Param(name: Located<Name>, why: String) =>
         ParamValue("the param `{name}` cannot be: {why}").at(name, "");
+
+    Tune(name: String, value: Span, why: String) =>
+        ParamValue("`tune` of the param `{name}` cannot be").at(value, why)
+        .help("`tune` lists the values that `compare --tune` tries, two at least, each once");
 }
 
 /// The types of params, as documents write them.

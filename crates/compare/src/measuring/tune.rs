@@ -1,0 +1,347 @@
+//! Searches, for each method of a comparison, the params that its document marks with `tune`, and
+//! puts the best setting beside the method as it is.
+//!
+//! Settings are chosen on half of the views, and the comparison goes on with the others, so that
+//! no method is judged on the pictures that it was fitted to.
+//!
+//! ```no_run
+//! use skiagraph_compare::{
+//!     comparison::Comparison,
+//!     measuring::{series, tune::tune},
+//!     sink::Session,
+//! };
+//!
+//! # fn fair(mut comparison: Comparison, session: Session) -> Result<(), Box<dyn std::error::Error>> {
+//! tune(&mut comparison, session)?;
+//! for run in series::run(&comparison, session)?.runs {
+//!     if let Some(tuned) = &run.tuned {
+//!         println!("{} is {} with {}", run.preset, tuned.of, tuned.words());
+//!     }
+//! }
+//! # Ok(())
+//! # }
+//! ```
+
+use crate::comparison::Comparison;
+use crate::default_view::more_views;
+use crate::error::CompareError;
+use crate::graphs::method::{Method, ParamValues};
+use crate::graphs::variants::MAP_SIZE;
+use crate::lists::entry;
+use crate::measuring::ground_truth::GroundTruthView;
+use crate::measuring::guarantee;
+use crate::measuring::search::{Axis, Trial, search};
+use crate::measuring::trial::{TrialView, Trials};
+use crate::measuring::view_or_path::ViewOrPath;
+use crate::records::results::Promise;
+use crate::records::tuned::{Tuned, named};
+use crate::sink::{Session, Silent, Step};
+use crate::wording::size;
+use itertools::Itertools;
+use skiagraph_graph::{Param, ParamType, ParamValue};
+use skiagraph_passes::SceneProvider;
+use skiagraph_reference::Oracle;
+use skiagraph_scene::{Scene, View};
+use std::{rc::Rc, sync::Arc};
+
+/// Work of a new executor with its pipelines, as a multiple of that of a frame. Of each run there
+/// are two, for answers and for diagnostics of the map; a search has one, and changes it.
+const NEW_EXECUTOR: u64 = 4;
+
+/// Cost of a comparison with a search, as a multiple of that of the same comparison without one.
+const MOST_COST: u64 = 10;
+
+/// Views on which settings are chosen where a comparison has fewer than two: at least, so that one
+/// odd view does not decide, and at most.
+const OTHERS: [usize; 2] = [2, 3];
+
+/// Searches good settings for the methods of a comparison, and adds each as a method behind the one
+/// that it is a setting of. If the comparison has several views, every second one is taken out of
+/// it, and settings are chosen on these; otherwise they are chosen on other views of the scene, and
+/// on generated ones where it has fewer than two. Params that a method sets stay as they are. A method that promises to be exact for all casters
+/// needs no search.
+///
+/// The work is bounded: plans and frames of a method, those of its tuned setting included, are at
+/// most nine times those of its part in the comparison.
+///
+/// # Errors
+/// A comparison of camera paths; no method with params to tune; an early end, a lost device, a
+/// reference that cannot be computed.
+pub fn tune(comparison: &mut Comparison, session: Session) -> Result<(), CompareError> {
+    comparison.check(Session::new(session.gpu, &Silent))?;
+    let scene = comparison.scene.clone();
+    let methods = comparison.settled(session);
+    check_methods(&methods)?;
+    let most = most_work(comparison);
+    let Split { chosen_on, judged } = Split::new(&comparison.views, &scene)?;
+    let viewport = comparison.viewports.first().copied().unwrap_or([512; 2]);
+    let mut provider = SceneProvider::new(scene.clone());
+    let views = trial_views(
+        comparison,
+        &scene,
+        session,
+        &mut provider,
+        (chosen_on, viewport),
+    )?;
+    let names: Vec<String> = views.iter().map(|view| view.view.name.clone()).collect();
+    let (mut all, mut tuned) = (Vec::new(), Vec::new());
+    for (own, method) in comparison.methods.iter().zip(&methods) {
+        all.push(own.clone());
+        if !needs_tuning(method) {
+            continue;
+        }
+        let method = method.at(viewport);
+        let most_bytes = comparison.budgets.memory_bytes;
+        let trials = Trials::new(session, &method, &views, &mut provider, (most, most_bytes));
+        let Some((params, found)) = best(session, &method, trials, most)? else {
+            continue;
+        };
+        let found = Tuned {
+            chosen_on: names.clone(),
+            ..found
+        };
+        if !found.set.is_empty() {
+            let name = named(&own.name, &label(&method, &params));
+            all.push(Method::new(own.preset.clone(), params).named(&name));
+        }
+        tuned.push((all.len() - 1, found));
+    }
+    drop(views);
+    comparison.methods = all;
+    comparison.tuned = tuned.into_iter().collect();
+    comparison.views = judged;
+    Ok(())
+}
+
+/// Refuses methods among which none has params to tune.
+fn check_methods(methods: &[Method]) -> Result<(), CompareError> {
+    if methods.iter().any(needs_tuning) {
+        return Ok(());
+    }
+    let names = methods
+        .iter()
+        .map(|method| format!("`{}`", method.name))
+        .join(", ");
+    Err(CompareError::Input(format!(
+        "nothing to tune: {names} set or lack all params that a document marks with `tune`, or are \
+         exact with any of them"
+    )))
+}
+
+/// True if a method has params to tune, and is not exact for all casters anyway.
+pub fn needs_tuning(method: &Method) -> bool {
+    let is_exact = |promise: Promise| promise.of == "exact" && !promise.closed_only;
+    !guarantee::promise(method).is_some_and(is_exact) && !axes(method).is_empty()
+}
+
+/// A param to tune, with its values; the first one is that which the method has.
+struct Values {
+    name: String,
+    values: Vec<ParamValue>,
+    is_word: bool,
+}
+
+/// The params of a method that may be tuned, but for the size of its map.
+fn axes(method: &Method) -> Vec<Values> {
+    let params = method.preset.graph.params().iter();
+    let marked = params.filter(|param| !param.tune.is_empty() && param.name.as_str() != MAP_SIZE);
+    let free = marked.filter(|param| !method.params.contains_key(param.name.as_str()));
+    let axis = |param: &Param| {
+        let now = method.value(param.name.as_str())?.clone();
+        let others = param.tune.iter().filter(|value| **value != now).cloned();
+        Some(Values {
+            name: param.name.value.clone(),
+            values: [now.clone()].into_iter().chain(others).collect(),
+            is_word: matches!(param.ty, ParamType::Choice(_) | ParamType::Bool),
+        })
+    };
+    let mut axes: Vec<Values> = free.filter_map(axis).collect();
+    // The param with most values first: it decides the most, and later ones only refine.
+    axes.sort_by_key(|axis| std::cmp::Reverse(axis.values.len()));
+    axes
+}
+
+/// The work that a search for one method may do: plans and frames.
+fn most_work(comparison: &Comparison) -> u64 {
+    let protocol = &comparison.protocol;
+    let timed = protocol.warmup + protocol.frames + protocol.cached_frames;
+    // A frame is judged, one tells of the map, and one is kept by an early end.
+    let run = 2 * NEW_EXECUTOR + 3 + u64::from(timed);
+    let runs = (comparison.views.len() * comparison.viewports.len()) as u64;
+    (MOST_COST - 1) * runs * run
+}
+
+/// The views of a comparison, split.
+struct Split {
+    /// Views on which settings are chosen.
+    chosen_on: Vec<View>,
+    /// Views on which they are judged.
+    judged: Vec<ViewOrPath>,
+}
+
+impl Split {
+    /// Splits views; those that are one view under several lights stay together.
+    fn new(views: &[ViewOrPath], scene: &Scene) -> Result<Self, CompareError> {
+        let mut places: Vec<(&str, Vec<&View>)> = Vec::new();
+        for view in views {
+            let ViewOrPath::Still(still) = view else {
+                let what = "settings are tuned on still views, not along camera paths";
+                return Err(CompareError::Input(what.into()));
+            };
+            let light = view.one_of_lights().map_or(0, |light| light.len() + 1);
+            let place = &still.name[..still.name.len() - light];
+            entry(&mut places, place).push(still);
+        }
+        let is_one = places.len() < 2;
+        let (mut judged, mut chosen_on) = (Vec::new(), Vec::new());
+        for (index, (_, views)) in places.into_iter().enumerate() {
+            let part = match is_one || index % 2 == 0 {
+                true => &mut judged,
+                false => &mut chosen_on,
+            };
+            part.extend(views.into_iter().cloned());
+        }
+        if is_one {
+            chosen_on = others(&judged, scene)?;
+        }
+        Ok(Self {
+            chosen_on,
+            judged: judged.into_iter().map(ViewOrPath::Still).collect(),
+        })
+    }
+}
+
+/// Other views than a given one, which stands there once for each of its lights: those of the
+/// scene, and generated ones. They are under the same lights.
+fn others(views: &[View], scene: &Scene) -> Result<Vec<View>, CompareError> {
+    let none = || CompareError::Input("no view of the scene to tune methods on".into());
+    let like = views.first().ok_or_else(none)?;
+    let [least, most] = OTHERS;
+    let is_other = |other: &&View| (other.eye, other.direction) != (like.eye, like.direction);
+    let mut others: Vec<View> = scene
+        .views
+        .iter()
+        .filter(is_other)
+        .take(most)
+        .cloned()
+        .collect();
+    let missing = least.saturating_sub(others.len());
+    let generated = more_views(&scene.mesh, &scene.light_of(like), like, missing);
+    let generated = generated.into_iter().enumerate();
+    others.extend(generated.map(|(number, view)| View {
+        name: format!("generated {}", number + 1),
+        ..view
+    }));
+    if others.is_empty() {
+        return Err(CompareError::Input(format!(
+            "view `{}` is the only one that shows the scene: settings are chosen on other views \
+             than they are judged on, so name two at least (--view all)",
+            like.name
+        )));
+    }
+    let under = |(other, view): (&View, &View)| View {
+        name: match (views.len(), &view.light) {
+            (2.., Some(light)) => format!("{}@{}", other.name, light.name),
+            _ => other.name.clone(),
+        },
+        light: view.light.clone().or_else(|| other.light.clone()),
+        ..other.clone()
+    };
+    Ok(others.iter().cartesian_product(views).map(under).collect())
+}
+
+/// The ground truth of views in a viewport.
+fn trial_views<'s>(
+    comparison: &Comparison,
+    scene: &'s Arc<Scene>,
+    session: Session,
+    provider: &mut SceneProvider,
+    (views, viewport): (Vec<View>, [u32; 2]),
+) -> Result<Vec<TrialView<'s>>, CompareError> {
+    let step = Step::begin(session.sink, "hierarchy to tune with", 1, "steps");
+    let oracle = Rc::new(Oracle::new(&scene.mesh));
+    step.end();
+    let protocol = &comparison.protocol;
+    let how = (protocol.oracle, protocol.reference_samples);
+    let trial_view = |view: View| {
+        provider.set_view(&view, viewport);
+        let ids = comparison.primary.ids(session, viewport, provider)?;
+        let (camera, light) = (view.camera(viewport), scene.light_of(&view));
+        let what = format!("{} {}", view.name, size(viewport));
+        let heard = (&*what, session.sink);
+        let truth = GroundTruthView::new(oracle.clone(), camera, light, ids, how, heard)?;
+        Ok(TrialView { view, light, truth })
+    };
+    views.into_iter().map(trial_view).collect()
+}
+
+/// The best setting of a method: its params, and what is to be recorded but for the views; `None`
+/// if the method runs on none of the views.
+fn best(
+    session: Session,
+    method: &Method,
+    mut trials: Trials,
+    most: u64,
+) -> Result<Option<(ParamValues, Tuned)>, CompareError> {
+    let axes = axes(method);
+    let ways = axes.iter().map(|axis| Axis {
+        values: axis.values.len(),
+        is_word: axis.is_word,
+    });
+    let params_of = |point: &[usize]| {
+        let mut params = method.params.clone();
+        for (axis, &value) in axes.iter().zip(point).filter(|(_, value)| **value > 0) {
+            params.insert(axis.name.clone(), axis.values[value].clone());
+        }
+        params
+    };
+    let name = format!("tuning {}", method.name);
+    let step = Step::begin(session.sink, &name, most, "plans and frames");
+    let mut default_error = None;
+    let found = search(&ways.collect::<Vec<_>>(), |point, best| {
+        let trial = trials.run(&params_of(point), best)?;
+        step.set_done(most - trials.left());
+        let is_default = point.iter().all(|value| *value == 0);
+        if let (Trial::Error(error), true) = (trial, is_default) {
+            default_error = Some(error);
+        }
+        Ok::<_, CompareError>(trial)
+    })?;
+    step.end();
+    if found.error.is_infinite() {
+        return Ok(None);
+    }
+    let params = params_of(&found.point);
+    let set = Method::on(
+        method.preset.clone(),
+        params.clone(),
+        method.viewport,
+        method.features,
+    );
+    let (now, before) = (set.all_params(), method.all_params());
+    let changed = now
+        .into_iter()
+        .filter(|(name, value)| before.get(name) != Some(value));
+    Ok(Some((
+        params,
+        Tuned {
+            of: method.name.clone(),
+            set: changed.collect(),
+            tried: found.tried,
+            is_whole: found.is_whole,
+            default_error,
+            error: found.error,
+            ..Tuned::default()
+        },
+    )))
+}
+
+/// The assignments by which a tuned method is told from the method that it is a setting of. The
+/// size of its map stands in a column of its own.
+fn label(method: &Method, params: &ParamValues) -> String {
+    let is_new = |(name, value): &(&String, &ParamValue)| {
+        *name != MAP_SIZE && method.params.get(*name) != Some(value)
+    };
+    let new = params.iter().filter(is_new);
+    new.map(|(name, value)| format!("{name}={value}")).join(",")
+}

@@ -1,0 +1,78 @@
+//! Settings of a method that `compare --tune` found.
+//!
+//! ```
+//! use skiagraph_compare::records::tuned::Tuned;
+//!
+//! let tuned = Tuned {
+//!     of: "nsm".into(),
+//!     set: [("cull".to_owned(), "none".into()), ("slope_bias".to_owned(), 2.into())].into(),
+//!     ..Tuned::default()
+//! };
+//! assert_eq!(tuned.words(), "cull=none, slope_bias=2");
+//! assert_eq!(tuned.argument(), "nsm@cull=none,slope_bias=2");
+//! ```
+
+use itertools::Itertools;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Record of a search for good settings of one method: what was found, and on which views.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Tuned {
+    /// Name of the method as it was before the search: `nsm`. Its runs stand beside the tuned ones.
+    pub of: String,
+    /// Params that the search changed, with their values; empty if no setting was better than the
+    /// defaults.
+    pub set: BTreeMap<String, serde_json::Value>,
+    /// Names of the views on which the settings were chosen. The runs are of other views.
+    pub chosen_on: Vec<String>,
+    /// Number of settings that were tried, the defaults included.
+    pub tried: u32,
+    /// True if the search came to its own end; false if it ended at the bound of its cost.
+    pub is_whole: bool,
+    /// Error of the defaults on the views of `chosen_on`, from 0 to 1: the share of wrong pixels
+    /// outside the band among those that face the light; under lights with an extent the root mean
+    /// square error of the shares of light. Absent if the defaults cannot run or exceed a budget.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub default_error: Option<f64>,
+    /// Error of the tuned setting on the views of `chosen_on`, in the same unit.
+    pub error: f64,
+}
+
+impl Tuned {
+    /// Returns the changed params as a list for a reader: `cull=none, slope_bias=2`.
+    pub fn words(&self) -> String {
+        self.assignments().join(", ")
+    }
+
+    /// Returns the tuned method as an argument of `compare`: `nsm@cull=none,slope_bias=2`.
+    pub fn argument(&self) -> String {
+        named(&self.of, &self.assignments().join(","))
+    }
+
+    fn assignments(&self) -> impl Iterator<Item = String> {
+        let set = self.set.iter();
+        set.map(|(name, value)| format!("{name}={}", text(value)))
+    }
+}
+
+/// A value as the command line writes it: `none`, `2`, `0.5`, `1,0,0`.
+fn text(value: &serde_json::Value) -> String {
+    use serde_json::Value;
+    match value {
+        Value::String(word) => word.clone(),
+        Value::Array(list) => list.iter().map(text).join(","),
+        Value::Number(number) => number.as_f64().map_or(String::new(), |n| n.to_string()),
+        other => other.to_string(),
+    }
+}
+
+/// Returns the name of a method with more assignments: `nsm` and `cull=none` give `nsm@cull=none`,
+/// `nsm@bias=0` gives `nsm@bias=0,cull=none`. The name stays if there are none.
+pub fn named(method: &str, assignments: &str) -> String {
+    let sign = if method.contains('@') { ',' } else { '@' };
+    match assignments {
+        "" => method.to_owned(),
+        assignments => format!("{method}{sign}{assignments}"),
+    }
+}

@@ -41,7 +41,12 @@ fn scales(fitted: &[Panel]) -> (Scale, Scale) {
     let series = || fitted.iter().flat_map(|panel| &panel.series);
     let marks = || series().flat_map(|series| &series.marks);
     let lanes = fitted.iter().map(|panel| lanes(panel).len()).max();
-    let x = Scale::around(marks().map(|mark| mark.x), 0);
+    let across = |mark: &Mark| {
+        [mark.x]
+            .into_iter()
+            .chain(mark.spread.into_iter().flatten())
+    };
+    let x = Scale::around(marks().flat_map(across), 0);
     let y = Scale::around(marks().map(|mark| mark.y), lanes.unwrap_or(0));
     (x, y)
 }
@@ -93,7 +98,7 @@ pub(crate) fn draw(
 ) -> Result<(), Error> {
     let (mut x, y) = scales(fitted);
     x.named = ticks.to_vec();
-    let (places, frame) = canvas.draw(|root| {
+    let (places, bars, frame) = canvas.draw(|root| {
         let axes = axes(panel, root, &root.clone().shrink(corner, size), (&x, &y))?;
         let (across, down) = axes.plotting_area().get_pixel_range();
         let title = (across.start, corner.1 + ABOVE / 2);
@@ -102,7 +107,11 @@ pub(crate) fn draw(
             let ends = guide(&x, &y).map(|end| axes.backend_coord(&end));
             root.draw(&DashedPathElement::new(ends, 4, 4, GUIDE))?;
         }
-        Ok((places(panel, &axes), (across, down)))
+        let places = places(panel, &axes);
+        let marks = panel.series.iter().flat_map(|series| &series.marks);
+        let bar = |mark: &Mark| Some(mark.spread?.map(|end| axes.backend_coord(&(end, 1.0)).0));
+        let bars: Vec<Option<[i32; 2]>> = marks.map(bar).collect();
+        Ok((places, bars, (across, down)))
     })?;
     for (series, places) in panel.series.iter().zip(&places) {
         let opacity = if panel.kind == Kind::Growth { 1.0 } else { 0.4 };
@@ -136,8 +145,21 @@ pub(crate) fn draw(
     for index in order {
         let (series, mark) = marks[index];
         draw_mark(canvas, (series, mark), &names[index], |root| {
-            look(&series.name).draw(root, places[index], mark.size + larger, is_full(&index))
+            let (look, place) = (look(&series.name), places[index]);
+            if let Some(ends) = bars[index].filter(|_| panel.kind == Kind::Front) {
+                draw_bar(root, ends, place.1, look)?;
+            }
+            look.draw(root, place, mark.size + larger, is_full(&index))
         })?;
+    }
+    Ok(())
+}
+
+/// Draws a horizontal error bar between these places, at this height.
+fn draw_bar(root: &Root, [left, right]: [i32; 2], y: i32, look: Look) -> Result<(), Error> {
+    let caps = [left, right].map(|x| vec![(x, y - 4), (x, y + 4)]);
+    for line in caps.into_iter().chain([vec![(left, y), (right, y)]]) {
+        root.draw(&PathElement::new(line, look.colour.stroke_width(1)))?;
     }
     Ok(())
 }

@@ -2,11 +2,12 @@
 
 use crate::charts::path_panels;
 use crate::html::shown::{Shown, part, times};
+use crate::looks::looks;
 use crate::summary::Row;
 use skiagraph_chart::{Error, Figure, Kind, Mark, Panel, Series, xml};
 use skiagraph_compare::lists::unique;
 use skiagraph_compare::wording::{ms, size};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 /// Widths of a chart for classes of windows, pixels.
 const WIDTHS: [(&str, u16); 3] = [("broad", 1100), ("middle", 700), ("narrow", 400)];
@@ -16,9 +17,8 @@ const HALF: u16 = 520;
 /// A figure in which each method looks the same as in all others of the page.
 fn figure(tables: &[Shown], panels: Vec<Panel>) -> Figure {
     let rows = tables.iter().flat_map(|table| &table.summary.rows);
-    let methods: BTreeSet<&String> = rows.map(|row| &row.method).collect();
     Figure {
-        looks: methods.into_iter().cloned().collect(),
+        looks: looks(rows.map(|row| row.method.clone())),
         panels,
         ..Figure::default()
     }
@@ -49,7 +49,7 @@ pub fn fronts(tables: &[Shown]) -> String {
 pub fn paths(tables: &[Shown]) -> String {
     let of_table = |(index, table): (usize, &Shown)| {
         let runs = table.summary.rows.iter().flat_map(Row::runs);
-        let panels = path_panels(runs, |run| run.preset.clone()).into_iter();
+        let panels = path_panels(runs, &[]).into_iter();
         let chart = |panel| {
             let svg = figure(tables, vec![panel]).to_page_svg(HALF);
             part("path", &[index], None, &drawn(svg))
@@ -66,6 +66,7 @@ fn front(table: &Shown, kept: bool) -> Panel {
         y.is_finite().then(|| Series {
             name: row.method.clone(),
             marks: vec![Mark {
+                spread: table.spread(row, kept),
                 about: about(table, index),
                 ..Mark::new(x, y)
             }],
@@ -102,11 +103,16 @@ fn about(table: &Shown, index: usize) -> String {
     table.summary.rows[index].label.clone() + &told.collect::<String>()
 }
 
+/// Returns the sign of a method as SVG: its colour and mark in all charts.
+pub fn sign(tables: &[Shown], method: &str) -> String {
+    let svg = drawn(figure(tables, Vec::new()).sign(method)).replace('\n', "");
+    svg.replacen("<svg", "<svg class=\"sign\" aria-hidden=\"true\"", 1)
+}
+
 /// Returns buttons as HTML that show or hide the methods of each table.
 pub fn legends(tables: &[Shown]) -> String {
-    let figure = figure(tables, Vec::new());
     let button = |name: &String| {
-        let (sign, name) = (drawn(figure.sign(name)), xml(name));
+        let (sign, name) = (sign(tables, name), xml(name));
         format!(
             "<button type=\"button\" aria-pressed=\"true\" data-method=\"{name}\">{sign}{name}\
              </button>\n"

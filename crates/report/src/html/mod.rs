@@ -6,7 +6,8 @@
 //! |-|-|
 //! | `sources` | folders that were measured alike become one |
 //! | `shown` | tables to choose from, and parts of the page that are of some of them |
-//! | `charts`, `steps`, `rows` | these parts: charts, bars of steps, tables |
+//! | `first` | these parts: the pictures of the verdict |
+//! | `charts`, `steps`, `rows` | charts, bars of steps, tables |
 //! | `stress` | matrices of hard cases |
 //! | `data` | all other words, as JSON |
 //! | `pictures` | which pictures go in, as far as there is room |
@@ -14,6 +15,7 @@
 
 mod charts;
 mod data;
+mod first;
 mod pictures;
 mod rows;
 mod shown;
@@ -32,12 +34,15 @@ use skiagraph_compare::records::stress::Report;
 pub const LIMIT: usize = 30_000_000;
 
 /// In the order in which they need each other.
-const SCRIPTS: [&str; 6] = [
+const SCRIPTS: [&str; 9] = [
     include_str!("page.js"),
     include_str!("shown.js"),
     include_str!("table.js"),
     include_str!("picture.js"),
     include_str!("viewer.js"),
+    include_str!("first.js"),
+    include_str!("keys.js"),
+    include_str!("link.js"),
     include_str!("report.js"),
 ];
 
@@ -65,6 +70,7 @@ fn page_within(sources: &[Source], reports: &[Report], limit: usize) -> Page {
         .replace("/*STYLE*/", include_str!("report.css"))
         .replace("/*SCRIPT*/", &SCRIPTS.concat())
         // Names are escaped: none looks like a comment.
+        .replace("<!--FIRST-->", &first::pictures(&tables))
         .replace("<!--FRONTS-->", &charts::fronts(&tables))
         .replace("<!--LEGEND-->", &charts::legends(&tables))
         .replace("<!--TABLES-->", &rows::tables(&tables))

@@ -110,7 +110,7 @@ pub(crate) fn draw(
         let places = places(panel, &axes);
         let marks = panel.series.iter().flat_map(|series| &series.marks);
         let bar = |mark: &Mark| Some(mark.spread?.map(|end| axes.backend_coord(&(end, 1.0)).0));
-        let bars: Vec<Option<[i32; 2]>> = marks.map(bar).collect();
+        let bars: Vec<_> = marks.map(bar).collect();
         Ok((places, bars, (across, down)))
     })?;
     for (series, places) in panel.series.iter().zip(&places) {
@@ -134,7 +134,7 @@ pub(crate) fn draw(
     }
     let is_full = |index: &usize| panel.kind == Kind::Growth || best.contains(index);
     let names = match panel.kind {
-        Kind::Front if canvas.is_embedded => names(&marks, &places, &best, frame),
+        Kind::Front if canvas.is_embedded => names(&marks, (&places, &bars), &best, frame),
         _ => vec![String::new(); marks.len()],
     };
     // A finger must hit it.
@@ -194,16 +194,23 @@ pub(crate) fn draw_mark(
     canvas.group(&of, name, draw)
 }
 
+/// Ends of the error bar of each mark, in pixels from the left border.
+type Bars = [Option<[i32; 2]>];
+
 /// The name of each mark beside it, as an element; empty where there is no room. Those of the front
 /// come first.
 fn names(
     marks: &[(&Series, &Mark)],
-    places: &[(i32, i32)],
+    (places, bars): (&[(i32, i32)], &Bars),
     best: &[usize],
     (across, down): (Range<i32>, Range<i32>),
 ) -> Vec<String> {
     let around = |&(x, y): &(i32, i32)| [x - 8, y - 8, x + 8, y + 8];
     let mut taken: Vec<[i32; 4]> = places.iter().map(around).collect();
+    let bar = |(&(_, y), bar): (_, &Option<[i32; 2]>)| {
+        bar.map(|[left, right]| [left - 1, y - 4, right + 1, y + 4])
+    };
+    taken.extend(places.iter().zip(bars).filter_map(bar));
     let mut names = vec![String::new(); marks.len()];
     let others = (0..marks.len()).filter(|index| !best.contains(index));
     for index in best.iter().copied().chain(others) {
@@ -213,7 +220,8 @@ fn names(
         // The front's line comes to a mark from above and leaves it to the right.
         let off_the_line = [(x + 7, y - 13), (x - 7 - wide, y + 13)];
         let off_the_line = off_the_line.into_iter().filter(|_| best.contains(&index));
-        let beside = [(x + 11, y), (x - 11 - wide, y)];
+        let [left, right] = bars[index].unwrap_or([x, x]);
+        let beside = [(x.max(right + 2) + 9, y), (x.min(left - 2) - 9 - wide, y)];
         let around_it = [(x - wide / 2, y - 17), (x - wide / 2, y + 17)];
         let boxes = off_the_line.chain(beside).chain(around_it);
         let mut boxes = boxes.map(|(left, middle)| [left, middle - 7, left + wide, middle + 7]);

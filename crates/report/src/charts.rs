@@ -254,8 +254,8 @@ pub fn frames_of_paths(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figu
 /// Returns a panel for each camera path among `runs`: the error of each frame, a series for each
 /// run. The error is the percentage of wrong pixels outside the band among those that face the
 /// light. Under a light with an extent it is the root mean square error of the shares of light.
-/// Runs without frames of a path are skipped. All runs must have one viewport. A series has the name
-/// of its method, and its marks the size of the run's map: its place in `maps`.
+/// Runs without frames of a path are skipped. All runs must have one viewport. A series is named
+/// after its method, and its marks have the size of the run's map: its place in `maps`.
 pub fn path_panels<'a>(
     runs: impl Iterator<Item = (&'a Run, &'a Measured)>,
     maps: &[u32],

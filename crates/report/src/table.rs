@@ -93,8 +93,8 @@ fn block(table: &Table, columns: &[usize]) -> String {
     text.lines().map(str::trim_end).join("\n")
 }
 
-/// Parts of a line that stay whole, with the space or comma behind them. Digits behind a comma belong
-/// to a number.
+/// Parts of a line that stay whole, with the space or comma behind them. Digits behind a comma are
+/// part of a number.
 fn words(line: &str) -> Vec<&str> {
     let next = line.chars().skip(1).chain([' ']);
     let ends = line.char_indices().zip(next);

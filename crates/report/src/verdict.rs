@@ -7,7 +7,7 @@ use skiagraph_compare::wording::{bytes, ms, percent, plural};
 
 /// The share of pixels in the band beyond which a verdict holds of the others alone: the right
 /// answer of more than one pixel in a hundred hangs on rounding.
-const MAX_BAND: f64 = 0.01;
+pub(crate) const MAX_BAND: f64 = 0.01;
 
 /// Verdict on the rows of a summary.
 #[derive(Debug, Default, PartialEq, Eq)]

@@ -15,9 +15,9 @@ const BEFORE: &str = "<script>window.faults = []; \
      addEventListener('error', (event) => faults.push(event.message)); \
      addEventListener('unhandledrejection', (event) => faults.push(String(event.reason))); \
      console.error = (...words) => faults.push(words.join(' ')); \
-     window.shifts = []; new PerformanceObserver((list) => list.getEntries() \
-     .forEach((entry) => { if (!entry.hadRecentInput) shifts.push(`${entry.value} of ${entry.sources.map((one) => \
-     (one.node?.outerHTML ?? '').slice(0, 60))}`); })) \
+     window.shifts = []; const nameOf = ({ node }) => (node?.outerHTML ?? '').slice(0, 60); \
+     new PerformanceObserver((list) => list.getEntries().forEach((entry) => { \
+     if (!entry.hadRecentInput) shifts.push(`${entry.value} ${entry.sources.map(nameOf)}`); })) \
      .observe({ type: 'layout-shift', buffered: true });</script>";
 
 /// Folder of `package.json`, which pins axe-core.
@@ -96,11 +96,13 @@ fn write_pages(folder: &Path) {
         "stress rt nsm --case box_on_floor --size 48x48 --out hard",
     );
     assert!(output.status.success());
-    let output = skiagraph(
-        folder,
-        "compare rt nsm --scene lamps --light all --size 48x48 --map-size 64 --frames 1 --out lights",
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/lamps.ron");
+    let line = format!(
+        "compare rt nsm --scene {scene} --light all --size 48x48 --map-size 64 --frames 1 --out lights"
     );
-    assert!(output.status.success());
+    let output = skiagraph(folder, &line);
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{told}");
     // Times that a busy machine does not change: what is on the front follows from them.
     let text = fs::read_to_string(folder.join("out/results.json")).unwrap();
     let mut far: Value = serde_json::from_str(&text).unwrap();

@@ -19,6 +19,7 @@ function fillFirst() {
       const [set, { kind }] = [sets[index], button.dataset];
       const image = button.firstElementChild;
       image.src = `data:image/png;base64,${data.pictures.files[set[kind]]}`;
+      image.classList.toggle('large', of.viewport[0] < 380);
       button.addEventListener('click', () => openPicture(set, kind));
       if (kind === 'error') enlarge(image, set);
     });

@@ -4,6 +4,7 @@
 use crate::html::charts::sign;
 use crate::html::shown::{Shown, part};
 use crate::summary::Row;
+use crate::verdict::MAX_BAND;
 use skiagraph_chart::xml;
 use skiagraph_compare::records::results::{Measured, Run};
 use skiagraph_compare::wording::{ms, percent};
@@ -34,75 +35,85 @@ struct Figure<'a> {
 fn figures(tables: &[Shown], table: &Shown) -> Option<String> {
     let verdict = table.summary.verdict();
     let row = |index: Option<usize>| table.summary.rows.get(index?);
-    let taken = row(verdict.taken)?;
-    let runner_up = row(verdict.runner_up);
-    let (run, _) = worst_view(runner_up.unwrap_or(taken))?;
-    let frame = |of: &Measured| Some(of.images.as_ref()?.frame);
-    let name = |row: &Row| {
-        let sign = sign(tables, &row.method);
-        format!("<b>{sign}{}</b>", xml(&row.label))
+    let (taken, runner_up) = (row(verdict.taken)?, row(verdict.runner_up));
+    let (run, judged) = worst_view(runner_up.unwrap_or(taken))?;
+    let told = |row: &Row, of: &Measured| {
+        let (sign, label) = (sign(tables, &row.method), xml(&row.label));
+        let frame = frame_in_words(frame(of)?);
+        let time = row.frame_ms(table.by_wall).map_or("–".into(), ms);
+        let error = error(table, row);
+        Some(format!("<b>{sign}{label}</b>{frame}: {error}, {time} ms"))
     };
-    let view = xml(&run.view);
-    let time = |row: &Row| row.frame_ms(table.by_wall).map_or("–".into(), ms);
-    let mut shown = Vec::new();
-    let (taken_run, taken_of) = on_view(taken, &run.view)?;
-    let judged = match runner_up.and_then(|row| on_view(row, &run.view)) {
-        Some((_, of)) => frame(of)?,
-        None => frame(taken_of)?,
-    };
-    shown.push(Figure {
-        run,
-        frame: judged,
-        is_reference: true,
-        kind: "visibility",
-        alt: format!(
-            "the reference of view {}: lit white, shadow black",
-            run.view
-        ),
-        caption: format!("<b>reference</b>, view {view}: lit white, shadow black"),
-    });
-    shown.push(Figure {
-        run: taken_run,
-        frame: frame(taken_of)?,
-        is_reference: false,
-        kind: "shaded",
-        alt: format!("{} on view {}, shaded", taken.label, run.view),
-        caption: format!(
-            "{}: {}, {} ms",
-            name(taken),
-            error(table, taken),
-            time(taken)
-        ),
-    });
-    if let Some(row) = runner_up {
-        let (its_run, of) = on_view(row, &run.view)?;
-        let (name, error, time) = (name(row), error(table, row), time(row));
-        if is_right(row) {
-            let text = format!("{name}: {error}, {time} ms. It has no wrong pixel to show.");
-            return Some(html(&shown) + &format!("<p>{text}</p>"));
-        }
-        let colours = match its_run.is_hard() {
-            true => "blue lights a shadow, red shadows light",
-            false => "blue is too light, red too dark",
-        };
-        let here = percent(of.wrong_outside_band(), its_run.pixels.facing_light);
-        let here = match row.views() > 1 && its_run.is_hard() {
-            true => format!(" ({here} on view {view})"),
-            false => String::new(),
-        };
-        shown.push(Figure {
+    let (its_run, of) = on_view(taken, &run.view)?;
+    let mut shown = vec![
+        reference(run, frame(judged)?),
+        Figure {
             run: its_run,
             frame: frame(of)?,
             is_reference: false,
-            kind: "error",
-            alt: format!(
-                "wrong pixels of {} on view {}: {colours}",
-                row.label, run.view
-            ),
-            caption: format!("{name}: {error}{here}, {time} ms; {colours}"),
-        });
+            kind: "shaded",
+            alt: format!("{} on {}, shaded", taken.label, run.view),
+            caption: told(taken, of)?,
+        },
+    ];
+    let caption = runner_up.map(|row| Some((row, told(row, judged)?)));
+    match caption.flatten() {
+        Some((row, caption)) if is_right(row) => {
+            let text = format!("<p>{caption}. It has no wrong pixel to show.</p>");
+            return Some(html(&shown) + &text);
+        }
+        Some((row, caption)) => shown.push(wrong(row, (run, judged), &caption)?),
+        None => {}
     }
     Some(html(&shown))
+}
+
+fn reference(run: &Run, frame: Option<usize>) -> Figure<'_> {
+    let view = xml(&run.view);
+    let number = frame_in_words(frame);
+    Figure {
+        run,
+        frame,
+        is_reference: true,
+        kind: "visibility",
+        alt: format!("the reference of {}: lit white, shadow black", run.view),
+        caption: format!(
+            "<b>reference</b>, {view}{number}: lit white, shadow black, green faces away"
+        ),
+    }
+}
+
+/// The wrong pixels of a row on one of its views.
+fn wrong<'a>(row: &Row, (run, of): (&'a Run, &Measured), caption: &str) -> Option<Figure<'a>> {
+    let colours = if run.is_hard() {
+        "blue lights a shadow, red shadows light"
+    } else {
+        "blue is too light, red too dark"
+    };
+    let here = percent(of.wrong_outside_band(), run.pixels.facing_light);
+    let here = if row.views() > 1 && run.area.is_none() {
+        format!(" (on {} {here})", xml(&run.view))
+    } else {
+        String::new()
+    };
+    Some(Figure {
+        run,
+        frame: frame(of)?,
+        is_reference: false,
+        kind: "error",
+        alt: format!("wrong pixels of {} on {}: {colours}", row.label, run.view),
+        caption: format!("{caption}{here}; {colours}"),
+    })
+}
+
+/// The frame of a camera path that the pictures show; the outer `None` without pictures.
+fn frame(of: &Measured) -> Option<Option<usize>> {
+    Some(of.images.as_ref()?.frame)
+}
+
+/// A comma and the frame of a camera path; nothing for a view.
+fn frame_in_words(frame: Option<usize>) -> String {
+    frame.map_or(String::new(), |frame| format!(", frame {frame}"))
 }
 
 /// The run on the view where a method is wrong the most; of equal ones the first.
@@ -128,14 +139,20 @@ fn is_right(row: &Row) -> bool {
 
 /// The error of a row as the verdict ranks it.
 fn error(table: &Shown, row: &Row) -> String {
-    let wrong = row.wrong();
+    let of = row.wrong();
     if table.summary.is_soft() {
-        format!("RMSE {:.4}", row.rmse().unwrap_or(0.0))
-    } else if is_right(row) {
-        "no wrong pixel".into()
+        return format!("RMSE {:.4}", row.rmse().unwrap_or(0.0));
+    }
+    let judged = of.facing_light.saturating_sub(of.band);
+    let (all, which) = if of.band as f64 > MAX_BAND * of.facing_light as f64 {
+        (judged, " of what can be judged")
     } else {
-        let share = percent(wrong.outside_band, wrong.facing_light);
-        format!("{share} wrong")
+        (of.facing_light, "")
+    };
+    if is_right(row) {
+        format!("no wrong pixel{which}")
+    } else {
+        format!("{} wrong{which}", percent(of.outside_band, all))
     }
 }
 

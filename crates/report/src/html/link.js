@@ -47,7 +47,7 @@ function readLink() {
   const panes = words.getAll('picture').map((text) => text.match(/^(\S+) (.*)$/)).filter((found) => found && found[1] in kinds);
   viewer.isChosen = panes.length === 2;
   viewer.panes = viewer.isChosen ? panes.map(([, kind, label]) => ({ kind, label })) : viewer.usual();
-  viewer.followed = viewer.isChosen ? viewer.panes[1].label : null;
+  [viewer.isRead, viewer.followed] = [viewer.isChosen, null];
   viewer.mode = word('mode') === 'wipe' ? 'wipe' : 'side';
   const wipe = Number(words.get('wipe') ?? 0.5);
   viewer.wipe = wipe >= 0 && wipe <= 1 ? wipe : 0.5;

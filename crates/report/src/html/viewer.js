@@ -4,6 +4,8 @@ const viewer = {
   mode: 'side', place: 0,
   /** True once the panes were chosen by hand or link. */
   isChosen: false,
+  /** True while the panes of a link are still to be shown. */
+  isRead: false,
   usual: () => [{ label: null, kind: 'visibility' }, { label: null, kind: 'error' }],
   panes: [],
   /** Screen pixels per pixel, and the picture's point in the middle of a stage; null: all of it. */
@@ -28,6 +30,8 @@ function settleViewer() {
   const nameOfRow = (label) => names[sets.findIndex((set) => set.label === label)] ?? null;
   const [left, right] = viewer.panes;
   const wanted = state.row === null ? null : nameOfRow(state.row);
+  // A link may show another picture than that of its row.
+  if (viewer.isRead) [viewer.isRead, viewer.followed] = [false, wanted];
   if (wanted !== null && viewer.followed !== wanted) {
     right.label = wanted;
     viewer.followed = wanted;

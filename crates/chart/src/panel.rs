@@ -218,7 +218,11 @@ fn names(
         let name = marks[index].1.name();
         let wide = width(name, BODY);
         // The front's line comes to a mark from above and leaves it to the right.
-        let off_the_line = [(x + 7, y - 13), (x - 7 - wide, y + 13)];
+        let off_the_line = [
+            (x + 7, y - 13),
+            (x - 7 - wide, y + 13),
+            (x - wide / 2, y + 17),
+        ];
         let off_the_line = off_the_line.into_iter().filter(|_| best.contains(&index));
         let [left, right] = bars[index].unwrap_or([x, x]);
         let beside = [(x.max(right + 2) + 9, y), (x.min(left - 2) - 9 - wide, y)];

@@ -116,7 +116,9 @@ fn front_panel(kept: &Kept, viewport: [u32; 2], maps: &[u32]) -> Result<Panel, C
                 ends[1] += own + of.q3 - of.median;
             }
             wrong += measured.wrong_outside_band();
-            pixels += u64::from(run.viewport[0]) * u64::from(run.viewport[1]);
+            // Counts of a path are those of all its frames.
+            let frames = measured.sequence.as_ref().map_or(1, |of| of.frames.len());
+            pixels += run.viewport.map(u64::from).iter().product::<u64>() * frames as u64;
             views += 1.0;
         }
         let spread = ends.map(|end| end / views);

@@ -98,7 +98,8 @@ fn write_pages(folder: &Path) {
     assert!(output.status.success());
     let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/lamps.ron");
     let line = format!(
-        "compare rt nsm --scene {scene} --light all --size 48x48 --map-size 64 --frames 1 --out lights"
+        "compare rt nsm --scene {scene} --light all --size 48x48 --map-size 64 --frames 1 \
+         --out lights"
     );
     let output = skiagraph(folder, &line);
     let told = String::from_utf8_lossy(&output.stderr);

@@ -11,8 +11,8 @@ use std::collections::BTreeMap;
 
 /// Widths of a chart for classes of windows, pixels.
 const WIDTHS: [(&str, u16); 3] = [("broad", 1100), ("middle", 700), ("narrow", 400)];
-/// Width of a chart beside another one.
-const HALF: u16 = 520;
+/// Widths of a chart beside another one, and of one below another in a narrow window.
+const HALVES: [(&str, u16); 2] = [("half", 520), ("narrow", 360)];
 
 /// A figure in which each method looks the same as in all others of the page.
 fn figure(tables: &[Shown], panels: Vec<Panel>) -> Figure {
@@ -44,16 +44,20 @@ pub fn fronts(tables: &[Shown]) -> String {
     html
 }
 
+/// A chart beside others, as parts of these tables and this kind of time.
+fn halves(figure: &Figure, tables: &[usize], kept: Option<bool>) -> String {
+    let half =
+        |(class, width): (&str, u16)| part(class, tables, kept, &drawn(figure.to_page_svg(width)));
+    HALVES.map(half).concat()
+}
+
 /// Returns the charts of errors over the frames of camera paths as HTML, for each table. Lines look
 /// as their methods do in other charts.
 pub fn paths(tables: &[Shown]) -> String {
     let of_table = |(index, table): (usize, &Shown)| {
         let runs = table.summary.rows.iter().flat_map(Row::runs);
         let panels = path_panels(runs, &[]).into_iter();
-        let chart = |panel| {
-            let svg = figure(tables, vec![panel]).to_page_svg(HALF);
-            part("path", &[index], None, &drawn(svg))
-        };
+        let chart = |panel| halves(&figure(tables, vec![panel]), &[index], None);
         panels.map(chart).collect::<String>()
     };
     tables.iter().enumerate().map(of_table).collect()
@@ -144,8 +148,7 @@ pub fn growths(tables: &[Shown]) -> String {
             let (panel, ticks) = growth(rows, [title, x], kept, place);
             if !panel.series.is_empty() {
                 let panels = figure(tables, vec![panel]);
-                let svg = Figure { ticks, ..panels }.to_page_svg(HALF);
-                html += &part("growth", of, Some(kept), &drawn(svg));
+                html += &halves(&Figure { ticks, ..panels }, of, Some(kept));
             }
         };
         for kept in times(tables).iter().copied() {

@@ -193,6 +193,53 @@ mod tests {
         assert_eq!(far.results.adapter.name, "Another GPU");
     }
 
+    /// `sample()` with pictures of two methods, of which the second is exact.
+    fn two_with_pictures() -> Results {
+        let mut results = sample();
+        results.runs.truncate(2);
+        let [one, other] = &mut results.runs[..] else {
+            panic!("two runs")
+        };
+        let other = other.measured.as_mut().unwrap();
+        other.images = one.measured.as_ref().unwrap().images.clone();
+        (other.wrong.total, other.wrong.in_band) = (0, 0);
+        other.graded = Default::default();
+        results
+    }
+
+    #[test]
+    fn the_first_screen_shows_what_the_verdict_names() {
+        let first = |results: Results| {
+            let html = page(&source(Path::new("nowhere"), results), &[]).html;
+            let (_, block) = html.split_once("<div class=\"first\"")?;
+            Some(block.split_once("</div>")?.0.to_owned())
+        };
+        let html = first(two_with_pictures()).unwrap();
+        let kinds = html.split("data-kind=\"").skip(1);
+        let kinds: Vec<&str> = kinds.map(|rest| rest.split('"').next().unwrap()).collect();
+        assert_eq!(kinds, ["visibility", "shaded", "error"]);
+        let captions = html.split("<figcaption>").skip(1);
+        let captions: Vec<&str> = captions.collect();
+        assert!(
+            captions[1].contains("rt</b>: no wrong pixel, 3.00 ms"),
+            "{html}"
+        );
+        let wrong = "nsm 1024</b>: 0.497 % wrong, 3.00 ms; blue lights a shadow, red shadows light";
+        assert!(captions[2].contains(wrong), "{html}");
+
+        let mut right = two_with_pictures();
+        let measured = right.runs[1].measured.clone();
+        right.runs[0].measured = measured;
+        let html = first(right).unwrap();
+        assert!(html.contains("It has no wrong pixel to show.") && !html.contains("\"error\""));
+
+        let mut without = two_with_pictures();
+        for run in &mut without.runs {
+            run.measured.as_mut().unwrap().images = None;
+        }
+        assert_eq!(first(without), None);
+    }
+
     #[test]
     fn the_data_and_the_tables_are_pinned() {
         let html = page(&source(Path::new("nowhere"), sample()), &[stress()]).html;

@@ -490,10 +490,10 @@ fn error_bars_reach_from_end_to_end_within_the_axes() {
         .collect();
     assert_eq!(across.len(), 6, "a line and two caps: {across:?}");
     let (left, right) = (across[0], across[2]);
-    let circles = parsed
+    let mut circles = parsed
         .descendants()
         .filter(|node| node.has_tag_name("circle") && node.attribute("fill") == Some("#0072B2"));
-    let middle = number(circles.last().unwrap(), "cx"); // The first is the legend's.
+    let middle = number(circles.next_back().unwrap(), "cx"); // The first is the legend's.
     assert!(
         (middle - (left + right) / 2.0).abs() <= 1.0,
         "{left} {middle} {right}"

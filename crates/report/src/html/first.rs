@@ -122,11 +122,13 @@ fn worst_view<'a>(row: &Row<'a>) -> Option<(&'a Run, &'a Measured)> {
         let wrong = of.wrong_outside_band() as f64 / run.pixels.facing_light.max(1) as f64;
         (wrong, of.graded.rmse)
     };
-    row.runs()
-        .reduce(|worst, next| match share(&next) > share(&worst) {
-            true => next,
-            false => worst,
-        })
+    row.runs().reduce(|worst, next| {
+        if share(&next) > share(&worst) {
+            next
+        } else {
+            worst
+        }
+    })
 }
 
 fn on_view<'a>(row: &Row<'a>, view: &str) -> Option<(&'a Run, &'a Measured)> {

@@ -2,9 +2,9 @@
 
 use plotters::style::{RGBColor, WHITE};
 
-/// Colours of series: those of Okabe and Ito, "Color Universal Design" (2008), without black. The
-/// yellow is darker, to be seen on white.
-pub(crate) const LOOKS: [RGBColor; 7] = [
+/// Colours of series: those of Okabe and Ito, "Color Universal Design" (2008), with violet
+/// instead of black. The yellow is darker, to be seen on white.
+pub(crate) const LOOKS: [RGBColor; 8] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),
@@ -12,6 +12,7 @@ pub(crate) const LOOKS: [RGBColor; 7] = [
     RGBColor(230, 159, 0),
     RGBColor(86, 180, 233),
     RGBColor(148, 130, 0),
+    RGBColor(122, 92, 194),
 ];
 
 /// Colour of text.
@@ -28,7 +29,7 @@ pub(crate) const FRONT: RGBColor = RGBColor(70, 70, 70);
 pub(crate) const GUIDE: RGBColor = RGBColor(120, 120, 120);
 
 /// Names of these colours in the style of a page.
-const VARIABLES: &str = "s0 s1 s2 s3 s4 s5 s6 ink quiet quiet front line faint strip card";
+const VARIABLES: &str = "s0 s1 s2 s3 s4 s5 s6 s7 ink quiet quiet front line faint strip card";
 
 /// Replaces the colours of a picture by variables of a page's style.
 pub(crate) fn as_variables(svg: String) -> String {

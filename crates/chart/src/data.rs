@@ -53,6 +53,9 @@ pub struct Mark {
     /// Vertical value in the unit of [`Panel::y`]: finite and above 0. It may be 0 in all kinds but
     /// [`Kind::Growth`].
     pub y: f64,
+    /// Ends of the horizontal error bar: finite and above 0, the smaller one first. `None` if there
+    /// is no bar. Only [`Kind::Front`] draws it.
+    pub spread: Option<[f64; 2]>,
     /// Size of the mark: an index into [`Figure::sizes`](crate::Figure::sizes); 0 if that list is
     /// empty.
     pub size: usize,
@@ -61,12 +64,13 @@ pub struct Mark {
 }
 
 impl Mark {
-    /// Creates a mark of the smallest size, without text.
+    /// Creates a mark of the smallest size, without an error bar and text.
     pub fn new(x: f64, y: f64) -> Self {
         let about = String::new();
         Self {
             x,
             y,
+            spread: None,
             size: 0,
             about,
         }

@@ -77,7 +77,7 @@ impl Figure {
     }
 
     /// Returns the panels without title and legend as SVG for a web page, `width` pixels wide.
-    /// Colours are the variables `--s0` to `--s6`, `--ink`, `--quiet`, `--front`, `--line`,
+    /// Colours are the variables `--s0` to `--s7`, `--ink`, `--quiet`, `--front`, `--line`,
     /// `--faint`, `--strip` and `--card` of the page's style. Elements of a series carry its name
     /// in `data-series`. A mark is a `g` of class `mark`; `aria-label` holds its text
     /// [`Mark::about`], `data-name` the first line of that.
@@ -187,10 +187,15 @@ impl Figure {
             entries.push(entry(Sign::Size(size), name, size == 0));
         }
         let has = |kind: &Kind| self.panels.iter().any(|panel| panel.kind == *kind);
+        let marks = self.panels.iter().flat_map(|panel| &panel.series);
+        let mut marks = marks.flat_map(|series| &series.marks);
         if has(&Kind::Front) {
             let front = "Pareto front; what is on it is filled";
             entries.push(entry(Sign::Front, front, true));
             entries.push(entry(Sign::None, "grey strip: exactly 0", false));
+            if marks.any(|mark| mark.spread.is_some()) {
+                entries.push(entry(Sign::None, "bars: quartiles", false));
+            }
         }
         if has(&Kind::Growth) {
             entries.push(entry(Sign::Guide, "twice as much for twice as many", true));
@@ -223,6 +228,14 @@ fn fault(mark: &Mark, kind: &Kind, sizes: usize) -> Option<String> {
     let &Mark { x, y, size, .. } = mark;
     let is_in = |value: f64| value.is_finite() && value > 0.0;
     let is_zero_or_in = y == 0.0 || is_in(y);
+    if let Some([low, high]) = mark
+        .spread
+        .filter(|[low, high]| !is_in(*low) || !is_in(*high) || low > high)
+    {
+        return Some(format!(
+            "an error bar from {low} to {high}; expected finite ends above 0, the smaller one first"
+        ));
+    }
     match kind {
         Kind::Bars(groups) => {
             let groups = groups.len();

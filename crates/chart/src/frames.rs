@@ -52,7 +52,7 @@ pub(crate) fn draw(
         draw_line(canvas, series, places, look, 1.0)?;
         for (mark, &place) in series.marks.iter().zip(places) {
             draw_mark(canvas, (series, mark), "", |root| {
-                look.draw(root, place, 0, true)
+                look.draw(root, place, mark.size, true)
             })?;
         }
     }

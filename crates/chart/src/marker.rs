@@ -1,4 +1,4 @@
-//! Colours and shapes of series: 42 combinations before one repeats.
+//! Colours and shapes of series: 48 combinations before one repeats.
 
 use crate::{
     canvas::Root,
@@ -43,9 +43,11 @@ pub(crate) struct Look {
 impl Look {
     /// Returns the look of the series with this index in the legend.
     pub fn new(index: usize) -> Self {
+        // The colours come around with another shape each.
+        let (round, colour) = (index / LOOKS.len(), index % LOOKS.len());
         Self {
-            colour: LOOKS[index % LOOKS.len()],
-            shape: index % SHAPES.len(),
+            colour: LOOKS[colour],
+            shape: (colour + round) % SHAPES.len(),
         }
     }
 
@@ -84,8 +86,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_two_of_the_first_forty_two_look_alike() {
-        let looks: Vec<Look> = (0..42).map(Look::new).collect();
+    fn no_two_of_the_first_forty_eight_look_alike() {
+        let looks: Vec<Look> = (0..48).map(Look::new).collect();
         for (index, look) in looks.iter().enumerate() {
             assert!(!looks[..index].contains(look), "{index}");
         }

@@ -41,7 +41,12 @@ fn scales(fitted: &[Panel]) -> (Scale, Scale) {
     let series = || fitted.iter().flat_map(|panel| &panel.series);
     let marks = || series().flat_map(|series| &series.marks);
     let lanes = fitted.iter().map(|panel| lanes(panel).len()).max();
-    let x = Scale::around(marks().map(|mark| mark.x), 0);
+    let across = |mark: &Mark| {
+        [mark.x]
+            .into_iter()
+            .chain(mark.spread.into_iter().flatten())
+    };
+    let x = Scale::around(marks().flat_map(across), 0);
     let y = Scale::around(marks().map(|mark| mark.y), lanes.unwrap_or(0));
     (x, y)
 }
@@ -93,7 +98,7 @@ pub(crate) fn draw(
 ) -> Result<(), Error> {
     let (mut x, y) = scales(fitted);
     x.named = ticks.to_vec();
-    let (places, frame) = canvas.draw(|root| {
+    let (places, bars, frame) = canvas.draw(|root| {
         let axes = axes(panel, root, &root.clone().shrink(corner, size), (&x, &y))?;
         let (across, down) = axes.plotting_area().get_pixel_range();
         let title = (across.start, corner.1 + ABOVE / 2);
@@ -102,7 +107,11 @@ pub(crate) fn draw(
             let ends = guide(&x, &y).map(|end| axes.backend_coord(&end));
             root.draw(&DashedPathElement::new(ends, 4, 4, GUIDE))?;
         }
-        Ok((places(panel, &axes), (across, down)))
+        let places = places(panel, &axes);
+        let marks = panel.series.iter().flat_map(|series| &series.marks);
+        let bar = |mark: &Mark| Some(mark.spread?.map(|end| axes.backend_coord(&(end, 1.0)).0));
+        let bars: Vec<_> = marks.map(bar).collect();
+        Ok((places, bars, (across, down)))
     })?;
     for (series, places) in panel.series.iter().zip(&places) {
         let opacity = if panel.kind == Kind::Growth { 1.0 } else { 0.4 };
@@ -125,7 +134,7 @@ pub(crate) fn draw(
     }
     let is_full = |index: &usize| panel.kind == Kind::Growth || best.contains(index);
     let names = match panel.kind {
-        Kind::Front if canvas.is_embedded => names(&marks, &places, &best, frame),
+        Kind::Front if canvas.is_embedded => names(&marks, (&places, &bars), &best, frame),
         _ => vec![String::new(); marks.len()],
     };
     // A finger must hit it.
@@ -136,8 +145,21 @@ pub(crate) fn draw(
     for index in order {
         let (series, mark) = marks[index];
         draw_mark(canvas, (series, mark), &names[index], |root| {
-            look(&series.name).draw(root, places[index], mark.size + larger, is_full(&index))
+            let (look, place) = (look(&series.name), places[index]);
+            if let Some(ends) = bars[index].filter(|_| panel.kind == Kind::Front) {
+                draw_bar(root, ends, place.1, look)?;
+            }
+            look.draw(root, place, mark.size + larger, is_full(&index))
         })?;
+    }
+    Ok(())
+}
+
+/// Draws a horizontal error bar between these places, at this height.
+fn draw_bar(root: &Root, [left, right]: [i32; 2], y: i32, look: Look) -> Result<(), Error> {
+    let caps = [left, right].map(|x| vec![(x, y - 4), (x, y + 4)]);
+    for line in caps.into_iter().chain([vec![(left, y), (right, y)]]) {
+        root.draw(&PathElement::new(line, look.colour.stroke_width(1)))?;
     }
     Ok(())
 }
@@ -172,16 +194,23 @@ pub(crate) fn draw_mark(
     canvas.group(&of, name, draw)
 }
 
+/// Ends of the error bar of each mark, in pixels from the left border.
+type Bars = [Option<[i32; 2]>];
+
 /// The name of each mark beside it, as an element; empty where there is no room. Those of the front
 /// come first.
 fn names(
     marks: &[(&Series, &Mark)],
-    places: &[(i32, i32)],
+    (places, bars): (&[(i32, i32)], &Bars),
     best: &[usize],
     (across, down): (Range<i32>, Range<i32>),
 ) -> Vec<String> {
     let around = |&(x, y): &(i32, i32)| [x - 8, y - 8, x + 8, y + 8];
     let mut taken: Vec<[i32; 4]> = places.iter().map(around).collect();
+    let bar = |(&(_, y), bar): (_, &Option<[i32; 2]>)| {
+        bar.map(|[left, right]| [left - 1, y - 4, right + 1, y + 4])
+    };
+    taken.extend(places.iter().zip(bars).filter_map(bar));
     let mut names = vec![String::new(); marks.len()];
     let others = (0..marks.len()).filter(|index| !best.contains(index));
     for index in best.iter().copied().chain(others) {
@@ -189,9 +218,14 @@ fn names(
         let name = marks[index].1.name();
         let wide = width(name, BODY);
         // The front's line comes to a mark from above and leaves it to the right.
-        let off_the_line = [(x + 7, y - 13), (x - 7 - wide, y + 13)];
+        let off_the_line = [
+            (x + 7, y - 13),
+            (x - 7 - wide, y + 13),
+            (x - wide / 2, y + 17),
+        ];
         let off_the_line = off_the_line.into_iter().filter(|_| best.contains(&index));
-        let beside = [(x + 11, y), (x - 11 - wide, y)];
+        let [left, right] = bars[index].unwrap_or([x, x]);
+        let beside = [(x.max(right + 2) + 9, y), (x.min(left - 2) - 9 - wide, y)];
         let around_it = [(x - wide / 2, y - 17), (x - wide / 2, y + 17)];
         let boxes = off_the_line.chain(beside).chain(around_it);
         let mut boxes = boxes.map(|(left, middle)| [left, middle - 7, left + wide, middle + 7]);

@@ -12,6 +12,8 @@ const LANE: f64 = 16.0;
 const RIM: f64 = 5.0;
 /// Least span of an axis, decades: there is always a 1, 2 or 5 in it.
 const LEAST: f64 = 0.6;
+/// First digits of ticks.
+const LEADS: [f64; 9] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0];
 /// Beyond the outermost values, as a share of the span between them.
 const MARGIN: f64 = 0.06;
 
@@ -74,14 +76,12 @@ impl Scale {
             .collect()
     }
 
-    /// Where labels stand: decades, or 1, 2, 5 where there are few of them.
+    /// Where labels stand: decades, or 1, 2, 5 where there are few of them, or 1 to 9.
     fn labelled(&self) -> Vec<f64> {
-        let span = self.high - self.low;
-        let mut ticks = if span < 2.2 {
-            self.ticks(&[1.0, 2.0, 5.0])
-        } else {
-            self.ticks(&[1.0])
-        };
+        let leads: [&[f64]; 3] = [&[1.0], &[1.0, 2.0, 5.0], &LEADS];
+        let all = leads.map(|leads| self.ticks(leads));
+        let enough = all.iter().find(|ticks| ticks.len() >= 3);
+        let mut ticks = enough.unwrap_or(&all[2]).clone();
         // No more than ten of them.
         let step = ticks.len().div_ceil(10).max(1);
         let mut index = 0;
@@ -120,7 +120,7 @@ impl Ranged for Scale {
             return self.named.iter().map(|(value, _)| *value).collect();
         }
         if hint.weight().allow_light_points() && self.high - self.low < 6.0 {
-            self.ticks(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0])
+            self.ticks(&LEADS)
         } else {
             self.labelled()
         }
@@ -172,11 +172,13 @@ mod tests {
     }
 
     #[test]
-    fn there_are_two_to_ten_labels_whatever_the_span() {
-        for (low, high) in [(1.0, 1.0), (3.0, 4.0), (0.02, 700.0), (1e-12, 1e12)] {
+    fn there_are_three_to_ten_labels_whatever_the_span() {
+        let short = (0..100).map(|at| 10f64.powf(f64::from(at) / 100.0));
+        let short = short.flat_map(|low| [1.0, 1.5, 4.0, 9.0].map(|by| (low, low * by)));
+        for (low, high) in short.chain([(0.02, 700.0), (1e-12, 1e12)]) {
             let scale = Scale::around([low, high].into_iter(), 0);
             let labels = scale.key_points(BoldPoints(10));
-            assert!((1..=10).contains(&labels.len()), "{labels:?}");
+            assert!((3..=10).contains(&labels.len()), "{low} {high}: {labels:?}");
             let (first, last) = scale.ends();
             assert!(first < low && high < last);
             assert!(labels.iter().all(|label| (first..=last).contains(label)));

@@ -1,6 +1,7 @@
 //! Builds charts from results in folders: chooses the runs and quantities to draw.
 //! `skiagraph-chart` draws them.
 
+use crate::looks::looks;
 use itertools::Itertools;
 use skiagraph_chart::{Figure, Kind, Mark, Panel, Series};
 use skiagraph_compare::error::CompareError;
@@ -23,10 +24,7 @@ const TIME: &str = "GPU ms of a frame less its G-buffer";
 /// If a drawn run has no GPU times.
 pub fn front(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, CompareError> {
     let results = || kept.iter().map(|kept| &kept.results);
-    let runs = results().flat_map(|results| &results.runs);
-    let maps = runs.filter(|run| is_drawn(run, viewport));
-    let maps = maps.filter_map(|run| run.map_size).sorted().dedup();
-    let maps: Vec<u32> = maps.collect();
+    let maps = maps(kept, viewport);
     let mut panels = Vec::new();
     for kept in kept {
         for viewport in viewports(&kept.results, viewport) {
@@ -43,11 +41,36 @@ pub fn front(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, Compar
     Ok(Figure {
         title: "Time against error".into(),
         notes,
-        sizes: maps.iter().map(|map| format!("map {map}²")).collect(),
+        looks: looks_of(kept),
+        sizes: named(&maps),
         columns: panels.len().clamp(1, 2),
         panels,
         ..Figure::default()
     })
+}
+
+/// Edges of the maps that are drawn, in texels, the smallest first.
+fn maps(kept: &[Kept], viewport: Option<[u32; 2]>) -> Vec<u32> {
+    let runs = kept.iter().flat_map(|kept| &kept.results.runs);
+    let maps = runs.filter(|run| is_drawn(run, viewport));
+    let maps = maps.filter_map(|run| run.map_size).sorted().dedup();
+    maps.collect()
+}
+
+/// Names of the sizes of marks.
+fn named(maps: &[u32]) -> Vec<String> {
+    maps.iter().map(|map| format!("map {map}²")).collect()
+}
+
+/// Size of the marks of a run: the place of its map among these.
+fn mark_size(map: Option<u32>, maps: &[u32]) -> usize {
+    let place = map.and_then(|map| maps.iter().position(|known| *known == map));
+    place.unwrap_or(0)
+}
+
+fn looks_of(kept: &[Kept]) -> Vec<String> {
+    let runs = kept.iter().flat_map(|kept| &kept.results.runs);
+    looks(runs.map(|run| run.preset.clone()))
 }
 
 fn front_panel(kept: &Kept, viewport: [u32; 2], maps: &[u32]) -> Result<Panel, CompareError> {
@@ -61,15 +84,24 @@ fn front_panel(kept: &Kept, viewport: [u32; 2], maps: &[u32]) -> Result<Panel, C
     }
     for ((preset, map), of_cell) in cells {
         let (mut ms, mut wrong, mut pixels, mut views) = (0.0, 0, 0, 0.0);
+        let mut ends = [0.0; 2];
         for (run, measured) in of_cell {
-            ms += time(kept, measured)?;
+            let own = time(kept, measured)?;
+            ms += own;
+            if let Some(of) = measured.frame.gpu_ms {
+                ends[0] += own + of.q1 - of.median;
+                ends[1] += own + of.q3 - of.median;
+            }
             wrong += measured.wrong_outside_band();
-            pixels += u64::from(run.viewport[0]) * u64::from(run.viewport[1]);
+            // Counts of a path are those of all its frames.
+            let frames = measured.sequence.as_ref().map_or(1, |of| of.frames.len());
+            pixels += run.viewport.map(u64::from).iter().product::<u64>() * frames as u64;
             views += 1.0;
         }
-        let map = map.and_then(|size| maps.iter().position(|map| *map == size));
+        let spread = ends.map(|end| end / views);
         let mark = Mark {
-            size: map.unwrap_or(0),
+            size: mark_size(map, maps),
+            spread: Some(spread).filter(|[low, high]| *low > 0.0 && low < high),
             ..Mark::new(ms / views, 100.0 * wrong as f64 / pixels as f64)
         };
         push(&mut series, preset, mark);
@@ -104,8 +136,7 @@ pub fn growth(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, Compa
                 .map(move |(run, measured)| (kept, run, measured))
         })
     };
-    let maps: BTreeSet<Option<u32>> = runs().map(|(_, run, _)| run.map_size).collect();
-    let has_maps = maps.into_iter().flatten().count() > 1;
+    let maps = maps(kept, viewport);
     let mut cells = Vec::new();
     let mut panels: Vec<[Panel; 2]> = Vec::new();
     for (kept, run, measured) in runs() {
@@ -123,16 +154,26 @@ pub fn growth(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, Compa
             };
             panels.push([panel(TIME), panel("MB of buffers and textures")]);
         }
-        let name = if has_maps {
-            run.method_label()
-        } else {
-            run.preset.clone()
-        };
+        let size = mark_size(run.map_size, &maps);
         let bytes = measured.memory_bytes + measured.scene_bytes;
         let heights = [time(kept, measured)?, bytes as f64 / 1e6];
         for (panel, y) in panels[index].iter_mut().zip(heights) {
             let x = scene.triangles as f64;
-            push(&mut panel.series, &name, Mark::new(x, y));
+            let mark = Mark {
+                size,
+                ..Mark::new(x, y)
+            };
+            // A line for each method and map.
+            let is_of = |series: &&mut Series| {
+                series.name == run.preset && series.marks.iter().all(|mark| mark.size == size)
+            };
+            match panel.series.iter_mut().find(is_of) {
+                Some(series) => series.marks.push(mark),
+                None => panel.series.push(Series {
+                    name: run.preset.clone(),
+                    marks: vec![mark],
+                }),
+            }
         }
     }
     for series in panels
@@ -147,6 +188,10 @@ pub fn growth(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, Compa
     Ok(Figure {
         title: "Growth with the number of triangles".into(),
         notes,
+        looks: looks_of(kept),
+        sizes: Some(named(&maps))
+            .filter(|maps| maps.len() > 1)
+            .unwrap_or_default(),
         panels: panels.into_iter().flatten().collect(),
         columns: 2,
         ..Figure::default()
@@ -160,13 +205,11 @@ pub fn growth(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, Compa
 /// # Errors
 /// If none of the runs is of a camera path.
 pub fn frames_of_paths(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, CompareError> {
+    let maps = maps(kept, viewport);
     let mut panels = Vec::new();
     for kept in kept {
         for viewport in viewports(&kept.results, viewport) {
-            panels.extend(path_panels(
-                drawn(&kept.results, viewport),
-                Run::method_label,
-            ));
+            panels.extend(path_panels(drawn(&kept.results, viewport), &maps));
         }
     }
     if panels.is_empty() {
@@ -177,20 +220,24 @@ pub fn frames_of_paths(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figu
     Ok(Figure {
         title: "Errors along camera paths".into(),
         notes: conditions(kept),
+        looks: looks_of(kept),
+        sizes: Some(named(&maps))
+            .filter(|maps| maps.len() > 1)
+            .unwrap_or_default(),
         columns: panels.len().clamp(1, 2),
         panels,
         ..Figure::default()
     })
 }
 
-/// Returns a panel for each camera path among `runs`, with the error of each frame and a series for
-/// each run. The error is the wrong pixels outside the band, in percent of the pixels that face the
-/// light; under a light with an extent it is the root mean square error of the shares of light.
-/// Runs without frames of a path are skipped. All runs must have the same viewport. `name` returns
-/// the name of a run's series.
+/// Returns a panel for each camera path among `runs`: the error of each frame, a series for each
+/// run. The error is the percentage of wrong pixels outside the band among those that face the
+/// light. Under a light with an extent it is the root mean square error of the shares of light.
+/// Runs without frames of a path are skipped. All runs must have one viewport. A series is named
+/// after its method, and its marks have the size of the run's map: its place in `maps`.
 pub fn path_panels<'a>(
     runs: impl Iterator<Item = (&'a Run, &'a Measured)>,
-    name: impl Fn(&Run) -> String,
+    maps: &[u32],
 ) -> Vec<Panel> {
     let mut paths: Vec<(&str, Panel)> = Vec::new();
     for (run, measured) in runs {
@@ -225,12 +272,13 @@ pub fn path_panels<'a>(
                 wrong / frame.facing_light.max(1) as f64
             };
             Mark {
+                size: mark_size(run.map_size, maps),
                 about: format!("{}\nframe {index}: {error:.4}", run.method_label()),
                 ..Mark::new(index as f64, error)
             }
         };
         paths[at].1.series.push(Series {
-            name: name(run),
+            name: run.preset.clone(),
             marks: sequence.frames.iter().enumerate().map(mark).collect(),
         });
     }
@@ -340,7 +388,14 @@ mod tests {
         };
         // 1.5 ms a frame, 0.375 ms of it the G-buffer; 503 wrong, 6 of them in the band, and none.
         let share = 100.0 * 497.0 / (2.0 * 512.0 * 256.0);
-        let mark = Mark::new(1.125, share);
+        let mark = Mark {
+            spread: nsm.marks[0].spread,
+            ..Mark::new(1.125, share)
+        };
+        assert!(
+            mark.spread
+                .is_some_and(|[low, high]| low < 1.125 && 1.125 < high)
+        );
         assert_eq!((nsm.name.as_str(), &nsm.marks[..]), ("nsm", &[mark][..]));
         assert_eq!(figure.sizes, ["map 1024²"]);
     }
@@ -395,7 +450,7 @@ mod tests {
         };
         assert_eq!(panel.title, "path main, 512x256");
         let names: Vec<&str> = panel.series.iter().map(|line| line.name.as_str()).collect();
-        assert_eq!(names, ["nsm 1024", "pcf 1024"]);
+        assert_eq!(names, ["nsm", "pcf"]);
         let marks = panel.series[0].marks.iter().map(|mark| [mark.x, mark.y]);
         assert_eq!(
             marks.collect::<Vec<_>>(),

@@ -7,6 +7,7 @@ pub mod gate;
 pub mod graded;
 pub mod html;
 pub mod language;
+pub mod looks;
 pub mod markdown;
 pub mod matrices;
 pub mod notes;

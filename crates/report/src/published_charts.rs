@@ -2,6 +2,7 @@
 //! There is a chart for each quantity that both sides have, by map size and by viewport.
 
 use crate::charts::conditions;
+use crate::looks::looks;
 use crate::published_left_out::{views_left_out, without_counterpart};
 use crate::published_panels::{Bar, Cell, Groups, PanelRow, cells, published, rows};
 use skiagraph_chart::{Figure, Panel};
@@ -54,7 +55,7 @@ pub fn draw(
         let figure = Figure {
             title,
             notes,
-            looks: methods.clone(),
+            looks: looks(methods.clone()),
             panels,
             columns: 2,
             shared_axes: true,

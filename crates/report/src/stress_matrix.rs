@@ -264,7 +264,7 @@ mod tests {
         let text = render(&report, &|_, _, _| String::new());
         assert!(!text.contains("maps of"), "{text}");
         assert!(
-            text.contains(" nsm 128 ") && text.contains(" crsm 64 "),
+            text.contains("  nsm  ") && text.contains("  128  ") && text.contains("  crsm 64\n"),
             "{text}"
         );
         assert!(text.contains("crsm 64 on needles"), "{text}");

@@ -9,7 +9,7 @@ use skiagraph_compare::wording::{bytes, ms, percent, plural};
 
 /// The share of pixels in the band beyond which a verdict holds of the others alone: the right
 /// answer of more than one pixel in a hundred hangs on rounding.
-const MAX_BAND: f64 = 0.01;
+pub(crate) const MAX_BAND: f64 = 0.01;
 
 /// Verdict on the rows of a summary.
 #[derive(Debug, Default, PartialEq, Eq)]
@@ -23,6 +23,9 @@ pub struct Verdict {
     pub first: Vec<usize>,
     /// True if the rows in `first` are taken: they are exact, or right enough by the budgets.
     pub is_taken: bool,
+    /// Index of the row to set beside the first one: the alternative that the sentences name, a
+    /// faster method before one that is as right. `None` without an alternative.
+    pub runner_up: Option<usize>,
     /// The verdict in words, a sentence for each entry. It is empty if nothing can be judged.
     pub sentences: Vec<String>,
 }
@@ -293,10 +296,20 @@ fn hard(all: &[Contender]) -> Verdict {
             ]
         }
     };
+    let when = When::AnythingMoves;
+    let faster = all.iter().filter(|of| !of.is_exact);
+    let faster = least(faster, |of| of.frame)
+        .filter(|of| of.frame < best.frame || !of.is_told_apart(best, when));
+    let next = || {
+        least(exact.iter().filter(|of| of.index != best.index), |of| {
+            of.frame
+        })
+    };
     Verdict {
         fastest_exact: Some(best.index),
         first: with_level(best, &exact, |_| true),
         is_taken: true,
+        runner_up: faster.or_else(next).map(|of| of.index),
         sentences,
     }
 }
@@ -381,31 +394,27 @@ fn none_exact(all: &[Contender]) -> Verdict {
         Some(_) => "Each method is wrong on some",
         None => "None is exact here",
     };
-    let said = by_error(
-        all,
-        |of| of.wrong.share(),
-        ["is the least wrong", "are the least wrong"],
-    );
-    said.map_or_else(Verdict::default, |(said, first)| Verdict {
-        first,
-        sentences: vec![format!("{none}. {said}.")],
-        ..Verdict::default()
-    })
+    let words = ["is the least wrong", "are the least wrong"];
+    let mut verdict = by_error(all, |of| of.wrong.share(), words);
+    for said in &mut verdict.sentences {
+        *said = format!("{none}. {said}.");
+    }
+    verdict
 }
 
 /// The method with the least error, those that are as right and cannot be told apart from it in
-/// time, and the fastest one beside it; with the indices of the former. `words` say of one and of
+/// time, and the fastest one beside it, as one sentence without its end. `words` say of one and of
 /// several that they are it.
-fn by_error(
-    all: &[Contender],
-    error: impl Fn(&Contender) -> f64,
-    words: [&str; 2],
-) -> Option<(String, Vec<usize>)> {
+fn by_error(all: &[Contender], error: impl Fn(&Contender) -> f64, words: [&str; 2]) -> Verdict {
     let when = When::AnythingMoves;
-    let least_error = error(least(all, &error)?);
-    let best = least(all.iter().filter(|of| error(of) == least_error), |of| {
+    let Some(least_error) = least(all, &error).map(&error) else {
+        return Verdict::default();
+    };
+    let Some(best) = least(all.iter().filter(|of| error(of) == least_error), |of| {
         of.frame
-    })?;
+    }) else {
+        return Verdict::default();
+    };
     let others = || all.iter().filter(|of| of.index != best.index);
     let is_level = |of: &&Contender| !of.is_told_apart(best, when);
     let equals = others().filter(|of| error(of) == least_error && is_level(of));
@@ -421,15 +430,20 @@ fn by_error(
         ),
     };
     let rest = || others().filter(|of| error(of) > least_error);
-    text += &match least(rest(), |of| of.frame) {
-        Some(fastest) if fastest.frame < best.frame || is_level(&fastest) => {
-            format!(". {}", faster(fastest, best, when))
-        }
+    let fastest = least(rest(), |of| of.frame);
+    let is_faster = |of: &&Contender| of.frame < best.frame || is_level(of);
+    text += &match fastest {
+        Some(fastest) if is_faster(&fastest) => format!(". {}", faster(fastest, best, when)),
         Some(_) => ". No other is faster".into(),
         None => String::new(),
     };
-    let first = with_level(best, all, |of| error(of) == least_error);
-    Some((text, first))
+    let next = || least(others(), &error);
+    Verdict {
+        first: with_level(best, all, |of| error(of) == least_error),
+        runner_up: fastest.filter(is_faster).or_else(next).map(|of| of.index),
+        sentences: vec![text],
+        ..Verdict::default()
+    }
 }
 
 /// The sentences on methods whose frames are too few to tell their times apart.
@@ -482,26 +496,22 @@ fn faster(fastest: &Contender, than: &Contender, when: When) -> String {
 /// Judges errors of shares: the least one, and the fastest.
 fn graded(all: &[Contender], rows: &[Row]) -> Verdict {
     let words = ["has the least error", "have the least error"];
-    let (Some(right), Some((mut text, first))) =
-        (least(all, |of| of.rmse), by_error(all, |of| of.rmse, words))
-    else {
-        return Verdict::default();
-    };
+    let mut verdict = by_error(all, |of| of.rmse, words);
+    let least_error = least(all, |of| of.rmse).map_or(f64::INFINITY, |of| of.rmse);
     let own = rows
         .iter()
         .filter_map(Row::reference_error)
         .reduce(f64::max);
-    if let Some(own) = own.filter(|own| right.rmse < 10.0 * own) {
-        text += &format!(
-            ". The reference's own error is {own:.4}: more samples would tell more \
-             (--reference-samples)"
-        );
+    for said in &mut verdict.sentences {
+        if let Some(own) = own.filter(|own| least_error < 10.0 * own) {
+            *said += &format!(
+                ". The reference's own error is {own:.4}: more samples would tell more \
+                 (--reference-samples)"
+            );
+        }
+        *said += ".";
     }
-    Verdict {
-        first,
-        sentences: vec![text + "."],
-        ..Verdict::default()
-    }
+    verdict
 }
 
 /// The fastest of methods that are all right enough, with those that cannot be told apart from it.
@@ -510,8 +520,8 @@ fn right_enough(all: &[Contender]) -> Verdict {
     let Some(best) = least(all, |of| of.frame) else {
         return Verdict::default();
     };
-    let others = all.iter().filter(|of| of.index != best.index);
-    let level = others.filter(|of| !of.is_told_apart(best, when));
+    let others = || all.iter().filter(|of| of.index != best.index);
+    let level = others().filter(|of| !of.is_told_apart(best, when));
     let figures =
         |of: &Contender| format!("{} ({}, {})", of.name(), of.error(), per_frame(of, when));
     let level: Vec<String> = level.map(figures).collect();
@@ -523,6 +533,7 @@ fn right_enough(all: &[Contender]) -> Verdict {
         fastest_exact: best.is_exact.then_some(best.index),
         first: with_level(best, all, |_| true),
         is_taken: true,
+        runner_up: least(others(), |of| of.frame).map(|of| of.index),
         sentences: vec![format!("Take {}{level}.", figures(best))],
     }
 }
@@ -718,6 +729,56 @@ mod tests {
         assert!(outcome(&twice(0)).1[0].starts_with("Take `nsm` or `nsm@bias=0`: their times"));
         let soft = [graded("pcf", 0.1, 10.0), graded("pcf@bias=0", 0.1, 10.1)];
         assert!(outcome(&soft).1[0].starts_with("`pcf` and `pcf@bias=0` have the least error"));
+    }
+
+    /// The labels of the taken row and of the runner-up.
+    fn pair(runs: &[Run], budgets: &Budgets) -> [Option<String>; 2] {
+        let rows = rows(runs, [512, 256]);
+        let verdict = verdict(&rows, budgets);
+        [verdict.first.first().copied(), verdict.runner_up]
+            .map(|index| Some(rows[index?].label.clone()))
+    }
+
+    #[test]
+    fn the_runner_up_is_the_alternative_that_the_sentences_name() {
+        let of = |runs: &[Run]| {
+            let [taken, runner_up] = pair(runs, &Budgets::default());
+            [taken, runner_up].map(|label| label.unwrap_or_else(|| "none".into()))
+        };
+        let (rt, exact) = (run("rt", 0, 100.0, 100.0), run("buffer", 0, 21.0, 21.0));
+        let (nsm, slow) = (run("nsm", 4_700, 10.0, 8.0), run("slow", 9, 300.0, 300.0));
+        assert_eq!(
+            of(&[rt.clone(), exact.clone(), nsm.clone()]),
+            ["buffer", "nsm"]
+        );
+        assert_eq!(
+            of(&[rt.clone(), exact.clone(), slow.clone()]),
+            ["buffer", "rt"]
+        );
+        assert_eq!(
+            of(&[nsm.clone(), slow.clone()]),
+            ["slow", "nsm"],
+            "none is exact"
+        );
+        assert_eq!(
+            of(&[run("a", 9, 1.0, 1.0), run("b", 99, 9.0, 9.0)]),
+            ["a", "b"]
+        );
+        assert_eq!(of(&[exact]), ["buffer", "none"]);
+        assert_eq!(of(&[]), ["none", "none"]);
+        assert_eq!(
+            of(&[graded("a", 0.1, 9.0), graded("b", 0.2, 1.0)]),
+            ["a", "b"]
+        );
+        let budgets = Budgets {
+            frame_ms: Some(1.0),
+            ..Budgets::default()
+        };
+        assert_eq!(
+            pair(&[rt, nsm], &budgets),
+            [None, None],
+            "no method keeps to it"
+        );
     }
 
     #[test]

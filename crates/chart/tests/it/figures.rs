@@ -459,6 +459,58 @@ fn a_series_looks_the_same_whatever_else_is_drawn() {
 }
 
 #[test]
+fn error_bars_reach_from_end_to_end_within_the_axes() {
+    let mark = Mark {
+        spread: Some([20.0, 80.0]),
+        ..Mark::new(40.0, 3.0)
+    };
+    let of = |mark: Mark, kind: Kind| Figure {
+        panels: vec![Panel {
+            title: "park".into(),
+            kind,
+            x: "ms".into(),
+            y: "%".into(),
+            series: vec![Series {
+                name: "nsm".into(),
+                marks: vec![mark],
+            }],
+        }],
+        ..Figure::default()
+    };
+    let drawn = svg(&of(mark.clone(), Kind::Front));
+    let parsed = Document::parse(&drawn).unwrap();
+    let thin = parsed.descendants().filter(|node| {
+        let is_of_series = node.attribute("stroke") == Some("#0072B2");
+        is_of_series && node.attribute("stroke-width") == Some("1")
+    });
+    let points = thin.filter_map(|node| node.attribute("points"));
+    let across: Vec<f64> = points
+        .flat_map(|points| points.split_whitespace())
+        .map(|point| point.split_once(',').unwrap().0.parse().unwrap())
+        .collect();
+    assert_eq!(across.len(), 6, "a line and two caps: {across:?}");
+    let (left, right) = (across[0], across[2]);
+    let mut circles = parsed
+        .descendants()
+        .filter(|node| node.has_tag_name("circle") && node.attribute("fill") == Some("#0072B2"));
+    let middle = number(circles.next_back().unwrap(), "cx"); // The first is the legend's.
+    assert!(
+        (middle - (left + right) / 2.0).abs() <= 1.0,
+        "{left} {middle} {right}"
+    );
+    assert!(left > 60.0 && right < 800.0 && right - left > 100.0);
+    assert!(!svg(&of(mark.clone(), Kind::Growth)).contains("quartiles"));
+    for spread in [[0.0, 1.0], [3.0, 2.0], [1.0, f64::NAN]] {
+        let mark = Mark {
+            spread: Some(spread),
+            ..mark.clone()
+        };
+        let error = of(mark, Kind::Front).to_svg().unwrap_err().to_string();
+        assert!(error.contains("an error bar from"), "{error}");
+    }
+}
+
+#[test]
 fn logarithmic_axes_are_shared_too() {
     let mut figure = growth();
     let ticks = |figure: &Figure| {

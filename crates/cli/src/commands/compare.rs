@@ -47,7 +47,7 @@ use skiagraph_report::{
     table::terminal,
 };
 use skiagraph_scene::Scene;
-use std::{path::PathBuf, sync::Arc};
+use std::{io::IsTerminal, path::PathBuf, sync::Arc};
 
 /// Checks all arguments, then measures the methods on each scene and prints and saves the results.
 ///
@@ -355,7 +355,8 @@ fn print_summary(args: &CompareArgs, results: &Results) -> Result<(), CliError> 
     let summaries = summary_table::summaries(results);
     match args.format {
         Format::Table => {
-            print(&summaries.iter().map(Summary::text).join("\n"))?;
+            let is_terminal = std::io::stdout().is_terminal();
+            print(&summaries.iter().map(|of| of.text(is_terminal)).join("\n"))?;
             for (viewport, lights) in matrices::by_light(results) {
                 let head = format!("By light, {}: wrong pixels, frame, memory", size(viewport));
                 print(&format!("\n{head}\n{}\n", terminal(&lights)))?;

@@ -64,7 +64,7 @@ fn figures_lines_and_pictures_say_of_which_path_and_frame_they_are() {
         }
     }
     // Four paths of 9 to 25 frames: what is said of a run names its path.
-    for part in ["medians of 9 to 25 frames", "shimmer", "worst frame"] {
+    for part in ["medians of 9 to 25 frames", "shimmer", "worst"] {
         assert!(table.contains(part), "{part}: {table}");
     }
     let of_runs = table

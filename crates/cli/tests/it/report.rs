@@ -3,17 +3,33 @@
 
 use crate::support::{results, skiagraph};
 use serde_json::Value;
-use std::{fs, path::Path, process::Command};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::Command,
+    sync::OnceLock,
+};
 
 /// Runs in the page, ahead of its own scripts.
 const BEFORE: &str = "<script>window.faults = []; \
      addEventListener('error', (event) => faults.push(event.message)); \
      addEventListener('unhandledrejection', (event) => faults.push(String(event.reason))); \
-     console.error = (...words) => faults.push(words.join(' '));</script>";
+     console.error = (...words) => faults.push(words.join(' ')); \
+     window.shifts = []; const nameOf = ({ node }) => (node?.outerHTML ?? '').slice(0, 60); \
+     new PerformanceObserver((list) => list.getEntries().forEach((entry) => { \
+     if (!entry.hadRecentInput) shifts.push(`${entry.value} ${entry.sources.map(nameOf)}`); })) \
+     .observe({ type: 'layout-shift', buffered: true });</script>";
+
+/// Folder of `package.json`, which pins axe-core.
+const AXE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/axe");
+/// Set where the test of accessibility must not be left out, as by `.ci/run`.
+const AXE_REQUIRED: &str = "SKIAGRAPH_AXE";
 
 /// Returns what `script` finds on the page in a frame so wide; the script ends by calling `done`.
 fn browsed(folder: &Path, page: &str, width: u32, is_dark: bool, script: &str) -> Value {
     let html = fs::read_to_string(folder.join(page)).unwrap();
+    let own = tempfile::tempdir_in(folder).unwrap();
+    let folder = own.path();
     let html = html.replacen("<head>", &format!("<head>{BEFORE}"), 1);
     let helpers = include_str!("report/helpers.js");
     let html = html.replacen(
@@ -55,8 +71,22 @@ fn browsed(folder: &Path, page: &str, width: u32, is_dark: bool, script: &str) -
     serde_json::from_str(&text.replace("&amp;", "&")).unwrap()
 }
 
-/// A page of two sizes and maps, and one of two machines with the hard cases.
-fn pages(folder: &Path) {
+/// A folder with a page of two sizes and maps (`out/report.html`), one of two machines with the
+/// hard cases (`all.html`) and one of several lights (`lights/report.html`).
+fn pages() -> &'static Path {
+    static FOLDER: OnceLock<PathBuf> = OnceLock::new();
+    FOLDER.get_or_init(|| {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("pages");
+        if folder.exists() {
+            fs::remove_dir_all(&folder).unwrap();
+        }
+        fs::create_dir_all(&folder).unwrap();
+        write_pages(&folder);
+        folder
+    })
+}
+
+fn write_pages(folder: &Path) {
     let line = "compare rt nsm light_buffer pcf --scene park --size 64x64,96x64 --map-size 64,128 \
                 --frames 2 --warmup 1 --out out";
     let (runs, _) = results(folder, line);
@@ -66,6 +96,14 @@ fn pages(folder: &Path) {
         "stress rt nsm --case box_on_floor --size 48x48 --out hard",
     );
     assert!(output.status.success());
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/lamps.ron");
+    let line = format!(
+        "compare rt nsm --scene {scene} --light all --size 48x48 --map-size 64 --frames 1 \
+         --out lights"
+    );
+    let output = skiagraph(folder, &line);
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{told}");
     // Times that a busy machine does not change: what is on the front follows from them.
     let text = fs::read_to_string(folder.join("out/results.json")).unwrap();
     let mut far: Value = serde_json::from_str(&text).unwrap();
@@ -129,9 +167,7 @@ fn set_times(run: &mut Value) {
 #[test]
 #[ignore = "a suite: `./test.sh --all` runs it"]
 fn the_page_works_in_a_browser() {
-    let folder = tempfile::tempdir().unwrap();
-    let folder = folder.path();
-    pages(folder);
+    let folder = pages();
     for (width, is_dark) in [
         (1280, false),
         (1280, true),
@@ -155,6 +191,43 @@ fn the_page_works_in_a_browser() {
         assert_eq!(outcome["faults"], Value::Array(Vec::new()), "{page}");
         assert_eq!(outcome["failed"], Value::Array(Vec::new()), "{page}");
     }
+}
+
+/// Returns the script of axe-core; `None`, with a message, where it is not installed and may be
+/// missing.
+fn axe() -> Option<PathBuf> {
+    let script = Path::new(AXE).join("node_modules/axe-core/axe.min.js");
+    if script.is_file() {
+        return Some(script);
+    }
+    let text = "axe-core is not installed: npm ci --prefix crates/cli/tests/axe";
+    assert!(std::env::var_os(AXE_REQUIRED).is_none(), "{text}");
+    eprintln!("left out, no page is tried for accessibility: {text}");
+    None
+}
+
+#[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
+fn axe_core_finds_nothing_serious_on_the_pages() {
+    let Some(axe) = axe() else {
+        return;
+    };
+    let folder = pages();
+    let axe = fs::read_to_string(axe).unwrap();
+    fs::write(folder.join("axe.min.js"), axe).unwrap();
+    let script = include_str!("report/axe.js");
+    let mut found = Vec::new();
+    for page in ["out/report.html", "all.html", "lights/report.html"] {
+        for (width, is_dark) in [(1280, false), (1280, true), (390, false), (390, true)] {
+            let outcome = browsed(folder, page, width, is_dark, script);
+            assert_eq!(outcome["faults"], Value::Array(Vec::new()), "{page}");
+            assert!(outcome["passed"].as_u64() > Some(10), "{page}: {outcome}");
+            let findings = outcome["failed"].as_array().unwrap().iter();
+            let theme = if is_dark { "dark" } else { "light" };
+            found.extend(findings.map(|of| format!("{page}, {width} pixels, {theme}: {of}")));
+        }
+    }
+    assert!(found.is_empty(), "{}", found.join("\n"));
 }
 
 #[test]

@@ -101,6 +101,11 @@ pub fn names(sources: &dyn Sources) -> Vec<String> {
     names.sorted().dedup().map(Into::into).collect()
 }
 
+/// Returns the names of all built-in presets, sorted.
+pub fn built_in() -> Vec<String> {
+    names(&EmbeddedSources)
+}
+
 /// Names of the built-in presets that are fit to ship as shadow methods; a comparison takes these
 /// by default.
 pub const SHIPPED: [&str; 8] = [
@@ -117,7 +122,7 @@ pub const SHIPPED: [&str; 8] = [
 /// Returns the names of the presets that a comparison takes by default: [`SHIPPED`], then the
 /// user's own in `./pipelines`.
 pub fn shipped_and_own(sources: &dyn Sources) -> Vec<String> {
-    let built_in = names(&EmbeddedSources);
+    let built_in = built_in();
     let own = names(sources).into_iter();
     let own = own.filter(|name| !built_in.contains(name));
     SHIPPED.map(str::to_owned).into_iter().chain(own).collect()

@@ -2,23 +2,23 @@
 
 use crate::charts::path_panels;
 use crate::html::shown::{Shown, part, times};
+use crate::looks::looks;
 use crate::summary::Row;
 use skiagraph_chart::{Error, Figure, Kind, Mark, Panel, Series, xml};
 use skiagraph_compare::lists::unique;
 use skiagraph_compare::wording::{ms, size};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 /// Widths of a chart for classes of windows, pixels.
 const WIDTHS: [(&str, u16); 3] = [("broad", 1100), ("middle", 700), ("narrow", 400)];
-/// Width of a chart beside another one.
-const HALF: u16 = 520;
+/// Widths of a chart beside another one, and of one below another in a narrow window.
+const HALVES: [(&str, u16); 2] = [("half", 520), ("narrow", 360)];
 
 /// A figure in which each method looks the same as in all others of the page.
 fn figure(tables: &[Shown], panels: Vec<Panel>) -> Figure {
     let rows = tables.iter().flat_map(|table| &table.summary.rows);
-    let methods: BTreeSet<&String> = rows.map(|row| &row.method).collect();
     Figure {
-        looks: methods.into_iter().cloned().collect(),
+        looks: looks(rows.map(|row| row.method.clone())),
         panels,
         ..Figure::default()
     }
@@ -44,16 +44,20 @@ pub fn fronts(tables: &[Shown]) -> String {
     html
 }
 
+/// A chart beside others, as parts of these tables and this kind of time.
+fn halves(figure: &Figure, tables: &[usize], kept: Option<bool>) -> String {
+    let half =
+        |(class, width): (&str, u16)| part(class, tables, kept, &drawn(figure.to_page_svg(width)));
+    HALVES.map(half).concat()
+}
+
 /// Returns the charts of errors over the frames of camera paths as HTML, for each table. Lines look
 /// as their methods do in other charts.
 pub fn paths(tables: &[Shown]) -> String {
     let of_table = |(index, table): (usize, &Shown)| {
         let runs = table.summary.rows.iter().flat_map(Row::runs);
-        let panels = path_panels(runs, |run| run.preset.clone()).into_iter();
-        let chart = |panel| {
-            let svg = figure(tables, vec![panel]).to_page_svg(HALF);
-            part("path", &[index], None, &drawn(svg))
-        };
+        let panels = path_panels(runs, &[]).into_iter();
+        let chart = |panel| halves(&figure(tables, vec![panel]), &[index], None);
         panels.map(chart).collect::<String>()
     };
     tables.iter().enumerate().map(of_table).collect()
@@ -66,6 +70,7 @@ fn front(table: &Shown, kept: bool) -> Panel {
         y.is_finite().then(|| Series {
             name: row.method.clone(),
             marks: vec![Mark {
+                spread: table.spread(row, kept),
                 about: about(table, index),
                 ..Mark::new(x, y)
             }],
@@ -102,11 +107,16 @@ fn about(table: &Shown, index: usize) -> String {
     table.summary.rows[index].label.clone() + &told.collect::<String>()
 }
 
+/// Returns the sign of a method as SVG: its colour and mark in all charts.
+pub fn sign(tables: &[Shown], method: &str) -> String {
+    let svg = drawn(figure(tables, Vec::new()).sign(method)).replace('\n', "");
+    svg.replacen("<svg", "<svg class=\"sign\" aria-hidden=\"true\"", 1)
+}
+
 /// Returns buttons as HTML that show or hide the methods of each table.
 pub fn legends(tables: &[Shown]) -> String {
-    let figure = figure(tables, Vec::new());
     let button = |name: &String| {
-        let (sign, name) = (drawn(figure.sign(name)), xml(name));
+        let (sign, name) = (sign(tables, name), xml(name));
         format!(
             "<button type=\"button\" aria-pressed=\"true\" data-method=\"{name}\">{sign}{name}\
              </button>\n"
@@ -138,8 +148,7 @@ pub fn growths(tables: &[Shown]) -> String {
             let (panel, ticks) = growth(rows, [title, x], kept, place);
             if !panel.series.is_empty() {
                 let panels = figure(tables, vec![panel]);
-                let svg = Figure { ticks, ..panels }.to_page_svg(HALF);
-                html += &part("growth", of, Some(kept), &drawn(svg));
+                html += &halves(&Figure { ticks, ..panels }, of, Some(kept));
             }
         };
         for kept in times(tables).iter().copied() {

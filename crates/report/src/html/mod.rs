@@ -5,7 +5,8 @@
 //! | | |
 //! |-|-|
 //! | `shown` | tables to choose from, and parts of the page that belong to some of them |
-//! | `charts`, `steps`, `rows` | these parts: charts, bars of steps, tables |
+//! | `first` | these parts: the pictures of the verdict |
+//! | `charts`, `steps`, `rows` | charts, bars of steps, tables |
 //! | `stress` | matrices of stress cases |
 //! | `data` | all other words, as JSON |
 //! | `pictures` | which pictures go in, as far as there is room |
@@ -13,6 +14,7 @@
 
 mod charts;
 mod data;
+mod first;
 mod pictures;
 mod rows;
 mod shown;
@@ -29,12 +31,15 @@ use skiagraph_compare::records::stress::Report;
 pub const LIMIT: usize = 30_000_000;
 
 /// In the order in which they need each other.
-const SCRIPTS: [&str; 6] = [
+const SCRIPTS: [&str; 9] = [
     include_str!("page.js"),
     include_str!("shown.js"),
     include_str!("table.js"),
     include_str!("picture.js"),
     include_str!("viewer.js"),
+    include_str!("first.js"),
+    include_str!("keys.js"),
+    include_str!("link.js"),
     include_str!("report.js"),
 ];
 
@@ -62,6 +67,7 @@ fn page_within(sources: &[Source], reports: &[Report], limit: usize) -> Page {
         .replace("/*STYLE*/", include_str!("report.css"))
         .replace("/*SCRIPT*/", &SCRIPTS.concat())
         // Names are escaped: none looks like a comment.
+        .replace("<!--FIRST-->", &first::pictures(&tables))
         .replace("<!--FRONTS-->", &charts::fronts(&tables))
         .replace("<!--LEGEND-->", &charts::legends(&tables))
         .replace("<!--TABLES-->", &rows::tables(&tables))
@@ -153,6 +159,53 @@ mod tests {
         assert!(set["error"].is_u64() && set["shaded"].is_u64(), "{set}");
         assert!(set["uncertain"].is_null() && set["texels"].is_null());
         assert_eq!(data["left_out"][0], line.as_str());
+    }
+
+    /// `sample()` with pictures of two methods, of which the second is exact.
+    fn two_with_pictures() -> Results {
+        let mut results = sample();
+        results.runs.truncate(2);
+        let [one, other] = &mut results.runs[..] else {
+            panic!("two runs")
+        };
+        let other = other.measured.as_mut().unwrap();
+        other.images = one.measured.as_ref().unwrap().images.clone();
+        (other.wrong.total, other.wrong.in_band) = (0, 0);
+        other.graded = Default::default();
+        results
+    }
+
+    #[test]
+    fn the_first_screen_shows_what_the_verdict_names() {
+        let first = |results: Results| {
+            let html = page(&source(Path::new("nowhere"), results), &[]).html;
+            let (_, block) = html.split_once("<div class=\"first\"")?;
+            Some(block.split_once("</div>")?.0.to_owned())
+        };
+        let html = first(two_with_pictures()).unwrap();
+        let kinds = html.split("data-kind=\"").skip(1);
+        let kinds: Vec<&str> = kinds.map(|rest| rest.split('"').next().unwrap()).collect();
+        assert_eq!(kinds, ["visibility", "shaded", "error"]);
+        let captions = html.split("<figcaption>").skip(1);
+        let captions: Vec<&str> = captions.collect();
+        assert!(
+            captions[1].contains("rt</b>: no wrong pixel, 3.00 ms"),
+            "{html}"
+        );
+        let wrong = "nsm 1024</b>: 0.497 % wrong, 3.00 ms; blue lights a shadow, red shadows light";
+        assert!(captions[2].contains(wrong), "{html}");
+
+        let mut right = two_with_pictures();
+        let measured = right.runs[1].measured.clone();
+        right.runs[0].measured = measured;
+        let html = first(right).unwrap();
+        assert!(html.contains("It has no wrong pixel to show.") && !html.contains("\"error\""));
+
+        let mut without = two_with_pictures();
+        for run in &mut without.runs {
+            run.measured.as_mut().unwrap().images = None;
+        }
+        assert_eq!(first(without), None);
     }
 
     #[test]

@@ -14,6 +14,8 @@ const state = {
   row: null,
   /** The table of all sizes and sources. */
   all: false,
+  /** 'dark' or 'light' once it was switched, and then the system's does not count. */
+  theme: null,
 };
 const drawers = [];
 const changed = () => drawers.forEach((draw) => draw());
@@ -35,17 +37,17 @@ function el(name, attributes = {}, ...children) {
   return element;
 }
 
-/** A labelled choice of `[value, text]`; `act` gets the value's index. */
-function choice(id, label, options, chosen, act) {
-  const select = el('select', { id, onchange: () => act(select.selectedIndex) },
+/** A choice of texts, its label beside it; `act` gets the index of the chosen one. */
+function choice(id, label, options, chosen, act, isLabelShown = true) {
+  const select = el('select', { id, 'aria-label': label, onchange: () => act(select.selectedIndex) },
     ...options.map((text, index) => el('option', { value: index }, text)));
   select.selectedIndex = chosen;
-  return el('label', { for: id }, label, select);
+  return el('label', { for: id }, isLabelShown ? label : null, select);
 }
 
-/** Buttons of which one is pressed. */
-function toggle(id, options, chosen, act) {
-  const group = el('span', { id, role: 'group', class: 'controls', style: 'margin:0;gap:4px' });
+/** Buttons of which one is pressed; `label` names the group. */
+function toggle(id, label, options, chosen, act) {
+  const group = el('span', { id, role: 'group', 'aria-label': label, class: 'controls', style: 'margin:0;gap:4px' });
   options.forEach(([value, text]) => group.append(el('button', {
     type: 'button', 'data-value': value, 'aria-pressed': String(value === chosen()),
     onclick: () => {
@@ -70,12 +72,14 @@ function showTip(event, text) {
 }
 const hideTip = () => { tip.hidden = true; };
 
-function setTheme(theme) {
-  document.documentElement.dataset.theme = theme;
-}
 const dark = matchMedia('(prefers-color-scheme: dark)');
-setTheme(dark.matches ? 'dark' : 'light');
-dark.addEventListener('change', () => setTheme(dark.matches ? 'dark' : 'light'));
+function setTheme() {
+  document.documentElement.dataset.theme = state.theme ?? (dark.matches ? 'dark' : 'light');
+}
+setTheme();
+dark.addEventListener('change', setTheme);
 byId('theme').addEventListener('click', () => {
-  setTheme(document.documentElement.dataset.theme === 'dark' ? 'light' : 'dark');
+  state.theme = document.documentElement.dataset.theme === 'dark' ? 'light' : 'dark';
+  setTheme();
+  remember();
 });

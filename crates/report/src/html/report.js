@@ -31,7 +31,7 @@ function headControls() {
     byId('choice').replaceChildren(choice('table-choice', 'Shown', names, state.table, chooseTable));
   }
   if (all('[data-kept="true"]').length > 0) {
-    byId('front-controls').replaceChildren(toggle('time', [
+    byId('front-controls').replaceChildren(toggle('time', 'Frames that are timed', [
       ['false', 'light or meshes move'], ['true', 'only the camera moves'],
     ], () => state.kept, (value) => {
       state.kept = value;
@@ -51,8 +51,10 @@ function drawGraph() {
     drawGraph.method = names[chosen];
     drawGraph();
   }), el('span', { class: 'quiet' }, 'Rows are passes in their order, columns are materials, a bar is the time one lives.'));
-  byId('graph').replaceChildren(el('img', { alt: `graph of ${names[index]}`,
-    src: `data:image/svg+xml;base64,${data.pictures.files[graphs[index].file]}` }));
+  const file = data.pictures.files[graphs[index].file];
+  const [, width, height] = atob(file.slice(0, 800)).match(/width="(\d+)[^>]*height="(\d+)/) ?? [];
+  byId('graph').replaceChildren(el('img', { alt: `graph of ${names[index]}`, width, height,
+    src: `data:image/svg+xml;base64,${file}` }));
 }
 
 function drawConditions() {
@@ -73,9 +75,10 @@ function drawConditions() {
 }
 
 if (data.tables.length > 0) {
+  readLink();
   headControls();
   tableControls();
-  drawers.push(drawHead, show, drawViewer, drawGraph);
+  drawers.push(drawHead, show, drawViewer, drawGraph, remember);
   changed();
   addEventListener('resize', paint);
 } else {
@@ -92,3 +95,4 @@ for (const link of all('#overview [data-choose]')) {
 }
 hide(byId('lights-section'), all('#lights table').length === 0);
 drawConditions();
+ready();

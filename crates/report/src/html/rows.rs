@@ -1,5 +1,6 @@
 //! All rows: the tables of the terminal, joined.
 
+use crate::html::charts::sign;
 use crate::html::shown::{Shown, part};
 use crate::matrices::by_light;
 use crate::overview::{Matrix, Overview, scene_names};
@@ -37,13 +38,20 @@ pub fn tables(tables: &[Shown]) -> String {
     heads.insert(1, "of".into());
     let rows = tables.iter().enumerate();
     let rows: Vec<String> = rows.flat_map(|(index, of)| attributes(index, of)).collect();
+    let all_rows = tables.iter().flat_map(|of| &of.summary.rows);
+    let signs: Vec<String> = all_rows.map(|row| sign(tables, &row.method)).collect();
     let class = |row: usize, column: usize| match (&*heads[column], &*cells[row][column]) {
         (WRONG, "0") => "class=\"zero\"".into(),
         (WRONG, text) if text != NOT_THERE => "class=\"wrong\"".into(),
         _ => String::new(),
     };
     let table = Table::new(heads.clone(), 2, cells.clone());
-    let table = html(&table, |row| rows[row].clone(), class);
+    let table = html(
+        &table,
+        |row| rows[row].clone(),
+        |row| signs[row].clone(),
+        class,
+    );
     let all: Vec<usize> = (0..tables.len()).collect();
     part("rows", &all, None, &table)
 }
@@ -60,7 +68,7 @@ pub fn lights(sources: &[Source]) -> String {
             format!(
                 "<h3>{}</h3>{}",
                 xml(&head),
-                html(&table, |_| String::new(), none)
+                html(&table, |_| String::new(), |_| String::new(), none)
             )
         };
         tables.map(table).collect::<String>()
@@ -98,7 +106,8 @@ pub fn overview(sources: &[Source], all: &[(usize, Summary)]) -> String {
             let (table, text) = (of.summaries[column - 1], text.replace("&#10;", "<br>"));
             format!("<a href=\"#table-section\" data-choose=\"{table}\">{text}</a>")
         };
-        head + &html_with(&of.table, |_| String::new(), class, link)
+        let none = |_| String::new();
+        head + &html_with(&of.table, none, none, class, link)
     };
     let matrices = overview.matrices().into_iter().map(matrix);
     let sentences = overview.sentences().into_iter();

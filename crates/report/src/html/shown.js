@@ -9,11 +9,13 @@ function show() {
   for (const part of all('[data-series]')) {
     hide(part, state.hidden.has(part.dataset.series));
     part.classList.toggle('chosen', part.dataset.name === state.row);
+    if (part.matches('#front .mark')) part.ariaPressed = String(part.dataset.name === state.row);
   }
   for (const button of all('#legend button')) button.ariaPressed = String(!state.hidden.has(button.dataset.method));
   filterRows();
   hide(byId('hidden'), state.hidden.size === 0);
   for (const id of ['passes', 'paths', 'growth']) hide(byId(`${id}-section`), !all(`#${id} > [data-table]`).some(isChosen));
+  settleStops();
 }
 
 function choose(label) {
@@ -27,12 +29,6 @@ for (const kind of ['pointermove', 'focusin']) {
   addEventListener(kind, (event) => (told(event) ? showTip(event, told(event).ariaLabel) : hideTip()));
 }
 document.addEventListener('pointerleave', hideTip);
-for (const mark of all('#front .mark')) {
-  mark.tabIndex = 0;
-  mark.setAttribute('role', 'button');
-  mark.addEventListener('click', () => choose(mark.dataset.name));
-  mark.addEventListener('keydown', (event) => event.key === 'Enter' && choose(mark.dataset.name));
-}
 for (const button of all('#legend button')) {
   button.addEventListener('click', () => {
     const { method } = button.dataset;

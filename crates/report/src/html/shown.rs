@@ -92,6 +92,13 @@ impl Shown<'_> {
         let ms = kept.or(row.frame_ms(self.by_wall));
         ms.filter(|ms| ms.is_finite() && *ms > 0.0)
     }
+
+    /// Returns the quartiles of the times of [`ms`](Self::ms); `None` if they have no spread that
+    /// can be drawn on an axis.
+    pub fn spread(&self, row: &Row, kept: bool) -> Option<[f64; 2]> {
+        let quartiles = row.quartiles(self.by_wall, kept)?;
+        Some(quartiles).filter(|[q1, q3]| *q1 > 0.0 && q1 < q3 && q3.is_finite())
+    }
 }
 
 /// Returns the values of `kept` that the tables' times can be shown with: false for every pass run,

@@ -1,5 +1,6 @@
 //! Bars of GPU time: one for each row, divided into its steps.
 
+use crate::html::charts::sign;
 use crate::html::shown::{Shown, part};
 use skiagraph_chart::xml;
 use skiagraph_compare::lists::entry;
@@ -30,7 +31,7 @@ pub fn bars(tables: &[Shown]) -> String {
         let step = |label: &str, (name, time): &(&str, f64)| {
             let (colour, share, time, name) = (colour(name), time / most, ms(*time), xml(name));
             format!(
-                "<i class=\"step\" style=\"--share:{share:.5};background:{colour}\" \
+                "<i class=\"step\" style=\"--share:{share:.5};--c:{colour}\" \
                  aria-label=\"{label}&#10;{name}: {time} ms\"><b>{name}</b></i>"
             )
         };
@@ -39,16 +40,14 @@ pub fn bars(tables: &[Shown]) -> String {
             let label = xml(&row.label);
             let parts: String = steps.iter().map(|of| step(&label, of)).collect();
             let (method, whole) = (xml(&row.method), ms(sum(steps)));
+            let sign = sign(tables, &row.method);
             html += &format!(
-                "<div class=\"bar\" data-series=\"{method}\"><span>{label}</span>\
+                "<div class=\"bar\" data-series=\"{method}\"><span>{sign}{label}</span>\
                  <div>{parts}<span class=\"tick\">{whole} ms</span></div></div>\n"
             );
         }
         let swatch = |colour: &str, name: &str| {
-            format!(
-                "<span><i style=\"background:{colour}\"></i>{}</span>",
-                xml(name)
-            )
+            format!("<span><i style=\"--c:{colour}\"></i>{}</span>", xml(name))
         };
         let named = totals.iter().take(COLOURS);
         let mut swatches: String = named.map(|(name, _)| swatch(&colour(name), name)).collect();

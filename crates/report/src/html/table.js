@@ -6,8 +6,13 @@ function number(text) {
   return parseFloat(text.replace(/[<,]/g, '')) * 1024 ** prefix;
 }
 
+/** How the tables are sorted. */
+const sorted = { name: null, isDown: false };
+
 /** Sorts all tables by their column of that head; what has no number stands last. */
 function sort(name, isDown) {
+  [sorted.name, sorted.isDown] = [name, isDown];
+  remember();
   for (const table of all('#table table')) {
     const heads = [...table.tHead.rows[0].cells];
     const at = heads.findIndex((head) => head.textContent === name);
@@ -23,6 +28,7 @@ function sort(name, isDown) {
 }
 
 const filter = { words: '', exact: false };
+const isSortedBy = (name) => all('#table thead th').some((head) => head.textContent === name);
 function filterRows() {
   byId('table').classList.toggle('one', !state.all);
   const words = filter.words.toLowerCase().split(/\s+/);
@@ -30,32 +36,35 @@ function filterRows() {
     const name = [...row.querySelectorAll('th')].map((head) => head.textContent).join(' ').toLowerCase();
     const isOf = state.all || row.dataset.of === String(state.table);
     hide(row, !isOf || !words.every((word) => name.includes(word)) || (filter.exact && !row.classList.contains('exact')));
+    if (row.dataset.label === state.row) row.ariaCurrent = 'true';
+    else row.removeAttribute('aria-current');
   }
+  settleStops();
+  remember();
 }
 
 for (const head of all('#table thead th')) {
   const name = head.textContent;
   head.replaceChildren(el('button', { type: 'button', onclick: () => sort(name, head.ariaSort === 'ascending') }, name));
 }
-for (const row of all('#table tbody tr')) row.addEventListener('click', () => choose(row.dataset.label));
-sort('frame ms', false);
 
 function tableControls() {
-  const search = el('input', { type: 'search', id: 'filter', placeholder: 'method, map, size …', oninput: () => {
+  const search = el('input', { type: 'search', id: 'filter', value: filter.words, placeholder: 'method, map, size …', oninput: () => {
     filter.words = search.value;
     filterRows();
   } });
-  const check = (id, text, act) => {
+  const check = (id, text, isOn, act) => {
     const box = el('input', { type: 'checkbox', id, onchange: () => act(box.checked) });
+    box.checked = isOn;
     return el('label', { for: id }, box, text);
   };
   byId('table-controls').replaceChildren(...[
     el('label', { for: 'filter' }, 'Filter', search),
-    check('only-exact', 'only exact ones', (isOn) => {
+    check('only-exact', 'only exact ones', filter.exact, (isOn) => {
       filter.exact = isOn;
       filterRows();
     }),
-    data.tables.length > 1 ? check('all-tables', 'all sizes and sources', (isOn) => {
+    data.tables.length > 1 ? check('all-tables', 'all sizes and sources', state.all, (isOn) => {
       state.all = isOn;
       filterRows();
     }) : null,

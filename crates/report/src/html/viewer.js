@@ -1,7 +1,13 @@
 // Two pictures side by side, or one wiped over the other, under one zoom.
 
 const viewer = {
-  mode: 'side', place: 0, panes: [{ label: null, kind: 'visibility' }, { label: null, kind: 'error' }],
+  mode: 'side', place: 0,
+  /** True once the panes were chosen by hand or link. */
+  isChosen: false,
+  /** True while the panes of a link are still to be shown. */
+  isRead: false,
+  usual: () => [{ label: null, kind: 'visibility' }, { label: null, kind: 'error' }],
+  panes: [],
   /** Screen pixels per pixel, and the picture's point in the middle of a stage; null: all of it. */
   scale: null, middle: [0, 0], wipe: 0.5, stages: [], loaded: [], turn: 0,
 };
@@ -17,11 +23,15 @@ function settleViewer() {
   const here = data.pictures.sets.filter((set) => set.source === table().source
     && size(set.viewport) === size(table().viewport) && table().views.includes(set.view));
   viewer.views = [...new Set(here.map((set) => set.view))];
+  if (viewer.view) viewer.place = Math.max(0, viewer.views.indexOf(viewer.view));
+  viewer.view = null;
   viewer.place = Math.min(viewer.place, Math.max(viewer.views.length - 1, 0));
   const sets = setsHere(), names = sets.map(nameOf);
   const nameOfRow = (label) => names[sets.findIndex((set) => set.label === label)] ?? null;
   const [left, right] = viewer.panes;
   const wanted = state.row === null ? null : nameOfRow(state.row);
+  // A link may show another picture than that of its row.
+  if (viewer.isRead) [viewer.isRead, viewer.followed] = [false, wanted];
   if (wanted !== null && viewer.followed !== wanted) {
     right.label = wanted;
     viewer.followed = wanted;
@@ -56,13 +66,13 @@ function drawViewer() {
     const side = index === 0 ? 'left' : 'right';
     return [
       choice(`method-${side}`, side, names, names.indexOf(pane.label), (chosen) => {
-        pane.label = names[chosen];
+        [pane.label, viewer.isChosen] = [names[chosen], true];
         drawViewer();
       }),
-      choice(`kind-${side}`, '', has.map((kind) => kinds[kind]), has.indexOf(pane.kind), (chosen) => {
-        pane.kind = has[chosen];
+      choice(`kind-${side}`, `kind of the ${side} picture`, has.map((kind) => kinds[kind]), has.indexOf(pane.kind), (chosen) => {
+        [pane.kind, viewer.isChosen] = [has[chosen], true];
         drawViewer();
-      }),
+      }, false),
     ];
   };
   controls.replaceChildren(
@@ -71,7 +81,7 @@ function drawViewer() {
       drawViewer();
     })] : []),
     ...viewer.panes.flatMap(pick),
-    toggle('mode', [['side', 'side by side'], ['wipe', 'wipe']], () => viewer.mode, (mode) => {
+    toggle('mode', 'How two pictures are shown', [['side', 'side by side'], ['wipe', 'wipe']], () => viewer.mode, (mode) => {
       viewer.mode = mode;
       drawViewer();
     }),
@@ -86,8 +96,13 @@ function drawViewer() {
     el('div', { class: `stages ${viewer.mode}` }, ...viewer.stages.map((one) => one.box)),
     ...viewer.panes.filter((pane) => isOfTexels(pane.kind) && setOf(pane)?.figures)
       .map((pane) => el('div', { class: 'quiet figures' }, `${pane.label}, ${setOf(pane).figures}`)),
-    el('div', { id: 'values', class: 'quiet' }, 'Wheel or buttons zoom, dragging moves; point at a pixel for the values of every picture there.'),
+    el('p', { class: 'quiet' }, 'Wheel or buttons zoom, dragging moves; point at a pixel for the values of every picture there.'),
+    el('div', { id: 'values', class: 'quiet', role: 'region', tabindex: 0, 'aria-label': 'Values at a pixel' },
+      values('no pixel', setsHere().map((set) => [set, Object.keys(kinds).map(() => null)]))),
   );
+  // The place is taken before the pictures are there.
+  viewer.loaded = [];
+  paint();
   load();
 }
 
@@ -109,7 +124,7 @@ function key(panes) {
 
 function stage(indices) {
   const panes = indices.map((index) => viewer.panes[index]);
-  const canvas = el('canvas', { tabindex: 0, 'aria-label': panes.map((pane) => `${pane.label}, ${kinds[pane.kind]}`).join(' and ') });
+  const canvas = el('canvas', { tabindex: 0, role: 'img', 'aria-label': panes.map((pane) => `${pane.label}, ${kinds[pane.kind]}`).join(' and ') });
   const box = el('div', { class: 'stage' }, canvas, caption(panes[0], ''), key(panes));
   const one = { box, canvas, indices };
   if (panes.length === 2) {
@@ -249,6 +264,7 @@ function paint() {
     });
     if (one.divider) one.divider.style.left = `${100 * viewer.wipe}%`;
   }
+  remember();
   const { scale } = fit(viewer.stages[0]);
   const isLarger = viewer.loaded.some((loaded) => loaded && isEnlarged(loaded, scale));
   byId('zoom').textContent = `${scale >= 1 ? scale.toFixed(1) : scale.toFixed(2)} ×${isLarger ? ', coloured pixels drawn larger' : ''}`;
@@ -295,11 +311,15 @@ async function readAt([x, y]) {
     lines.push([set, cells]);
   }
   if (viewer.reading !== wanted) return;
+  byId('values').replaceChildren(values(`pixel ${column}, ${row}`, lines));
+}
+
+/** The table of what each picture of each set shows at a pixel: its kind and colour, or null. */
+function values(title, lines) {
   const cell = (set, entry) => (entry === null ? el('td', {}, '–') : el('td', {},
     el('i', { style: `background:rgb(${[...entry[1]].join(' ')})` }), reading(entry[0], set.graded, entry[1])));
-  byId('values').replaceChildren(el('table', {},
-    el('thead', {}, el('tr', {}, el('th', {}, `pixel ${column}, ${row}`),
-      ...Object.values(kinds).map((name) => el('th', {}, name)))),
-    el('tbody', {}, ...lines.map(([set, cells]) => el('tr', {}, el('td', {}, nameOf(set)),
-      ...cells.map((entry) => cell(set, entry)))))));
+  return el('table', {},
+    el('thead', {}, el('tr', {}, el('th', {}, title), ...Object.values(kinds).map((name) => el('th', {}, name)))),
+    el('tbody', {}, ...lines.map(([set, cells]) => el('tr', {}, el('th', { scope: 'row' }, nameOf(set)),
+      ...cells.map((entry) => cell(set, entry))))));
 }

@@ -39,7 +39,7 @@ function point(element, kind, x, y, more = {}) {
   element.dispatchEvent(new Kind(kind, { bubbles: true, cancelable: true, pointerId: 1,
     clientX: box.left + x * box.width, clientY: box.top + y * box.height, ...more }));
 }
-function done() {
-  const outcome = { failed, faults: window.faults, theme: document.documentElement.dataset.theme, width: innerWidth };
+function done(more = {}) {
+  const outcome = { failed, faults: window.faults, theme: document.documentElement.dataset.theme, width: innerWidth, ...more };
   parent.postMessage(JSON.stringify(outcome), '*');
 }

@@ -5,6 +5,30 @@ try {
     `${document.documentElement.scrollWidth} of ${innerWidth}`);
   check('a verdict', find('#verdict').textContent.includes('light_buffer'), find('#verdict').textContent);
 
+  check('nothing jumps while it loads', window.shifts.length === 0, window.shifts);
+
+  // The verdict in pictures: reference, the method to take, the wrong pixels of the alternative.
+  const first = () => seen('.first button');
+  const kinds = first().map((button) => button.dataset.kind).join();
+  check('pictures of the verdict', kinds === 'visibility,shaded,error', kinds);
+  const images = first().map((button) => button.firstElementChild);
+  check('are there', await until(() => images.every((image) => image.complete && image.naturalWidth > 0)));
+  check('with words for those who do not see them', images.every((image) => image.alt.length > 20), images.map((image) => image.alt));
+  const captions = seen('.first figcaption').map((caption) => caption.textContent);
+  check('the method to take', captions[1].startsWith('light_buffer') && captions[1].includes('no wrong pixel'), captions[1]);
+  check('the alternative', /^nsm .* % wrong.*blue lights a shadow, red shadows light/.test(captions[2]), captions[2]);
+  check('both are those of the verdict', ['light_buffer', 'nsm'].every((name) => find('#verdict').textContent.includes(name)));
+  const tops = images.map((image) => Math.round(image.getBoundingClientRect().top));
+  check('side by side where there is room', innerWidth < 640 || new Set(tops).size === 1, tops);
+  check('on the first screen', innerWidth < 1000 || images[2].getBoundingClientRect().bottom < 800, images[2].getBoundingClientRect().bottom);
+
+  // One colour and mark of a method everywhere.
+  const shapeOf = (svg) => svg.innerHTML;
+  const inLegend = shapeOf(seen('#legend [data-method="nsm"] svg')[0]);
+  for (const place of ['.first figcaption svg', '#table tr[data-label^="nsm"] svg']) {
+    check(`the sign of nsm in ${place}`, seen(place).some((svg) => shapeOf(svg) === inLegend), place);
+  }
+
   // The chart has a mark for each row, and a front.
   const marks = () => seen('#front .mark').map((mark) => mark.dataset.name);
   check('a mark for each row', marks().length === 7, marks());
@@ -98,7 +122,7 @@ try {
   point(canvases()[1], 'pointermove', 0.2, 0.4);
   point(canvases()[1], 'pointerup', 0.2, 0.4);
   check('dragging moves', copy(canvases()[1]) !== near);
-  await until(() => find('#values table'));
+  await until(() => find('#values').textContent.startsWith('pixel '));
   const values = find('#values').textContent;
   check('values of every picture', ['pixel ', 'reference', 'rt', 'nsm 64', 'light_buffer 128'].every((name) => values.includes(name)), values);
   check('in words', /lit|in shadow|facing away|background/.test(values), values);
@@ -122,12 +146,37 @@ try {
   find('#mode [data-value="side"]').click();
   await settled();
 
+  // Rows and marks by keyboard: one stop of Tab, arrows, Enter and the space bar.
+  const stops = (selector) => seen(selector).filter((part) => part.tabIndex === 0);
+  const press = (key) => document.activeElement.dispatchEvent(new KeyboardEvent('keydown', { key, bubbles: true, cancelable: true }));
+  for (const [selector, key] of [['#table tbody tr', 'Enter'], ['#front .mark', ' ']]) {
+    const of = (part) => part.dataset.label ?? part.dataset.name;
+    check(`one stop among ${selector}`, stops(selector).length === 1, stops(selector).length);
+    stops(selector)[0].focus();
+    press('Home');
+    const before = of(document.activeElement);
+    press('ArrowDown');
+    const after = of(document.activeElement);
+    check(`arrows move among ${selector}`, before !== after && stops(selector).length === 1, `${before} ${after}`);
+    press(key);
+    check(`${key} chooses of ${selector}`, seen('#table tr[aria-current]').map(of).join() === after, after);
+  }
+  const unnamed = seen('button, select, input, canvas, [tabindex]').filter((part) => part.tagName !== 'TR'
+    && !(part.ariaLabel || part.textContent.trim() || part.labels?.length || part.querySelector('img')?.alt));
+  check('all controls have names', unnamed.length === 0, unnamed.map((part) => part.outerHTML.slice(0, 80)));
+
   // A click on a row shows its picture.
   seen('#table tr[data-label="nsm 128"]')[0].click();
   await settled();
   const chosen = seen('#front .mark.chosen').map((mark) => mark.dataset.name);
   check('a row’s mark', chosen.join() === 'nsm 128', chosen);
   check('a row’s picture', find('#method-right').selectedOptions[0].text === 'nsm 128', find('#method-right').selectedOptions[0].text);
+
+  // The verdict's pictures open in the viewer.
+  first()[2].click();
+  await settled();
+  check('a picture opens', find('#kind-right').selectedOptions[0].text === 'wrong pixels'
+    && find('#method-right').selectedOptions[0].text.startsWith('nsm'), find('#method-right').selectedOptions[0].text);
 
   // Passes, growth, graph, conditions.
   check('bars', seen('#passes .step').length > 10, seen('#passes .step').length);
@@ -137,6 +186,24 @@ try {
   check('a graph', find('#graph img').naturalWidth > 300, find('#graph img').naturalWidth);
   check('the command', find('#conditions pre').textContent.startsWith('skiagraph compare rt nsm'), find('#conditions').textContent);
   check('no hard cases', find('#stress-section').hidden);
+
+  // The link holds what is chosen, and brings it back.
+  await settled();
+  check('the link tells what is chosen', location.hash.includes('row=') && location.hash.includes('picture=error+nsm'), location.hash);
+  const link = '#table=0&only-camera=true&hide=pcf&row=nsm+128&sort=memory&down=true&filter=nsm&theme=dark'
+    + '&picture=visibility+reference&picture=shaded+nsm+64&mode=wipe&wipe=0.25';
+  location.hash = link;
+  await settled();
+  check('a link’s rows', rows().length === 2 && rows().every((label) => label.startsWith('nsm')), rows());
+  check('sorted', head('memory').ariaSort === 'descending', head('memory').ariaSort);
+  check('and its row', seen('#table tr[aria-current]')[0]?.dataset.label === 'nsm 128');
+  check('its marks', !marks().some((name) => name.startsWith('pcf')) && find('#time [aria-pressed="true"]').dataset.value === 'true');
+  check('its pictures', find('#method-right').selectedOptions[0].text === 'nsm 64' && find('#divider')?.ariaValueNow === '25', find('#method-right').selectedOptions[0].text);
+  check('its theme', document.documentElement.dataset.theme === 'dark');
+  location.hash = '#table=7&hide=nothing&row=none&sort=up&view=no&picture=a&wipe=4&zoom=x&theme=pink&other=1';
+  await settled();
+  check('what a link has wrong is passed over', rows().length === 7 && marks().length === 7 && location.hash === '', location.hash);
+  check('no row is chosen', seen('#table tr[aria-current]').length === 0);
 
   // Another size, the other theme.
   check('graded answers stand beside hard ones', rows().includes('pcf 64') && rows().includes('nsm 64'), rows());

@@ -1,0 +1,182 @@
+//! The first screen: reference, the method to take, and where the alternative is wrong, as pictures
+//! beside each other. The page's script puts in the files.
+
+use crate::html::charts::sign;
+use crate::html::shown::{Shown, part};
+use crate::summary::Row;
+use crate::verdict::MAX_BAND;
+use skiagraph_chart::xml;
+use skiagraph_compare::records::results::{Measured, Run};
+use skiagraph_compare::wording::{ms, percent};
+
+/// Returns the pictures of each table's verdict as HTML. A table without a verdict or without
+/// pictures has none.
+pub fn pictures(tables: &[Shown]) -> String {
+    let of_table = |(index, table): (usize, &Shown)| {
+        let figures = figures(tables, table)?;
+        Some(part("first", &[index], None, &figures))
+    };
+    tables.iter().enumerate().filter_map(of_table).collect()
+}
+
+/// A picture with its caption; `kind` is the key of the picture among those of the page's data.
+struct Figure<'a> {
+    run: &'a Run,
+    /// Frame of a camera path.
+    frame: Option<usize>,
+    /// True for the reference of the run's view, false for the method.
+    is_reference: bool,
+    kind: &'a str,
+    alt: String,
+    /// Caption as HTML.
+    caption: String,
+}
+
+fn figures(tables: &[Shown], table: &Shown) -> Option<String> {
+    let verdict = table.summary.verdict();
+    let row = |index: Option<usize>| table.summary.rows.get(index?);
+    let (taken, runner_up) = (row(verdict.first.first().copied())?, row(verdict.runner_up));
+    let (run, judged) = worst_view(runner_up.unwrap_or(taken))?;
+    let told = |row: &Row, of: &Measured| {
+        let (sign, label) = (sign(tables, &row.method), xml(&row.label));
+        let frame = frame_in_words(frame(of)?);
+        let time = row.frame_ms(table.by_wall).map_or("–".into(), ms);
+        let error = error(table, row);
+        Some(format!("<b>{sign}{label}</b>{frame}: {error}, {time} ms"))
+    };
+    let (its_run, of) = on_view(taken, &run.view)?;
+    let mut shown = vec![
+        reference(run, frame(judged)?),
+        Figure {
+            run: its_run,
+            frame: frame(of)?,
+            is_reference: false,
+            kind: "shaded",
+            alt: format!("{} on {}, shaded", taken.label, run.view),
+            caption: told(taken, of)?,
+        },
+    ];
+    let caption = runner_up.map(|row| Some((row, told(row, judged)?)));
+    match caption.flatten() {
+        Some((row, caption)) if is_right(row) => {
+            let text = format!("<p>{caption}. It has no wrong pixel to show.</p>");
+            return Some(html(&shown) + &text);
+        }
+        Some((row, caption)) => shown.push(wrong(row, (run, judged), &caption)?),
+        None => {}
+    }
+    Some(html(&shown))
+}
+
+fn reference(run: &Run, frame: Option<usize>) -> Figure<'_> {
+    let view = xml(&run.view);
+    let number = frame_in_words(frame);
+    Figure {
+        run,
+        frame,
+        is_reference: true,
+        kind: "visibility",
+        alt: format!("the reference of {}: lit white, shadow black", run.view),
+        caption: format!(
+            "<b>reference</b>, {view}{number}: lit white, shadow black, green faces away"
+        ),
+    }
+}
+
+/// The wrong pixels of a row on one of its views.
+fn wrong<'a>(row: &Row, (run, of): (&'a Run, &Measured), caption: &str) -> Option<Figure<'a>> {
+    let colours = if run.is_hard() {
+        "blue lights a shadow, red shadows light"
+    } else {
+        "blue is too light, red too dark"
+    };
+    let here = percent(of.wrong_outside_band(), run.pixels.facing_light);
+    let here = if row.views() > 1 && run.area.is_none() {
+        format!(" (on {} {here})", xml(&run.view))
+    } else {
+        String::new()
+    };
+    Some(Figure {
+        run,
+        frame: frame(of)?,
+        is_reference: false,
+        kind: "error",
+        alt: format!("wrong pixels of {} on {}: {colours}", row.label, run.view),
+        caption: format!("{caption}{here}; {colours}"),
+    })
+}
+
+/// The frame of a camera path that the pictures show; the outer `None` without pictures.
+fn frame(of: &Measured) -> Option<Option<usize>> {
+    Some(of.images.as_ref()?.frame)
+}
+
+/// A comma and the frame of a camera path; nothing for a view.
+fn frame_in_words(frame: Option<usize>) -> String {
+    frame.map_or(String::new(), |frame| format!(", frame {frame}"))
+}
+
+/// The run on the view where a method is wrong the most; of equal ones the first.
+fn worst_view<'a>(row: &Row<'a>) -> Option<(&'a Run, &'a Measured)> {
+    let share = |(run, of): &(&Run, &Measured)| {
+        let wrong = of.wrong_outside_band() as f64 / run.pixels.facing_light.max(1) as f64;
+        (wrong, of.graded.rmse)
+    };
+    row.runs().reduce(|worst, next| {
+        if share(&next) > share(&worst) {
+            next
+        } else {
+            worst
+        }
+    })
+}
+
+fn on_view<'a>(row: &Row<'a>, view: &str) -> Option<(&'a Run, &'a Measured)> {
+    row.runs().find(|(run, _)| run.view == view)
+}
+
+fn is_right(row: &Row) -> bool {
+    row.is_exact() && row.wrong().outside_band == 0
+}
+
+/// The error of a row as the verdict ranks it.
+fn error(table: &Shown, row: &Row) -> String {
+    let of = row.wrong();
+    if table.summary.is_soft() {
+        return format!("RMSE {:.4}", row.rmse().unwrap_or(0.0));
+    }
+    let judged = of.facing_light.saturating_sub(of.band);
+    let (all, which) = if of.band as f64 > MAX_BAND * of.facing_light as f64 {
+        (judged, " of what can be judged")
+    } else {
+        (of.facing_light, "")
+    };
+    if is_right(row) {
+        format!("no wrong pixel{which}")
+    } else {
+        format!("{} wrong{which}", percent(of.outside_band, all))
+    }
+}
+
+fn html(figures: &[Figure]) -> String {
+    let figure = |of: &Figure| {
+        let [wide, high] = of.run.viewport;
+        let label = (!of.is_reference).then(|| of.run.method_label());
+        let label = label.map_or(String::new(), |label| {
+            format!(" data-label=\"{}\"", xml(&label))
+        });
+        let frame = of
+            .frame
+            .map_or(String::new(), |frame| format!(" data-frame=\"{frame}\""));
+        format!(
+            "<figure><button type=\"button\" data-view=\"{}\" data-kind=\"{}\"{label}{frame}>\
+             <img width=\"{wide}\" height=\"{high}\" alt=\"{}\"></button>\
+             <figcaption>{}</figcaption></figure>\n",
+            xml(&of.run.view),
+            of.kind,
+            xml(&of.alt),
+            of.caption
+        )
+    };
+    figures.iter().map(figure).collect()
+}

@@ -24,25 +24,26 @@ pub fn scene_text(scene: &SceneFile) -> Result<String, String> {
     if let Some(up) = scene.ground {
         text += &format!("    ground: {},\n", vector(up));
     }
-    let lights = scene.lights.iter().map(light);
-    text += &list("lights", lights.collect());
+    let lights: Vec<String> = scene.lights.iter().map(light).collect();
     let views = scene.views.iter().map(view);
-    text += &list("views", views.collect::<Result<_, _>>()?);
+    let views: Vec<String> = views.collect::<Result<_, _>>()?;
     let paths = scene.paths.iter().map(|it| path(it, &scene.lights));
-    text += &list("paths", paths.collect::<Result<_, _>>()?);
+    let paths: Vec<String> = paths.collect::<Result<_, _>>()?;
+    for (name, items) in [("lights", lights), ("views", views), ("paths", paths)] {
+        text += &list(1, name, &items);
+    }
     Ok(text + ")\n")
 }
 
-/// A field that is a list; nothing for an empty one.
-fn list(name: &str, items: Vec<String>) -> String {
+/// A field that is a list, so many levels deep; nothing for an empty one.
+fn list(depth: usize, name: &str, items: &[String]) -> String {
     if items.is_empty() {
         return String::new();
     }
-    let items: String = items
-        .iter()
-        .map(|item| format!("        {item},\n"))
-        .collect();
-    format!("    {name}: [\n{items}    ],\n")
+    let indent = "    ".repeat(depth);
+    let line = |item: &String| format!("{indent}    {item},\n");
+    let lines: String = items.iter().map(line).collect();
+    format!("{indent}{name}: [\n{lines}{indent}],\n")
 }
 
 /// A number as short as it can be read again.
@@ -209,25 +210,16 @@ fn path(path: &CameraPath, lights: &[Light]) -> Result<String, String> {
             vector(key.direction)
         )
     });
-    text += &inner("keys", &keys.collect::<Vec<_>>());
-    text += &inner(
-        "light_keys",
-        &path.light_keys.iter().map(light_key).collect::<Vec<_>>(),
-    );
-    text += &inner("moves", &path.moves.iter().map(moves).collect::<Vec<_>>());
-    Ok(text + "        )")
-}
-
-/// A list within a path.
-fn inner(name: &str, items: &[String]) -> String {
-    if items.is_empty() {
-        return String::new();
+    let light_keys = path.light_keys.iter().map(light_key);
+    let moves = path.moves.iter().map(moves);
+    for (name, items) in [
+        ("keys", keys.collect::<Vec<String>>()),
+        ("light_keys", light_keys.collect()),
+        ("moves", moves.collect()),
+    ] {
+        text += &list(3, name, &items);
     }
-    let items: String = items
-        .iter()
-        .map(|item| format!("                {item},\n"))
-        .collect();
-    format!("            {name}: [\n{items}            ],\n")
+    Ok(text + "        )")
 }
 
 fn light_key(key: &LightKey) -> String {

@@ -426,17 +426,20 @@ fn finish(
     let Series {
         results, broken, ..
     } = series;
-    let kept = match results.runs.len() {
-        0 if measured.finished > 0 => {
-            "no run was finished; the same command with --resume goes on from there".into()
-        }
+    let resume = "the same command with --resume goes on from there";
+    let file = folder.join("results.json");
+    let mut kept = match results.runs.len() {
+        0 if measured.finished > 0 => format!("no run was finished; {resume}"),
         0 => "no run was finished".into(),
         done => format!(
-            "{done} of {planned} runs are kept in {}; the same command with --resume goes on \
-             from there",
-            folder.join("results.json").display()
+            "{done} of {planned} runs are kept in {}; {resume}",
+            file.display()
         ),
     };
+    if let Some(name) = &target.name {
+        let (finished, all) = (measured.finished, args.scene.scenes.len());
+        kept = format!("scenes finished: {finished} of {all}; {name}: {kept}");
+    }
     match outcome {
         Ok(()) => {}
         Err(CliError::Interrupted { .. }) => return Err(CliError::Interrupted { kept }),

@@ -227,4 +227,11 @@ fn animations_of_a_file_are_paths() {
     );
     let text = String::from_utf8_lossy(&output.stderr);
     assert!(text.contains("has no path `lamp`"), "{text}");
+    // `run` takes them as well.
+    let run = "run rt --size 32x32 --scene moving.gltf --path walk --frames 2 --save";
+    let output = skiagraph(folder.path(), &format!("{run} visibility=walk.bin"));
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{text}");
+    let frame = |file: &str| fs::read(folder.path().join(file)).unwrap();
+    assert_ne!(frame("walk.0000.bin"), frame("walk.0001.bin"));
 }

@@ -2,7 +2,12 @@
 
 use crate::support::skiagraph;
 use serde_json::Value;
-use std::{fs, path::Path, process::Output};
+use std::{
+    fs,
+    io::{BufRead, BufReader, Read},
+    path::Path,
+    process::{Command, Output, Stdio},
+};
 use tempfile::TempDir;
 
 const COMPARE: &str = "compare rt nsm --size 64x64 --map-size 64 --frames 1 --warmup 0 --images \
@@ -127,7 +132,7 @@ fn a_gate_holds_on_every_scene() {
     let folder = folder();
     let line = format!("{COMPARE} {SCENES} --format markdown");
     let gate = ["--fail-if", "nsm: memory > 1"];
-    let output = std::process::Command::new(env!("CARGO_BIN_EXE_skiagraph"))
+    let output = Command::new(env!("CARGO_BIN_EXE_skiagraph"))
         .args(line.split_whitespace().chain(gate))
         .current_dir(folder.path())
         .output()
@@ -140,4 +145,37 @@ fn a_gate_holds_on_every_scene() {
     }
     let document = String::from_utf8_lossy(&output.stdout);
     assert!(document.contains("## Overview, 64x64\n"), "{document}");
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_keeps_the_scenes_that_are_finished() {
+    let folder = folder();
+    let line = COMPARE.replace("--frames 1", "--frames 300");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_skiagraph"))
+        .args(format!("{line} {SCENES}").split_whitespace())
+        .current_dir(folder.path())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut stderr = BufReader::new(child.stderr.take().unwrap());
+    let mut told = String::new();
+    while !told.ends_with("objects, scene 2 of 2\n") {
+        assert!(stderr.read_line(&mut told).unwrap() > 0, "{told}");
+    }
+    let signal = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
+    assert!(signal.unwrap().success());
+    stderr.read_to_string(&mut told).unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(130), "{told}");
+    for part in [
+        "stopped by Ctrl-C; scenes finished: 1 of 2; objects: ",
+        "the same command with --resume goes on from there",
+    ] {
+        assert!(told.contains(part), "no {part:?} in {told}");
+    }
+    let out = folder.path().join("out");
+    assert!(out.join("room/results.json").exists() && out.join("report.html").exists());
 }

@@ -336,8 +336,8 @@ fn judge(
         let changes = baseline.against(results)?;
         worse = baseline_text::failures(&changes);
         match args.format {
-            Format::Json => note(&baseline_text::text(&changes)),
-            _ => print(&format!("\n{}", baseline_text::text(&changes)))?,
+            Format::Table => print(&format!("\n{}", baseline_text::text(&changes)))?,
+            Format::Markdown | Format::Json => note(&baseline_text::text(&changes)),
         }
     }
     match (&failures[..], &worse[..]) {

@@ -2,7 +2,7 @@
 //! that cargo has noted in it, else the one that is checked out. Without both there is none.
 //! Changes that are not committed do not show.
 
-use std::{fs, path::Path, process::Command};
+use std::{fs, path::PathBuf, process::Command};
 
 /// Name of the file in which `cargo package` notes the repository's commit.
 const NOTE: &str = ".cargo_vcs_info.json";
@@ -31,12 +31,18 @@ fn checked_out() -> Option<String> {
     if git(&["rev-parse", "--show-prefix"])? != OWN {
         return None;
     }
-    // HEAD names a branch, whose file changes with each commit; packed, it has none.
+    // HEAD names a branch, whose file changes with each commit. If branches are packed it has none,
+    // and the next commit makes one in that folder.
     let branch = git(&["rev-parse", "--symbolic-full-name", "HEAD"])?;
-    for name in ["HEAD", &branch, "packed-refs"] {
-        let file = git(&["rev-parse", "--git-path", name])?;
-        if Path::new(&file).exists() {
-            println!("cargo::rerun-if-changed={file}");
+    let place = |name: &str| git(&["rev-parse", "--git-path", name]).map(PathBuf::from);
+    let (head, packed, branch) = (place("HEAD")?, place("packed-refs")?, place(&branch)?);
+    let branch = match branch.parent() {
+        Some(folder) if !branch.exists() => folder.to_path_buf(),
+        _ => branch,
+    };
+    for file in [head, packed, branch] {
+        if file.exists() {
+            println!("cargo::rerun-if-changed={}", file.display());
         }
     }
     git(&["rev-parse", "HEAD"]).filter(|hash| is_hash(hash))

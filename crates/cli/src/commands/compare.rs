@@ -504,8 +504,8 @@ fn judge(
             .worse
             .extend(worse.map(|line| format!("{scene}{line}")));
         match args.format {
-            Format::Json => note(&baseline_text::text(&changes)),
-            _ => print(&format!("\n{}", baseline_text::text(&changes)))?,
+            Format::Table => print(&format!("\n{}", baseline_text::text(&changes)))?,
+            Format::Markdown | Format::Json => note(&baseline_text::text(&changes)),
         }
     }
     Ok(())

@@ -250,7 +250,8 @@ fn parse_results(text: &str) -> Result<Results, Mistake> {
     let results: Results = parse(text)?;
     // A mistake in a run's measurements reads as a run without any.
     let is_broken = |run: &&Run| run.measured.is_none() && run.unavailable.is_none();
-    match results.runs.iter().find(is_broken) {
+    let others = results.others.iter().flat_map(|of| &of.runs);
+    match results.runs.iter().chain(others).find(is_broken) {
         None => Ok(results),
         Some(run) => {
             let what = format!(
@@ -306,6 +307,16 @@ mod tests {
             good.replacen("        2.0,", "        -2.0,", 1),
         ];
         insta::assert_snapshot!(refused(profile_of, "old.json", &good, &texts));
+    }
+
+    #[test]
+    fn a_broken_run_of_joined_results_is_found() {
+        let mut joined = results::tests::sample();
+        joined.others = vec![results::tests::sample()];
+        joined.others[0].runs[1].measured = None;
+        let file = SourceFile::new("all.json", to_text(&joined));
+        let told = results_of(&file).unwrap_err().to_string();
+        assert!(told.contains("rt on main 512x256 has neither"), "{told}");
     }
 
     #[test]

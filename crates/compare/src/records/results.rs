@@ -75,6 +75,7 @@ impl Results {
     /// Splits joined results: returns these without `others`, and behind them each of `others`.
     pub fn each(mut self) -> Vec<Self> {
         let others = std::mem::take(&mut self.others);
+        let others = others.into_iter().flat_map(Self::each);
         [self].into_iter().chain(others).collect()
     }
 
@@ -856,9 +857,10 @@ pub(crate) mod tests {
     fn joined_results_are_split_and_older_files_lack_cell_commit_and_machine() {
         let mut joined = sample();
         joined.others = vec![sample(), sample()];
+        joined.others[0].others = vec![sample()];
         let text = json::to_text(&joined);
         let read: Results = serde_json::from_str(&text).unwrap();
-        assert_eq!(read.each(), [sample(), sample(), sample()]);
+        assert_eq!(read.each(), [sample(), sample(), sample(), sample()]);
         let mut older = serde_json::to_value(sample()).unwrap();
         for run in older["runs"].as_array_mut().unwrap() {
             let run = run.as_object_mut().unwrap();

@@ -522,7 +522,10 @@ mod tests {
         assert_eq!(others, more_views(&room, &sun, &like, 3), "the same again");
         for other in &others {
             other.check().unwrap();
-            assert!(other.eye.x.abs() < 4.0 && other.eye.z.abs() < 3.0, "{other:?}");
+            assert!(
+                other.eye.x.abs() < 4.0 && other.eye.z.abs() < 3.0,
+                "{other:?}"
+            );
             assert!(other.eye.y > 0.0 && other.eye.y < 3.0, "{other:?}");
             let same = other.eye == like.eye && other.direction == like.direction;
             assert!(!same && other.fov_y_degrees == like.fov_y_degrees);
@@ -531,7 +534,10 @@ mod tests {
         let table = mesh(&[plate, TABLE], None);
         let like = view(&table).unwrap().view;
         for other in more_views(&table, &sun, &like, 2) {
-            assert!((other.eye.length() - like.eye.length()).abs() < 1.0, "{other:?}");
+            assert!(
+                (other.eye.length() - like.eye.length()).abs() < 1.0,
+                "{other:?}"
+            );
         }
         assert!(more_views(&Mesh::default(), &sun, &like, 2).is_empty());
     }

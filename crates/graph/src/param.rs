@@ -218,8 +218,11 @@ impl Param {
             .words()
             .filter(|word| kept.iter().all(|kept| kept.value != **word));
         let gone: Vec<String> = gone.map(Name::to_string).collect();
-        self.tune
-            .retain(|value| !gone.iter().any(|word| *value == ParamValue::Choice(word.clone())));
+        self.tune.retain(|value| {
+            !gone
+                .iter()
+                .any(|word| *value == ParamValue::Choice(word.clone()))
+        });
         if self.tune.len() < 2 {
             self.tune.clear();
         }

@@ -23,22 +23,37 @@ pub fn sentences(rows: &[Row]) -> Vec<String> {
     let brought = |(row, of): &(&Row, &Tuned)| {
         let before = rows.iter().find(|other| is_default_of(other, row))?;
         let (with, name, now, before) = (of.words(), &of.of, error(row), error(before));
-        Some(format!("With {with} `{name}` is {now} here, with its defaults {before}."))
+        Some(format!(
+            "With {with} `{name}` is {now} here, with its defaults {before}."
+        ))
     };
     said.extend(changed.iter().filter_map(brought));
     if !changed.is_empty() {
-        let arguments = changed.iter().map(|(_, of)| of.argument()).unique().join(" ");
-        said.push(format!("To have the tuned methods again: skiagraph compare {arguments}."));
+        let arguments = changed
+            .iter()
+            .map(|(_, of)| of.argument())
+            .unique()
+            .join(" ");
+        said.push(format!(
+            "To have the tuned methods again: skiagraph compare {arguments}."
+        ));
     }
     if !kept.is_empty() {
         let tried = |(row, of): &(&Row, &Tuned)| {
-            format!("`{}` (of {})", row.method, plural(of.tried as usize, "setting"))
+            format!(
+                "`{}` (of {})",
+                row.method,
+                plural(of.tried as usize, "setting")
+            )
         };
         let names = and(kept.iter().map(tried).unique());
         said.push(format!("The defaults stay the best of {names}."));
     }
     let short = changed.iter().chain(&kept).filter(|(_, of)| !of.is_whole);
-    let short = short.map(|(_, of)| format!("`{}`", of.of)).unique().collect_vec();
+    let short = short
+        .map(|(_, of)| format!("`{}`", of.of))
+        .unique()
+        .collect_vec();
     if !short.is_empty() {
         said.push(format!(
             "The search for {} ended at the bound of its cost: more frames (--frames) allow a \
@@ -47,7 +62,10 @@ pub fn sentences(rows: &[Row]) -> Vec<String> {
         ));
     }
     let without = rows.iter().filter(|row| is_exact_anyway(row));
-    let without = without.map(|row| format!("`{}`", row.method)).unique().collect_vec();
+    let without = without
+        .map(|row| format!("`{}`", row.method))
+        .unique()
+        .collect_vec();
     if !without.is_empty() {
         let (have, their) = match without.len() {
             1 => ("has", "its"),

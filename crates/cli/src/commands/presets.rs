@@ -37,7 +37,11 @@ fn describe(name: &str, graph: &Graph) -> String {
             None => format!("--set {name}=…"),
         };
         let tune = param.tune.iter().join(", ");
-        let tune = if tune.is_empty() { tune } else { format!("; tune: {tune}") };
+        let tune = if tune.is_empty() {
+            tune
+        } else {
+            format!("; tune: {tune}")
+        };
         text += &format!("  {setting:<24} {}{}{tune}\n", param.ty, range(param));
         if !param.description.is_empty() {
             text += &format!("      {}\n", param.description);

@@ -173,14 +173,28 @@ mod tests {
     use itertools::Itertools;
 
     const AXES: [Axis; 4] = [
-        Axis { values: 3, is_word: true },
-        Axis { values: 5, is_word: false },
-        Axis { values: 3, is_word: false },
-        Axis { values: 3, is_word: true },
+        Axis {
+            values: 3,
+            is_word: true,
+        },
+        Axis {
+            values: 5,
+            is_word: false,
+        },
+        Axis {
+            values: 3,
+            is_word: false,
+        },
+        Axis {
+            values: 3,
+            is_word: true,
+        },
     ];
 
     fn grid() -> impl Iterator<Item = Point> {
-        AXES.iter().map(|axis| 0..axis.values).multi_cartesian_product()
+        AXES.iter()
+            .map(|axis| 0..axis.values)
+            .multi_cartesian_product()
     }
 
     /// Searches with at most `most` trials; checks that none is repeated.
@@ -193,7 +207,11 @@ mod tests {
             assert!(!seen.iter().any(|seen| seen == point), "{point:?} again");
             seen.push(point.to_vec());
             let error = error(point);
-            Ok(if error <= best { Trial::Error(error) } else { Trial::Worse })
+            Ok(if error <= best {
+                Trial::Error(error)
+            } else {
+                Trial::Worse
+            })
         });
         let found = found.unwrap();
         assert_eq!(found.tried as usize, seen.len());
@@ -202,7 +220,9 @@ mod tests {
 
     /// Like a map whose casters may be culled: without culling, only a bias makes it right.
     fn culled(point: &[usize]) -> f64 {
-        let [cull, slope, bias, fit] = point else { panic!("four params") };
+        let [cull, slope, bias, fit] = point else {
+            panic!("four params")
+        };
         let acne = [0.0, 0.6, 0.6][*cull] * 0.2f64.powi(*slope as i32);
         let leak = [0.2, 0.0, 0.1][*cull] + 0.01 * *slope as f64 + 0.02 * *bias as f64;
         (acne + leak) * [1.0, 0.7, 0.5][*fit]
@@ -211,7 +231,9 @@ mod tests {
     #[test]
     fn two_params_that_help_only_together_are_found() {
         let found = searched(usize::MAX, culled);
-        let best = grid().map(|point| culled(&point)).fold(f64::INFINITY, f64::min);
+        let best = grid()
+            .map(|point| culled(&point))
+            .fold(f64::INFINITY, f64::min);
         assert_eq!(found.error, best);
         assert_eq!(found.point, [1, 3, 0, 2]);
         assert!(found.is_whole);
@@ -226,12 +248,22 @@ mod tests {
                 let key = point.iter().fold(seed, |key, &at| key * 31 + at as u64);
                 (key.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40) as f64 / f64::from(1 << 24)
             };
-            let middle = [seed as usize % 3, seed as usize % 5, seed as usize / 5 % 3, 1];
+            let middle = [
+                seed as usize % 3,
+                seed as usize % 5,
+                seed as usize / 5 % 3,
+                1,
+            ];
             let error = |point: &[usize]| {
-                let far = point.iter().zip(middle).map(|(&at, middle)| at.abs_diff(middle));
+                let far = point
+                    .iter()
+                    .zip(middle)
+                    .map(|(&at, middle)| at.abs_diff(middle));
                 (1.0 + far.sum::<usize>() as f64) * (1.0 + 0.1 * noise(point))
             };
-            let best = grid().map(|point| error(&point)).fold(f64::INFINITY, f64::min);
+            let best = grid()
+                .map(|point| error(&point))
+                .fold(f64::INFINITY, f64::min);
             let found = searched(usize::MAX, error);
             assert!(found.error <= 1.2 * best, "{seed}: {} {best}", found.error);
         }

@@ -229,6 +229,7 @@ impl<'a> Series<'a> {
             light: self.provider.light_number(),
             own,
             protocol,
+            hints: self.comparison.tuned.is_empty(),
             pictures: protocol.pictures.then(RefCell::default),
         };
         let missing = places.zip(&methods);

@@ -19,6 +19,7 @@
 //! ```
 
 use crate::records::budgets::Budgets;
+use crate::records::hint::Hint;
 use crate::records::sequence::Sequence;
 use crate::records::statistics::{FrameTimes, Spread};
 use crate::records::steady::Steady;
@@ -376,6 +377,10 @@ pub struct Measured {
     /// there are none, or if answers are graded.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub certain_wrong_blockers: Option<BlockerCounts>,
+    /// A setting that makes most wrong pixels right; absent if none was found, if methods were
+    /// tuned, if answers are graded, and for a camera path.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hint: Option<Hint>,
     /// Number of pixels that face the light by the reference but not by the method, or the other
     /// way round.
     pub facing_mismatch: u64,

@@ -19,3 +19,4 @@ mod resume;
 mod saves;
 mod schema;
 mod timeless;
+mod tuning;

@@ -6,7 +6,7 @@ document marks with `tune`, on the views that the tuned one was judged on. Fails
 is wrong on more than 1.2 times as many pixels as the best of the grid, and on more than 0.05 % of
 the pixels that face the light beyond it, or where the verdict recommends a setting that another one
 beats. Two levels are made here: `room`, a living room of one-sided walls and sheets, and `hedge`, leaves of
-single quads under the open sky. Needs target/debug/skiagraph.
+single quads under the open sky. 
 """
 
 import argparse
@@ -20,6 +20,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
+PROGRAM = ROOT / "target/debug/skiagraph"
 LEVELS = ["sponza", "bench", "park", "level", "avenue", "lamps", "room", "hedge"]
 # The params of each method that have an effect with its others.
 PARAMS = {
@@ -106,8 +107,9 @@ def scene(level, folder):
     return ["--scene", str(file), "--light", "-0.35,-0.55,-0.75", *look[level]]
 
 
-def compare(arguments, out, *flags):
-    command = [str(ROOT / "target/debug/skiagraph"), "compare", *arguments, "--images", "none", "--replace", "--out", str(out), *flags]
+def compare(program, arguments, out, *flags):
+    """The runs of a comparison, and what it said."""
+    command = [str(program), "compare", *arguments, "--images", "none", "--replace", "--out", str(out), *flags]
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode:
         raise SystemExit(f"{' '.join(command)}\n{done.stderr}")
@@ -125,9 +127,9 @@ def shares(runs):
     return {name: wrong / max(facing, 1) for name, (wrong, facing) in sums.items()}
 
 
-def marked():
+def marked(program):
     """Values to tune of each param of each method, as `presets` lists them."""
-    text = subprocess.run([str(ROOT / "target/debug/skiagraph"), "presets"], capture_output=True, text=True, check=True).stdout
+    text = subprocess.run([str(program), "presets"], capture_output=True, text=True, check=True).stdout
     values, method = {}, None
     for line in text.splitlines():
         if head := re.match(r"(\w+): ", line):
@@ -137,7 +139,7 @@ def marked():
     return values
 
 
-def grid(method, values, views, where, out, size):
+def grid(program, method, values, views, where, out, size):
     """Wrong share of each combination, over all views."""
     params = [param for param in PARAMS[method] if (method, param) in values]
     names = itertools.product(*(values[method, param] for param in params))
@@ -147,21 +149,21 @@ def grid(method, values, views, where, out, size):
         for first in range(0, len(names), AT_ONCE):
             which = [] if view is None else ["--view", view]
             few = ["--size", size, "--frames", "1", "--warmup", "0", "--cached-frames", "0"]
-            runs += compare([*names[first : first + AT_ONCE], *where, *which], out, *few)[0]
+            runs += compare(program, [*names[first : first + AT_ONCE], *where, *which], out, *few)[0]
     return shares(runs)
 
 
-def check(level, methods, values, size, folder):
+def check(program, level, methods, values, size, folder):
     where = scene(level, folder)
     own = level in ("room", "hedge")
     every = [] if own or level in ("sponza", "lamps") else ["--view", "all"]
-    runs, said = compare([*methods, *where, *every], folder / level, "--tune", "--size", size)
+    runs, said = compare(program, [*methods, *where, *every], folder / level, "--tune", "--size", size)
     views = [None] if own else sorted({run["view"] for run in runs})
     found, fine = shares(runs), True
     for method in methods:
         record = next(run["tuned"] for run in runs if run.get("tuned", {}).get("of") == method)
         name = next(run["preset"] for run in runs if run.get("tuned") == record)
-        all_shares = grid(method, values, views, where, folder / f"{level}-grid", size)
+        all_shares = grid(program, method, values, views, where, folder / f"{level}-grid", size)
         best = min(all_shares, key=all_shares.get)
         is_near = found[name] <= max(TIMES * all_shares[best], all_shares[best] + POINTS)
         # The verdict names no default that its tuned self beats.
@@ -182,13 +184,14 @@ def main():
     parser.add_argument("levels", nargs="*", default=LEVELS, metavar="LEVEL")
     parser.add_argument("--methods", nargs="+", default=list(PARAMS), choices=PARAMS)
     parser.add_argument("--size", default="128x128", metavar="WxH")
+    parser.add_argument("--program", type=Path, default=PROGRAM)
     parser.add_argument("--out", type=Path, required=True, metavar="DIR")
     args = parser.parse_args()
     args.out.mkdir(parents=True, exist_ok=True)
-    values = marked()
+    values = marked(args.program)
     print("| level | method | defaults | tuned | best of the grid | settings tried | tuned to | best setting | near and said |")
     print("|---|---|---:|---:|---:|---:|---|---|---|", flush=True)
-    fine = [check(level, args.methods, values, args.size, args.out) for level in args.levels]
+    fine = [check(args.program, level, args.methods, values, args.size, args.out) for level in args.levels]
     return 0 if all(fine) else 1
 
 

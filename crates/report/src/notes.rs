@@ -105,6 +105,21 @@ pub fn certain_wrong(runs: &[Run]) -> Vec<String> {
         .collect()
 }
 
+/// Names a setting that makes most of a run's wrong pixels right; `None` if none was found.
+pub fn hint(run: &Run) -> Option<String> {
+    let of = run.measured.as_ref()?.hint.as_ref()?;
+    Some(format!(
+        "{}: {} of {} wrong pixels {}: try {}, with which {} are wrong here (--tune searches \
+         further)",
+        run.method_label(),
+        thousands(of.explained),
+        thousands(of.wrong),
+        of.cause.words(),
+        of.set,
+        thousands(of.wrong_then)
+    ))
+}
+
 /// A method with those of its maps that the runs are of; `None` without runs.
 fn maps(runs: &[&Run]) -> Option<String> {
     let preset = &runs.first()?.preset;

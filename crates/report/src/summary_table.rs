@@ -2,7 +2,8 @@
 //! fastest first, and a verdict.
 
 use crate::notes::{
-    band_warning, blocked_by, load_warning, path_costs, remembering, surface_warning, times_missing,
+    band_warning, blocked_by, hint, load_warning, path_costs, remembering, surface_warning,
+    times_missing,
 };
 use crate::summary::{Row, by_wall, rows};
 use crate::verdict::{Verdict, verdict};
@@ -278,6 +279,7 @@ impl<'a> Summary<'a> {
             Some(format!("{} is unavailable: {why}", row.label))
         }));
         notes.extend(self.certain_wrong());
+        notes.extend(self.told(&self.runs, hint));
         notes.extend(self.dearer_when_kept());
         notes.extend(self.told(&self.runs, graded::no_shares));
         notes.extend(self.told(&self.runs, remembering));

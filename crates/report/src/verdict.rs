@@ -30,9 +30,10 @@ pub struct Verdict {
     pub sentences: Vec<String>,
 }
 
-/// Judges rows that were measured on the same views. A row takes no part if it has fewer views than others, is of another hour (the machine may have
-/// been loaded differently), was cut short, or could not run. Rows beyond a budget are not
-/// recommended.
+/// Judges rows that were measured on the same views. A row takes no part if it has fewer views than
+/// others, is of another hour (the machine may have been loaded differently), was cut short, or
+/// could not run. Rows beyond a budget are not recommended, nor is the more wrong one of a method
+/// and what it was tuned to.
 pub fn verdict(rows: &[Row], budgets: &Budgets) -> Verdict {
     let most = rows.iter().map(Row::views).max().unwrap_or_default();
     let by_wall = by_wall(rows);
@@ -582,7 +583,7 @@ mod tests {
     use super::*;
     use crate::samples::results as sample;
     use crate::summary::rows;
-    use skiagraph_compare::records::{results::Run, statistics::FrameTimes};
+    use skiagraph_compare::records::{results::Run, statistics::FrameTimes, tuned::Tuned};
     use std::time::Duration;
 
     /// A run of 100,000 pixels that face the light: method, wrong pixels outside the band, ms of a
@@ -950,6 +951,58 @@ mod tests {
         // Wrong in one view is wrong.
         let runs = [run("rt", 0, 1.0, 1.0), elsewhere(run("rt", 7, 1.0, 1.0))];
         assert!(outcome(&runs).1[0].starts_with("None is exact here"));
+    }
+
+    /// A run of what `of` was tuned to; of the defaults, if nothing is set.
+    fn tuned(of: &str, set: &[(&str, serde_json::Value)], wrong: u64, frame: f64) -> Run {
+        let set = set
+            .iter()
+            .map(|(name, value)| ((*name).to_owned(), value.clone()));
+        let found = Tuned {
+            of: of.into(),
+            set: set.collect(),
+            chosen_on: vec!["side".into(), "back".into()],
+            tried: 40,
+            is_whole: true,
+            ..Tuned::default()
+        };
+        let mut run = run(&found.argument(), wrong, frame, frame);
+        run.tuned = Some(found);
+        run
+    }
+
+    #[test]
+    fn tuning_is_told_and_a_setting_that_is_beaten_is_never_advised() {
+        let set = [("cull", "none".into()), ("slope_bias", 2.0.into())];
+        let mut rt = run("rt", 0, 100.0, 100.0);
+        rt.promise = Some(skiagraph_compare::records::results::Promise {
+            of: "exact".into(),
+            closed_only: false,
+        });
+        let runs = [
+            rt,
+            run("nsm", 17_600, 10.0, 10.0),
+            tuned("nsm", &set, 2, 12.0),
+            tuned("pcf", &[], 900, 30.0),
+        ];
+        let labels: Vec<String> = rows(&runs, [512, 256])
+            .into_iter()
+            .map(|row| row.label)
+            .collect();
+        assert_eq!(labels, ["nsm", "nsm@cull=none,slope_bias=2", "pcf", "rt"]);
+        insta::assert_snapshot!(outcome(&runs).1.join("\n"));
+        // Where the defaults are better after all, they are what is advised.
+        let worse = [run("nsm", 5, 10.0, 10.0), tuned("nsm", &set, 40, 12.0)];
+        let said = outcome(&worse).1;
+        assert!(said[0].contains("`nsm` is the least wrong"), "{said:?}");
+        assert!(!said[0].contains("slope_bias"), "{said:?}");
+        // A budget that only the defaults keep to.
+        let quick = Budgets {
+            frame_ms: Some(11.0),
+            ..Budgets::default()
+        };
+        let said = within(&runs, &quick).1;
+        assert!(said[1].contains("`nsm` is the least wrong"), "{said:?}");
     }
 
     #[test]

@@ -31,6 +31,7 @@ pub mod frame_sequence;
 pub mod ground_truth;
 pub mod guarantee;
 pub mod hard_case;
+mod hint;
 pub mod poison;
 pub mod profiling;
 mod results_folder;

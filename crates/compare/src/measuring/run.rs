@@ -14,9 +14,10 @@ use crate::measuring::view_or_path::ViewOrPath;
 use crate::measuring::{
     date,
     frame::{self, Contents},
-    guarantee,
+    guarantee, hint,
 };
 use crate::pictures::run_pictures::{PictureFile, PicturePlace, data_files, draw_pictures, stem};
+use crate::records::hint::Hint;
 use crate::records::results::{Answer, AreaReference, Images, Measured, Run};
 use crate::records::statistics::FrameTimes;
 use crate::records::steady::Steady;
@@ -47,6 +48,8 @@ pub struct MeasureContext<'a> {
     pub own: Statistics,
     /// Settings of how methods are run and timed.
     pub protocol: Protocol,
+    /// True if settings that would make most wrong pixels right are looked for.
+    pub hints: bool,
     /// Pictures and data files of the last run; `None` to make none.
     pub pictures: Option<RefCell<Vec<PictureFile>>>,
 }
@@ -62,6 +65,7 @@ pub struct Judged {
     rays: Option<u64>,
     answers_in_shares: bool,
     blockers: Option<BlockerCounts>,
+    hint: Option<Hint>,
     texels: Option<TexelsPerPixel>,
     layer_jump: Option<LayerJump>,
     images: Option<Images>,
@@ -115,6 +119,16 @@ impl MeasureContext<'_> {
         };
         let has_blockers = judgement.is_hard && judgement.counts.wrong.certain > 0;
         let blockers = has_blockers.then(|| self.truth_view.blockers(&outputs));
+        let blockers = blockers.transpose()?;
+        let wrong = &judgement.counts.wrong;
+        let wrong = wrong.total.saturating_sub(wrong.in_band);
+        let hint = match blockers.filter(|_| self.hints) {
+            Some(of) => {
+                let seen = (self.truth_view, self.light);
+                hint::find(self.session, method, seen, (wrong, of), provider)?
+            }
+            None => None,
+        };
         let found = diagnose(
             self.session,
             method,
@@ -130,7 +144,8 @@ impl MeasureContext<'_> {
             edges: self.truth_view.edges(&outputs)?,
             rays: outputs.rays,
             answers_in_shares: outputs.shares.is_some(),
-            blockers: blockers.transpose()?,
+            blockers,
+            hint,
             texels: found.texels,
             layer_jump: found.layer_jump,
             pictures: self
@@ -219,6 +234,7 @@ impl MeasureContext<'_> {
         Measured {
             rays: of.rays,
             certain_wrong_blockers: of.blockers,
+            hint: of.hint.clone(),
             graded: of.judgement.graded,
             edges: of.edges,
             texels: of.texels,
@@ -275,6 +291,7 @@ impl MeasureContext<'_> {
             rays: None,
             wrong: counts.wrong,
             certain_wrong_blockers: None,
+            hint: None,
             facing_mismatch: counts.facing_mismatch,
             answer: if answers_in_shares {
                 Answer::Graded

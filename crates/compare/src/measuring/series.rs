@@ -242,6 +242,7 @@ impl<'a> Series<'a> {
             light: self.provider.light_number(),
             own,
             protocol,
+            hints: self.comparison.tuned.is_empty(),
             pictures: protocol.has_files().then(RefCell::default),
         };
         let missing = places.zip(&methods);

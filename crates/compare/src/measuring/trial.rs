@@ -10,11 +10,14 @@ use crate::measuring::ground_truth::GroundTruthView;
 use crate::measuring::run::scene_bytes;
 use crate::measuring::search::Trial;
 use crate::measuring::stop::{Stop, attempt};
+use crate::measuring::timing::{self, FrameMode, Times};
+use crate::records::budgets::Budgets;
 use crate::sink::Session;
 use itertools::Itertools;
 use skiagraph_gpu::{Executor, Frame};
 use skiagraph_passes::SceneProvider;
 use skiagraph_scene::{LightKind, View};
+use std::collections::BTreeMap;
 
 /// A view on which settings are tried, with its ground truth.
 pub struct TrialView<'a> {
@@ -34,6 +37,22 @@ impl TrialView<'_> {
     }
 }
 
+/// Limits of trials.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// Work that may be done: a plan that runs counts one, and so does a frame.
+    pub work: u64,
+    /// Budgets that a setting must keep.
+    pub budgets: Budgets,
+    /// True if GPU times can be trusted; a budget of time is of wall times otherwise.
+    pub has_timestamps: bool,
+}
+
+/// Frames before the timed ones, and timed ones, by which a budget of time is checked; and the
+/// share of the budget that they may take, as other views may take longer.
+const TIMED: [u32; 2] = [1, 5];
+const MARGIN: f64 = 0.9;
+
 /// Runs settings of one method on the views that take part.
 pub struct Trials<'a> {
     session: Session<'a>,
@@ -43,8 +62,11 @@ pub struct Trials<'a> {
     views: Vec<&'a TrialView<'a>>,
     viewport: [u32; 2],
     provider: &'a mut SceneProvider,
-    /// Most bytes that the method and the scene data that it reads may take; `None` for any.
-    most_bytes: Option<u64>,
+    limits: Limits,
+    /// True if settings that need too much memory are refused: the defaults need less.
+    holds_memory: bool,
+    /// Bytes of the scene data that plans read, by its names.
+    scene_bytes: BTreeMap<Vec<String>, u64>,
     /// Executor of the last setting, and the kind of light that it is planned for.
     executor: Option<(Executor, &'static str)>,
     /// Pixels facing the light, over all views.
@@ -54,14 +76,13 @@ pub struct Trials<'a> {
 }
 
 impl<'a> Trials<'a> {
-    /// Prepares trials of a method on the views whose kind of light it takes. `most` is the work
-    /// that may be done; making a plan counts one, and so does running a frame.
+    /// Prepares trials of a method on the views whose kind of light it takes.
     pub fn new(
         session: Session<'a>,
         method: &'a Method,
         views: &'a [TrialView<'a>],
         provider: &'a mut SceneProvider,
-        (most, most_bytes): (u64, Option<u64>),
+        limits: Limits,
     ) -> Self {
         let takes = |view: &&TrialView| light_kinds::takes(&method.preset.graph, view.light.word());
         let views: Vec<&TrialView> = views.iter().filter(takes).collect();
@@ -72,15 +93,28 @@ impl<'a> Trials<'a> {
             facing_light: views.iter().map(|view| view.facing_light()).sum(),
             views,
             provider,
-            most_bytes,
+            limits,
+            holds_memory: false,
+            scene_bytes: BTreeMap::new(),
             executor: None,
-            left: most,
+            left: limits.work,
         }
     }
 
     /// Work that may still be done.
     pub fn left(&self) -> u64 {
         self.left
+    }
+
+    /// True if there are budgets of memory or time.
+    pub fn has_budgets(&self) -> bool {
+        let of = &self.limits.budgets;
+        of.memory_bytes.is_some() || of.frame_ms.is_some()
+    }
+
+    /// Allows for more work, by so much.
+    pub fn allow(&mut self, more: u64) {
+        self.left += more;
     }
 
     /// Tries the method with `params`. Ends as soon as its error must be greater than `best`.
@@ -92,18 +126,108 @@ impl<'a> Trials<'a> {
         if self.left < 1 + self.views.len() as u64 {
             return Ok(Trial::Ended);
         }
-        let method = self.method;
-        let preset = method.preset.clone();
-        let set = Method::on(preset, params.clone(), self.viewport, method.features);
-        let set = set.named(&method.name);
+        let set = self.set(params);
         if self.has_idle_param(&set) {
             return Ok(Trial::Same);
         }
+        if self.holds_memory && !self.is_small(params)? {
+            return Ok(Trial::Worse);
+        }
         let came = self.judged(&set, best);
-        match attempt(self.session, method, came)? {
+        match attempt(self.session, self.method, came)? {
             Ok(trial) => Ok(trial),
             Err(_refused) => Ok(Trial::Worse),
         }
+    }
+
+    /// Refuses settings that need too much memory from now on, if the defaults do not.
+    ///
+    /// # Errors
+    /// A lost device.
+    pub fn hold_memory(&mut self) -> Result<(), CompareError> {
+        self.holds_memory = self.is_small(&self.method.params)?;
+        Ok(())
+    }
+
+    /// The method with `params`.
+    fn set(&self, params: &ParamValues) -> Method {
+        let Method {
+            preset, features, ..
+        } = self.method;
+        let set = Method::on(preset.clone(), params.clone(), self.viewport, *features);
+        set.named(&self.method.name)
+    }
+
+    /// True if the method with `params` keeps to the budget of memory under each kind of light.
+    /// True without such a budget.
+    ///
+    /// # Errors
+    /// A lost device.
+    pub fn is_small(&mut self, params: &ParamValues) -> Result<bool, CompareError> {
+        let Some(most) = self.limits.budgets.memory_bytes else {
+            return Ok(true);
+        };
+        let set = self.set(params);
+        let kinds = self.views.iter().unique_by(|view| view.light.word());
+        for view in kinds.copied().collect::<Vec<_>>() {
+            self.provider.set_view(&view.view, self.viewport);
+            let capabilities = Capabilities::new(self.session.gpu);
+            let Ok(plan) = set.plan(self.viewport, capabilities, self.provider) else {
+                return Ok(false);
+            };
+            let names = plan.provided().into_iter().map(str::to_owned).collect();
+            let scene = match self.scene_bytes.get(&names) {
+                Some(bytes) => Ok(Ok(*bytes)),
+                None => {
+                    let bytes = scene_bytes(self.session, &plan, self.provider);
+                    attempt(self.session, &set, bytes.map_err(Stop::from))
+                }
+            };
+            let Ok(scene) = scene? else {
+                return Ok(false);
+            };
+            self.scene_bytes.insert(names, scene);
+            if plan.memory_bytes() + scene > most {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// True if a frame of the method with `params` keeps to nine tenths of the budget of time, on
+    /// the view with most errors. True without such a budget.
+    ///
+    /// # Errors
+    /// An early end, a lost device.
+    pub fn is_quick(&mut self, params: &ParamValues) -> Result<bool, CompareError> {
+        let (Some(most), Some(view)) = (self.limits.budgets.frame_ms, self.views.first()) else {
+            return Ok(true);
+        };
+        let set = self.set(params);
+        self.provider.set_view(&view.view, self.viewport);
+        let timed = self.timed(&set, view.light.word());
+        Ok(match attempt(self.session, &set, timed)? {
+            Ok(Some(ms)) => ms <= MARGIN * most,
+            Ok(None) | Err(_) => false,
+        })
+    }
+
+    /// Median milliseconds of a frame with every pass; `None` if it cannot be planned.
+    fn timed(&mut self, set: &Method, kind: &'static str) -> Result<Option<f64>, Stop> {
+        if !self.plan(set, kind)? {
+            return Ok(None);
+        }
+        let Some((executor, _)) = &mut self.executor else {
+            return Ok(None);
+        };
+        executor.refresh(self.provider)?;
+        frame::grow(self.session, executor, self.provider)?;
+        let mode = FrameMode::AllPasses;
+        let timed = timing::sample(self.session, executor, mode, TIMED, |_| ())?;
+        let frame = Times::new(timed)?.frame;
+        let spread = frame.spread(!self.limits.has_timestamps);
+        let spread = spread.or_else(|| frame.spread(true));
+        Ok(spread.map(|spread| spread.median))
     }
 
     /// True if a param of a setting has no effect under any light: without it the setting is the
@@ -152,19 +276,17 @@ impl<'a> Trials<'a> {
         Ok(Trial::Error(error))
     }
 
-    /// Plans a setting under the light of the provider; false if it cannot run, or needs too much
-    /// memory.
+    /// Plans a setting under the light of the provider; false if it cannot run, or if it remembers
+    /// earlier frames.
     fn plan(&mut self, set: &Method, kind: &'static str) -> Result<bool, Stop> {
         self.left = self.left.saturating_sub(1);
         let capabilities = Capabilities::new(self.session.gpu);
         let Ok(plan) = set.plan(self.viewport, capabilities, self.provider) else {
             return Ok(false);
         };
-        if let Some(most) = self.most_bytes {
-            let scene = scene_bytes(self.session, &plan, self.provider)?;
-            if plan.memory_bytes() + scene > most {
-                return Ok(false);
-            }
+        // One frame shows nothing of a method that needs many.
+        if plan.remembers() {
+            return Ok(false);
         }
         self.executor = Some(match self.executor.take() {
             Some((mut executor, before)) if before == kind => {

@@ -11,7 +11,8 @@
 //!     sink::Session,
 //! };
 //!
-//! # fn fair(mut comparison: Comparison, session: Session) -> Result<(), Box<dyn std::error::Error>> {
+//! # type Done = Result<(), Box<dyn std::error::Error>>;
+//! # fn fair(mut comparison: Comparison, session: Session) -> Done {
 //! tune(&mut comparison, session)?;
 //! for run in series::run(&comparison, session)?.runs {
 //!     if let Some(tuned) = &run.tuned {
@@ -29,15 +30,16 @@ use crate::graphs::method::{Method, ParamValues};
 use crate::graphs::variants::MAP_SIZE;
 use crate::lists::entry;
 use crate::measuring::ground_truth::GroundTruthView;
-use crate::measuring::guarantee;
 use crate::measuring::search::{Axis, Trial, search};
-use crate::measuring::trial::{TrialView, Trials};
+use crate::measuring::trial::{Limits, TrialView, Trials};
 use crate::measuring::view_or_path::ViewOrPath;
+use crate::measuring::{device, guarantee};
 use crate::records::results::Promise;
 use crate::records::tuned::{Tuned, named};
 use crate::sink::{Session, Silent, Step};
 use crate::wording::size;
 use itertools::Itertools;
+use skiagraph_gpu::timing::Trust;
 use skiagraph_graph::{Param, ParamType, ParamValue};
 use skiagraph_passes::SceneProvider;
 use skiagraph_reference::Oracle;
@@ -47,6 +49,9 @@ use std::{rc::Rc, sync::Arc};
 /// Work of a new executor with its pipelines, as a multiple of that of a frame. Of each run there
 /// are two, for answers and for diagnostics of the map; a search has one, and changes it.
 const NEW_EXECUTOR: u64 = 4;
+
+/// Part of the work that is kept back for trials of map sizes: one in so many.
+const RESERVE: u64 = 8;
 
 /// Cost of a comparison with a search, as a multiple of that of the same comparison without one.
 const MOST_COST: u64 = 10;
@@ -58,11 +63,11 @@ const OTHERS: [usize; 2] = [2, 3];
 /// Searches good settings for the methods of a comparison, and adds each as a method behind the one
 /// that it is a setting of. If the comparison has several views, every second one is taken out of
 /// it, and settings are chosen on these; otherwise they are chosen on other views of the scene, and
-/// on generated ones where it has fewer than two. Params that a method sets stay as they are. A method that promises to be exact for all casters
-/// needs no search.
+/// on generated ones where it has fewer than two. Params that a method sets stay as they are. A
+/// method that promises to be exact for all casters needs no search.
 ///
 /// The work is bounded: plans and frames of a method, those of its tuned setting included, are at
-/// most nine times those of its part in the comparison.
+/// most ten times those of its part in the comparison.
 ///
 /// # Errors
 /// A comparison of camera paths; no method with params to tune; an early end, a lost device, a
@@ -83,6 +88,11 @@ pub fn tune(comparison: &mut Comparison, session: Session) -> Result<(), Compare
         &mut provider,
         (chosen_on, viewport),
     )?;
+    let limits = Limits {
+        work: most - most / RESERVE,
+        budgets: comparison.budgets,
+        has_timestamps: device::timestamp_trust(session.gpu) == Trust::Trusted,
+    };
     let names: Vec<String> = views.iter().map(|view| view.view.name.clone()).collect();
     let (mut all, mut tuned) = (Vec::new(), Vec::new());
     for (own, method) in comparison.methods.iter().zip(&methods) {
@@ -91,9 +101,13 @@ pub fn tune(comparison: &mut Comparison, session: Session) -> Result<(), Compare
             continue;
         }
         let method = method.at(viewport);
-        let most_bytes = comparison.budgets.memory_bytes;
-        let trials = Trials::new(session, &method, &views, &mut provider, (most, most_bytes));
+        let trials = Trials::new(session, &method, &views, &mut provider, limits);
         let Some((params, found)) = best(session, &method, trials, most)? else {
+            session.sink.note(&format!(
+                "{} is not tuned: it cannot run on the views that settings are chosen on, or \
+                 remembers earlier frames",
+                method.name
+            ));
             continue;
         };
         let found = Tuned {
@@ -297,21 +311,33 @@ fn best(
     };
     let name = format!("tuning {}", method.name);
     let step = Step::begin(session.sink, &name, most, "plans and frames");
+    trials.hold_memory()?;
+    // Every setting that was the best so far, the defaults first.
+    let mut bests: Vec<(ParamValues, f64)> = Vec::new();
     let mut default_error = None;
     let found = search(&ways.collect::<Vec<_>>(), |point, best| {
-        let trial = trials.run(&params_of(point), best)?;
+        let params = params_of(point);
+        let trial = trials.run(&params, best)?;
         step.set_done(most - trials.left());
-        let is_default = point.iter().all(|value| *value == 0);
-        if let (Trial::Error(error), true) = (trial, is_default) {
-            default_error = Some(error);
+        if let Trial::Error(error) = trial {
+            if point.iter().all(|value| *value == 0) {
+                default_error = Some(error);
+            }
+            bests.push((params, error));
         }
         Ok::<_, CompareError>(trial)
     })?;
-    step.end();
-    if found.error.is_infinite() {
-        return Ok(None);
+    bests.retain(|(params, error)| *error > found.error || *params == params_of(&found.point));
+    trials.allow(most / RESERVE);
+    let mut chosen = None;
+    while let (None, Some(best)) = (&chosen, bests.pop()) {
+        chosen = within_budgets(method, &mut trials, best)?;
     }
-    let params = params_of(&found.point);
+    step.end();
+    let Some(default_error) = default_error else {
+        return Ok(None);
+    };
+    let (params, error) = chosen.unwrap_or((method.params.clone(), default_error));
     let set = Method::on(
         method.preset.clone(),
         params.clone(),
@@ -330,10 +356,73 @@ fn best(
             tried: found.tried,
             is_whole: found.is_whole,
             default_error,
-            error: found.error,
+            error,
             ..Tuned::default()
         },
     )))
+}
+
+/// A setting that keeps to the budgets, with the largest map that does and is no worse; with the
+/// largest smaller map if it keeps to them with none as large as its own. `None` if it keeps to
+/// them with no map. Without budgets the setting as it is.
+fn within_budgets(
+    method: &Method,
+    trials: &mut Trials,
+    (params, error): (ParamValues, f64),
+) -> Result<Option<(ParamValues, f64)>, CompareError> {
+    let keeps = |params: &ParamValues, trials: &mut Trials| {
+        Ok::<_, CompareError>(trials.is_small(params)? && trials.is_quick(params)?)
+    };
+    let with = |size: u32| {
+        let mut params = params.clone();
+        params.insert(MAP_SIZE.into(), ParamValue::U32(size));
+        params
+    };
+    let (larger, smaller) = map_sizes(method);
+    if !keeps(&params, trials)? {
+        for size in smaller {
+            let params = with(size);
+            if keeps(&params, trials)?
+                && let Trial::Error(error) = trials.run(&params, f64::INFINITY)?
+            {
+                return Ok(Some((params, error)));
+            }
+        }
+        return Ok(None);
+    }
+    let mut best = (params.clone(), error);
+    if trials.has_budgets() {
+        for size in larger {
+            let params = with(size);
+            if !keeps(&params, trials)? {
+                break;
+            }
+            match trials.run(&params, best.1)? {
+                Trial::Error(error) if error < best.1 => best = (params, error),
+                Trial::Error(_) | Trial::Worse | Trial::Same => {}
+                Trial::Ended => break,
+            }
+        }
+    }
+    Ok(Some(best))
+}
+
+/// The marked sizes of a method's map above its own, from small to large, and those below, from
+/// large to small; none if the size is set.
+fn map_sizes(method: &Method) -> (Vec<u32>, Vec<u32>) {
+    let (param, own) = (method.preset.param(MAP_SIZE), method.map_size);
+    let (Some(param), Some(own), false) = (param, own, method.params.contains_key(MAP_SIZE)) else {
+        return Default::default();
+    };
+    let sizes = param.tune.iter().filter_map(|value| match value {
+        ParamValue::U32(size) => Some(*size),
+        _ => None,
+    });
+    let (smaller, larger): (Vec<u32>, Vec<u32>) = sizes
+        .filter(|size| *size != own)
+        .sorted()
+        .partition(|size| *size < own);
+    (larger, smaller.into_iter().rev().collect())
 }
 
 /// The assignments by which a tuned method is told from the method that it is a setting of. The

@@ -23,6 +23,7 @@ pub mod baseline;
 pub mod budgets;
 pub mod check;
 pub mod columns;
+pub mod hint;
 pub mod profile;
 pub mod published;
 pub mod published_row;

@@ -19,6 +19,7 @@
 //! ```
 
 use crate::records::budgets::Budgets;
+use crate::records::hint::Hint;
 use crate::records::sequence::Sequence;
 use crate::records::statistics::{FrameTimes, Spread};
 use crate::records::steady::Steady;
@@ -452,6 +453,10 @@ pub struct Measured {
     /// there are none, or if answers are graded.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub certain_wrong_blockers: Option<BlockerCounts>,
+    /// A setting that makes most wrong pixels right; absent if none was found, if methods were
+    /// tuned, if answers are graded, and for a camera path.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hint: Option<Hint>,
     /// Number of pixels that face the light by the reference but not by the method, or the other
     /// way round.
     pub facing_mismatch: u64,
@@ -742,6 +747,7 @@ pub(crate) mod tests {
                 certain: 495,
                 in_band: 6,
             },
+            hint: None,
             certain_wrong_blockers: gpu.then_some(BlockerCounts {
                 open_part: 90,
                 closed_part: 9,

@@ -31,10 +31,9 @@ pub struct Tuned {
     /// True if the search came to its own end; false if it ended at the bound of its cost.
     pub is_whole: bool,
     /// Error of the defaults on the views of `chosen_on`, from 0 to 1: the share of wrong pixels
-    /// outside the band among those that face the light; under lights with an extent the root mean
-    /// square error of the shares of light. Absent if the defaults cannot run or exceed a budget.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub default_error: Option<f64>,
+    /// outside the band among those that face the light; under lights with an extent the mean
+    /// square error of the shares of light.
+    pub default_error: f64,
     /// Error of the tuned setting on the views of `chosen_on`, in the same unit.
     pub error: f64,
 }

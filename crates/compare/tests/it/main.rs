@@ -21,3 +21,4 @@ mod resume;
 mod saves;
 mod schema;
 mod timeless;
+mod tuning;

@@ -49,7 +49,7 @@ pub(crate) fn extend(base: RawDocument, own: RawDocument, reports: &mut Reports)
     for (name, value) in own.set {
         let known = |item: &&mut RawItem| item.name().is_some_and(|own| *own == *name);
         match document.params.iter_mut().find(known) {
-            // What the document sets is not searched for.
+            // The document decides, so nothing is left to search for.
             Some(param) => {
                 param.fields.retain(|field| *field.name != *"tune");
                 let default = default_field(&name, value);

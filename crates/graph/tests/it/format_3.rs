@@ -285,6 +285,75 @@ fn narrow_only_shrinks_and_tells_why() {
     assert!(refused.contains("a trapezoid alone"), "{refused}");
 }
 
+/// Marks for a search go where the param goes, until a document decides about it.
+#[test]
+fn what_a_document_decides_is_not_tuned() {
+    let files = Files::new([(
+        "shaders/fill.wgsl",
+        "struct Params { cull: u32, bias: f32 } var<uniform> params: Params;
+         @fragment fn fragment() -> @location(0) f32 {
+             return select(0.0, params.bias, params.cull == CULL_FRONT);
+         }",
+    )])
+    .document(
+        "pipelines/map.ron",
+        r#"
+        params: [
+            Choice(name: "cull", words: [none, front, back], default: front, tune: [none, front]),
+            F32(name: "bias", default: 0, tune: [-0.5, 0, 1e-3]),
+        ],
+        materials: [Texture(name: "image", format: R32Float)],
+        passes: [Fullscreen(name: "fill", color: ["image"])],
+        outputs: ["image"]"#,
+    )
+    .document(
+        "pipelines/graph.ron",
+        r#"passes: [Include(graph: "map.ron", expose: All)], outputs: ["image"]"#,
+    )
+    .document(
+        "pipelines/narrow.ron",
+        r#"extends: "map.ron", narrow: {"cull": (words: [front, back], because: "open parts")}"#,
+    )
+    .document(
+        "pipelines/child.ron",
+        r#"extends: "map.ron", set: {"cull": none}"#,
+    )
+    .document(
+        "pipelines/set.ron",
+        r#"extends: "graph.ron", set: {"cull": none}"#,
+    )
+    .document(
+        "pipelines/inner.ron",
+        r#"passes: [Include(graph: "map.ron", set: {"cull": none}, expose: All)],
+           outputs: ["image"]"#,
+    );
+    let tuned = |path: &str| {
+        let graph = right(Graph::load(path, &Registry::standard(), &files));
+        let params = graph.params().iter().filter(|param| !param.tune.is_empty());
+        let text = params.map(|param| {
+            let values: Vec<String> = param.tune.iter().map(ToString::to_string).collect();
+            format!("{}: {}", param.name.value, values.join(", "))
+        });
+        text.collect::<Vec<String>>().join("; ")
+    };
+    let both = "cull: none, front; bias: -0.5, 0, 0.001";
+    assert_eq!(tuned("pipelines/map.ron"), both);
+    assert_eq!(tuned("pipelines/graph.ron"), both);
+    let bias = "bias: -0.5, 0, 0.001";
+    for path in ["narrow", "child", "set", "inner"] {
+        assert_eq!(tuned(&format!("pipelines/{path}.ron")), bias, "{path}");
+    }
+    let flat = right(Graph::flat(
+        "pipelines/child.ron",
+        &Registry::standard(),
+        &files,
+    ));
+    assert!(
+        flat.contains("tune: [-0.5, 0, 1e-3]") && !flat.contains("[none, front],"),
+        "{flat}"
+    );
+}
+
 #[test]
 fn what_a_child_does_not_use_goes() {
     let files = Files::new([(

@@ -1,0 +1,134 @@
+//! Finds a setting that makes most of a method's wrong pixels right, from what blocks their light.
+
+use crate::error::{CompareError, is_fatal};
+use crate::graphs::ground_truth;
+use crate::graphs::method::{Method, ParamValues};
+use crate::graphs::planning::Capabilities;
+use crate::graphs::shadow_method::Outputs;
+use crate::measuring::frame;
+use crate::measuring::ground_truth::GroundTruthView;
+use crate::records::hint::{Cause, Hint};
+use crate::records::tuned::named;
+use crate::sink::Session;
+use itertools::Itertools;
+use skiagraph_gpu::Provider;
+use skiagraph_graph::ParamValue;
+use skiagraph_reference::BlockerCounts;
+
+/// Share of the pixels facing the light that must be wrong for a hint to be worth its frames.
+const WORTH: f64 = 1e-3;
+
+/// The param that says which faces cast no shadow, its value with which all do, and the param that
+/// keeps surfaces from shading themselves then.
+const CULL: &str = "cull";
+const NONE: &str = "none";
+const SLOPE_BIAS: &str = "slope_bias";
+
+/// Looks for a hint on a view on which `wrong` pixels outside the band are wrong, certain ones
+/// among them for the reasons in `blockers`. Only values that the method's document marks with
+/// `tune` are tried, a frame for each until one helps; params that the method sets stay. `None` if
+/// no cause explains more than half of the pixels, or no value makes more than half of them right.
+///
+/// # Errors
+/// An early end, a lost device.
+pub fn find(
+    session: Session,
+    method: &Method,
+    (truth_view, light): (&GroundTruthView, usize),
+    (wrong, blockers): (u64, BlockerCounts),
+    provider: &mut dyn Provider,
+) -> Result<Option<Hint>, CompareError> {
+    let classes = &truth_view.ground_truth.pixels.classes;
+    let facing = classes.iter().filter(|class| class.faces_light()).count();
+    let (open, none) = (blockers.open_part, blockers.none);
+    let (cause, explained) = match (2 * open > wrong, 2 * none > wrong) {
+        _ if (wrong as f64) < WORTH * facing as f64 => return Ok(None),
+        (true, _) => (Cause::OpenParts, open),
+        (_, true) => (Cause::NoBlocker, none),
+        _ => return Ok(None),
+    };
+    for changes in candidates(method, cause) {
+        session.check_stopped()?;
+        let set = changes
+            .iter()
+            .map(|(name, value)| format!("{name}={value}"))
+            .join(",");
+        let mut params = method.params.clone();
+        params.extend(changes);
+        let other = Method::on(
+            method.preset.clone(),
+            params,
+            method.viewport,
+            method.features,
+        );
+        let Some(wrong_then) = wrong_with(session, &other, (truth_view, light), provider)? else {
+            continue;
+        };
+        if 2 * wrong_then < wrong {
+            return Ok(Some(Hint {
+                cause,
+                explained,
+                wrong,
+                set: named(&method.name, &set),
+                wrong_then,
+            }));
+        }
+    }
+    Ok(None)
+}
+
+/// The changes of params that are tried against a cause, those of one param first.
+fn candidates(method: &Method, cause: Cause) -> Vec<ParamValues> {
+    let marked = |name: &str| {
+        let param = method.preset.param(name);
+        let param = param.filter(|_| !method.params.contains_key(name));
+        let values = param.map(|param| param.tune.clone()).unwrap_or_default();
+        let now = method.value(name);
+        let others = values.into_iter().filter(move |value| Some(value) != now);
+        others.collect::<Vec<ParamValue>>()
+    };
+    let own = match method.value(SLOPE_BIAS) {
+        Some(ParamValue::F32(own)) => *own,
+        _ => 0.0,
+    };
+    let is_greater = |value: &ParamValue| matches!(value, ParamValue::F32(value) if *value > own);
+    let biases = marked(SLOPE_BIAS).into_iter().filter(is_greater);
+    let biases = biases.map(|value| ParamValues::from([(SLOPE_BIAS.to_owned(), value)]));
+    let none = ParamValue::Choice(NONE.to_owned());
+    match cause {
+        Cause::NoBlocker => biases.collect(),
+        Cause::OpenParts if marked(CULL).contains(&none) => {
+            let all_cast = ParamValues::from([(CULL.to_owned(), none)]);
+            let both = biases.map(|bias| all_cast.clone().into_iter().chain(bias).collect());
+            [all_cast.clone()].into_iter().chain(both).collect()
+        }
+        Cause::OpenParts => Vec::new(),
+    }
+}
+
+/// Wrong pixels of a method outside the band; `None` if it cannot run.
+fn wrong_with(
+    session: Session,
+    method: &Method,
+    (truth_view, light): (&GroundTruthView, usize),
+    provider: &mut dyn Provider,
+) -> Result<Option<u64>, CompareError> {
+    let names = method.preset.judged();
+    let truth = &truth_view.ground_truth;
+    let capabilities = Capabilities::new(session.gpu);
+    let Ok(plan) = method.plan(truth.pixels.viewport, capabilities, provider) else {
+        return Ok(None);
+    };
+    let contents = frame::settled(session, plan, provider)
+        .and_then(|(mut executor, _)| frame::read(session, &mut executor, &names));
+    let contents = match contents {
+        Ok(contents) => contents,
+        Err(error) if is_fatal(&error) => {
+            return Err(frame::failed(session, &method.name, error));
+        }
+        Err(_) => return Ok(None),
+    };
+    let outputs = Outputs::from_contents(contents, light, &truth.pixels);
+    let wrong = ground_truth::error(&method.preset, outputs, truth)?;
+    Ok(Some(wrong as u64))
+}

@@ -1,0 +1,161 @@
+//! Settings that are searched for, and hints at them.
+
+use crate::support::{NOWHERE, comparison, gpu, mesh, park_comparison};
+use glam::DVec3;
+use skiagraph_compare::{
+    comparison::Comparison,
+    measuring::{series, tune::tune},
+    records::{hint::Cause, results::Run},
+    sink::{Session, Silent},
+};
+use skiagraph_scene::{DirectionalLight, View};
+use std::path::Path;
+
+/// A floor, and three sheets above it whose only side is turned to the light.
+const SHEETS: &str = "v -4 0 4\nv 4 0 4\nv 4 0 -4\nv -4 0 -4\nf 1 2 3 4\n\
+    v -1 1 1\nv 1 1 1\nv 1 1 -1\nv -1 1 -1\nf 5 6 7 8\n\
+    v 2 0.6 2\nv 3 0.6 2\nv 3 0.6 -2\nv 2 0.6 -2\nf 9 10 11 12\n\
+    v -3 0.8 2\nv -2 0.8 2\nv -2 0.8 -2\nv -3 0.8 -2\nf 13 14 15 16\n";
+
+fn sheets(methods: &[&str]) -> Comparison {
+    let folder = tempfile::tempdir().unwrap();
+    let view = View {
+        name: "main".into(),
+        eye: DVec3::new(3.0, 5.0, 8.0),
+        direction: DVec3::new(-0.35, -0.6, -1.0),
+        up: DVec3::Y,
+        fov_y_degrees: 50.0,
+        near: 0.1,
+        far: 40.0,
+        light: None,
+    };
+    let light = DirectionalLight::new(DVec3::new(-0.3, -1.0, -0.4));
+    let scene = mesh(folder.path(), SHEETS, view, light);
+    let mut comparison = comparison(scene, methods, Path::new(NOWHERE), &[]);
+    comparison.viewports = vec![[64; 2]];
+    comparison
+}
+
+fn session() -> Session<'static> {
+    Session::new(gpu(), &Silent)
+}
+
+fn runs(comparison: &Comparison) -> Vec<Run> {
+    let results = series::run(comparison, session());
+    results.unwrap_or_else(|error| panic!("{error}")).runs
+}
+
+fn wrong(run: &Run) -> u64 {
+    run.measured.as_ref().unwrap().wrong_outside_band()
+}
+
+#[test]
+fn what_helps_on_other_views_helps_on_the_judged_one() {
+    let mut comparison = sheets(&["nsm", "rt"]);
+    tune(&mut comparison, session()).unwrap_or_else(|error| panic!("{error}"));
+    let runs = runs(&comparison);
+    let [nsm, tuned, rt] = &runs[..] else {
+        panic!("three runs, not {}", runs.len())
+    };
+    assert!(nsm.tuned.is_none() && rt.tuned.is_none());
+    let found = tuned.tuned.as_ref().unwrap();
+    assert_eq!(found.of, "nsm");
+    assert_eq!(found.chosen_on, ["generated 1", "generated 2"]);
+    assert_eq!(tuned.params["cull"], "none");
+    assert_eq!(tuned.preset, found.argument());
+    assert!(found.error < 0.2 * found.default_error, "{found:?}");
+    assert!(wrong(nsm) > 100, "{}", wrong(nsm));
+    assert!(
+        5 * wrong(tuned) < wrong(nsm),
+        "{} {}",
+        wrong(tuned),
+        wrong(nsm)
+    );
+    assert_eq!(wrong(rt), 0);
+}
+
+#[test]
+fn one_setting_that_makes_most_pixels_right_is_hinted_at() {
+    let runs = runs(&sheets(&["nsm", "nsm@cull=none", "rt"]));
+    let hint = |run: &Run| run.measured.as_ref().unwrap().hint.clone();
+    let open = hint(&runs[0]).unwrap();
+    assert_eq!(
+        (open.cause, open.explained),
+        (Cause::OpenParts, wrong(&runs[0]))
+    );
+    assert!(open.set.starts_with("nsm@cull=none"), "{open:?}");
+    assert!(2 * open.wrong_then < open.wrong, "{open:?}");
+    let acne = hint(&runs[1]).unwrap();
+    assert_eq!(acne.cause, Cause::NoBlocker);
+    assert!(
+        acne.set.starts_with("nsm@cull=none,slope_bias="),
+        "{acne:?}"
+    );
+    assert_eq!(hint(&runs[2]), None);
+}
+
+#[test]
+fn of_several_views_every_second_one_is_chosen_on() {
+    let mut comparison = park_comparison(&["nsm"], Path::new(NOWHERE), 32);
+    let views = comparison.scene.views.iter().take(3).cloned();
+    comparison.views = views
+        .map(skiagraph_compare::measuring::view_or_path::ViewOrPath::Still)
+        .collect();
+    let names: Vec<String> = comparison
+        .views
+        .iter()
+        .map(|view| view.name().into())
+        .collect();
+    tune(&mut comparison, session()).unwrap_or_else(|error| panic!("{error}"));
+    let judged: Vec<&str> = comparison.views.iter().map(|view| view.name()).collect();
+    assert_eq!(judged, [&*names[0], &*names[2]]);
+    for found in comparison.tuned.values() {
+        assert_eq!(found.chosen_on, names[1..2]);
+    }
+    // Nine times two plans of a new executor, three frames and the one that is timed, of each view.
+    assert!(
+        comparison.tuned[&0].tried <= 9 * 3 * 12 / 2,
+        "{:?}",
+        comparison.tuned
+    );
+}
+
+#[test]
+fn a_budget_of_memory_gives_the_largest_map_that_keeps_it() {
+    let mut small = sheets(&["nsm@cull=none,slope_bias=1,fit=receivers,bias=0"]);
+    small.budgets.memory_bytes = Some(2 << 20);
+    let mut large = sheets(&["nsm@cull=none,slope_bias=1,fit=receivers,bias=0"]);
+    large.budgets.memory_bytes = Some(24 << 20);
+    let sizes = [small, large].map(|mut comparison| {
+        tune(&mut comparison, session()).unwrap_or_else(|error| panic!("{error}"));
+        let runs = runs(&comparison);
+        let tuned = runs.last().unwrap();
+        let measured = tuned.measured.as_ref().unwrap();
+        let most = comparison.budgets.memory_bytes.unwrap();
+        assert!(measured.memory_bytes + measured.scene_bytes <= most);
+        tuned.map_size.unwrap()
+    });
+    assert_eq!(sizes, [512, 2048]);
+}
+
+#[test]
+fn what_cannot_be_tuned_is_told() {
+    let refused = |mut comparison: Comparison| {
+        let error = tune(&mut comparison, session()).unwrap_err();
+        error.to_string()
+    };
+    let exact = refused(sheets(&["rt", "light_buffer"]));
+    assert!(
+        exact.contains("nothing to tune: `rt`, `light_buffer`"),
+        "{exact}"
+    );
+    let set = "nsm@cull=none,slope_bias=1,fit=scene,bias=0,split_lambda=1,fit_to_receivers=false,\
+        warp=1";
+    let set = refused(sheets(&[set]));
+    assert!(set.contains("nothing to tune"), "{set}");
+    let path = refused(crate::support::along(
+        park_comparison(&["nsm"], Path::new(NOWHERE), 32),
+        "walk",
+    ));
+    assert!(path.contains("not along camera paths"), "{path}");
+}

@@ -10,12 +10,14 @@
 //!
 //! let request = SceneRequest { argument: "park".into(), obj: None };
 //! let (scene, _) = SceneLibrary::default().load(&request)?;
-//! let methods = load_methods(&["nsm", "nsm@bias=0"], &[], &[512], &EmbeddedSources)?;
+//! let words = ["nsm", "nsm@bias=0", "nsm@bias=0.01"];
+//! let methods = load_methods(&words, &[], &[512], &EmbeddedSources)?;
 //! let comparison = Comparison::new(Arc::new(scene), methods)?;
-//! let [one, other] = [0, 1].map(|method| {
+//! let [one, same, other] = [0, 1, 2].map(|method| {
 //!     cell::id(&comparison, &comparison.views[0], [64, 64], &comparison.methods[method])
 //! });
 //! assert_eq!(one.len(), 16);
+//! assert_eq!(one, same, "0 is the default");
 //! assert_ne!(one, other);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -31,7 +33,8 @@ use skiagraph_scene::{CameraPath, DirectionalLight, LightKind, PointLight, SpotL
 /// Returns the id of a cell, 16 hexadecimal digits: a hash of the scene's name and number of
 /// triangles; the name, camera and light of the view or path; the viewport in pixels; the preset
 /// with all params that it runs with; and the protocol. The label by which results tell settings of
-/// a preset apart is not in it, nor are shaders and meshes, which the run's `fingerprint` is of.
+/// a preset apart is not in it: two settings that come to the same params are one cell. Nor are
+/// shaders and meshes, which the run's `fingerprint` is of.
 pub fn id(
     comparison: &Comparison,
     view: &ViewOrPath,

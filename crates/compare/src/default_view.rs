@@ -112,28 +112,35 @@ pub fn default_view(
     }
 }
 
+/// Angles in radians by which a view may go around what another one shows.
+const ASIDE: [f64; 4] = [-0.6, 0.6, -1.2, 1.2];
+
 /// Turns by which another view may look elsewhere than the given one, and angle in radians below
 /// which two views from one place show the same.
 const TURNS: u32 = 8;
 const SAME_ANGLE: f64 = 0.7;
 
-/// Chooses at most `count` other views of a mesh that show it as `like` does, for a method that is
-/// to be tried on several: from the same place in other directions, and from other places inside
-/// the mesh, or around it where it surrounds none. Those with most light beside shadow and the
-/// farthest sight win. They have no name. The list is shorter if fewer show any surface.
+/// Chooses at most `count` other views of a mesh, for a method that is to be tried on several: at
+/// most two that show from other sides what `like` shows, then some in other directions and from
+/// other places inside the mesh, or around it where it surrounds none. Of each kind those with most
+/// light beside shadow and the farthest sight win. They have no name. The list is shorter if fewer
+/// show any surface.
 pub fn more_views(mesh: &Mesh, light: &LightKind, like: &View, count: usize) -> Vec<View> {
     let (Some((min, max)), Some(up)) = (mesh.bounds(), like.up.try_normalize()) else {
         return Vec::new();
     };
     let room = Room::new(mesh, [min.as_dvec3(), max.as_dvec3()], up);
-    let candidates = room.turned(like).chain(room.elsewhere(like));
-    let candidates = candidates.filter_map(|view| Some((room.worth(&view, light)?.total(), view)));
-    let candidates = candidates.filter(|(total, _)| *total > 0.0);
-    let candidates = candidates.sorted_by(|(one, _), (other, _)| other.total_cmp(one));
     let mut chosen = vec![like.clone()];
-    for (_, view) in candidates {
-        if chosen.len() <= count && chosen.iter().all(|other| room.differ(&view, other)) {
-            chosen.push(view);
+    let elsewhere = room.turned(like).chain(room.elsewhere(like)).collect();
+    for (candidates, most) in [(room.aside(like), count.min(2)), (elsewhere, count)] {
+        let worth = |view: View| Some((room.worth(&view, light)?.total(), view));
+        let candidates = candidates.into_iter().filter_map(worth);
+        let candidates = candidates.filter(|(total, _)| *total > 0.0);
+        let candidates = candidates.sorted_by(|(one, _), (other, _)| other.total_cmp(one));
+        for (_, view) in candidates {
+            if chosen.len() <= most && chosen.iter().all(|other| room.differ(&view, other)) {
+                chosen.push(view);
+            }
         }
     }
     chosen.split_off(1)
@@ -198,6 +205,28 @@ impl<'a> Room<'a> {
             up,
             across: up.any_orthonormal_pair().into(),
         }
+    }
+
+    /// Views of what another one shows in its middle, from other sides; from nearer where something
+    /// stands in the way there.
+    fn aside(&self, like: &View) -> Vec<View> {
+        let Some(ahead) = self.sight(like.eye, like.direction) else {
+            return Vec::new();
+        };
+        let middle = like.eye + like.direction * ahead.distance;
+        let view = |turn: f64| {
+            let turned = DQuat::from_axis_angle(self.up, turn);
+            let way = middle + turned * (like.eye - middle) - like.eye;
+            let free = self.sight(like.eye, way).map_or(1.0, |it| it.distance);
+            let eye = like.eye + way * if free < 1.0 { 0.6 * free } else { 1.0 };
+            View {
+                name: String::new(),
+                eye,
+                direction: middle - eye,
+                ..like.clone()
+            }
+        };
+        ASIDE.map(view).into()
     }
 
     /// Views from the place of another one, in other directions.

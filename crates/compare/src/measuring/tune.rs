@@ -56,14 +56,14 @@ const RESERVE: u64 = 8;
 /// Cost of a comparison with a search, as a multiple of that of the same comparison without one.
 const MOST_COST: u64 = 10;
 
-/// Views on which settings are chosen where a comparison has fewer than two: at least, so that one
-/// odd view does not decide, and at most.
-const OTHERS: [usize; 2] = [2, 3];
+/// Views on which settings are chosen where a comparison has fewer than two: several, so that one
+/// odd view does not decide.
+const OTHERS: usize = 3;
 
 /// Searches good settings for the methods of a comparison, and adds each as a method behind the one
 /// that it is a setting of. If the comparison has several views, every second one is taken out of
 /// it, and settings are chosen on these; otherwise they are chosen on other views of the scene, and
-/// on generated ones where it has fewer than two. Params that a method sets stay as they are. A
+/// on generated ones where it has fewer than three. Params that a method sets stay as they are. A
 /// method that promises to be exact for all casters needs no search.
 ///
 /// The work is bounded: plans and frames of a method, those of its tuned setting included, are at
@@ -230,16 +230,15 @@ impl Split {
 fn others(views: &[View], scene: &Scene) -> Result<Vec<View>, CompareError> {
     let none = || CompareError::Input("no view of the scene to tune methods on".into());
     let like = views.first().ok_or_else(none)?;
-    let [least, most] = OTHERS;
     let is_other = |other: &&View| (other.eye, other.direction) != (like.eye, like.direction);
     let mut others: Vec<View> = scene
         .views
         .iter()
         .filter(is_other)
-        .take(most)
+        .take(OTHERS)
         .cloned()
         .collect();
-    let missing = least.saturating_sub(others.len());
+    let missing = OTHERS.saturating_sub(others.len());
     let generated = more_views(&scene.mesh, &scene.light_of(like), like, missing);
     let generated = generated.into_iter().enumerate();
     others.extend(generated.map(|(number, view)| View {

@@ -60,7 +60,10 @@ fn what_helps_on_other_views_helps_on_the_judged_one() {
     assert!(nsm.tuned.is_none() && rt.tuned.is_none());
     let found = tuned.tuned.as_ref().unwrap();
     assert_eq!(found.of, "nsm");
-    assert_eq!(found.chosen_on, ["generated 1", "generated 2"]);
+    assert_eq!(
+        found.chosen_on,
+        ["generated 1", "generated 2", "generated 3"]
+    );
     assert_eq!(tuned.params["cull"], "none");
     assert_eq!(tuned.preset, found.argument());
     assert!(found.error < 0.2 * found.default_error, "{found:?}");

@@ -148,8 +148,10 @@ fn set_times(run: &mut Value) {
     let ms = (method + 1) as f64 * width / 64.0 + map / 1e3;
     for (frame, share) in [("/frame", 1.0), ("/cached/frame", 0.5)] {
         for clock in ["gpu_ms", "wall_ms"] {
-            if let Some(median) = run.pointer_mut(&format!("{frame}/{clock}/median")) {
-                *median = (share * ms).into();
+            for (figure, by) in [("median", 1.0), ("q1", 0.9), ("q3", 1.2)] {
+                if let Some(of) = run.pointer_mut(&format!("{frame}/{clock}/{figure}")) {
+                    *of = (by * share * ms).into();
+                }
             }
         }
     }

@@ -2,6 +2,7 @@
 # Runs the tests. They create GPU devices, so a machine without any adapter gets a software Vulkan
 # driver first, and a browser in which one test opens `report.html` (`chromium`, or the program that
 # $CHROMIUM names; Debian's package of it holds the validation layer that another test asks).
+# Another test tries the page with axe-core, where `npm ci --prefix crates/cli/tests/axe` has put it.
 # Arguments go to `cargo test`:
 #
 #   ./test.sh                          all tests but the suites that take minutes

@@ -1,4 +1,4 @@
-// Critical and serious findings of axe-core on the whole page.
+// Critical and serious findings of axe-core on the whole page, and whether it scrolls sideways.
 let passed = 0;
 try {
   await settled();
@@ -7,6 +7,8 @@ try {
     [script.src, script.onload, script.onerror] = ['../axe.min.js', loaded, broken];
     document.head.append(script);
   });
+  check('the page does not scroll sideways', document.documentElement.scrollWidth <= innerWidth,
+    `${document.documentElement.scrollWidth} of ${innerWidth}`);
   const { violations, passes } = await axe.run(document);
   passed = passes.length;
   for (const { id, impact, help, nodes } of violations.filter((one) => ['critical', 'serious'].includes(one.impact))) {

@@ -69,7 +69,9 @@ try {
   check('a focused mark tells them, too', !find('#tip').hidden);
   seen('#front .mark')[0].blur();
 
-  // The table: sorted, filtered.
+  // The table: whole where there is room, sorted, filtered.
+  check('the table is whole', innerWidth < 1200 || find('#table').scrollWidth <= find('#table').clientWidth,
+    `${find('#table').scrollWidth} of ${find('#table').clientWidth}`);
   check('a row each', rows().length === 7, rows());
   check('the best is marked', seen('tr.best').length === 1 && seen('tr.best')[0].children[2].textContent === '0', seen('tr.best').length);
   const wrong = () => cells('wrong outside band').map((text) => Number(text.replaceAll(',', '')));

@@ -679,7 +679,6 @@ pub(crate) mod tests {
             wall_frames: vec![wall * 2.0, wall, wall * 1.5],
         };
         let run = |preset: &str, map_size| Run {
-            tuned: None,
             preset: preset.into(),
             view: "main".into(),
             light: None,
@@ -719,7 +718,6 @@ pub(crate) mod tests {
             note: note.map(Into::into),
         };
         let measured = |name: &str, gpu: bool, rays| Measured {
-            hint: None,
             certain: CertainCounts {
                 lit: 57_100,
                 shadow: 37_900,

@@ -37,12 +37,20 @@ fn figures(tables: &[Shown], table: &Shown) -> Option<String> {
     let row = |index: Option<usize>| table.summary.rows.get(index?);
     let (taken, runner_up) = (row(verdict.first.first().copied())?, row(verdict.runner_up));
     let (run, judged) = worst_view(runner_up.unwrap_or(taken))?;
-    let told = |row: &Row, of: &Measured| {
+    let told = |row: &Row, run: &Run, of: &Measured| {
         let (sign, label) = (sign(tables, &row.method), xml(&row.label));
         let frame = frame_in_words(frame(of)?);
         let time = row.frame_ms(table.by_wall).map_or("–".into(), ms);
         let error = error(table, row);
-        Some(format!("<b>{sign}{label}</b>{frame}: {error}, {time} ms"))
+        let here = if row.views() > 1 && !table.summary.is_soft() && !is_right(row) {
+            let here = percent(of.wrong_outside_band(), run.pixels.facing_light);
+            format!(" ({here} on this view)")
+        } else {
+            String::new()
+        };
+        Some(format!(
+            "<b>{sign}{label}</b>{frame}: {error}{here}, {time} ms"
+        ))
     };
     let (its_run, of) = on_view(taken, &run.view)?;
     let mut shown = vec![
@@ -53,10 +61,10 @@ fn figures(tables: &[Shown], table: &Shown) -> Option<String> {
             is_reference: false,
             kind: "shaded",
             alt: format!("{} on {}, shaded", taken.label, run.view),
-            caption: told(taken, of)?,
+            caption: told(taken, its_run, of)?,
         },
     ];
-    let caption = runner_up.map(|row| Some((row, told(row, judged)?)));
+    let caption = runner_up.map(|row| Some((row, told(row, run, judged)?)));
     match caption.flatten() {
         Some((row, caption)) if is_right(row) => {
             let text = format!("<p>{caption}. It has no wrong pixel to show.</p>");
@@ -90,19 +98,13 @@ fn wrong<'a>(row: &Row, (run, of): (&'a Run, &Measured), caption: &str) -> Optio
     } else {
         "blue is too light, red too dark"
     };
-    let here = percent(of.wrong_outside_band(), run.pixels.facing_light);
-    let here = if row.views() > 1 && run.area.is_none() {
-        format!(" (on {} {here})", xml(&run.view))
-    } else {
-        String::new()
-    };
     Some(Figure {
         run,
         frame: frame(of)?,
         is_reference: false,
         kind: "error",
         alt: format!("wrong pixels of {} on {}: {colours}", row.label, run.view),
-        caption: format!("{caption}{here}; {colours}"),
+        caption: format!("{caption}; {colours}"),
     })
 }
 

@@ -10,7 +10,7 @@ function drawHead() {
   // Text between backquotes is a name.
   const words = (text) => text.split('`').map((part, index) => (index % 2 === 1 ? el('code', {}, part) : part));
   byId('verdict').replaceChildren(...table().sentences.map((text) => el('p', {}, ...words(text))));
-  byId('notes').replaceChildren(...table().notes.map((text) => el('li', { class: lineClass(text) }, text)));
+  byId('notes').replaceChildren(...table().notes.map((text) => el('li', { class: lineClass(text) }, ...words(text))));
 }
 
 /** Warnings stand out. */

@@ -63,6 +63,8 @@ pub fn verdict(rows: &[Row], budgets: &Budgets) -> Verdict {
     let too_few = frames.filter(|frames| within.len() > 1 && *frames < LEAST_TURNS);
     if let Some(frames) = too_few {
         verdict.sentences = without_times(&within, frames);
+        // The fastest is not known.
+        verdict.is_taken = false;
     }
     if !budgets.is_empty() && !within.is_empty() {
         let (count, all) = (within.len(), plural(full.len(), "method"));

@@ -115,12 +115,10 @@ fn of_several_views_every_second_one_is_chosen_on() {
     for found in comparison.tuned.values() {
         assert_eq!(found.chosen_on, names[1..2]);
     }
-    // Nine times two plans of a new executor, three frames and the one that is timed, of each view.
-    assert!(
-        comparison.tuned[&0].tried <= 9 * 3 * 12 / 2,
-        "{:?}",
-        comparison.tuned
-    );
+    // Nine times the work of the runs: two new executors as four frames each, three frames and the
+    // one that is timed, of each view.
+    let found = comparison.tuned.values().next().unwrap();
+    assert!(found.tried <= 9 * 3 * 12 / 2, "{found:?}");
 }
 
 #[test]

@@ -82,23 +82,19 @@ fn lit_samples(asking: Asking, asked: Asked) -> u32 {
     while any(lit != vec2(0u)) && number != LIST_END && rounds < MOST_ROUNDS {
         // Threads that run in step look for a candidate together, then test it together.
         var candidate = NO_PRIMITIVE;
-        var cone: Cone;
         while candidate == NO_PRIMITIVE && number != LIST_END && rounds < MOST_ROUNDS {
-            while candidate == NO_PRIMITIVE && number != LIST_END && rounds < MOST_ROUNDS {
-                let entry = entries[number - 1u];
-                number = entry.x;
-                let may_hit = (entry.y != asking.own) & may_shade(asked, entry.zw);
-                candidate = select(NO_PRIMITIVE, entry.y, may_hit);
-                rounds += 1u;
-            }
-            if candidate != NO_PRIMITIVE {
-                cone = cone_of(asking.receiver, candidate, asked.t_min);
-                candidate = select(candidate, NO_PRIMITIVE, cone.is_beside);
-            }
+            let entry = entries[number - 1u];
+            number = entry.x;
+            let may_hit = (entry.y != asking.own) & may_shade(asked, entry.zw);
+            candidate = select(NO_PRIMITIVE, entry.y, may_hit);
             rounds += 1u;
         }
         rounds += 1u;
         if candidate == NO_PRIMITIVE {
+            continue;
+        }
+        let cone = cone_of(asking.receiver, candidate, asked.t_min);
+        if cone.is_beside {
             continue;
         }
         if !is_ready {

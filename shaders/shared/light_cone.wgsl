@@ -59,7 +59,8 @@ fn cone_of(receiver: vec3<f32>, primitive: u32, t_min: f32) -> Cone {
 
     // Twice the area that the light sees, from its centre and from its rim: of one sign.
     let area = at.x + at.y + at.z;
-    let area_change = change.x + change.y + change.z + 2.0 * error;
+    let area_slope = vec2(right.x + right.y + right.z, up.x + up.y + up.z);
+    let area_change = length(area_slope) * 1.00001 + 4.0 * error;
     let turn = select(1.0, -1.0, area < 0.0);
     let nearest = min(a.z, min(b.z, c.z));
     let farthest = max(a.z, max(b.z, c.z));

@@ -105,7 +105,7 @@ fn lit_samples(asking: Asking, asked: Asked) -> u32 {
                 ys[i / 4u][i % 4u] = point.y;
             }
         }
-        // Samples that are certainly inside of all edges, and that perhaps are. Unrolled, so that
+        // Samples that are certainly hidden, if the cone is clear, and that perhaps are. Unrolled, so that
         // none is looked up by a number that is not known beforehand.
         var low = vec2(0u);
         var high = vec2(0u);
@@ -129,14 +129,14 @@ fn lit_samples(asking: Asking, asked: Asked) -> u32 {
         let is_clear = cone.is_clear && !is_masked(candidate);
         let certain = select(vec2(0u), vec2(low.x, high.x), is_clear);
         lit &= ~certain;
-        var unsure = lit & select(vec2(0xffffffffu), vec2(low.y, high.y), cone.is_clear);
+        var unsure = lit & vec2(low.y, high.y);
         while any(unsure != vec2(0u)) {
             let bit = first_bit(unsure);
             unsure &= ~bit;
             rounds += 1u;
             let i = first_number(bit);
             let point = vec2(xs[i / 4u][i % 4u], ys[i / 4u][i % 4u]);
-            if !is_clear_miss(cone, point) && hides(asking.receiver, asked.t_min, candidate, point) {
+            if hides(asking.receiver, asked.t_min, candidate, point) {
                 lit &= ~bit;
             }
         }
@@ -151,22 +151,19 @@ fn sample_point(asking: Asking, i: u32) -> vec2<f32> {
     return disk_point(stratum_point(sample, asking.wanted, random_pair(asking.pixel, sample)));
 }
 
-// Of four samples a bit each: certainly inside of all edges; perhaps.
+// Of four samples a bit each: certainly inside of all edges; not certainly outside of one, or inside
+// of another, so that whichever way the triangle is turned they may be hidden.
 fn sides_of(cone: Cone, x: vec4<f32>, y: vec4<f32>) -> vec2<u32> {
     let ab = cone.at.x + cone.right.x * x + cone.up.x * y;
     let bc = cone.at.y + cone.right.y * x + cone.up.y * y;
     let ca = cone.at.z + cone.right.z * x + cone.up.z * y;
     let least = min(ab, min(bc, ca));
+    let most = max(ab, max(bc, ca));
     let bits = vec4(1u, 2u, 4u, 8u);
     let hit = select(vec4(0u), bits, least > vec4(cone.error));
-    let perhaps = select(vec4(0u), bits, least >= vec4(-cone.error));
+    let is_mixed = (least < vec4(-cone.error)) & (most > vec4(cone.error));
+    let perhaps = select(bits, vec4(0u), is_mixed);
     return vec2(hit.x | hit.y | hit.z | hit.w, perhaps.x | perhaps.y | perhaps.z | perhaps.w);
-}
-
-// On both sides of its edges at once, a point is outside, whichever way the triangle is turned.
-fn is_clear_miss(cone: Cone, point: vec2<f32>) -> bool {
-    let sides = cone.at + cone.right * point.x + cone.up * point.y;
-    return any(sides < vec3(-cone.error)) && any(sides > vec3(cone.error));
 }
 
 // The tracer's answer for the ray that aim_samples.wgsl aims.

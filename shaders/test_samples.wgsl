@@ -9,7 +9,7 @@
 #import "shared/strata.wgsl"
 
 override samples: u32 = 64u;
-// Of this turn.
+// The turn's first.
 override first_sample: u32 = 0u;
 
 // Rounds of a thread's loops after which it begins no more; with the last candidate's samples and
@@ -28,7 +28,7 @@ struct Answer {
     @location(1) status: u32,
 }
 
-// What does not change from candidate to candidate.
+// A receiver and its samples.
 struct Asking {
     receiver: vec3<f32>,
     own: u32,
@@ -105,8 +105,8 @@ fn lit_samples(asking: Asking, asked: Asked) -> u32 {
                 ys[i / 4u][i % 4u] = point.y;
             }
         }
-        // Samples that are certainly hidden, if the cone is clear, and that perhaps are. Unrolled, so that
-        // none is looked up by a number that is not known beforehand.
+        // Samples that are certainly hidden, if the cone is clear, and that perhaps are. Unrolled,
+        // so that none is looked up by a number that is not known beforehand.
         var low = vec2(0u);
         var high = vec2(0u);
         if samples > 0u { low |= sides_of(cone, xs[0], ys[0]) << vec2(0u); }
@@ -151,8 +151,8 @@ fn sample_point(asking: Asking, i: u32) -> vec2<f32> {
     return disk_point(stratum_point(sample, asking.wanted, random_pair(asking.pixel, sample)));
 }
 
-// Of four samples a bit each: certainly inside of all edges; not certainly outside of one, or inside
-// of another, so that whichever way the triangle is turned they may be hidden.
+// Returns two bits for each of four samples: certainly inside of all edges; and, since a triangle
+// that is not clear may be turned either way, not certainly inside of one and outside of another.
 fn sides_of(cone: Cone, x: vec4<f32>, y: vec4<f32>) -> vec2<u32> {
     let ab = cone.at.x + cone.right.x * x + cone.up.x * y;
     let bc = cone.at.y + cone.right.y * x + cone.up.y * y;

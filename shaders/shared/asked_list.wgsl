@@ -1,4 +1,4 @@
-// What a receiver finds in its texel of the light buffer: an answer, or the list that it has to ask.
+// The texel of the light buffer in which a receiver lies: an answer, or the list to ask.
 
 #import "shared/camera.wgsl"
 #import "shared/light_buffer.wgsl"

@@ -1,9 +1,9 @@
-// How far beyond its own edges a caster shades receivers, as a grid over light space sees it: not at
-// all, under a light without extent. shared/caster_reach_area.wgsl stands in for this.
+// How far beyond its own edges a caster shades receivers, as a grid over light space sees it: not
+// at all, under a light without extent. shared/caster_reach_area.wgsl stands in for this.
 
 #import "shared/light_triangle.wgsl"
 
-// What a caster brings along for that: nothing, but a struct has a member.
+// Terms of a caster for that: none, but a struct has a member.
 struct Reach {
     none: f32,
 }

@@ -6,7 +6,7 @@
 #import "shared/light_area.wgsl"
 
 struct Reach {
-    // Of the edges ab, bc, ca: how far, times their lengths, the light moves what is a depth of 1
+    // How far the light moves the edges ab, bc and ca, times their lengths, that are a depth of 1
     // nearer to it than a receiver.
     spread: vec3<f32>,
     // The depth of receivers from which on the edges count as moved.

@@ -6,8 +6,8 @@
 #import "shared/predicates.wgsl"
 
 struct Cone {
-    // Of the edges ab, bc, ca: at + right * x + up * y is positive where the point (x, y) of the
-    // unit disk is inside.
+    // Sides of the edges ab, bc and ca: at + right * x + up * y is positive where the point (x, y)
+    // of the unit disk is inside.
     at: vec3<f32>,
     right: vec3<f32>,
     up: vec3<f32>,

@@ -4,19 +4,9 @@
 // per pixel, as others take long to draw.
 
 #import "shared/answer.wgsl"
-#import "shared/camera.wgsl"
-#import "shared/light_buffer.wgsl"
+#import "shared/asked_list.wgsl"
 #import "shared/ray_triangle.wgsl"
-#import "shared/receiver.wgsl"
 
-struct Params {
-    longest_list: u32,
-}
-
-var<uniform> params: Params;
-// As bin_casters.wgsl leaves them: each a `Texel`, the last one LIST_LACKS for all.
-var<storage, read> texels: array<vec4<u32>>;
-var<storage, read> entries: array<vec4<u32>>;
 // Workgroups of fill_rays in x, y, z.
 var<storage, read_write> fill_groups: array<atomic<u32>, 3>;
 
@@ -63,45 +53,25 @@ fn ask_rays() {
 }
 
 fn test_casters(receiver: vec3<f32>, own: u32) -> u32 {
-    let place = place_of(receiver, light_clip_summands_of_scene());
-    // A part of a large triangle is in no list.
-    let lists_lack = texels[arrayLength(&texels) - 1u].y != 0u;
-    if place.texel == NO_TEXEL || lists_lack {
-        return STATUS_UNCERTAIN;
-    }
-    let texel = texels[place.texel];
-    let t_min = receiver_error_bound(receiver, camera.eye);
-    let depth = bitcast<f32>(place.depth);
-    // Twice what a hit must be away, for the tracer's rounding.
-    let nearest = depth - place.rounding - 2.0 * t_min / light.extent.z;
-    if nearest > 0.0 && bitcast<u32>(nearest) > ~texel.w {
-        return STATUS_SHADOW;
-    }
-    // Two shaders may round a receiver to different texels: then this texel was not marked.
-    if place.depth > texel.x || texel.y > params.longest_list {
-        return STATUS_UNCERTAIN;
-    }
-    if texel.z == LIST_END {
-        return STATUS_LIGHT;
+    let asked = asked_list(receiver);
+    if asked.head == LIST_END {
+        return asked.status;
     }
     let end = light_distance(receiver);
-    let ray = sheared(Ray(receiver, t_min, to_light_from(receiver), end));
-    let coarse = coarse_depth(depth);
-    let offset = vec2<i32>(round(place.offset * 4096.0));
+    let ray = sheared(Ray(receiver, asked.t_min, to_light_from(receiver), end));
     var hit = Hit(end, NO_PRIMITIVE, 0.0, 0.0);
     var is_hit = false;
-    var number = texel.z;
+    var number = asked.head;
     // Testing costs the most: threads that run in step do it together.
     while !is_hit && number != LIST_END {
         var candidate = NO_PRIMITIVE;
         while candidate == NO_PRIMITIVE && number != LIST_END {
             let entry = entries[number - 1u];
             number = entry.x;
-            let inside = inside_of(entry.zw, offset) | behind_of(entry.zw, coarse);
-            let may_hit = (entry.y != own) & (inside >= 0);
+            let may_hit = (entry.y != own) & may_shade(asked, entry.zw);
             candidate = select(NO_PRIMITIVE, entry.y, may_hit);
         }
-        is_hit = candidate != NO_PRIMITIVE && intersect(ray, candidate, t_min, &hit);
+        is_hit = candidate != NO_PRIMITIVE && intersect(ray, candidate, asked.t_min, &hit);
     }
     return select(STATUS_LIGHT, STATUS_SHADOW, is_hit);
 }

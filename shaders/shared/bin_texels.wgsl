@@ -83,15 +83,18 @@ fn bin(caster: Binned, first: u32, end: u32, step: u32) {
 fn is_listed(caster: Binned, texel: vec2<u32>) -> bool {
     let number = texel_number(binned_layer, texel);
     let centre = vec2<f32>(texel) + 0.5;
-    let inward = edge_functions(caster.triangle, centre);
-    let max_receiver_depth = atomicLoad(&texels[number].max_receiver_depth);
-    let may_shade = depth_bits(least_depth(caster, centre)) <= max_receiver_depth;
-    if !(all(inward >= -caster.edge_threshold) && may_shade) {
+    let depth_bits_here = atomicLoad(&texels[number].max_receiver_depth);
+    let max_depth = bitcast<f32>(depth_bits_here);
+    let may_shade = depth_bits(least_depth(caster, centre)) <= depth_bits_here;
+    let shading = shading_functions(caster, centre, max_depth);
+    if !(all(shading >= -caster.edge_threshold) && may_shade) {
         return false;
     }
     // The texel, larger by 4 times the slack on every side, is inside of what covers it.
     let enlarged = (1.0 + 6.0 * caster.dilation) * caster.edge_threshold;
-    let covers = caster.plane.margin >= 0.0 && all(inward >= enlarged);
+    let inset = enlarged + cover_inset(caster, centre, max_depth);
+    let covers = caster.plane.margin >= 0.0
+        && all(edge_functions(caster.triangle, centre) >= inset);
     if has_covers && covers {
         let depth = covered_depth(caster, centre);
         atomicMax(&texels[number].full_coverage_depth, ~depth_bits(depth));
@@ -139,10 +142,15 @@ fn texels_in(caster: Binned, tile: vec2<u32>) -> vec2<u32> {
     let middle = (vec2<f32>(tile) + 0.5) * f32(TILE);
     let nearest = depth_bound(caster.plane, middle, 0.5 * f32(TILE), NEAREST);
     let depth = nearest - caster.depth_tolerance;
+    let max_depth = bitcast<f32>(marked.x);
+    let shading = shading_functions(caster, middle, max_depth);
+    let corner = tile * TILE;
+    let box = shaded_texels(caster, max_depth);
     let may_shade = depth_bits(depth) <= marked.x
-        && all(edge_functions(caster.triangle, middle) >= -f32(TILE) * caster.edge_threshold);
-    let low = max(caster.first, tile * TILE) - tile * TILE;
-    let high = min(caster.last - tile * TILE, vec2(TILE - 1u));
+        && all(shading >= -f32(TILE) * caster.edge_threshold)
+        && all(box.xy < corner + TILE) && all(box.zw >= max(corner, box.xy));
+    let low = max(box.xy, corner) - corner;
+    let high = min(max(box.zw, corner) - corner, vec2(TILE - 1u));
     let columns = (0xffu << low.x) & (0xffu >> (TILE - 1u - high.x));
     let rows = (0xffu << low.y) & (0xffu >> (TILE - 1u - high.y));
     let bits = vec2(bytes_of(rows & 0xfu), bytes_of(rows >> 4u)) * columns;
@@ -161,7 +169,7 @@ fn append(caster: Binned, texel: vec2<u32>, slot: u32, lines: Lines) {
         return;
     }
     let centre = vec2<f32>(texel) + 0.5;
-    let inward = edge_functions(caster.triangle, centre);
+    let inward = shading_functions(caster, centre, shaded_depth(number));
     let distances = inward * lines.per_length + lines.dilation;
     let ab = Edge(lines.inward.x, distances.x);
     let bc = Edge(lines.inward.y, distances.y);

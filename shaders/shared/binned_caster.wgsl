@@ -3,6 +3,7 @@
 #import "shared/camera.wgsl"
 #import "shared/light_buffer.wgsl"
 #import "shared/face_triangle.wgsl"
+#import "shared/caster_reach.wgsl"
 
 struct Binned {
     primitive: u32,
@@ -20,6 +21,7 @@ struct Binned {
     // Bound on the difference between its depth and the tracer's, nearer to the light or farther
     // from it.
     depth_tolerance: f32,
+    reach: Reach,
 }
 
 fn caster_of(primitive: u32) -> Binned {
@@ -31,24 +33,22 @@ fn caster_of(primitive: u32) -> Binned {
     let edge_tolerance = edge_tolerance();
     let dilation = max(SLACK, edge_tolerance);
     plane.margin *= dilation / SLACK;
-    var depth_tolerance = TRACED * light.max_distance / light.extent.z;
+    var depth_tolerance = traced() * light.max_distance / light.extent.z;
     if plane.margin >= 0.0 {
         depth_tolerance += (edge_tolerance + weights_error(triangle)) * max_depth_slope();
     }
+    if !has_usable_plane(plane) {
+        plane.margin = -1.0;
+    }
     return caster_over(primitive, triangle, plane, dilation, depth_tolerance);
 }
-
-// Bound on the difference between the tracer's view of a triangle and its corners, in any
-// direction, as a share of the longest way, twice the diagonal of the scene's box:
-// docs/light_buffer_errors.md.
-const TRACED: f32 = 16.0 * HALF_ULP;
 
 // How far a receiver may be beyond an edge, in texels in each direction, and the tracer not tell.
 // For a directional light.
 fn edge_tolerance() -> f32 {
     let placed = texel_error_of_summands(map_fit, light_clip_summands_of_scene()).x;
     let clip = light.max_distance / min(light.extent.x, light.extent.y);
-    return placed + TRACED * map_fit.scale * clip;
+    return placed + traced() * map_fit.scale * clip;
 }
 
 // How far apart, in texels, what the tracer's weights say and where it hits may be: an area errs by
@@ -84,10 +84,12 @@ fn caster_over(
     let a = triangle.a;
     let b = triangle.b;
     let c = triangle.c;
-    let low = floor(min(a.xy, min(b.xy, c.xy)) - dilation);
-    let high = floor(max(a.xy, max(b.xy, c.xy)) + dilation);
+    let reach = reach_of(triangle, plane, depth_tolerance);
+    let box = shaded_box(triangle, reach);
+    let low = floor(box.xy - dilation);
+    let high = floor(box.zw + dilation);
     let end = map_fit.size - 1.0;
-    let is_beside = any(high < vec2(0.0)) || any(low > vec2(end));
+    let is_beside = any(high < max(low, vec2(0.0))) || any(low > vec2(end));
     let first = select(vec2<u32>(max(low, vec2(0.0))), vec2(1u), is_beside);
     let last = select(vec2<u32>(min(high, vec2(end))), vec2(0u), is_beside);
     let edge_threshold = vec3(
@@ -96,7 +98,7 @@ fn caster_over(
         edge_threshold_of(a.xy - c.xy, dilation),
     );
     return Binned(
-        primitive, triangle, plane, first, last, edge_threshold, dilation, depth_tolerance,
+        primitive, triangle, plane, first, last, edge_threshold, dilation, depth_tolerance, reach,
     );
 }
 
@@ -116,10 +118,10 @@ fn caster_of_face(primitive: u32) -> Binned {
         max(max_projected_ratio(b), max_projected_ratio(c)),
     );
     let spread = light_spread();
-    let rounding = TRACED * light.max_distance * (1.0 + spread) / nearest
+    let rounding = traced() * light.max_distance * (1.0 + spread) / nearest
         + CLIP_ROUNDING * (2.0 + 4.0 * spread) * (1.0 + projected_ratio) * (1.0 + projected_ratio);
     let dilation = SLACK + map_fit.scale * rounding;
-    let depth_tolerance = TRACED * light.max_distance / light.range;
+    let depth_tolerance = traced() * light.max_distance / light.range;
     if !(nearest > 0.0 && dilation < 0.125 * map_fit.size) {
         let plane = DepthPlane(vec3(0.0), vec2(0.0), -1.0, least, greatest, 0.0);
         return caster_of_whole_face(primitive, a, b, c, plane, depth_tolerance);
@@ -155,7 +157,10 @@ fn caster_of_whole_face(
     let first = select(vec2(0u), vec2(1u), beside);
     let last = select(vec2(u32(map_fit.size) - 1u), vec2(0u), beside);
     let nowhere = LightTriangle(vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
-    return Binned(primitive, nowhere, plane, first, last, vec3(1e30), SLACK, depth_tolerance);
+    let reach = reach_of(nowhere, plane, depth_tolerance);
+    return Binned(
+        primitive, nowhere, plane, first, last, vec3(1e30), SLACK, depth_tolerance, reach,
+    );
 }
 
 fn edge_threshold_of(edge: vec2<f32>, dilation: f32) -> f32 {

@@ -8,3 +8,7 @@ fn is_opaque(primitive: u32, b: f32, c: f32) -> bool {
 fn is_double_sided(primitive: u32) -> bool {
     return false;
 }
+
+fn is_masked(primitive: u32) -> bool {
+    return false;
+}

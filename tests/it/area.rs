@@ -231,3 +231,72 @@ fn eight_maps_agree_in_light_and_umbra_and_leave_the_penumbra_to_rays() {
     let [hybrid, all] = [&hybrid, &all].map(|shown| judged(shown, &ground_truth).rmse);
     assert!(hybrid < all + 0.03, "{hybrid} {all}");
 }
+
+/// Lists beside rays: shares of every pixel, and the pixels that asked rays.
+fn assert_lists_answer_as_rays_do(scene: &Arc<Scene>, samples: u32, set: &str) -> usize {
+    let samples = format!(r#""samples": {samples}"#);
+    let only_suns = |name: &str, set: &str| preset(name, set).replace(", spot, point", "");
+    let rays = shown(&only_suns("rt_area", &samples), scene);
+    let lists = shown(
+        &only_suns("light_buffer_area", &format!("{samples}{set}")),
+        scene,
+    );
+    let bits = |shown: &Shown| -> Vec<u32> {
+        let shares = shown.shares.iter();
+        shares.map(|share| share.to_bits()).collect()
+    };
+    assert_eq!(bits(&lists), bits(&rays), "{samples}{set}");
+    let is_partial = |share: &&f32| (0.01..0.99).contains(*share);
+    assert!(rays.shares.iter().filter(is_partial).count() > 0);
+    lists.status.iter().filter(|status| **status == 4).count()
+}
+
+#[test]
+fn lists_answer_each_sample_as_its_ray_does() {
+    for (angle, samples) in [(0.5, 64), (12.0, 7), (40.0, 64)] {
+        let asked = assert_lists_answer_as_rays_do(&scene(sun(angle)), samples, "");
+        assert_eq!(asked, 0, "{angle} degrees");
+    }
+}
+
+#[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
+fn lists_in_turns_and_lists_cut_short_answer_as_rays_do() {
+    let scene = scene(sun(12.0));
+    // More than a word of samples, and more than a turn.
+    for samples in [33, 65, 256] {
+        assert_eq!(assert_lists_answer_as_rays_do(&scene, samples, ""), 0);
+    }
+    // With one caster at most in a list some receivers are left to rays.
+    for longest in [0, 1] {
+        let set = format!(r#", "longest_list": {longest}"#);
+        assert!(
+            assert_lists_answer_as_rays_do(&scene, 16, &set) > 20,
+            "{longest}"
+        );
+    }
+    for fit in ["scene", "camera", "pssm"] {
+        assert_lists_answer_as_rays_do(&scene, 16, &format!(r#", "fit": {fit}"#));
+    }
+}
+
+#[test]
+fn without_extent_lists_answer_as_those_of_hard_shadows() {
+    let scene = scene(sun(0.0));
+    let soft = shown(
+        &preset("light_buffer_area", r#""samples": 64"#).replace(", spot, point", ""),
+        &scene,
+    );
+    let mut provider = provider(&scene, &scene.views[0], VIEWPORT);
+    let plan = plan_files(
+        &[("test.ron", &preset("light_buffer", ""))],
+        &provider,
+        VIEWPORT,
+    );
+    let report = run(plan, &mut provider, &["visibility", "status"]);
+    let hard = values(&report, "visibility");
+    let hard: Vec<f32> = hard.iter().map(|&lit| lit as f32).collect();
+    assert_eq!(soft.shares, hard);
+    assert_eq!(soft.status, values(&report, "status"));
+    assert!(hard.iter().filter(|share| **share == 0.0).count() > 100);
+}

@@ -57,6 +57,7 @@ fn presets_are_listed_by_name() {
             "hybrid_pcf_area",
             "hybrid_pcf_d",
             "light_buffer",
+            "light_buffer_area",
             "nsm",
             "nsm_d",
             "pcf",

@@ -217,9 +217,10 @@ impl<'a> Contender<'a> {
 
     /// The figure by which settings of one method are ranked.
     fn error_to_rank(&self) -> f64 {
-        match self.is_soft {
-            true => self.rmse,
-            false => self.wrong.share(),
+        if self.is_soft {
+            self.rmse
+        } else {
+            self.wrong.share()
         }
     }
 

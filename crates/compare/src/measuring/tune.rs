@@ -209,9 +209,10 @@ impl Split {
         let is_one = places.len() < 2;
         let (mut judged, mut chosen_on) = (Vec::new(), Vec::new());
         for (index, (_, views)) in places.into_iter().enumerate() {
-            let part = match is_one || index % 2 == 0 {
-                true => &mut judged,
-                false => &mut chosen_on,
+            let part = if is_one || index % 2 == 0 {
+                &mut judged
+            } else {
+                &mut chosen_on
             };
             part.extend(views.into_iter().cloned());
         }

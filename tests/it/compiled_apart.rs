@@ -162,7 +162,7 @@ const ALTERED: [(&str, &[(&str, &str)]); 4] = [
     // Where a receiver asks: marked by one arithmetic, sought by another. 1 - 2^-24 times a number
     // lies between it and its neighbour.
     (
-        "shaders/test_casters.wgsl",
+        "shaders/shared/asked_list.wgsl",
         &[(
             "let place = place_of(receiver, light_clip_summands_of_scene());",
             "let place = place_of(

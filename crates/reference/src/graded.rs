@@ -17,7 +17,7 @@ use std::ops::RangeInclusive;
 /// pixels, whatever their visibility. The *error* of a pixel is its visibility minus the
 /// reference's share. Values outside of 0 to 1, infinities included, are counted in `invalid`, and
 /// clamped before they are judged, as a texture of 0 to 1 would hold them. NaN counts as an error
-/// of size 1.
+/// of size 1: too light below a share of one half, too dark from one half on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Graded {

@@ -275,7 +275,8 @@ impl<'a> Row<'a> {
         })
     }
 
-    /// Returns the frame with the greatest error on all camera paths; `None` without paths.
+    /// Returns the frame with the greatest [`error`](SequenceFrame::error) on all camera paths; `None`
+    /// without paths.
     pub fn worst_frame(&self) -> Option<&'a SequenceFrame> {
         let paths = self.runs.iter();
         let worst = paths.filter_map(|(_, of)| Some(of.sequence.as_ref()?.worst()?.1));

@@ -20,16 +20,16 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Budgets {
-    /// Most milliseconds of a frame in which every pass runs: the median time, as the mean of the
-    /// views.
+    /// Most milliseconds of a frame in which every pass runs: the mean of the views' medians, of GPU
+    /// times. If any method of the comparison lacks GPU times, wall times of all are taken.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frame_ms: Option<f64>,
     /// Limit on wrong pixels outside the band (pixels whose answer rounding decides), in percent of
-    /// the pixels facing the light. A method must stay below it.
+    /// the pixels facing the light, both summed over all views. A method must stay below it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub wrong_percent: Option<f64>,
     /// Most bytes that the textures and buffers of the method, and the scene data that it reads,
-    /// may take together.
+    /// may take together, on the view where that is the most.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub memory_bytes: Option<u64>,
 }

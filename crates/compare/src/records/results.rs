@@ -485,7 +485,8 @@ pub struct Measured {
     /// which each method follows by itself.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub turns: Option<Turns>,
-    /// Steady state of a method that remembers earlier frames; absent for other methods.
+    /// Steady state of a method that remembers earlier frames, with means over its pictures; the
+    /// other fields count the worst of these pictures. Absent for other methods.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub steady: Option<Steady>,
     /// Texels of the shadow map per pixel, for a path in its worst frame; absent where the graph
@@ -560,7 +561,9 @@ impl Measured {
         Some(self.frame.gpu_ms?.median - self.gbuffer_ms().unwrap_or(0.0))
     }
 
-    /// Returns the number of wrong pixels outside the band, where rounding cannot be the cause.
+    /// Returns the number of wrong pixels outside the band, where rounding cannot be the cause. Of a
+    /// method that remembers earlier frames it is the worst picture of its steady state; the mean,
+    /// by which reports rank, is in [`steady`](Self::steady).
     pub fn wrong_outside_band(&self) -> u64 {
         self.wrong.total.saturating_sub(self.wrong.in_band)
     }

@@ -233,7 +233,10 @@ impl<'a> Row<'a> {
                 };
                 let scale = anchors(one, other, by_wall);
                 for turn in 0..one_ms.len().min(other_ms.len()) {
-                    let scale = scale.as_ref().map_or(1.0, |scale| scale[turn]);
+                    let scale = scale.as_ref().map_or(Some(&1.0), |scale| scale.get(turn));
+                    let Some(scale) = scale else {
+                        return false;
+                    };
                     let add = [one_ms[turn], other_ms[turn] * scale];
                     for (sums, ms) in sums.iter_mut().zip(add) {
                         match sums.get_mut(turn) {
@@ -275,8 +278,8 @@ impl<'a> Row<'a> {
         })
     }
 
-    /// Returns the frame with the greatest [`error`](SequenceFrame::error) on all camera paths; `None`
-    /// without paths.
+    /// Returns the frame with the greatest [`error`](SequenceFrame::error) on all camera paths;
+    /// `None` without paths.
     pub fn worst_frame(&self) -> Option<&'a SequenceFrame> {
         let paths = self.runs.iter();
         let worst = paths.filter_map(|(_, of)| Some(of.sequence.as_ref()?.worst()?.1));

@@ -58,7 +58,18 @@ pub const NOT_THERE: &str = "n/a";
 
 impl<'a> Summary<'a> {
     /// The runs of one viewport and light.
-    fn new(results: &'a Results, runs: Vec<&'a Run>) -> Self {
+    /// Summarises runs of one viewport. Runs on views on which settings were chosen are left out:
+    /// no method is judged on the pictures that it was fitted to.
+    fn new(results: &'a Results, mut runs: Vec<&'a Run>) -> Self {
+        let newest = runs.iter().map(|run| run.session.as_str()).max();
+        let now = runs
+            .iter()
+            .filter(|run| Some(run.session.as_str()) == newest);
+        let tuned = now.filter_map(|run| run.tuned.as_ref());
+        let chosen_on: BTreeSet<&str> = tuned
+            .flat_map(|tuned| tuned.chosen_on.iter().map(String::as_str))
+            .collect();
+        runs.retain(|run| !chosen_on.contains(run.view.as_str()));
         let viewport = runs.first().map_or([0; 2], |run| run.viewport);
         Self {
             results,

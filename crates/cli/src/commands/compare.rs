@@ -73,7 +73,7 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let gpu = device::open(&gpu.request(), loaded)?;
     let session = Session::new(&gpu, &Terminal);
     interrupt::install()?;
-    let targets = Target::all(args);
+    let targets = Target::all(args)?;
     let mut comparisons = Vec::new();
     for (scene, target) in scenes.iter().zip(&targets) {
         let (scene, views) = views(args, scene, &methods, session)?;
@@ -105,7 +105,14 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         };
         check_folder(&target.folder)?;
         if args.tune {
-            tune(&mut comparison, session)?;
+            // Refused before the search, not behind it.
+            check_earlier(args, &comparison, baseline.as_ref(), target, &gpu)?;
+            tune(&mut comparison, session).map_err(|why| match why {
+                CompareError::Interrupted { .. } => CliError::Interrupted {
+                    kept: "no run was finished".into(),
+                },
+                why => why.into(),
+            })?;
         }
         comparison.check(session)?;
         check_earlier(args, &comparison, baseline.as_ref(), target, &gpu)?;
@@ -117,13 +124,18 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         let baseline = baseline.as_ref();
         measure(args, &comparison, baseline, target, session, &mut measured)
     });
-    if targets.len() > 1 {
-        overview(args, &targets, &measured.results)?;
-    }
-    outcome?;
+    let shown = if targets.len() > 1 {
+        overview(args, &targets, &measured.results)
+    } else {
+        Ok(())
+    };
     let Measured {
         failures, worse, ..
     } = measured;
+    if outcome.is_err() {
+        failures.iter().chain(&worse).for_each(|line| note(line));
+    }
+    outcome.and(shown)?;
     match (&failures[..], &worse[..]) {
         ([], []) => Ok(()),
         ([], worse) => Err(CliError::Baseline(worse.join("\n"))),
@@ -157,17 +169,25 @@ struct Target {
 
 impl Target {
     /// The folder of each scene.
-    fn all(args: &CompareArgs) -> Vec<Self> {
+    fn all(args: &CompareArgs) -> Result<Vec<Self>, CliError> {
         if args.scene.scenes.len() == 1 {
             let folder = args.out.clone();
-            return vec![Self { folder, name: None }];
+            return Ok(vec![Self { folder, name: None }]);
+        }
+        let single = args.out.join("results.json");
+        if single.exists() {
+            return Err(CliError::Input(format!(
+                "{} holds results of a single scene, which would hide those of several: name \
+                 another folder (--out), or delete it",
+                single.display()
+            )));
         }
         let names = scene_folders(&args.scene.scenes).into_iter();
         let target = |name: String| Self {
             folder: args.out.join(&name),
             name: Some(name),
         };
-        names.map(target).collect()
+        Ok(names.map(target).collect())
     }
 }
 

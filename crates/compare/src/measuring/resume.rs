@@ -84,6 +84,7 @@ pub fn earlier(
     }
     opened.others = others;
     let total = runs.len();
+    let is_tuned = planned.iter().any(|run| run.tuned.is_some());
     let take = |planned: &Run| {
         let is_same = |run: &Run| {
             planned.is_in_place_of(run)
@@ -91,10 +92,14 @@ pub fn earlier(
                 && (&planned.params, &planned.fingerprint) == (&run.params, &run.fingerprint)
         };
         let index = runs.iter().position(|run| resumes && is_same(run))?;
-        let cell = planned.cell.clone();
+        let mut kept = runs.swap_remove(index);
+        if let Some(measured) = kept.measured.as_mut().filter(|_| is_tuned) {
+            measured.hint = None;
+        }
         Some(Run {
-            cell, // an older version may have kept none
-            ..runs.swap_remove(index)
+            cell: planned.cell.clone(), // an older version may have kept none
+            tuned: planned.tuned.clone(),
+            ..kept
         })
     };
     let kept: Vec<Option<Run>> = planned.iter().map(take).collect();

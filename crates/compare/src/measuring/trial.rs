@@ -76,6 +76,11 @@ pub struct Trials<'a> {
 }
 
 impl<'a> Trials<'a> {
+    /// True if no pixel of the views can be judged.
+    pub fn is_blind(&self) -> bool {
+        self.facing_light == 0.0
+    }
+
     /// Prepares trials of a method on the views whose kind of light it takes.
     pub fn new(
         session: Session<'a>,

@@ -104,8 +104,8 @@ pub fn tune(comparison: &mut Comparison, session: Session) -> Result<(), Compare
         let trials = Trials::new(session, &method, &views, &mut provider, limits);
         let Some((params, found)) = best(session, &method, trials, most)? else {
             session.sink.note(&format!(
-                "{} is not tuned: it cannot run on the views that settings are chosen on, or \
-                 remembers earlier frames",
+                "{} is not tuned: it cannot run on the views that settings are chosen on, \
+                 remembers earlier frames, or no pixel faces a light that it takes",
                 method.name
             ));
             continue;
@@ -116,7 +116,14 @@ pub fn tune(comparison: &mut Comparison, session: Session) -> Result<(), Compare
         };
         if !found.set.is_empty() {
             let name = named(&own.name, &label(&method, &params));
-            all.push(Method::new(own.preset.clone(), params).named(&name));
+            let set = Method::new(own.preset.clone(), params).named(&name);
+            let is_set = |of: &Method| of.name == name && of.map_size == set.map_size;
+            if comparison.methods.iter().chain(&all).any(is_set) {
+                let text = format!("{} tuned is {name}, which is compared already", own.name);
+                session.sink.note(&text);
+                continue;
+            }
+            all.push(set);
         }
         tuned.push((all.len() - 1, found));
     }
@@ -297,6 +304,9 @@ fn best(
     mut trials: Trials,
     most: u64,
 ) -> Result<Option<(ParamValues, Tuned)>, CompareError> {
+    if trials.is_blind() {
+        return Ok(None);
+    }
     let axes = axes(method);
     let ways = axes.iter().map(|axis| Axis {
         values: axis.values.len(),

@@ -20,8 +20,8 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Budgets {
-    /// Most milliseconds of a frame in which every pass runs: the mean of the views' medians, of GPU
-    /// times. If any method of the comparison lacks GPU times, wall times of all are taken.
+    /// Most milliseconds of a frame in which every pass runs: the mean of the views' medians, of
+    /// GPU times. If any method of the comparison lacks GPU times, wall times of all are taken.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frame_ms: Option<f64>,
     /// Limit on wrong pixels outside the band (pixels whose answer rounding decides), in percent of

@@ -561,9 +561,9 @@ impl Measured {
         Some(self.frame.gpu_ms?.median - self.gbuffer_ms().unwrap_or(0.0))
     }
 
-    /// Returns the number of wrong pixels outside the band, where rounding cannot be the cause. Of a
-    /// method that remembers earlier frames it is the worst picture of its steady state; the mean,
-    /// by which reports rank, is in [`steady`](Self::steady).
+    /// Returns the number of wrong pixels outside the band, where rounding cannot be the cause. Of
+    /// a method that remembers earlier frames it is the worst picture of its steady state; the
+    /// mean, by which reports rank, is in [`steady`](Self::steady).
     pub fn wrong_outside_band(&self) -> u64 {
         self.wrong.total.saturating_sub(self.wrong.in_band)
     }

@@ -208,7 +208,8 @@ impl Baseline {
         }
         let is_now = |then: &Run| now.runs.iter().any(|run| run.cell == then.cell);
         let here = self.runs().filter(|(of, _)| of.scene == now.scene);
-        changes.only_then = here.filter(|(_, then)| !is_now(then)).count();
+        let gone = here.filter(|(_, then)| !then.cell.is_empty() && !is_now(then));
+        changes.only_then = gone.unique_by(|(_, then)| &then.cell).count();
         for (note, of) in notes.iter().counts().into_iter().sorted() {
             changes
                 .notes
@@ -233,7 +234,8 @@ impl Baseline {
             let is_same_adapter = then.is_on_adapter_of(now);
             let is_same_machine = machine.is_same(now.machine_of(run));
             let is_same_label = then.run.preset == run.preset;
-            (is_same_adapter, is_same_machine, is_same_label)
+            let when = (&then.run.session, &then.run.date);
+            (is_same_adapter, is_same_machine, is_same_label, when)
         })
     }
 

@@ -161,16 +161,7 @@ impl<'a> Series<'a> {
             for (place, run) in kept.into_iter().enumerate() {
                 match run {
                     Some(run) if run.measured.is_some() => series.done(place, run),
-                    Some(run) => {
-                        // Measured now, if it can be: hour, machine and commit are those of now.
-                        let planned = &series.planned[place];
-                        series.planned[place] = Run {
-                            session: planned.session.clone(),
-                            commit: planned.commit.clone(),
-                            machine: planned.machine.clone(),
-                            ..run
-                        };
-                    }
+                    Some(run) => series.planned[place] = run,
                     None => {}
                 }
             }

@@ -107,12 +107,7 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         if args.tune {
             // Refused before the search, not behind it.
             check_earlier(args, &comparison, baseline.as_ref(), target, &gpu)?;
-            tune(&mut comparison, session).map_err(|why| match why {
-                CompareError::Interrupted { .. } => CliError::Interrupted {
-                    kept: "no run was finished".into(),
-                },
-                why => why.into(),
-            })?;
+            tune(&mut comparison, session).map_err(search_ended)?;
         }
         comparison.check(session)?;
         check_earlier(args, &comparison, baseline.as_ref(), target, &gpu)?;
@@ -140,6 +135,16 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         ([], []) => Ok(()),
         ([], worse) => Err(CliError::Baseline(worse.join("\n"))),
         (failures, worse) => Err(CliError::Gate([failures, worse].concat().join("\n"))),
+    }
+}
+
+/// The error of a search for settings, before which nothing is measured.
+fn search_ended(why: CompareError) -> CliError {
+    match why {
+        CompareError::Interrupted { .. } => CliError::Interrupted {
+            kept: "no run was finished".into(),
+        },
+        why => why.into(),
     }
 }
 

@@ -127,20 +127,6 @@ impl<'a> Row<'a> {
         self.runs.iter().all(is_exact)
     }
 
-    /// Returns the wrong pixels of the worst picture in a steady state of several pictures, as a
-    /// part of the pixels that face the light. `None` for methods whose picture stays the same.
-    pub fn worst_of_cycle(&self) -> Option<Part> {
-        let pictures = |of: &Measured| cycle(of).map_or(1, |cycle| cycle.pictures);
-        let worst = self.runs.iter().filter(|(_, of)| pictures(of) > 1);
-        let part = |(run, of): &(&Run, &Measured)| Part {
-            count: of.wrong_outside_band(),
-            of: run.pixels.facing_light,
-        };
-        worst
-            .map(part)
-            .max_by(|one, other| (one.count * other.of.max(1)).cmp(&(other.count * one.of.max(1))))
-    }
-
     /// Returns the edge of the shadow map in texels; `None` if the method has none.
     pub fn map_size(&self) -> Option<u32> {
         self.runs.first().and_then(|(run, _)| run.map_size)

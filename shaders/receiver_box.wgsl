@@ -1,5 +1,5 @@
 // Stage to find the box, across light space, around the receivers that face the light, of each
-// layer of the map.
+// layer of the map; and how near to the eye and how far from it they lie.
 
 #import "shared/receiver.wgsl"
 #import "shared/map_layers.wgsl"
@@ -9,6 +9,8 @@
 // y, 1 - x and 1 - y in shares of the scene's edge. All 0 if there is no receiver.
 var<storage, read_write> receiver_box: array<atomic<u32>, 4>;
 var<storage, read_write> receiver_boxes: array<array<atomic<u32>, 4>>;
+// Likewise the least distance along the eye's direction, its bits inverted, and the greatest.
+var<storage, read_write> receiver_range: array<atomic<u32>, 2>;
 
 @compute @workgroup_size(8, 8)
 fn main(
@@ -39,6 +41,22 @@ fn of_layers(@builtin(global_invocation_id) thread: vec3<u32>) {
     for (var side = 0u; side < 4u; side++) {
         if atomicLoad(&receiver_boxes[layer][side]) < shares[side] {
             atomicMax(&receiver_boxes[layer][side], shares[side]);
+        }
+    }
+}
+
+@compute @workgroup_size(8, 8)
+fn range(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+    var most = vec2(0u);
+    for (var block = 0u; block < BLOCKS; block++) {
+        let receiver = receiver_of(pixel_of(group.xy, lane, block));
+        let distance = max(dot(camera.forward, relative_to_eye(receiver.xyz)), 0.0);
+        let bits = bitcast<u32>(distance);
+        most = max(most, select(vec2(0u), vec2(~bits, bits), faces_light(receiver)));
+    }
+    for (var end = 0u; end < 2u; end++) {
+        if atomicLoad(&receiver_range[end]) < most[end] {
+            atomicMax(&receiver_range[end], most[end]);
         }
     }
 }

@@ -57,9 +57,9 @@ fn lay_over_split(split: u32, begin: f32, end: f32) {
     let blend = select(1.0 - split_blend, 1.0, split == 0u);
     let first = split_plane(split, splits, begin, end) * blend;
     let last = split_plane(split + 1u, splits, begin, end);
-    // Along the sides of light space, as the paper crops the light's own frustum.
+    // As the paper crops the light's own frustum.
     let half = light.extent.xy;
-    let axes = Axes(vec2(half.x, 0.0), vec2(0.0, half.y));
+    let axes = along_scene();
     var around = around_frustum(axes, first, last);
     // Texels beside the scene are never asked.
     let cut = Rectangle(max(around.low, -half), min(around.high, half));
@@ -87,8 +87,37 @@ fn over_receivers(@builtin(global_invocation_id) thread: vec3<u32>) {
         return;
     }
     var fit = fit_over_box(box, f32(params.map_size), params.rounding);
+    if turned {
+        let other = receiver_boxes[split + arrayLength(&map_fits)];
+        fit = denser(
+            fit_over_turned_box(sides, along_scene()),
+            fit_over_turned_box(other, along_view()),
+        );
+    }
     fit.end = map_fits[split].fit.end;
     map_fits[split].fit = fit;
+}
+
+// The map with more texels on the same area.
+fn denser(a: MapFit, b: MapFit) -> MapFit {
+    let texels = abs(vec2(a.x.x * a.y.y - a.x.y * a.y.x, b.x.x * b.y.y - b.x.y * b.y.x));
+    if texels.x < texels.y {
+        return b;
+    }
+    return a;
+}
+
+// `sides`: of a box in `share_along` these axes.
+fn fit_over_turned_box(sides: array<u32, 4>, axes: Axes) -> MapFit {
+    let size = f32(params.map_size);
+    let box = bitcast<vec4<f32>>(vec4(sides[0], sides[1], sides[2], sides[3]));
+    let half = length(light.extent.xy);
+    let high = half * (2.0 * box.xy - 1.0);
+    let low = half * (1.0 - 2.0 * box.zw);
+    // A texel more on each side.
+    let margin = max(high - low, vec2(1e-6 * half)) / max(size - 2.0, 1.0);
+    let over = Rectangle(low - margin, high + margin);
+    return fit_over_rectangle(axes, over, size, params.rounding);
 }
 
 // Distance of a split plane from the eye: equations 15 to 17 of the dissertation.

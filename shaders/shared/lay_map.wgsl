@@ -127,6 +127,28 @@ fn upright() -> Axes {
     return Axes(u, v);
 }
 
+// Axes along the sides of light space.
+fn along_scene() -> Axes {
+    return Axes(vec2(light.extent.x, 0.0), vec2(0.0, light.extent.y));
+}
+
+// Whether boxes of receivers may lie along the way that the eye looks, where they are narrower.
+override turned: bool = false;
+
+fn along_view() -> Axes {
+    let way = (light.clip_from_relative * vec4(camera.forward, 0.0)).xy * light.extent.xy;
+    let size = length(way);
+    // Any axes where the eye looks along the light.
+    let along = select(vec2(1.0, 0.0), way / size, size > 1e-3);
+    return Axes(along * light.extent.xy, vec2(-along.y, along.x) * light.extent.xy);
+}
+
+// Where a place lies between the sides of a square around the scene along these axes.
+fn share_along(axes: Axes, clip: vec2<f32>) -> vec2<f32> {
+    let place = vec2(dot(axes.u, clip), dot(axes.v, clip));
+    return place / length(light.extent.xy) * 0.5 + 0.5;
+}
+
 // A rectangle in those units.
 struct Rectangle {
     low: vec2<f32>,

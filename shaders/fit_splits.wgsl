@@ -20,7 +20,7 @@ const SPLIT_UNIFORM: u32 = 0u;
 const SPLIT_LOGARITHMIC: u32 = 1u;
 
 var<uniform> params: Params;
-// Of receivers: bits of the least distance, inverted, and of the greatest.
+// Distances of receivers, as receiver_box.wgsl has them.
 var<storage, read> receiver_range: array<u32, 2>;
 // Box of each split, four words as receiver_box.wgsl has them.
 var<storage, read> receiver_boxes: array<array<u32, 4>>;
@@ -31,7 +31,7 @@ fn over_splits(@builtin(global_invocation_id) thread: vec3<u32>) {
     lay_over_split(thread.x, camera.near, fit_end(params.fit_distance));
 }
 
-// Of the distances at which there are receivers.
+// Splits of the distances at which there are receivers.
 @compute @workgroup_size(8)
 fn over_receiver_splits(@builtin(global_invocation_id) thread: vec3<u32>) {
     var range = bitcast<vec2<f32>>(vec2(~receiver_range[0], receiver_range[1]));

@@ -20,7 +20,7 @@ fn bias_at(
 
 // The longer edge, in units of the scene.
 fn texel_edge_at(fit: MapFit, receiver: vec3<f32>, place: vec3<f32>) -> f32 {
-    // What the map's x and y grow by per unit of clip x and y.
+    // Growth of the map's x and y per unit of clip x and y.
     var x = fit.x.xy;
     var y = fit.y.xy;
     if map_is_projective {

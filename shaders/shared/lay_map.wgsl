@@ -9,7 +9,7 @@
 // For layers that everybody may ask.
 const ANY_DISTANCE: f32 = 3e38;
 
-// Whether texels stay where they are in light space while the eye moves.
+// True if texels stay where they are in light space while the eye moves.
 override stable: bool = false;
 // Lengths that change with what is seen go in steps then, as powers of two: texels keep their size
 // for a while, and are at most a fifth larger than need be.
@@ -49,8 +49,8 @@ fn fit_over_box(bits: vec4<u32>, size: f32, rounding: f32) -> MapFit {
     return fit_over_shares(low, share, size, rounding);
 }
 
-// From `low` on, in shares of the scene's edges. Its texels are some of a grid over the scene: where
-// their size stays, texels do.
+// From `low` on, in shares of the scene's edges. Its texels are some of a grid over the scene:
+// where their size stays, texels do.
 fn fit_over_shares(
     low: vec2<f32>,
     share: vec2<f32>,
@@ -93,8 +93,8 @@ fn frustum_corner(corner: u32, begin: f32, end: f32) -> vec3<f32> {
 // Over the ball around a slab of the eye's frustum, so of one size whichever way the eye looks; cut
 // to the scene. Valient, "Stable Rendering of Cascaded Shadow Maps", ShaderX6, 2008.
 fn fit_over_ball(begin: f32, end: f32, size: f32, rounding: f32) -> MapFit {
-    // Of both ends' corners or of the far end's alone, if that is wide. `spread`: how far a corner
-    // is from the axis at distance 1.
+    // The ball touches both ends' corners, or those of the far end alone if that is wide. `spread`:
+    // how far a corner is from the axis at distance 1.
     let spread = length(vec2(camera.half_width, camera.half_height));
     let along = min(0.5 * (begin + end) * (1.0 + spread * spread), end);
     let radius = length(vec2(end - along, spread * end));
@@ -132,7 +132,7 @@ fn along_scene() -> Axes {
     return Axes(vec2(light.extent.x, 0.0), vec2(0.0, light.extent.y));
 }
 
-// Whether boxes of receivers may lie along the way that the eye looks, where they are narrower.
+// True if boxes of receivers may lie along the way that the eye looks, where they are narrower.
 override turned: bool = false;
 
 fn along_view() -> Axes {

@@ -32,7 +32,7 @@ var<uniform> map_fit: MapFit;
 // Nothing divides unless the graph says so.
 override map_is_projective: bool = false;
 
-// Of splits, before which share of the way to its end some receivers go over to the next one.
+// Share of the way to a split's end before which some receivers go over to the next one.
 override split_blend: f32 = 0.0;
 
 // x and y in texels; z is the map's depth, which grows away from the light.

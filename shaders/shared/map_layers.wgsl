@@ -28,8 +28,8 @@ fn layer_of(receiver: vec3<f32>) -> u32 {
 }
 
 // How far from the eye a receiver asks this layer: to the end of its split, or by chance less far.
-// Cells of light space, about a pixel wide there, have one chance each: while the eye moves, nothing
-// flickers that lies in one.
+// Cells of light space, about a pixel wide there, have one chance each: while the eye moves,
+// nothing flickers that lies in one.
 fn end_of(layer: u32, receiver: vec3<f32>) -> f32 {
     let end = map_fits[layer].fit.end;
     if split_blend == 0.0 {

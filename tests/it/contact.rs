@@ -1,7 +1,10 @@
 //! Contact shadows: rays through what the eye sees find casters that the map of another method
 //! misses, beside what they stand on.
 
-use crate::support::graphs::{open, provider, run_on, shares, values};
+use crate::support::{
+    graphs::{open, provider, run_on, shares, values},
+    meshes::foliage,
+};
 use skiagraph_gpu::FrameReport;
 use skiagraph_graph::{Graph, ParamValue, PlanRequest};
 use skiagraph_passes::{EmbeddedSources, registry};
@@ -41,8 +44,8 @@ fn report(scene: &Arc<Scene>, method: &str, params: Params, output: &str) -> Fra
 }
 
 impl Case {
-    fn new(name: &str) -> Self {
-        let scene = Arc::new(skiagraph_cases::case(name).unwrap().scene());
+    fn new(scene: Scene) -> Self {
+        let scene = Arc::new(scene);
         let primitives = report(&scene, "shared/gbuffer", &[], "primitive");
         let primitives = values(&primitives, "primitive");
         let camera = scene.views[0].camera(VIEWPORT);
@@ -77,6 +80,10 @@ impl Case {
     }
 }
 
+fn hard(name: &str) -> Scene {
+    skiagraph_cases::case(name).unwrap().scene()
+}
+
 fn float(name: &str, value: f32) -> (&str, ParamValue) {
     (name, ParamValue::F32(value))
 }
@@ -96,7 +103,7 @@ fn coarse() -> [(&'static str, ParamValue); 3] {
 #[test]
 fn they_close_the_gap_that_a_bias_leaves() {
     for name in ["box_on_floor", "contact"] {
-        let case = Case::new(name);
+        let case = Case::new(hard(name));
         let [leaks, dark] = case.wrong("nsm", &coarse());
         let [closed, still_dark] = case.wrong("contact", &coarse());
         assert!(
@@ -111,7 +118,7 @@ fn they_close_the_gap_that_a_bias_leaves() {
 /// light reaches behind them, the more the thicker. As thin as they are, rays pass between steps.
 #[test]
 fn a_thickness_beyond_the_casters_is_a_false_shadow() {
-    let case = Case::new("near_and_far");
+    let case = Case::new(hard("near_and_far"));
     let reach = float("reach", 0.3);
     let dark = |thickness| {
         let params = [reach.clone(), float("thickness", thickness)];
@@ -125,11 +132,24 @@ fn a_thickness_beyond_the_casters_is_a_false_shadow() {
     );
 }
 
-/// Over each method a pixel is as it was, or dark; over a right one nothing changes.
+/// Over each method a pixel is as it was, or dark; over a right one nothing changes, nor behind the
+/// holes of leaves.
 #[test]
 fn they_stand_over_any_method() {
-    let case = Case::new("box_on_floor");
-    for method in ["pcf", "vsm", "pssm", "rt", "light_buffer"] {
+    let leaves = Scene {
+        mesh: foliage(6, 1.2, 4.0, 5),
+        ..hard("near_and_far")
+    };
+    let box_on_floor = Case::new(hard("box_on_floor"));
+    let leaves = Case::new(leaves);
+    for (case, method) in [
+        (&box_on_floor, "pcf"),
+        (&box_on_floor, "vsm"),
+        (&box_on_floor, "pssm"),
+        (&box_on_floor, "light_buffer"),
+        (&leaves, "nsm"),
+        (&leaves, "rt"),
+    ] {
         let below = case.visibility(method, &[]);
         let above = case.visibility(&format!("contact@over={method}"), &[]);
         let is_exact = ["rt", "light_buffer"].contains(&method);

@@ -139,14 +139,14 @@ fn what_follows_the_eye_shimmers_and_stable_maps_do_less() {
         (crawls, stands)
     };
     let (pssm, stable) = shimmer("pssm");
-    assert!(pssm > 100 && 3 * stable < 2 * pssm, "{pssm}, {stable}");
+    assert!(pssm > 800 && 10 * stable < 6 * pssm, "{pssm}, {stable}");
     let (sdsm, stable) = shimmer("sdsm");
-    assert!(sdsm > 30 && stable < sdsm, "{sdsm}, {stable}");
+    assert!(sdsm > 300 && 10 * stable < 8 * sdsm, "{sdsm}, {stable}");
 }
 
-/// Artefact: errors jump at each plane between two splits. Where splits blend they do not.
+/// Artefact: errors jump at each plane between two splits, less where these blend.
 #[test]
-fn where_splits_blend_no_jump_is_left() {
+fn where_splits_blend_errors_jump_less() {
     let scene = avenue("along");
     let viewport = [512, 320];
     let mut bench = Bench::new(&scene, viewport);
@@ -166,7 +166,7 @@ fn where_splits_blend_no_jump_is_left() {
         behind / before
     };
     let [cut, blended] = [0.0, 0.4].map(&mut jump);
-    assert!(cut > 1.5 && blended < 1.25, "{cut} {blended}");
+    assert!(cut > 2.0 && blended < 0.7 * cut, "{cut} {blended}");
 }
 
 /// Purpose of samples: maps over what is seen have smaller texels than maps over what could be.

@@ -88,48 +88,35 @@ fn float(name: &str, value: f32) -> (&str, ParamValue) {
     (name, ParamValue::F32(value))
 }
 
-/// A coarse map whose bias keeps lit surfaces from shading themselves.
-fn coarse() -> [(&'static str, ParamValue); 3] {
-    let cull = ("cull", ParamValue::Choice("none".into()));
-    [
-        ("map_size", ParamValue::U32(128)),
-        cull,
-        float("slope_bias", 2.0),
-    ]
-}
-
 /// Purpose: a bias lifts shadows off what casts them, and the rays put them back. The seen
 /// triangles themselves stop rays, so no pixel is darkened that should not be.
 #[test]
 fn they_close_the_gap_that_a_bias_leaves() {
+    let params = [("map_size", ParamValue::U32(128)), float("slope_bias", 2.0)];
     for name in ["box_on_floor", "contact"] {
         let case = Case::new(hard(name));
-        let [leaks, dark] = case.wrong("nsm", &coarse());
-        let [closed, still_dark] = case.wrong("contact", &coarse());
+        let [leaks, dark] = case.wrong("nsm", &params);
+        let [closed, still_dark] = case.wrong("contact", &params);
         assert!(
-            leaks > 20 && 2 * closed < leaks,
+            leaks > 150 && 3 * closed < leaks,
             "{name}: {leaks}, {closed}"
         );
         assert_eq!(still_dark, dark, "{name}");
     }
 }
 
-/// All that is seen is taken for as thick as `thickness`: plates that are thinner shade what the
-/// light reaches behind them, the more the thicker. As thin as they are, rays pass between steps.
+/// Artefact: all that is seen is taken for as thick as `thickness`, and what is thinner shades what
+/// the light reaches behind it, the more of it the thicker.
 #[test]
 fn a_thickness_beyond_the_casters_is_a_false_shadow() {
-    let case = Case::new(hard("near_and_far"));
-    let reach = float("reach", 0.3);
+    let case = Case::new(hard("box_on_floor"));
     let dark = |thickness| {
-        let params = [reach.clone(), float("thickness", thickness)];
+        let params = [float("reach", 0.3), float("thickness", thickness)];
         case.wrong("contact", &params)[1]
     };
-    let [none, thin, thick] = [0.0, 0.02, 0.2].map(dark);
+    let [none, thin, thick] = [0.0, 0.01, 0.2].map(dark);
     assert_eq!(none, case.wrong("nsm", &[])[1]);
-    assert!(
-        thick > none + 100 && thin < thick,
-        "{none}, {thin}, {thick}"
-    );
+    assert!(thick > 20 * thin && thin > none, "{none}, {thin}, {thick}");
 }
 
 /// Over each method a pixel is as it was, or dark; over a right one nothing changes, nor behind the

@@ -18,7 +18,8 @@ pub struct Hint {
     pub explained: u64,
     /// Number of all wrong pixels outside the band.
     pub wrong: u64,
-    /// The method with the setting to try: `nsm@cull=none,slope_bias=1`.
+    /// The method with the setting to try and what `--set` gave to it, as an argument of `compare`:
+    /// `nsm@cull=none,slope_bias=1`.
     pub set: String,
     /// Number of wrong pixels outside the band with that setting.
     pub wrong_then: u64,

@@ -31,7 +31,8 @@ pub(crate) struct Kind {
 type Described = fn(&mut schemars::SchemaGenerator) -> schemars::Schema;
 
 /// The pass kinds that documents may use, each with its tag: the word before the fields of a pass,
-/// `Raster` in `Raster(name: …)`.
+/// `Raster` in `Raster(name: …)`. The default has no kinds; [`standard`](Self::standard) has the
+/// usual ones.
 #[derive(Default)]
 pub struct Registry {
     kinds: Vec<Kind>,
@@ -53,8 +54,8 @@ impl Registry {
     }
 
     /// Adds the pass kind `K`, which documents write as `tag(…)`. Replaces a kind that already has
-    /// this tag. The language's own entries (`Include`, `Group`, `Change`, `Remove`) cannot be
-    /// replaced.
+    /// this tag. A tag of the language's own entries (`Include`, `Group`, `Change`, `Remove`) has
+    /// no effect.
     pub fn register<K: PassKind + DeserializeOwned + 'static>(&mut self, tag: &'static str) {
         self.kinds.retain(|kind| kind.name != tag);
         let parse: Parse =

@@ -9,16 +9,18 @@ use crate::{
 };
 use std::{collections::BTreeSet, ops::Range};
 
-/// Mips, layers or items of a texture or buffer that an output or capture holds, and their numbers
-/// in the whole texture or buffer.
+/// Mips, layers or items that an output or capture holds of a texture or buffer, as ranges whose
+/// ends are excluded, and their numbers in the whole texture or buffer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PartSummary {
-    /// Range of mip levels, counted from 0; `0..1` for a buffer.
+    /// Range of mip levels that are held, counted from 0; `0..1` for a buffer.
     pub mips: Range<u32>,
-    /// Range of array layers, of slices of a 3D texture, or of items of a buffer, counted from 0.
+    /// Range of array layers, of slices of a 3D texture, or of items of a buffer that are held,
+    /// counted from 0. It ends at `u32::MAX` for a whole buffer whose document gives no `count`.
     pub layers: Range<u32>,
-    /// Number of mips of the whole texture or buffer, then its number of layers, slices or items.
-    /// The second number is `u32::MAX` for a buffer whose document gives no `count`.
+    /// Number of mips of the whole texture or buffer (1 for a buffer), then its number of layers,
+    /// slices or items. The second number is `u32::MAX` for a buffer whose document gives no
+    /// `count`.
     pub of: [u32; 2],
 }
 

@@ -61,10 +61,10 @@ pub(super) struct Planned {
     pub depends_on: BTreeSet<String>,
 }
 
-/// Name of a pass that a plan does not run, with the reason.
+/// A pass that a plan does not run because nothing needs its results, with the reason.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CulledPass {
-    /// Full name of the pass.
+    /// Full name of the pass, as in [`LinkedPass::name`].
     pub name: String,
     /// Reason for which the pass does not run, as a clause for messages: "it writes nothing".
     pub reason: String,

@@ -17,15 +17,16 @@ use crate::{
 };
 use std::{collections::BTreeSet, ops::Range};
 
-/// Frames in which a pass runs, as its document gives them in `run: …`.
+/// Frames in which a pass runs, as its document gives them in the pass's field `run`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Run {
-    /// In every frame.
+    /// In every frame, which is the default.
     Always,
-    /// In the first frame that the executor runs after planning.
+    /// In the first frame, and again when the content that the pass wrote is lost, for example by a
+    /// change of the viewport.
     Once,
-    /// In the first frame, and in frames where content that the pass reads, params included, has
-    /// changed since the pass last ran.
+    /// In the first frame, in frames where content that the pass reads, params included, has
+    /// changed since the pass last ran, and when the content that the pass wrote is lost.
     OnChange,
     /// In every frame if an expression over params is true in the plan, in no frame otherwise.
     /// Holds the text of the expression; equal texts are equal conditions.

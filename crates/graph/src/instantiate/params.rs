@@ -17,19 +17,19 @@ use crate::{
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Entry of a document's section `claims`: a property that the document's author promises of the
-/// outputs, under a condition. This crate does not know its meaning; a host, such as a test, checks
-/// the property.
+/// graph's outputs, under a condition. This crate does not know the meaning of the property; a
+/// host, such as a test, checks it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Claim {
-    /// Name of the property, as the document writes it.
+    /// Name of the property, as the document writes it, such as `exact`.
     pub name: String,
-    /// Text of the condition under which the document promises the property; empty without a
-    /// condition.
+    /// Text of the expression under which the document promises the property; empty if the promise
+    /// has no condition.
     pub condition: String,
-    /// Reason that the document gives; may be empty.
+    /// Reason that the document gives for the promise; may be empty.
     pub because: String,
-    /// True if the condition is true for the params given to
-    /// [`Graph::claims`](crate::Graph::claims), or the entry has no condition.
+    /// True if the document promises the property for the params given to
+    /// [`Graph::claims`](crate::Graph::claims): the condition is true, or there is none.
     pub holds: bool,
 }
 

@@ -28,8 +28,9 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 
-/// A parsed and validated WGSL shader with its imports in place. Each of its resource globals has a
-/// binding number. Two shaders are equal if their expanded texts are.
+/// A parsed and validated WGSL shader with its imports in place. Each of its resource globals
+/// (buffers, textures, samplers) has a binding number. Two shaders are equal if their texts with
+/// imports in place are.
 #[derive(Debug)]
 pub struct Shader {
     pub(crate) source: Expanded,
@@ -191,12 +192,14 @@ impl Shader {
         &self.module
     }
 
-    /// Returns the path of the shader's file, not of the modules that it imports.
+    /// Returns the path in the store ([`Sources`](crate::Sources)) of the shader's own file, not of
+    /// the modules that it imports.
     pub fn file(&self) -> &str {
         &self.source.file.name
     }
 
-    /// Returns the name of the entry point with the index `entry` in `module().entry_points`.
+    /// Returns the name of the entry point with the index `entry` in the list `entry_points` of
+    /// [`module`](Self::module).
     ///
     /// # Panics
     /// If there is no such entry point.

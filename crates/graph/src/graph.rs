@@ -136,7 +136,7 @@ impl Graph {
         }
     }
 
-    /// Returns the path that the document was loaded from.
+    /// Returns the path of the document, as it was given to [`Graph::load`].
     pub fn path(&self) -> &str {
         self.0.path()
     }
@@ -206,13 +206,14 @@ impl Graph {
     }
 
     /// Returns the warnings that loading the document gave, such as those about unused materials;
-    /// empty without warnings.
+    /// empty without warnings. [`Plan::warnings`] has those of planning.
     pub fn warnings(&self) -> &[Diagnostic] {
         &self.0.warnings
     }
 
     /// Reads the value of the param `name` from text as the command line writes it: `1024`, `0.5`,
-    /// `true`, `front`, `1,2,3`.
+    /// `true`, the word `front`, the vector `1,2,3`. The graph does not change; pass the value in
+    /// [`PlanRequest::params`](crate::Request::params).
     ///
     /// # Errors
     /// If the graph has no param of this name, or the value has the wrong type or is out of range.

@@ -156,7 +156,7 @@ impl fmt::Display for ParamValue {
 pub struct Param {
     /// Name, as in `params.NAME` of a shader and `--set NAME=…` on the command line, with its place
     /// in the document. A param that a named include exposes has the include's name before it:
-    /// `left.radius`.
+    /// `left.radius`, `params.left_radius` in a shader.
     pub name: Located<String>,
     /// Type of the param's values; for a `Choice` with its words.
     pub ty: ParamType,

@@ -43,9 +43,9 @@ pub struct Request<P> {
     pub limits: wgt::Limits,
     /// Features of the device that will run the graph.
     pub features: wgt::Features,
-    /// The backend of the device, if it lacks part of WebGPU; `None` for any other. A graph that
-    /// does not list this backend in `proven_on` is refused. The executor, which runs the plan on a
-    /// device, refuses it too, so `None` only delays the error.
+    /// The backend of the device, if it lacks part of WebGPU; `None` for any other. Planning
+    /// returns an error if the document does not list this backend in `proven_on`. The executor,
+    /// which runs the plan on a device, refuses such a plan too, so `None` only delays the error.
     pub partial_backend: Option<PartialBackend>,
     /// Most bytes that the graph's own textures and buffers may take together. A graph that takes
     /// more is refused before anything is allocated: planning returns an error with a table of the

@@ -129,9 +129,9 @@ impl<'a> Lowering<'a> {
 
     /// Announces a shader that the pass runs only for other values of its expressions, so that the
     /// shader is loaded with the document. `shader` is the name of a WGSL file that comes with the
-    /// pass kind, without folder and ending. Each pair in `imports` is a module that an `#import`
-    /// names and the module that is imported instead. `features` are device features that the pass
-    /// uses if the device has them.
+    /// pass kind, without folder and ending. Each pair in `imports` is the path that an `#import`
+    /// names and the path of the module that is imported instead. `features` are device features
+    /// that the pass uses if the device has them.
     pub fn alternative(&mut self, shader: &str, imports: &[(&str, &str)], features: wgt::Features) {
         let imports = imports.iter();
         self.alternatives.push(ShaderUse {

@@ -179,8 +179,8 @@ pub struct Program {
     /// an error if there are several, or none for a dispatch.
     pub compute: Option<Located<String>>,
     /// Values of pipeline-overridable constants by name. A constant that is not listed gets the
-    /// value that the pass's entry sets for it, or else the value of the param or named expression
-    /// of the same name.
+    /// value that the pass's entry sets for it (`set`), or else the value of the param or named
+    /// expression of the same name, or else the shader's default.
     pub constants: Vec<(String, f64)>,
     /// Names of shader globals, each with the resource that is bound to it. A global that is not
     /// listed is bound to the resource of the same name, in which dots are underscores.

@@ -63,18 +63,19 @@ impl Eq for Shader {}
 pub(crate) struct Global {
     pub handle: Handle<naga::GlobalVariable>,
     pub name: String,
-    /// Place of the declaration.
+    /// Place of the global's name in the file that declares it.
     pub span: Span,
     pub group: u32,
     pub binding: u32,
-    /// Type of the global.
+    /// Type of the global: uniform, storage buffer, texture, sampler or acceleration structure,
+    /// with its layout.
     pub class: Class,
     /// True if one of the entry points reads the global.
     pub reads: bool,
     /// True if one of the entry points writes the global.
     pub writes: bool,
-    /// Layout of the global's items; `None` if they have members other than 32-bit numbers, or more
-    /// than 64.
+    /// Layout of the global's items; `None` if an item has scalars other than 32-bit numbers, or
+    /// more than 64.
     pub item: Option<Item>,
     /// Stages of the entry points that use the global.
     pub stages: wgt::ShaderStages,

@@ -294,7 +294,7 @@ pub struct ColorTarget<S: Stage> {
 /// A depth attachment of a [`Draw`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct DepthTarget<S: Stage> {
-    /// Texture that is drawn to: one mip of one layer.
+    /// Texture that is drawn to: one mip of one layer or slice.
     pub target: S::Attachment,
     /// Depth, from 0 to 1, that the target is cleared to before the draw; `None` keeps the target's
     /// content.
@@ -311,12 +311,13 @@ pub struct DepthTarget<S: Stage> {
 /// A stencil attachment of a [`Draw`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct StencilTarget<S: Stage> {
-    /// Texture that is drawn to: one mip of one layer.
+    /// Texture that is drawn to: one mip of one layer or slice.
     pub target: S::Attachment,
     /// Stencil value that the target is cleared to before the draw; `None` keeps the target's
     /// content.
     pub clear: Option<u32>,
-    /// Stencil tests and operations of front and back faces.
+    /// Stencil tests and operations of front and back faces, with the bits that are read and
+    /// written.
     pub state: wgt::StencilState,
     /// Value that the stencil tests compare with, and that the operation `Replace` writes.
     pub reference: u32,
@@ -327,7 +328,7 @@ pub struct StencilTarget<S: Stage> {
 pub struct Dispatch<S: Stage> {
     /// Shader with the compute entry point.
     pub program: S::Program,
-    /// Numbers of workgroups.
+    /// Numbers of workgroups in x, y and z, as numbers or in a buffer.
     pub groups: Groups<S>,
 }
 

@@ -227,7 +227,7 @@ pub(crate) enum Leaf<'a> {
 }
 
 impl<'a> Leaf<'a> {
-    /// Returns the leaf's name if it may name a param or a value; `None` for other leaves.
+    /// Returns the leaf's name if it may name a param or a named value; `None` for other leaves.
     pub fn named(&self) -> Option<&'a str> {
         match self {
             Self::Param(name) => Some(name),

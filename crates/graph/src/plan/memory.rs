@@ -27,8 +27,9 @@ pub struct MemoryEntry {
     pub mips: u32,
     /// Number of array layers of a texture, or of slices of mip 0 of a 3D texture; 1 for a buffer.
     pub layers: u32,
-    /// Size in bytes of all texels or items, without padding that a driver adds. Doubled if a pass
-    /// also reads the resource as it was in the frame before (`.previous`).
+    /// Size in bytes of all texels or items, without padding that a driver adds; the whole size
+    /// also if the memory is shared. Doubled if a pass also reads the resource as it was in the
+    /// frame before (`.previous`).
     pub bytes: u64,
     /// Full names of the other materials that use the same memory at other times of the frame, in
     /// the order of their first use; empty if the memory is not shared.
@@ -180,7 +181,8 @@ impl Memory<'_> {
         [text::cut(&names, 40), size + &versions, format]
     }
 
-    /// Returns the error for a plan that takes more memory than `limit`.
+    /// Returns the error for a plan whose textures and buffers take more than `limit` bytes
+    /// together; `None` if they do not, or without a limit. The error is reported at `place`.
     pub fn check(&self, limit: Option<u64>, place: Span) -> Option<OutputError> {
         let takes = self.bytes();
         let limit = limit.filter(|limit| takes > *limit)?;

@@ -49,14 +49,15 @@ impl Provided {
 /// Ways in which shaders may bind a provided resource ([`Provided`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProvidedBinding {
-    /// As `var<uniform>`, the whole buffer.
+    /// The whole buffer, as `var<uniform>`.
     Uniform,
-    /// As `var<storage, read>`.
+    /// The whole array or some of its items, as `var<storage, read>`.
     Storage,
-    /// As `var<storage, read>` for a whole array, or as `var<uniform>` for one of its items, such
-    /// as `lights[2]`.
+    /// The whole array or some of its items, as `var<storage, read>`, or one of its items, such as
+    /// `lights[2]`, as `var<uniform>`.
     Both,
-    /// As `acceleration_structure`, for ray queries. The resource is not a buffer.
+    /// The acceleration structure, as `acceleration_structure`, for ray queries. The resource is
+    /// not a buffer.
     AccelerationStructure,
 }
 
@@ -80,9 +81,9 @@ impl ProvidedBinding {
 pub enum Import {
     /// A texture, which the host has created.
     Texture {
-        /// Format of the texels.
+        /// Format of the texture's texels.
         format: wgt::TextureFormat,
-        /// Width and height of mip 0 in texels.
+        /// Width and height of the texture's mip 0 in texels.
         size: [u32; 2],
         /// Number of mip levels, at least 1.
         mips: u32,

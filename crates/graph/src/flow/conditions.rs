@@ -15,7 +15,8 @@ use std::collections::{BTreeMap, BTreeSet};
 /// with the condition of [`Run::When`] evaluated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum When {
-    /// In every frame; also if the condition of its [`Run::When`] is true in this plan.
+    /// In every frame: the pass has [`Run::Always`], or the condition of its [`Run::When`] is true
+    /// in this plan.
     Always,
     /// In no frame: the condition of its [`Run::When`] is false in this plan.
     Never,

@@ -29,7 +29,7 @@ pub enum Run {
     /// changed since the pass last ran, and when the content that the pass wrote is lost.
     OnChange,
     /// In every frame if an expression over params is true in the plan, in no frame otherwise.
-    /// Holds the text of the expression; equal texts are equal conditions.
+    /// Holds the text of the expression; passes with equal texts run in the same frames.
     /// [`LinkedPass::enabled`](crate::LinkedPass::enabled) holds its value.
     When(String),
 }

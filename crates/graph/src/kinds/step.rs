@@ -110,11 +110,14 @@ impl From<Scratch> for Operand {
 /// Number of threads or workgroups of a [`Dispatch`].
 #[derive(Clone, Debug, PartialEq)]
 pub enum Threads {
-    /// This many threads in one dimension, rounded up to whole workgroups. If the device does not
-    /// allow so many workgroups in x, they are spread over x and y. The index of a thread is then
-    /// `(workgroup.y * num_workgroups.x + workgroup.x) * workgroup_size + local index`.
+    /// This many threads in one dimension, rounded up to whole workgroups: threads beyond the
+    /// number must return. If the device does not allow so many workgroups in x, they are spread
+    /// over x and y. The index of a thread is then `(workgroup_id.y * num_workgroups.x +
+    /// workgroup_id.x) * n + local_invocation_index`, where n is the number of threads in a
+    /// workgroup.
     Items(u64),
-    /// This many threads in x, y and z, rounded up to whole workgroups in each direction.
+    /// This many threads in x, y and z, rounded up to whole workgroups in each direction: threads
+    /// beyond the numbers must return.
     Texels([u64; 3]),
     /// This many workgroups in x, y and z.
     Groups([u32; 3]),
@@ -140,8 +143,9 @@ pub enum Step<S: Stage> {
     Clear {
         /// Texture, buffer, or part of one, that is cleared.
         target: S::Operand,
-        /// Red, green, blue and alpha of a colour texture; depth, then stencil, of a depth or
-        /// stencil texture. All zero for a buffer, which can be cleared to nothing else.
+        /// Red, green, blue and alpha of a colour texture, whole numbers for an integer format; for
+        /// a depth or stencil texture the depth in the first number, the stencil in the second. All
+        /// zero for a buffer, which can be cleared to nothing else.
         value: [f64; 4],
     },
 }
@@ -240,7 +244,7 @@ pub struct Draw<S: Stage> {
 pub enum DrawCall<S: Stage> {
     /// Numbers that are known when the graph is planned.
     Direct {
-        /// Number of vertices.
+        /// Number of vertices of each instance.
         vertices: u32,
         /// Number of instances.
         instances: u32,

@@ -183,7 +183,7 @@ pub struct LinkedBinding {
 pub enum BindTarget {
     /// A buffer, or a range of its items, bound as a uniform or storage buffer.
     Buffer(Target),
-    /// A texture or a part of one.
+    /// A texture or a part of one, bound as a sampled or storage texture.
     Texture {
         /// The texture, with the mips and layers that are bound.
         target: Target,
@@ -194,7 +194,8 @@ pub enum BindTarget {
     Sampler(ResourceId),
     /// The acceleration structure with this id.
     AccelerationStructure(ResourceId),
-    /// The `params` uniform, a buffer that the executor makes and fills with these bytes.
+    /// The `params` uniform: a buffer that the executor, which runs the plan on a device, makes and
+    /// fills with these bytes.
     Params(Block),
 }
 

@@ -141,7 +141,7 @@ impl Graph {
         self.0.path()
     }
 
-    /// Returns the `description` of the document; empty if it has none.
+    /// Returns the section `description` of the document, on one line; empty if it has none.
     pub fn description(&self) -> &str {
         &self.0.document.description
     }
@@ -152,8 +152,9 @@ impl Graph {
         &self.0.document.params
     }
 
-    /// Returns the names of all outputs that are textures or buffers, in the order of the document.
-    /// Outputs marked `on_request`, and outputs whose `if` may be false, are in the list, too.
+    /// Returns the names of all outputs that are textures or buffers, in the order of the document;
+    /// outputs that are named values are left out. Outputs marked `on_request`, and outputs whose
+    /// `if` may be false, are in the list, too.
     pub fn outputs(&self) -> Vec<&str> {
         let outputs = self.0.document.material_outputs();
         outputs.map(|output| output.name.as_str()).collect()

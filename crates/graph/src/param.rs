@@ -177,8 +177,8 @@ pub struct Param {
     /// document excludes them: each word with the reason that the document gives. Empty if no word
     /// is excluded, and for other types.
     pub refused: BTreeMap<String, String>,
-    /// Values that the search of `skiagraph compare --tune` for good settings tries, all different;
-    /// empty if the search leaves the param alone.
+    /// Values that the search of `skiagraph compare --tune` for good settings tries, at least two
+    /// and all different; empty if the search leaves the param alone.
     pub tune: Vec<ParamValue>,
 }
 

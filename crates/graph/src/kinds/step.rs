@@ -173,9 +173,9 @@ pub struct Program {
     /// Name of the vertex entry point. `None` takes the only one in the shader; planning reports an
     /// error if there are several, or none where a draw needs it.
     pub vertex: Option<Located<String>>,
-    /// Name of the fragment entry point. `None` takes the only one in the shader, or for a draw
-    /// without colour attachments the only one without colour outputs; planning reports an error if
-    /// there are several.
+    /// Name of the fragment entry point. `None` takes the only one in the shader; planning reports
+    /// an error if there are several. A draw without colour attachments takes the only one without
+    /// colour outputs, if there is one.
     pub fragment: Option<Located<String>>,
     /// True for a draw without a fragment stage, even if the shader has fragment entry points.
     pub no_fragment: bool,
@@ -317,8 +317,8 @@ pub struct DepthTarget<S: Stage> {
 pub struct StencilTarget<S: Stage> {
     /// Texture that is drawn to: one mip of one layer or slice.
     pub target: S::Attachment,
-    /// Stencil value that the target is cleared to before the draw; `None` keeps the target's
-    /// content.
+    /// Stencil value, from 0 to 255, that the target is cleared to before the draw; `None` keeps
+    /// the target's content.
     pub clear: Option<u32>,
     /// Stencil tests and operations of front and back faces, with the bits that are read and
     /// written.

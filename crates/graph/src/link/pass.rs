@@ -76,7 +76,8 @@ pub struct Access {
     pub reads: bool,
     /// True if the step writes the part.
     pub writes: bool,
-    /// True if the step certainly overwrites every texel or byte of the part.
+    /// True if the step certainly overwrites every texel or byte of the part: as a clear, a copy or
+    /// a cleared attachment does, or because the document promises it (`overwrites`).
     pub fully_overwrites: bool,
     /// True if a change of the resource's content, of which the step uses something, is a reason
     /// for a pass with [`Run::OnChange`] to run. False only for the uniform `frame` if the shader

@@ -46,7 +46,8 @@ impl ItemScalar {
 /// as a shader that binds the buffer declares it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Item {
-    /// Distance in bytes from the start of one item to the start of the next.
+    /// Distance in bytes from the start of one item to the start of the next; for a buffer without
+    /// an array its size.
     pub stride: usize,
     /// All scalars of the item, from 1 to 64, in the order of their offsets; bytes between them are
     /// padding.

@@ -165,11 +165,11 @@ pub struct Param {
     /// including document, too. A param of the loaded document that has no default and is not set
     /// has its `min`, or 1 (at most its `max`) without one; false; or its first allowed word.
     pub default: Option<Expr>,
-    /// Least allowed value of a number, or of each component of a vector; `None` for no lower
-    /// bound.
+    /// Least allowed value of the param if it is a number, or of each of its components if it is a
+    /// vector; `None` for no lower bound.
     pub min: Option<f64>,
-    /// Greatest allowed value of a number, or of each component of a vector; `None` for no upper
-    /// bound.
+    /// Greatest allowed value of the param if it is a number, or of each of its components if it is
+    /// a vector; `None` for no upper bound.
     pub max: Option<f64>,
     /// Description of the param's effect, as its document gives it; may be empty.
     pub description: String,

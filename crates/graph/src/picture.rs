@@ -7,10 +7,10 @@ use wgt::TextureFormat as F;
 /// with 16 bits per channel.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Picture {
-    /// Width and height in texels.
+    /// Width and height of the picture in texels.
     pub size: [u32; 2],
-    /// Red, green, blue and alpha of each texel, row by row from the top, each row from the left;
-    /// 65,535 means 1.0.
+    /// Red, green, blue and alpha of each texel of the picture, row by row from the top, each row
+    /// from the left; 65,535 means 1.0.
     pub texels: Arc<[[u16; 4]]>,
 }
 

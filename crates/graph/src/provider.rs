@@ -29,15 +29,16 @@ pub struct Provided {
     /// Size in bytes of one item of the buffer, or of the whole buffer for one that is bound as a
     /// uniform; 0 for an acceleration structure.
     pub stride: u64,
-    /// Ways in which shaders may bind the resource.
+    /// Ways in which shaders may bind the buffer or acceleration structure.
     pub binding: ProvidedBinding,
-    /// Kind of a resource that comes in several kinds, such as the kind of a light; `None` for a
-    /// resource without kinds.
+    /// Kind of the resource, if it comes in several kinds, as a light does; `None` for a resource
+    /// without kinds.
     pub kind: Option<ProvidedKind>,
 }
 
 impl Provided {
-    /// Description of an acceleration structure, which shaders declare as `acceleration_structure`.
+    /// Description of an acceleration structure, which shaders declare as `acceleration_structure`;
+    /// it has no items and no kind.
     pub const ACCELERATION_STRUCTURE: Self = Self {
         items: None,
         stride: 0,
@@ -46,7 +47,7 @@ impl Provided {
     };
 }
 
-/// Ways in which shaders may bind a provided resource ([`Provided`]).
+/// Ways in which shaders may bind a resource that the host's provider describes ([`Provided`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProvidedBinding {
     /// The whole buffer, as `var<uniform>`.

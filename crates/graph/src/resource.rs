@@ -142,17 +142,18 @@ impl ResourceKind {
 /// Description of a 2D texture, a 2D array texture or a 3D texture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
-    /// Format of the texels.
+    /// Format of the texture's texels.
     pub format: wgt::TextureFormat,
-    /// Width and height of mip 0 in texels.
+    /// Width and height in texels of the texture's mip 0.
     pub size: [u32; 2],
-    /// Number of array layers, or of slices of mip 0 of a 3D texture; 1 for a plain 2D texture.
+    /// Number of array layers of the texture, or of slices of mip 0 of a 3D texture; 1 for a plain
+    /// 2D texture.
     pub layers: u32,
-    /// True for a 3D texture, whose `layers` are slices.
+    /// True for a 3D texture, whose `layers` are slices; false for a 2D texture or a 2D array.
     pub is_3d: bool,
-    /// Number of mip levels, at least 1.
+    /// Number of mip levels of the texture, at least 1.
     pub mips: u32,
-    /// Number of samples of each texel; 1 without multisampling.
+    /// Number of samples of each texel of the texture; 1 without multisampling.
     pub samples: u32,
     /// Picture that the document fills the texture with (`file: …`); `None` for a texture without a
     /// picture, such as one that passes write.
@@ -206,20 +207,21 @@ impl Texture {
 /// Description of a buffer.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Buffer {
-    /// Number of items: of the runtime-sized array that shaders declare, or of `data`; for a buffer
-    /// that only one pass uses, of 4-byte words. `None` if the document gives neither `count` nor
-    /// `data`, because shaders declare the buffer with a fixed size, and for an import without a
-    /// known number.
+    /// Number of items of the buffer: of the runtime-sized array that shaders declare, or of
+    /// `data`; for a buffer that only one pass uses, of 4-byte words. `None` if the document gives
+    /// neither `count` nor `data`, because shaders declare the buffer with a fixed size, and for an
+    /// import without a known number.
     pub count: Option<u64>,
-    /// Distance in bytes from one item of the runtime-sized array to the next, as shaders declare
-    /// it. 0 for an import, and if no shader of the graph declares the buffer as such an array.
+    /// Distance in bytes from one item of the buffer's runtime-sized array to the next, as shaders
+    /// declare it. 0 for an import, and if no shader of the graph declares the buffer as such an
+    /// array.
     pub stride: u64,
-    /// Size in bytes: of the layout that shaders declare, with all items, rounded up to a multiple
-    /// of 4; for an import, of the host's buffer.
+    /// Size of the buffer in bytes: of the layout that shaders declare, with all items, rounded up
+    /// to a multiple of 4; for an import, of the host's buffer.
     pub bytes: u64,
-    /// Content that the document gives (`data: …`): one entry for each item, with one number for
-    /// each scalar of the item, in the order of the scalars' offsets. `None` for a buffer without
-    /// `data`.
+    /// Content that the document gives the buffer (`data: …`): one entry for each item, with one
+    /// number for each scalar of the item, in the order of the scalars' offsets. `None` for a
+    /// buffer without `data`.
     pub data: Option<Arc<Vec<Vec<f64>>>>,
     /// The bytes of `data` in the item layout that shaders declare, numbers in little-endian order;
     /// `None` without `data`.
@@ -235,18 +237,18 @@ pub struct Growth {
     /// Buffer, or item of a buffer, whose first `u32` holds after a frame the number of items or
     /// layers that the frame would have needed.
     pub counter: Target,
-    /// Greatest number of items or layers, which the buffer or texture never exceeds.
+    /// Greatest number of items or layers, which the growing buffer or texture never exceeds.
     pub max: u64,
 }
 
 /// Description of a sampler.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sampler {
-    /// Filter for minification, for magnification and between mips.
+    /// Filter of the sampler for minification, for magnification and between mips.
     pub filter: Filter,
-    /// Address mode in all directions, for coordinates outside of the texture.
+    /// Address mode of the sampler in all directions, for coordinates outside of the texture.
     pub address: Address,
-    /// Comparison function; `None` for a sampler that does not compare.
+    /// Comparison function of a comparison sampler; `None` for a sampler that does not compare.
     pub compare: Option<wgt::CompareFunction>,
 }
 
@@ -254,9 +256,10 @@ pub struct Sampler {
 /// range of items of a buffer. The items are in the field `layers`. Ends of ranges are excluded.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SubresourceRange {
-    /// Range of mip levels, counted from 0; `0..1` for a buffer.
+    /// Range of a texture's mip levels, counted from 0, the end excluded; `0..1` for a buffer.
     pub mips: Range<u32>,
-    /// Range of array layers, slices or items, counted from 0; `0..u32::MAX` for a whole buffer.
+    /// Range of a texture's array layers or slices, or of a buffer's items, counted from 0, the end
+    /// excluded; `0..u32::MAX` for a whole buffer.
     pub layers: Range<u32>,
     /// Aspect of a texture with depth and stencil: `DepthOnly` or `StencilOnly` for one of the two,
     /// `All` for both. `All` for any other texture or buffer.
@@ -306,7 +309,7 @@ impl SubresourceRange {
 /// output holds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Target {
-    /// Id of the resource.
+    /// Id of the resource that is meant, whole or in part.
     pub id: ResourceId,
     /// Mips and layers of the texture, or items of the buffer, that are meant.
     pub part: SubresourceRange,

@@ -163,9 +163,9 @@ pub type Node = Span;
 /// A field of a RON struct, `name: value`, whose value is not read yet.
 #[derive(Clone, Debug)]
 pub struct Field {
-    /// Name of the field, with its place.
+    /// Name of the struct's field, with its place in the file.
     pub name: Located<String>,
-    /// Value of the field, which is not read yet: its place in the file.
+    /// Value of the struct's field, which is not read yet: its place in the file.
     pub node: Node,
 }
 

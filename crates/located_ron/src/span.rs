@@ -16,7 +16,7 @@ pub struct SourceFile(Arc<SourceText>);
 pub struct SourceText {
     /// Path of the file, as it was given to [`SourceFile::new`]; it need not exist on disk.
     pub name: Arc<str>,
-    /// Whole text of the file.
+    /// Whole text of the source file.
     pub text: Arc<str>,
 }
 

@@ -16,9 +16,11 @@ pub type Lifetimes = BTreeMap<ResourceId, Lifetime>;
 /// device.
 #[derive(Clone, Debug)]
 pub struct Lifetime {
-    /// Usages that the texture must be created with; without meaning if the resource is a buffer.
+    /// Usages that the resource must be created with on the device if it is a texture; without
+    /// meaning for other resources.
     pub textures: wgt::TextureUsages,
-    /// Usages that the buffer must be created with; without meaning if the resource is a texture.
+    /// Usages that the resource must be created with on the device if it is a buffer; without
+    /// meaning for other resources.
     pub buffers: wgt::BufferUsages,
     /// Index in [`Schedule::passes`](crate::Schedule::passes) of the first pass of a frame that
     /// uses the resource.

@@ -39,7 +39,8 @@ pub struct Registry {
 }
 
 impl Registry {
-    /// Creates a registry with the kinds `Raster`, `Fullscreen`, `Compute`, `Copy` and `Clear`.
+    /// Creates a registry with this crate's kinds `Raster`, `Fullscreen`, `Compute`, `Copy` and
+    /// `Clear`, under these tags.
     pub fn standard() -> Self {
         let mut registry = Self::default();
         macro_rules! register {

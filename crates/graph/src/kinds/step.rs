@@ -164,8 +164,8 @@ impl<S: Stage> Step<S> {
 /// A shader of a draw or dispatch, by name, with its entry points, constants and bindings.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Program {
-    /// Name of the WGSL file without folder and ending. A program needs a shader: planning reports
-    /// an error for `None`, the default.
+    /// Name of the program's WGSL file without folder and ending. A program needs a shader:
+    /// planning reports an error for `None`, the default.
     pub shader: Option<Located<String>>,
     /// Modules that replace others in the shader's imports: pairs of the module that an `#import`
     /// names and the module that is imported instead.
@@ -212,29 +212,29 @@ impl Program {
 /// A render pass with one draw call, a [`Step`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Draw<S: Stage> {
-    /// Shader with the vertex and fragment entry points.
+    /// Shader of the draw, with the vertex and fragment entry points.
     pub program: S::Program,
-    /// True if the vertex stage is a built-in triangle over the whole target instead of an entry
-    /// point of the program.
+    /// True if the draw's vertex stage is a built-in triangle over the whole target instead of an
+    /// entry point of the program.
     pub fullscreen: bool,
-    /// Colour attachments; the index is the fragment shader's `@location`.
+    /// Colour attachments of the draw; the index in the list is the fragment shader's `@location`.
     pub colors: Vec<ColorTarget<S>>,
-    /// Depth attachment; `None` for a draw without a depth test.
+    /// Depth attachment of the draw; `None` for a draw without a depth test.
     pub depth: Option<DepthTarget<S>>,
-    /// Stencil attachment; `None` for a draw without a stencil test. If there is a depth
-    /// attachment, too, both are the same texture.
+    /// Stencil attachment of the draw; `None` for a draw without a stencil test. If there is a
+    /// depth attachment, too, both are the same texture.
     pub stencil: Option<StencilTarget<S>>,
     /// Target of a draw without attachments, whose fragment shader writes buffers or storage
     /// textures: at the stage [`Names`] its width and height in texels, at the stage
     /// [`Ids`](crate::Ids) a texture of that size that is never read. `None` for a draw with
     /// attachments.
     pub canvas: Option<S::Canvas>,
-    /// Viewport and scissor rectangle in texels of the target: x and y of its upper left corner,
-    /// width, height. `None` draws to the whole target.
+    /// Viewport and scissor rectangle of the draw in texels of the target: x and y of its upper
+    /// left corner, width, height. `None` draws to the whole target.
     pub area: Option<[u32; 4]>,
-    /// Numbers of vertices and instances, as numbers or in a buffer.
+    /// Numbers of vertices and instances of the draw, as numbers or in a buffer.
     pub call: DrawCall<S>,
-    /// Primitive topology, and winding and culling of triangles.
+    /// Primitive topology of the draw, and winding and culling of its triangles.
     pub primitive: wgt::PrimitiveState,
 }
 
@@ -280,7 +280,7 @@ impl<S: Stage> DrawCall<S> {
 /// A colour attachment of a [`Draw`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColorTarget<S: Stage> {
-    /// Texture that is drawn to: one mip of one layer or slice.
+    /// Texture that the draw writes colours to: one mip of one layer or slice.
     pub target: S::Attachment,
     /// Texture that a multisampled `target` is resolved into after the draw; `None` if it is not
     /// resolved.
@@ -298,7 +298,7 @@ pub struct ColorTarget<S: Stage> {
 /// A depth attachment of a [`Draw`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct DepthTarget<S: Stage> {
-    /// Texture that is drawn to: one mip of one layer or slice.
+    /// Texture that the draw tests and writes depths in: one mip of one layer or slice.
     pub target: S::Attachment,
     /// Depth, from 0 to 1, that the target is cleared to before the draw; `None` keeps the target's
     /// content.
@@ -315,13 +315,13 @@ pub struct DepthTarget<S: Stage> {
 /// A stencil attachment of a [`Draw`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct StencilTarget<S: Stage> {
-    /// Texture that is drawn to: one mip of one layer or slice.
+    /// Texture that the draw tests and writes stencil values in: one mip of one layer or slice.
     pub target: S::Attachment,
     /// Stencil value, from 0 to 255, that the target is cleared to before the draw; `None` keeps
     /// the target's content.
     pub clear: Option<u32>,
-    /// Stencil tests and operations of front and back faces, with the bits that are read and
-    /// written.
+    /// Stencil tests and operations of the draw for front and back faces, with the bits that are
+    /// read and written.
     pub state: wgt::StencilState,
     /// Value that the stencil tests compare with, and that the operation `Replace` writes.
     pub reference: u32,
@@ -330,9 +330,9 @@ pub struct StencilTarget<S: Stage> {
 /// A compute pass with one dispatch, a [`Step`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dispatch<S: Stage> {
-    /// Shader with the compute entry point.
+    /// Shader of the dispatch, with the compute entry point.
     pub program: S::Program,
-    /// Numbers of workgroups in x, y and z, as numbers or in a buffer.
+    /// Numbers of workgroups of the dispatch in x, y and z, as numbers or in a buffer.
     pub groups: Groups<S>,
 }
 

@@ -46,7 +46,7 @@ impl fmt::Display for Scalar {
 /// words are equal if their fields `word` are equal.
 #[derive(Clone, Debug)]
 pub struct Word {
-    /// The word itself.
+    /// The word itself, such as `spot`.
     pub word: Name,
     /// All words of the [`Choice`](crate::ParamType::Choice) param, or for the kinds of the
     /// provider's resource, that the value comes from, in the order of their numbers; `None` if the

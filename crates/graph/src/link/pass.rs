@@ -38,7 +38,8 @@ pub struct LinkedPass {
     /// Kind of the pass, as the document writes it, such as `Compute`; [`CAPTURE`] for a pass that
     /// planning added.
     pub kind: &'static str,
-    /// GPU work of the pass, in the order in which it is done.
+    /// GPU work of the pass (draws, dispatches, copies and clears), in the order in which it is
+    /// done.
     pub steps: Vec<Step<Ids>>,
     /// Every read and write of a resource by the pass, in the order of its steps.
     pub accesses: Vec<Access>,
@@ -68,26 +69,28 @@ impl LinkedPass {
 /// One use of a resource, or of a part of it, by a step: a read, a write or both.
 #[derive(Clone, Debug)]
 pub struct Access {
-    /// Id of the resource that is used.
+    /// Id of the resource that the access reads or writes.
     pub resource: ResourceId,
-    /// Mips and layers of the texture, or items of the buffer, that the step uses.
+    /// Part of the resource that the access reads or writes: mips and layers of a texture, or items
+    /// of a buffer.
     pub part: SubresourceRange,
-    /// True if the step reads the part.
+    /// True if the access reads its [`part`](Self::part) of the resource.
     pub reads: bool,
-    /// True if the step writes the part.
+    /// True if the access writes its [`part`](Self::part) of the resource.
     pub writes: bool,
-    /// True if the step certainly overwrites every texel or byte of the part: as a clear, a copy or
-    /// a cleared attachment does, or because the document promises it (`overwrites`).
+    /// True if the access certainly overwrites every texel or byte of its [`part`](Self::part) of
+    /// the resource: as a clear, a copy or a cleared attachment does, or because the document
+    /// promises it (`overwrites`).
     pub fully_overwrites: bool,
     /// True if a change of the resource's content, of which the step uses something, is a reason
     /// for a pass with [`Run::OnChange`] to run. False only for the uniform `frame` if the shader
     /// reads just its flags.
     pub triggers: bool,
-    /// Usage that the resource must be created with on the device for this use.
+    /// Usage that the resource must be created with on the device for this access.
     pub usage: Usage,
-    /// Place in the document or shader that causes the use, for messages.
+    /// Place in the document or shader that causes the access, for messages.
     pub span: Span,
-    /// Index of the step in [`LinkedPass::steps`].
+    /// Index in [`LinkedPass::steps`] of the step that makes the access.
     pub step: usize,
 }
 
@@ -120,18 +123,18 @@ impl Stage for Ids {
 /// attachments.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Attachment {
-    /// The texture, with the one mip and one layer or slice that is drawn to.
+    /// The attached texture, with the one mip and one layer or slice that is drawn to.
     pub target: Target,
-    /// Format of the texture's texels.
+    /// Format of the attached texture.
     pub format: wgt::TextureFormat,
-    /// Number of samples of each texel; 1 without multisampling.
+    /// Number of samples of each texel of the attached texture; 1 without multisampling.
     pub samples: u32,
 }
 
 /// A shader of a draw or dispatch, with its entry points, constants and bindings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinkedProgram {
-    /// The shader, which holds the naga module and its reflection.
+    /// The program's shader, which holds the naga module and its reflection.
     pub shader: Arc<Shader>,
     /// Indices of the entry points in `shader.module().entry_points`: for a draw the vertex and
     /// then the fragment entry point, as far as the draw has them; for a dispatch the compute entry
@@ -167,11 +170,11 @@ impl LinkedProgram {
 /// One binding of a program: its numbers, and the resource or bytes bound to it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinkedBinding {
-    /// Index of the bind group, counted from 0.
+    /// Index of the bind group that holds the binding, counted from 0 (`@group`).
     pub group: u32,
     /// Number of the binding in its group (`@binding`), counted from 0.
     pub binding: u32,
-    /// Resource, part of one, or bytes that are bound.
+    /// Resource, part of one, or bytes that the binding gives the shader.
     pub target: BindTarget,
     /// Type of the binding in the bind group layout.
     pub ty: wgt::BindingType,

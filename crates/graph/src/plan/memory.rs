@@ -18,18 +18,19 @@ pub struct MemoryEntry {
     /// Full name of the material, or of a buffer or texture that only one pass uses
     /// ([`Resource::name`]).
     pub name: String,
-    /// Format of a texture; `None` for a buffer.
+    /// Format of the texture that takes the memory; `None` for a buffer.
     pub format: Option<wgt::TextureFormat>,
-    /// Width and height in texels of a texture's mip 0; for a buffer `[n, 1]`, where n is its size
-    /// in bytes.
+    /// Width and height in texels of mip 0 of the texture that takes the memory; for a buffer `[n,
+    /// 1]`, where n is its size in bytes.
     pub size: [u32; 2],
-    /// Number of mip levels of a texture; 1 for a buffer.
+    /// Number of mip levels of the texture that takes the memory; 1 for a buffer.
     pub mips: u32,
-    /// Number of array layers of a texture, or of slices of mip 0 of a 3D texture; 1 for a buffer.
+    /// Number of array layers of the texture that takes the memory, or of slices of mip 0 of a 3D
+    /// texture; 1 for a buffer.
     pub layers: u32,
-    /// Size in bytes of all texels or items, without padding that a driver adds; the whole size
-    /// also if the memory is shared. Doubled if a pass also reads the resource as it was in the
-    /// frame before (`.previous`).
+    /// Memory in bytes that all texels or items take, without padding that a driver adds; the whole
+    /// size also if the memory is shared. Doubled if a pass also reads the resource as it was in
+    /// the frame before (`.previous`).
     pub bytes: u64,
     /// Full names of the other materials that use the same memory at other times of the frame, in
     /// the order of their first use; empty if the memory is not shared.

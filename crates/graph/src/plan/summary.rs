@@ -14,8 +14,8 @@ pub struct PassSummary {
     /// around it in front, `blur.x`, and the index of a repetition behind, `fill[0]`. An include
     /// without a name counts by the name of its file.
     pub name: String,
-    /// Kind of the pass, as the document writes it, such as `Compute`; or
-    /// [`CAPTURE`](crate::CAPTURE).
+    /// Kind of the pass, as the document writes it, such as `Compute`; [`CAPTURE`](crate::CAPTURE)
+    /// for a pass that planning added.
     pub kind: String,
 }
 
@@ -26,12 +26,13 @@ pub struct OutputSummary {
     /// Name of the output, or of the capture ([`Capture::name`](crate::Capture::name)), by which it
     /// is read back.
     pub name: String,
-    /// Format of a texture; `None` for a buffer.
+    /// Format of the texture that holds the output or capture; `None` for a buffer.
     pub format: Option<wgt::TextureFormat>,
     /// Width and height in texels of the first mip that is read back of a texture; for a buffer
     /// `[n, 1]`, where n is the number of bytes that are read back.
     pub size: [u32; 2],
-    /// Number of layers, or of slices of a 3D texture, that are read back; 1 for a buffer.
+    /// Number of layers of the output or capture, or of slices of a 3D texture, that are read back;
+    /// 1 for a buffer.
     pub layers: u32,
 }
 

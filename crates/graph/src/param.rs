@@ -58,7 +58,7 @@ pub(crate) fn find<'p>(
     })
 }
 
-/// Type of a [`Param`].
+/// Type of a [`Param`] and of its values.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ParamType {
     /// 32-bit float.

@@ -39,9 +39,12 @@ pub struct Request<P> {
     /// Textures and buffers to read back in addition to the outputs, each at the end of a frame or
     /// as it is after one of the passes.
     pub captures: Vec<Capture>,
-    /// Limits of the device that will run the graph.
+    /// Limits of the device that will run the graph. Planning reports an error for a graph that
+    /// exceeds them ([`any_adapter`](Self::any_adapter): a warning).
     pub limits: wgt::Limits,
-    /// Features of the device that will run the graph.
+    /// Features that the device that will run the graph is created with. Planning reports an error
+    /// for a graph that requires others ([`any_adapter`](Self::any_adapter): a warning);
+    /// expressions of documents test features by `has(…)`.
     pub features: wgt::Features,
     /// The backend of the device, if it lacks part of WebGPU; `None` for any other. Planning
     /// returns an error if the document does not list this backend in `proven_on`. The executor,

@@ -139,7 +139,8 @@ impl ResourceKind {
     }
 }
 
-/// Description of a 2D texture, a 2D array texture or a 3D texture.
+/// Description of a 2D texture, a 2D array texture or a 3D texture, made by the graph or imported
+/// by the host.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
     /// Format of the texture's texels.
@@ -177,7 +178,8 @@ impl Texture {
         }
     }
 
-    /// Returns the size in bytes of all texels of all mips, layers and samples.
+    /// Returns the size in bytes of all texels of all mips, layers and samples of the texture,
+    /// without padding.
     pub fn bytes(&self) -> u64 {
         let footprint = |format: wgt::TextureFormat| {
             format.theoretical_memory_footprint(wgt::Extent3d::default())
@@ -204,7 +206,7 @@ impl Texture {
     }
 }
 
-/// Description of a buffer.
+/// Description of a buffer, made by the graph or imported by the host.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Buffer {
     /// Number of items of the buffer: of the runtime-sized array that shaders declare, or of
@@ -241,7 +243,7 @@ pub struct Growth {
     pub max: u64,
 }
 
-/// Description of a sampler.
+/// Description of a sampler, made by the graph or imported by the host.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sampler {
     /// Filter of the sampler for minification, for magnification and between mips.

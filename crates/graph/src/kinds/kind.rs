@@ -120,8 +120,8 @@ impl<'a> Lowering<'a> {
     }
 
     /// Adds a buffer of `bytes` bytes, a multiple of 4, that only this pass uses, and returns its
-    /// handle for steps. A capture reads it as the material `pass/name`, where `pass` is the full
-    /// name of the pass.
+    /// handle for steps. A step must write it before another reads it. A capture reads it as the
+    /// material `pass/name`, where `pass` is the full name of the pass.
     pub fn scratch(&mut self, name: &str, bytes: u64) -> Scratch {
         self.scratch.push((name.to_owned(), bytes));
         Scratch(self.scratch.len() - 1)
@@ -196,8 +196,8 @@ impl<'a> Lowering<'a> {
         self.evaluate(1, |environment| eval::count32(expr, environment))
     }
 
-    /// Evaluates an expression to a number. Returns 0 while a document is loaded, and after a
-    /// mistake, which is reported.
+    /// Evaluates an expression to a number, an integer or a float. Returns 0 while a document is
+    /// loaded, and after a mistake, which is reported.
     pub fn number(&mut self, expr: &Expr) -> f64 {
         self.evaluate(0.0, |environment| eval::number(expr, environment))
     }

@@ -167,8 +167,8 @@ pub struct Program {
     /// Name of the program's WGSL file without folder and ending. A program needs a shader:
     /// planning reports an error for `None`, the default.
     pub shader: Option<Located<String>>,
-    /// Modules that replace others in the shader's imports: pairs of the module that an `#import`
-    /// names and the module that is imported instead.
+    /// Modules that replace others in the shader's imports: pairs of the path that an `#import`
+    /// names and the path of the module that is imported instead.
     pub imports: Vec<(String, String)>,
     /// Name of the vertex entry point. `None` takes the only one in the shader; planning reports an
     /// error if there are several, or none where a draw needs it.

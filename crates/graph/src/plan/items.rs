@@ -13,10 +13,12 @@ use std::{collections::BTreeSet, ops::Range};
 /// ends are excluded, and their numbers in the whole texture or buffer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PartSummary {
-    /// Range of mip levels that are held, counted from 0; `0..1` for a buffer.
+    /// Range of mip levels that the output or capture holds, counted from 0, the end excluded;
+    /// `0..1` for a buffer.
     pub mips: Range<u32>,
-    /// Range of array layers, of slices of a 3D texture, or of items of a buffer that are held,
-    /// counted from 0. It ends at `u32::MAX` for a whole buffer whose document gives no `count`.
+    /// Range of array layers, of slices of a 3D texture, or of items of a buffer that the output or
+    /// capture holds, counted from 0, the end excluded. It ends at `u32::MAX` for a whole buffer
+    /// whose document gives no `count`.
     pub layers: Range<u32>,
     /// Number of mips of the whole texture or buffer (1 for a buffer), then its number of layers,
     /// slices or items. The second number is `u32::MAX` for a buffer whose document gives no
@@ -25,7 +27,7 @@ pub struct PartSummary {
 }
 
 impl PartSummary {
-    /// True if the part is less than the whole texture or buffer.
+    /// True if the output or capture holds less than the whole texture or buffer.
     pub fn is_less(&self) -> bool {
         (self.mips.len(), self.layers.len()) != (self.of[0] as usize, self.of[1] as usize)
     }

@@ -8,7 +8,7 @@ pub struct Field {
     /// Path of the scalar in the item, as in WGSL: `origin.x`, `indices[2]`. Empty if the item is a
     /// single scalar.
     pub name: String,
-    /// Offset of the scalar from the start of the item, in bytes.
+    /// Offset in bytes of the scalar from the start of the item.
     pub offset: usize,
     /// Type of the scalar, which takes 4 bytes.
     pub scalar: ItemScalar,

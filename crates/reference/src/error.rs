@@ -26,7 +26,8 @@ pub enum Error {
         /// Number of values in the buffer.
         actual: u64,
     },
-    /// The G-buffer names a triangle that the mesh does not have: it was drawn from another mesh.
+    /// The G-buffer (primitive ids of the pixels) names a triangle that the mesh does not have: it
+    /// was drawn from another mesh.
     #[error(
         "pixel ({x}, {y}) shows primitive {primitive}, but the mesh has only {count} triangles"
     )]

@@ -188,7 +188,8 @@ pub fn open(name: Option<&str>) -> Result<Gpu, GpuError> {
     })
 }
 
-/// Opens a device as [`open`] does, on the chosen backends and with additional features.
+/// Opens a device as [`open`] does, with the adapter name, backends and additional features that
+/// `wanted` chooses.
 ///
 /// # Errors
 /// See [`GpuError`].

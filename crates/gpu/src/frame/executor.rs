@@ -220,10 +220,10 @@ impl Executor {
         state.contents.copies(&mut copy_host);
     }
 
-    /// Returns the report of the oldest frame that requested times, statistics or readbacks and has
-    /// not been reported yet. `None` if the GPU has not finished that frame, or if no such frame is
-    /// left. It never waits. Each frame with a request brings one report, in the order of encoding;
-    /// frames whose encoder was dropped without being submitted bring none.
+    /// Returns the report of the oldest frame that requested times, statistics or readbacks (fields
+    /// of [`Frame`]) and has not been reported yet. `None` if the GPU has not finished that frame,
+    /// or if no such frame is left. It never waits. Each frame with a request brings one report, in
+    /// the order of encoding; frames whose encoder was dropped without being submitted bring none.
     ///
     /// # Errors
     /// If the device was lost, or a readback or the times of the frame failed. The failed frame
@@ -320,6 +320,7 @@ impl Executor {
     /// input has changed (`run: OnChange` in the document) and read it run in the next frame. The
     /// texture may have more usages than described.
     ///
+    /// # Errors
     /// [`ExecuteError::NoSuchImport`] if the plan has no import of this name,
     /// [`ExecuteError::Import`] if the texture differs from its description,
     /// [`ExecuteError::DeviceLost`] if the device is lost.
@@ -386,9 +387,10 @@ impl Executor {
     }
 
     /// Marks the content of the import or provided resource `name` as changed, after the host has
-    /// written to it. In the next frame, passes with `run: OnChange` that read it run; the frame
-    /// after that finds this content as `.previous` (content of the frame before). With a provider
-    /// that counts [`versions`](Provider::version), call [`refresh`](Self::refresh) instead.
+    /// written to it. In the next frame, passes with `run: OnChange` (which run only when an input
+    /// has changed) that read it run; the frame after that finds this content as `.previous`
+    /// (content of the frame before). With a provider that counts [`versions`](Provider::version),
+    /// call [`refresh`](Self::refresh) instead.
     ///
     /// # Errors
     /// [`ExecuteError::NotOfHost`] if the plan has neither an import nor a provided resource of

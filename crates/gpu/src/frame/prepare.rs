@@ -30,6 +30,7 @@ impl Preparer {
     /// Creates those shader modules and pipelines of `plan` that the executor did not have when
     /// [`Executor::preparer`](super::Executor::preparer) was called.
     ///
+    /// # Errors
     /// If the device refuses a shader or pipeline, or is lost. An error about a pass names the pass
     /// and its place in the graph document.
     pub fn prepare(self, plan: Plan) -> Result<Prepared, ExecuteError> {

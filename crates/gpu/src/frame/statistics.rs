@@ -12,7 +12,7 @@ use std::{cell::Cell, mem::size_of, ops::Range, sync::Arc};
 /// device counted them. Only the first 4096 draws and dispatches of a frame are counted.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct PassStatistics {
-    /// Name of the pass.
+    /// Name of the pass, as in [`PassSummary::name`](skiagraph_graph::PassSummary::name).
     pub name: String,
     /// Runs of vertex shaders. A device may run the shader once for a vertex that several triangles
     /// share.

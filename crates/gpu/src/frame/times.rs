@@ -12,7 +12,7 @@ pub struct FrameTiming {
 /// GPU and CPU times of one pass in one frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PassTiming {
-    /// Name of the pass.
+    /// Name of the pass, as in [`PassSummary::name`](skiagraph_graph::PassSummary::name).
     pub name: String,
     /// Time on the GPU at which the pass began, counted from the earliest begin of a pass in the
     /// frame. `None` if `gpu` is `None`.

@@ -86,9 +86,9 @@ pub enum Error {
     /// A position or normal of a deformed mesh is infinite or NaN.
     #[error("{what} {index} of a deformed mesh is {value}, which is not finite")]
     NotFinite {
-        /// `position` or `normal`.
+        /// List that holds the value: `position` or `normal`.
         what: &'static str,
-        /// Index in the given list of positions or normals.
+        /// Index of the value in the given list of positions or normals.
         index: usize,
         /// Position or normal that was given.
         value: glam::Vec3,

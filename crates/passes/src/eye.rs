@@ -22,11 +22,11 @@ const FARTHEST: f64 = 65536.0;
 /// Camera of a host program, given by its matrices: perspective or orthographic, symmetric or not,
 /// jittered or not, with a far plane or without.
 ///
-/// Positions that `shared/from_depth.ron` reconstructs from a depth buffer are right for any such
-/// camera. Shadow maps fitted to the camera's frustum (`fit: camera`, preset `pssm`) use a
-/// symmetric frustum that holds the camera's own. That frustum ends at 65,536 times the distance of
-/// its near plane if the camera has no far plane. `shared/gbuffer.ron` draws the symmetric frustum,
-/// too, in reversed depth whatever the host's depth is.
+/// Positions that the document `shared/from_depth.ron` reconstructs from a depth buffer are right
+/// for any such camera. Shadow maps fitted to the camera's frustum (`fit: camera`, preset `pssm`)
+/// use a symmetric frustum that holds the camera's own. That frustum ends at 65,536 times the
+/// distance of its near plane if the camera has no far plane. `shared/gbuffer.ron` draws the
+/// symmetric frustum, too, in reversed depth whatever the host's depth is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Eye {
     pub(crate) camera: CameraUniform,

@@ -72,6 +72,7 @@ impl GpuMesh<'_> {
     /// position share one position. Waits for the GPU, so call it when a mesh is loaded, not in
     /// each frame.
     ///
+    /// # Errors
     /// [`GpuMeshError`] if a buffer cannot be read, or its numbers do not form a mesh.
     pub fn read(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Mesh, GpuMeshError> {
         let stride = self.stride;

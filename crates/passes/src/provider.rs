@@ -110,6 +110,7 @@ impl SceneProvider {
     /// results are not needed are left out, and so are resources of a mesh whose parts have no
     /// transforms yet.
     ///
+    /// # Errors
     /// Those of [`Provider::build`] and [`Provider::build_acceleration_structure`].
     pub fn prepare(
         &mut self,
@@ -299,8 +300,8 @@ impl SceneProvider {
     }
 
     /// Sets the camera of a view on a viewport of `[width, height]` pixels, and the view's light:
-    /// the one that the view names, or else the scene's default light. [`lights`](Self::lights)
-    /// becomes the list of the scene's lights, or the view's light alone if it is none of these.
+    /// its own, or else the scene's default light. [`lights`](Self::lights) becomes the list of the
+    /// scene's lights, or the view's light alone if it is none of these.
     pub fn set_view(&mut self, view: &View, viewport: [u32; 2]) {
         self.set_camera(&view.camera(viewport));
         let light = self.scene.light_of(view);

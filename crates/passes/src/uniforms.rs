@@ -51,7 +51,7 @@ pub struct CameraUniform {
     pub depth_scale: f32,
     /// Offset of each pixel's ray from the pixel's centre, in pixels, y down; 0 without jitter.
     pub jitter: Vec2,
-    /// The offset `jitter` in clip space, y up.
+    /// The offset `jitter` in clip space (−1 to 1 across the image), y up; 0 without jitter.
     pub jitter_clip: Vec2,
 }
 
@@ -102,15 +102,17 @@ pub struct LightUniform {
     /// Matrix to the light's clip space, in which z grows from 0 to 1 away from the light. For a
     /// directional light it maps positions relative to `centre`, and w stays 1. For a spot light it
     /// maps positions relative to the light: w is the distance along the axis, x and y reach from
-    /// −w to w across the map, and z is w as a share of `range`. For a point light the matrix is 0.
+    /// −w to w across the map, and z, which is not divided by w, is w / `range`. For a point light
+    /// the matrix is 0.
     pub clip_from_relative: Mat4,
     /// Unit vector towards a directional light; for a spot light, the reverse of its axis; for a
     /// point light, 0.
     pub to_light: Vec3,
     /// Upper bound on the distance between any two points of the scene's mesh, in scene units.
     pub max_distance: f32,
-    /// Centre of the scene's bounding box, world space. For a directional light the matrix takes
-    /// positions relative to it, because absolute ones would lose the detail of a far-off scene.
+    /// Centre of the scene's bounding box, world space. For a directional light
+    /// `clip_from_relative` takes positions relative to it, because absolute ones would lose the
+    /// detail of a far-off scene.
     pub centre: Vec3,
     /// Largest sum of |matrix entry · coordinate| in the computation of clip x or clip y, over all
     /// points of the scene's bounding box. It bounds the rounding error of clip x and y, which is a
@@ -126,7 +128,7 @@ pub struct LightUniform {
     /// Cosine of the angle between a spot light's axis and the edge of its cone; 0 for other
     /// lights.
     pub edge_cosine: f32,
-    /// Exact light position minus `position`.
+    /// Exact light position minus `position`; 0 for a directional light.
     pub position_low: Vec3,
     /// Upper bound on the distance from a spot or point light to any point of the scene, in scene
     /// units; 0 for a directional light.

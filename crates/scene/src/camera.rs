@@ -14,7 +14,7 @@ use serde::Deserialize;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct View {
-    /// Name on the command line and in results.
+    /// Name of the view on the command line and in results.
     pub name: String,
     /// Position of the camera, world space.
     #[serde(with = "Vector")]
@@ -30,7 +30,7 @@ pub struct View {
     /// Distance of the near plane from the eye along `direction`, in scene units, more than 0.
     pub near: f64,
     /// Distance of the far plane from the eye along `direction`, in scene units, more than `near`
-    /// and at most 1e30 times as much.
+    /// and at most 1e30 times `near`.
     pub far: f64,
     /// The view's own light, which replaces all lights of the scene for this view; `None` for the
     /// lights of the scene. In a scene file it is a directional light.

@@ -3,7 +3,7 @@
 use std::{borrow::Cow, io, path::PathBuf};
 use thiserror::Error;
 
-/// Number of faces that an error or a warning lists; further faces are only counted.
+/// Most faces that an error or a warning about a mesh file lists; further faces are only counted.
 pub const FACES_SHOWN: usize = 5;
 
 /// Extents and coordinates of a mesh, in scene units, of which all products that shaders take stay
@@ -18,7 +18,7 @@ pub enum SceneError {
     /// A file could not be read.
     #[error("cannot read {}: {reason}", path.display())]
     Read {
-        /// Path of the file.
+        /// Path of the file that could not be read.
         path: PathBuf,
         /// Error of the operating system, or the size limit that the file exceeds.
         reason: io::Error,
@@ -26,7 +26,7 @@ pub enum SceneError {
     /// A line of an OBJ file could not be understood.
     #[error("{}:{line}: {reason}", path.display())]
     ObjLine {
-        /// The OBJ file.
+        /// Path of the OBJ file.
         path: PathBuf,
         /// Number of the line, from 1.
         line: u32,
@@ -36,18 +36,18 @@ pub enum SceneError {
     /// Faces of an OBJ file cannot be used, for one of the reasons of [`FaceProblem`].
     #[error("{}: {}", path.display(), list_faults(faults, *total))]
     ObjFaces {
-        /// The OBJ file.
+        /// Path of the OBJ file.
         path: PathBuf,
         /// First faulty faces, in file order: at most [`FACES_SHOWN`].
         faults: Vec<FaceFault>,
-        /// Number of faulty faces.
+        /// Number of faulty faces in the file.
         total: usize,
     },
     /// A part of a mesh file (for example a material, buffer or node), or a file that the mesh file
     /// names, cannot be used.
     #[error("{}: {place}: {reason}", path.display())]
     Part {
-        /// The mesh file.
+        /// Path of the mesh file.
         path: PathBuf,
         /// Place in the mesh file, such as `node 3`, or path of the file that the mesh file names.
         place: String,
@@ -57,9 +57,9 @@ pub enum SceneError {
     /// A group that the caller asked to leave out is not in the OBJ file.
     #[error("{}: there is no group {name:?} to leave out; {}", path.display(), list_groups(groups))]
     NoSuchGroup {
-        /// The OBJ file.
+        /// Path of the OBJ file.
         path: PathBuf,
-        /// Name of the group to be left out.
+        /// Name of the group that was to be left out.
         name: String,
         /// Names of the groups in the file, in file order.
         groups: Vec<String>,
@@ -73,7 +73,7 @@ pub enum SceneError {
         plural(*points, "point", "points")
     )]
     NoTriangles {
-        /// The mesh file.
+        /// Path of the mesh file.
         path: PathBuf,
         /// Number of faces (triangles and polygons) read, without faces of groups that were left
         /// out.
@@ -86,7 +86,7 @@ pub enum SceneError {
     /// A mesh is too large for 32-bit indices.
     #[error("{}: more than {} triangles or vertices", path.display(), u32::MAX)]
     TooLarge {
-        /// The OBJ file.
+        /// Path of the OBJ file.
         path: PathBuf,
     },
     /// A mesh is so small, so large or so far from the origin that products of its lengths do not
@@ -97,7 +97,7 @@ pub enum SceneError {
         path.display(), EXTENTS.start(), EXTENTS.end()
     )]
     Extent {
-        /// The mesh file.
+        /// Path of the mesh file.
         path: PathBuf,
         /// Diagonal of the mesh's bounding box, in scene units.
         across: f64,
@@ -144,7 +144,7 @@ pub enum SceneError {
     UnknownScene {
         /// Name or path that was given.
         argument: String,
-        /// The folder of scene files that was searched.
+        /// Path of the folder of scene files that was searched.
         folder: PathBuf,
         /// Names of the built-in scenes.
         builtin: Vec<&'static str>,
@@ -163,7 +163,7 @@ pub enum SceneError {
         (direction) and --light x,y,z (the direction in which the light travels); --fov DEGREES, \
         --near and --far if the defaults do not suit it", path.display())]
     ObjNeedsView {
-        /// The mesh file.
+        /// Path of the mesh file.
         path: PathBuf,
     },
     /// The caller gave a view and light (`SceneRequest::obj`) for a scene that has its own.
@@ -179,7 +179,7 @@ pub enum SceneError {
     /// valid.
     #[error("{}: {reason}", path.display())]
     BadView {
-        /// The mesh file that the view or light was given for.
+        /// Path of the mesh file that the view or light was given for.
         path: PathBuf,
         /// Reason why the view or light cannot be used.
         reason: String,

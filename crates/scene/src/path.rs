@@ -112,6 +112,7 @@ impl CameraPath {
     /// result of [`movable`](Self::movable). Its triangles are those at rest, because no motion
     /// mirrors a part.
     ///
+    /// # Errors
     /// A sentence that names path, part and frame, if f32 cannot hold a part at its place in that
     /// frame.
     pub fn shape(&self, movable: &Movable, frame: u32) -> Result<Mesh, String> {

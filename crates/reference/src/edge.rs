@@ -35,7 +35,7 @@ pub struct EdgeDistances {
 pub struct Distances {
     /// Number of pixels that have a distance.
     pub count: u64,
-    /// Number of pixels whose distance is at most two pixels.
+    /// Number of pixels whose distance on the screen is at most two pixels.
     pub near: u64,
     /// Mean distance on the screen in pixels, between pixel centres; a pixel at an edge has the
     /// distance 0.

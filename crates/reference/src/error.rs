@@ -41,7 +41,8 @@ pub enum Error {
         /// Number of triangles of the mesh.
         count: u64,
     },
-    /// A pixel has a `visibility` or `status` that a shadow preset must not write.
+    /// A pixel has a `visibility` or `status` that is none of the values that a shadow method may
+    /// write.
     #[error("{name} is {value} at pixel ({x}, {y}); {expected}")]
     Value {
         /// Name of the buffer: `visibility` or `status`.

@@ -121,11 +121,11 @@ pub struct OffBy {
 /// share of light from 0 to 1, by kind of value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Invalid {
-    /// Pixels with the value NaN.
+    /// Pixels with the visibility NaN.
     pub nan: u64,
-    /// Pixels with the value ∞ or −∞.
+    /// Pixels with the visibility ∞ or −∞.
     pub infinite: u64,
-    /// Pixels with a finite value below 0 or above 1.
+    /// Pixels with a finite visibility below 0 or above 1.
     pub outside: u64,
 }
 

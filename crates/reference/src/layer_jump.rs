@@ -22,13 +22,16 @@ use serde::{Deserialize, Serialize};
 /// it is 1 where one of the two pixels is wrong.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LayerJump {
-    /// Number of pairs across a border.
+    /// Number of pairs of neighbouring pixels that lie across a border between layers of the shadow
+    /// map.
     pub pairs: u64,
-    /// Mean difference of the pairs across a border, 0 to 2.
+    /// Mean difference in error of the pairs of neighbouring pixels across a border between layers,
+    /// 0 to 2.
     pub across: f64,
-    /// Number of pairs elsewhere, within one layer.
+    /// Number of pairs of neighbouring pixels that lie within one layer of the shadow map.
     pub pairs_elsewhere: u64,
-    /// Mean difference of the pairs elsewhere, 0 to 2; 0 if there are none.
+    /// Mean difference in error of the pairs of neighbouring pixels within one layer, 0 to 2; 0 if
+    /// there are none.
     pub elsewhere: f64,
 }
 

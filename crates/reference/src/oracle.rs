@@ -20,11 +20,11 @@ use std::{fmt, ops::ControlFlow, str::FromStr, sync::OnceLock};
 /// the receiver's own surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum OracleMode {
-    /// The ray begins at the receiver itself; the pixel's own primitive is not a caster.
+    /// The ray begins at the receiver itself; the pixel's own primitive cannot block it.
     #[default]
     Exact,
     /// The ray begins at the receiver moved by this length, in scene units, towards the light;
-    /// every primitive is a caster. 0.03 on Sponza is the convention of the dissertation
+    /// every primitive can block it. 0.03 on Sponza is the convention of the dissertation
     /// (docs/dissertation.md).
     Offset(f64),
 }

@@ -24,8 +24,8 @@ pub struct Shimmer {
     /// truth in both frames (shares of an area light may differ by 1/255), and is indeterminate
     /// ([`GroundTruthPixels::indeterminate`](crate::GroundTruthPixels::indeterminate)) in neither.
     pub compared: u64,
-    /// Number of compared pixels whose visibility, 0 to 1, the method changed by more than 1/16, or
-    /// to or from NaN.
+    /// Number of pixels of `compared` whose visibility, 0 to 1, the method changed by more than
+    /// 1/16, or to or from NaN.
     pub changed: u64,
 }
 

@@ -35,9 +35,9 @@ pub struct PixelCounts {
 /// wrong: those with the [status] *certain light* or *certain shadow*.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CertainCounts {
-    /// Pixels with the status *certain light*.
+    /// PFL pixels with the status *certain light* ([`status::CERTAIN_LIGHT`]).
     pub lit: u64,
-    /// Pixels with the status *certain shadow*.
+    /// PFL pixels with the status *certain shadow* ([`status::CERTAIN_SHADOW`]).
     pub shadow: u64,
 }
 
@@ -80,9 +80,9 @@ pub struct ClassSplit {
 /// the reference's lit and shadowed pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Split {
-    /// Pixels that the reference lights.
+    /// Counts of the pixels that the reference lights, by the method's status.
     pub lit: ClassSplit,
-    /// Pixels in the reference's shadow.
+    /// Counts of the pixels in the reference's shadow, by the method's status.
     pub shadow: ClassSplit,
 }
 
@@ -138,7 +138,7 @@ impl Split {
 /// facing away.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Statistics {
-    /// Number of pixels by the reference's answer.
+    /// Number of pixels by the reference's answer: background, facing away, lit or in shadow.
     pub pixels: PixelCounts,
     /// Number of PFL pixels (facing the light by the reference) that the method calls certain by
     /// its [status].
@@ -248,7 +248,8 @@ impl Statistics {
         self.share(self.wrong.total)
     }
 
-    /// Returns the number of uncertain pixels as a share of PFL, the pixels that face the light.
+    /// Returns the number of pixels that the method calls uncertain as a share of PFL, the pixels
+    /// that face the light.
     pub fn uncertain_share(&self) -> f64 {
         self.share(self.uncertain)
     }

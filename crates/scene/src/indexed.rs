@@ -12,8 +12,8 @@ pub struct Indexed<'a> {
     /// Positions in world space, or, for [`Movable::joined`](crate::Movable::joined), in the model
     /// space of an instance. All must be finite.
     pub positions: &'a [[f32; 3]],
-    /// Normals, one for each position, of any length; a normal of length 0 counts as missing. An
-    /// empty list gives each triangle its geometric normal.
+    /// Normals, one for each position, finite and of any length; a normal of length 0 counts as
+    /// missing. An empty list gives each triangle its geometric normal.
     pub normals: &'a [[f32; 3]],
     /// Indices into `positions`, three for each triangle, counter-clockwise seen from outside.
     pub indices: &'a [u32],

@@ -43,7 +43,8 @@ pub enum Motion {
     },
     /// The part is bent as by wind: a point at height h above the foot (the lowest point along
     /// `up`) of a part of height H is shifted by `H (h / H)² tan(a)` along `axis`. The angle a is
-    /// `degrees · sin(2π t / seconds)` at time t of the path. The foot stands still.
+    /// `degrees · sin(2π t / seconds)` at the time t on the clock of the path's keyframes. The foot
+    /// stands still.
     Sway {
         /// Direction in which the part leans while a is positive, of any length but zero and not
         /// along `up`.

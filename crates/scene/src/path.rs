@@ -44,7 +44,8 @@ pub struct CameraPath {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, rename = "Key")]
 pub struct CameraKey {
-    /// Time in seconds. Only differences count: frame 0 is at the first keyframe.
+    /// Time in seconds, on the clock of the whole path (light and moving parts included). Frame 0
+    /// is at the first keyframe.
     pub at: f64,
     /// Position of the camera, world space.
     #[serde(with = "Vector")]

@@ -25,7 +25,7 @@ pub enum OracleMode {
     Exact,
     /// The ray begins at the receiver moved by this length, in scene units, towards the light;
     /// every primitive can block it. 0.03 on Sponza is the convention of the dissertation
-    /// (docs/dissertation.md).
+    /// (docs/methods.md).
     Offset(f64),
 }
 

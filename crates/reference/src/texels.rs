@@ -1,9 +1,10 @@
 //! Number of shadow-map texels that a pixel covers at its receiver, the point that it shows.
 //!
 //! Fewer than one is *under-sampling*, which shows as steps. Zhang and others ("Parallel-Split
-//! Shadow Maps", VRCIA 2006, the dissertation's 3.2.1) write it as dp/ds = n · (dz / z ds) · (cos φ
-//! / cos θ), pixels per texel: a *perspective* part of distance and map, and a *projection* part of
-//! the surface's angles to eye and light. This is the reciprocal, of areas instead of lengths.
+//! Shadow Maps", VRCIA 2006; section 3.2.1 of the dissertation that docs/methods.md names) write it
+//! as dp/ds = n · (dz / z ds) · (cos φ / cos θ), pixels per texel: a *perspective* part of distance
+//! and map, and a *projection* part of the surface's angles to eye and light. This is the
+//! reciprocal, of areas instead of lengths.
 
 use crate::{
     error::Error, ground_truth::GroundTruthPixels, pixels::check_pixel_count, shimmer::Seen,

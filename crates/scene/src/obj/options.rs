@@ -13,7 +13,7 @@ pub enum QuadDiagonal {
     #[default]
     FirstThird,
     /// From corner 1 to corner 3: triangles (1, 2, 3) and (1, 3, 0). This reproduces the Sponza
-    /// mesh of the dissertation (docs/dissertation.md).
+    /// mesh of the dissertation (docs/methods.md).
     SecondFourth,
 }
 
@@ -37,7 +37,7 @@ pub enum Concave {
     #[default]
     Cut,
     /// The polygon is split into the fan nevertheless and gains area, as many importers do it. The
-    /// Sponza mesh of the dissertation (docs/dissertation.md) has 231 such quads.
+    /// Sponza mesh of the dissertation (docs/methods.md) has 231 such quads.
     Fan,
 }
 

@@ -234,27 +234,27 @@ pub(crate) struct SamplerEntry {
     pub compare: Option<Compare>,
 }
 
-/// A sampler's filter.
+/// Filter of a sampler, for minification, magnification and between mips.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Filter {
-    /// The nearest texel.
+    /// Takes the nearest texel of the nearest mip.
     #[default]
     Nearest,
-    /// Bilinear (and between mips).
+    /// Interpolates between texels (bilinear) and between mips (trilinear).
     Linear,
 }
 
-/// Addressing outside of a texture.
+/// Texels that a sampler reads outside of the texture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Address {
-    /// The border texels go on.
+    /// The texels of the edge, repeated.
     #[default]
     ClampToEdge,
-    /// The texture repeats.
+    /// The texture again, side by side.
     Repeat,
-    /// The texture repeats, mirrored.
+    /// The texture again, every second one mirrored.
     MirrorRepeat,
 }
 

@@ -22,8 +22,8 @@ use serde::{Deserialize, Serialize};
 use skiagraph_reference::{Graded, Shimmer};
 use std::collections::BTreeMap;
 
-/// Measurements of each frame of a camera path. The run's own counts are sums over all frames; its
-/// times are order statistics over the frames.
+/// Measurements of each frame of a camera path. The counts of its run are sums over all frames; the
+/// run's times are order statistics over the frames.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sequence {
     /// Measurements of each frame, in the order of the path.
@@ -31,8 +31,8 @@ pub struct Sequence {
     /// Counts, over all frames, of answers that changed from one frame to the next although the
     /// right answers did not.
     pub shimmer: Shimmer,
-    /// Order statistics of the frames' times when every pass runs; absent if no frame skips a pass,
-    /// and with `--cached-frames 0`.
+    /// Order statistics of the frames' times when no pass is skipped, measured in a second walk
+    /// along the path; absent if no frame skips a pass, and with `--cached-frames 0`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub every_pass: Option<FrameTimes>,
 }
@@ -65,8 +65,8 @@ pub struct SequenceFrame {
     /// depend on had changed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub remade: Vec<Remade>,
-    /// Times of the frame when every pass runs, as if no results were kept from earlier frames;
-    /// absent if this was not measured.
+    /// Times of the frame when no pass is skipped, measured in a second walk along the path; absent
+    /// if it was not measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub every_pass: Option<FrameCost>,
 }

@@ -30,13 +30,14 @@ use std::path::{Path, PathBuf};
 pub struct Kept {
     /// The folder that the results were read from, with their pictures.
     pub folder: PathBuf,
-    /// Results from the folder's `results.json` that were measured alike: `others` is empty.
+    /// Results from the folder's `results.json` of one machine, adapter, scene and protocol:
+    /// `others` is empty.
     pub results: Results,
 }
 
 impl Kept {
-    /// Reads the results of a folder, or of a results.json whose folder has its pictures. A file
-    /// that `merge` wrote may hold several.
+    /// Reads the results of `place`: a folder with a results.json, or the path of that file. A file
+    /// that `merge` wrote gives one entry for each machine, adapter, scene and protocol.
     ///
     /// # Errors
     /// The errors of [`read_back::kept`].
@@ -61,16 +62,17 @@ impl Kept {
 pub struct Source {
     /// All runs of the source, with their conditions.
     pub results: Results,
-    /// The folders that the runs come from.
+    /// The folders of the joined results, in the order in which they were joined.
     pub folders: Vec<PathBuf>,
     /// Index of each run's folder.
     places: Vec<usize>,
-    /// Number of runs that were left out, as a newer one of the same cell is there.
+    /// Number of runs that were left out because there is a newer one of the same method, params,
+    /// view and viewport.
     pub replaced: usize,
 }
 
 impl Source {
-    /// Returns the folder with the pictures of the run with this index in the results.
+    /// Returns the folder with the pictures of the run with the index `run` in `results.runs`.
     pub fn folder_of(&self, run: usize) -> &Path {
         &self.folders[self.places[run]]
     }
@@ -132,8 +134,9 @@ impl Source {
     }
 }
 
-/// Joins kept results into sources, one for each scene, machine, adapter and protocol, in the order
-/// of the folders. Of the runs of one cell in a source the newest one counts.
+/// Joins results into sources, one for each scene, machine, adapter and protocol, in the order of
+/// `kept`. Of several runs of one method with the same params, view and viewport only the newest
+/// stays in a source.
 pub fn sources(kept: Vec<Kept>) -> Vec<Source> {
     let mut sources: Vec<Source> = Vec::new();
     for Kept { folder, results } in kept {

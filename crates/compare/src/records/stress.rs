@@ -93,15 +93,16 @@ pub struct Case {
     pub reason: String,
     /// Kind of the case's casters: closed or open.
     pub casters: Casters,
-    /// Greatest share of the pixels facing the light, 0 to 1, that the band may take.
+    /// Greatest share of the pixels facing the light, 0 to 1, that may be in the band (the pixels
+    /// whose answer rounding decides).
     pub band_cap: f64,
-    /// Verdict on the band: `Fail` if the band is above its cap or the case has no reference,
-    /// otherwise `Pass`.
+    /// Verdict on the case itself: `Fail` if the band (the pixels whose answer rounding decides) is
+    /// above `band_cap` or the case has no reference, otherwise `Pass`.
     pub verdict: Verdict,
     /// Reason why the case has no reference, and so no cells; absent where it has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failed: Option<String>,
-    /// Counts of the reference's pixels.
+    /// Numbers of pixels by the reference's answer.
     pub pixels: PixelCounts,
     /// Number of pixels facing the light whose answer flips within the rounding error of receiver
     /// and casters: the band.
@@ -137,7 +138,8 @@ pub struct Cell {
     pub images: Option<Images>,
 }
 
-/// Verdict on a cell, or on the band of a case.
+/// Verdict on one method on one case, or on a case itself: its band, the pixels whose answer
+/// rounding decides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
@@ -156,12 +158,13 @@ pub enum Verdict {
 /// Counts of a cell's pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Counts {
-    /// Counts of the pixels on which method and reference disagree.
+    /// Numbers of the pixels on which method and reference disagree.
     pub wrong: WrongCounts,
-    /// Counts of the wrong pixels that are not in the band.
+    /// Numbers of the wrong pixels that are not in the band (the pixels whose answer rounding
+    /// decides).
     pub outside_band: OutsideBand,
-    /// Number of pixels facing the light that the method calls uncertain: it decides them by
-    /// tracing rays.
+    /// Number of pixels facing the light that the method calls uncertain: its shadow map does not
+    /// decide them, so that it traces rays or guesses.
     pub uncertain: u64,
     /// Uncertain pixels as a share of the pixels facing the light, 0 to 1.
     pub uncertain_share: f64,
@@ -169,7 +172,7 @@ pub struct Counts {
     pub rays: Option<u64>,
 }
 
-/// Counts of the wrong pixels outside the band.
+/// Numbers of the wrong pixels outside the band (the pixels whose answer rounding decides).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct OutsideBand {
     /// Number of pixels lit by the method, but not by the reference.
@@ -181,7 +184,8 @@ pub struct OutsideBand {
 }
 
 impl OutsideBand {
-    /// True if any of these wrong pixels breaks the guarantee.
+    /// True if any of these wrong pixels breaks the guarantee: any for `Exact`, one that the method
+    /// called certain for `Certain`.
     pub fn breaks(&self, guarantee: Guarantee) -> bool {
         match guarantee {
             Guarantee::Exact => self.lit + self.shadow > 0,
@@ -191,9 +195,10 @@ impl OutsideBand {
 }
 
 impl Verdict {
-    /// Judges a cell whose method ran. `culls` is true if not all faces cast shadows; the guarantee
-    /// then does not cover open casters. `certain` is the number of pixels that the method calls
-    /// certain; `outside` counts the wrong pixels outside the band.
+    /// Judges a method that ran on a case with these casters. `culls` is true if the method culls
+    /// faces from its shadow map; the guarantee then does not cover open casters. `certain` is the
+    /// number of pixels that the method calls certain; `outside` counts its wrong pixels outside
+    /// the band.
     pub fn new(
         guarantee: Option<Guarantee>,
         culls: bool,
@@ -212,10 +217,10 @@ impl Verdict {
 }
 
 impl Counts {
-    /// Creates the counts of a picture. `whole` counts the method's answers as they are; `settled`
-    /// counts them with the reference's answer at each pixel in the band, so that its wrong pixels
-    /// are those outside the band. `rays` is the number of rays traced; `None` if the graph does
-    /// not count them.
+    /// Creates the counts of a picture. `whole` counts the method's answers as they are. `settled`
+    /// counts them with the reference's answer at each pixel in the band (the pixels whose answer
+    /// rounding decides), so that its wrong pixels are those outside the band. `rays` is the number
+    /// of rays traced; `None` if the graph does not count them.
     pub fn new(whole: &Statistics, settled: &Statistics, rays: Option<u64>) -> Self {
         let outside = settled.wrong;
         Self {
@@ -240,14 +245,14 @@ impl Cell {
 }
 
 impl Case {
-    /// True if the band takes more than its cap of the pixels facing the light. Pixels in the band
-    /// prove nothing, and neither does a case that consists mostly of them.
+    /// True if more than the share `band_cap` of the pixels facing the light is in the band, the
+    /// pixels whose answer rounding decides. Such a case proves little.
     pub fn exceeds_cap(&self) -> bool {
         self.band as f64 > self.band_cap * self.pixels.facing_light as f64
     }
 
-    /// True if a method with a shadow map left all pixels facing the light to rays, so that a right
-    /// answer does not test its map.
+    /// True if a method with a shadow map called all pixels facing the light uncertain, so that a
+    /// right answer does not test its map.
     pub fn is_left_to_rays(&self, cell: &Cell) -> bool {
         let all = self.pixels.facing_light;
         let of_all = |counts: &Counts| all > 0 && counts.uncertain == all;
@@ -262,7 +267,8 @@ impl Report {
         cells.filter(|cell| cell.verdict == verdict).count()
     }
 
-    /// Returns the number of cells that passed, but whose method left all pixels to rays.
+    /// Returns the number of cells that passed, but whose method called all pixels facing the light
+    /// uncertain.
     pub fn left_to_rays(&self) -> usize {
         let cases = self.cases.iter();
         let cells = cases.flat_map(|case| case.cells.iter().map(move |cell| (case, cell)));
@@ -272,7 +278,8 @@ impl Report {
             .count()
     }
 
-    /// Returns the number of cases that failed: their band is too large, or they have no reference.
+    /// Returns the number of cases with the [verdict](Case::verdict) `Fail`: too many of their
+    /// pixels are decided by rounding, or they have no reference.
     pub fn failed_cases(&self) -> usize {
         let failed = |case: &&Case| case.verdict == Verdict::Fail;
         self.cases.iter().filter(failed).count()

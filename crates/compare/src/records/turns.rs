@@ -43,7 +43,7 @@ pub struct PairedRatio {
     pub low: f64,
     /// Median of the ratios, one per turn.
     pub median: f64,
-    /// Upper end of the interval.
+    /// Upper end of that interval.
     pub high: f64,
 }
 

@@ -135,7 +135,7 @@ pub fn legends(tables: &[Shown]) -> String {
 }
 
 /// Returns charts as HTML that show how time grows with the viewport and with the map size. A chart
-/// is missing if fewer than two of its sizes were measured.
+/// is missing if no method was measured in two of its sizes.
 pub fn growths(tables: &[Shown]) -> String {
     let mut html = String::new();
     for (index, table) in tables.iter().enumerate() {

@@ -39,7 +39,7 @@ pub enum CliError {
         /// Results that were kept, as text for the user.
         kept: String,
     },
-    /// Any other error of a comparison.
+    /// Any other error of the measuring library.
     #[error(transparent)]
     Compare(CompareError),
 }

@@ -32,9 +32,9 @@ pub struct OwnCamera {
     pub up: Option<DVec3>,
     /// Vertical field of view in degrees, between 0 and 180.
     pub fov_y_degrees: Option<f64>,
-    /// Distance of the near plane.
+    /// Distance of the near plane from the eye.
     pub near: Option<f64>,
-    /// Distance of the far plane.
+    /// Distance of the far plane from the eye.
     pub far: Option<f64>,
 }
 

@@ -37,7 +37,7 @@ const DEFAULT_FOV: f64 = 60.0;
 /// Settings that turn a mesh file into a scene.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct MeshSceneOptions {
-    /// How the file is read.
+    /// Settings for reading the file: its polygons and materials.
     pub file: MeshFileOptions,
     /// Parts of the camera of the view that is chosen for a file without cameras; `near` and `far`
     /// are ignored here.

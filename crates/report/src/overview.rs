@@ -28,7 +28,7 @@ struct Column<'a> {
     verdict: Verdict,
 }
 
-/// The table of one viewport.
+/// The table of an [`Overview`] in one viewport.
 pub struct Matrix {
     /// Width and height of the viewport in pixels.
     pub viewport: [u32; 2],
@@ -80,7 +80,7 @@ impl<'a> Overview<'a> {
         })
     }
 
-    /// Returns the table of each viewport.
+    /// Returns the tables of methods and scenes, one for each viewport.
     pub fn matrices(&self) -> Vec<Matrix> {
         let matrix = |viewport: [u32; 2]| {
             let columns = self.columns.iter().enumerate();

@@ -34,9 +34,9 @@ pub fn views_left_out(
     ))
 }
 
-/// Returns a line for each scene that is only published or only measured, or of which a view,
-/// viewport, map size or preset is. `cells` are the measured runs, `rows` the published figures,
-/// and `label` names the publication.
+/// Returns a line for each scene that is only published or only measured, and a line for each other
+/// scene with the views, viewports, map sizes and presets that are. `cells` are the measured runs,
+/// `rows` the published figures, and `label` names the publication.
 pub fn without_counterpart<'a>(
     cells: &[Cell],
     rows: impl Iterator<Item = &'a Row>,

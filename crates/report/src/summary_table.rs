@@ -22,7 +22,7 @@ use skiagraph_compare::wording::{bytes, ms, percent, plural, size, thousands};
 use skiagraph_reference::BlockerCounts;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Results of one viewport under one light.
+/// Results in one viewport under one light, combined over the views.
 pub struct Summary<'a> {
     results: &'a Results,
     /// Width and height of the viewport in pixels.

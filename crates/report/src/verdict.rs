@@ -11,7 +11,7 @@ use skiagraph_compare::wording::{bytes, ms, percent, plural};
 /// beyond which a verdict holds for the other pixels only.
 pub(crate) const MAX_BAND: f64 = 0.01;
 
-/// Verdict on the rows of a summary.
+/// Verdict on the rows of a summary: the methods that it recommends, in figures and in words.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Verdict {
     /// Index of the row that is fastest in frames in which every pass runs, among those without a

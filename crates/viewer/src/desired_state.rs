@@ -45,7 +45,7 @@ pub struct DesiredMethod {
 pub enum Event {
     /// The scene of this name was loaded, or could not be loaded; the error is text for the user.
     Scene(String, Result<Loaded, String>),
-    /// A frame of each method.
+    /// A frame of each method of the desired state.
     Frame(Box<FrameSnapshot>),
     /// The desired state cannot be drawn, for example since the GPU cannot be opened again; the
     /// text for the user is the reason.

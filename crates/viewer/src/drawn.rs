@@ -31,7 +31,8 @@ pub enum Show {
     Material(Capture),
 }
 
-/// How a pane shows a material.
+/// Mip or layer, channel and colours with which a pane, one of the window's two pictures, shows a
+/// material.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reading {
     /// Index of the shown part in [`Drawn::parts`]: the layers of the first mip, then those of the

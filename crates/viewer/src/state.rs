@@ -34,7 +34,7 @@ pub enum Drag {
 pub struct Pane {
     /// Kind of picture to show.
     pub show: Show,
-    /// How a material is shown.
+    /// Mip or layer, channel and colours with which a material is shown.
     pub reading: Reading,
     /// Picture, legend and numbers as drawn last.
     pub drawn: Drawn,
@@ -69,7 +69,8 @@ pub struct Choices {
     pub adapter: String,
 }
 
-/// State of the window.
+/// State of the viewer's window: the desired state, the newest frame, its pictures, and the user's
+/// choices.
 pub struct Viewer {
     channels: Channels,
     /// Scenes and methods that the user can choose.

@@ -25,7 +25,7 @@ use std::{
 
 /// Commands of the window to the thread that runs the graphs.
 pub enum Command {
-    /// Show this state.
+    /// Run a frame of this state, and send it to the window.
     Show(Box<DesiredState>),
     /// Read the methods' files again; they may have changed.
     Reload,
@@ -49,7 +49,7 @@ struct Stage {
     primitives: Option<(Executor, [u32; 2])>,
 }
 
-/// State of the thread that runs the graphs.
+/// State of the thread that runs the graphs: the GPU, the scene and the methods.
 pub struct Worker {
     request: GpuRequest,
     load_scene: LoadScene,

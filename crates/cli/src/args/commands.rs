@@ -14,7 +14,7 @@ use skiagraph_reference::OracleMode;
 use skiagraph_report::gate::Gate;
 use std::path::PathBuf;
 
-/// `skiagraph compare`.
+/// Arguments of `skiagraph compare`.
 #[derive(Args, Debug)]
 #[command(mut_arg("scenes", |scenes| scenes.action(ArgAction::Append).help(
     "Built-in scene, scene file (.ron), name in scenes/, or a mesh (.obj, .gltf, .glb). Given \
@@ -51,8 +51,8 @@ pub struct CompareArgs {
         default_value = "1024x1024"
     )]
     pub size: Vec<Size>,
-    /// Shadow map sizes in texels, separated by commas: the param `map_size` of the graphs that
-    /// have it.
+    /// Widths of square shadow maps in texels, separated by commas: the param `map_size` of the
+    /// graphs that have it.
     #[arg(long, value_name = "N,…", value_delimiter = ',',
           value_parser = texels(), allow_negative_numbers = true)]
     pub map_size: Vec<u32>,
@@ -160,7 +160,7 @@ pub enum Format {
     Json,
 }
 
-/// `skiagraph chart`.
+/// Arguments of `skiagraph chart`.
 #[derive(Args, Debug)]
 pub struct ChartArgs {
     /// Folders that `compare --out` wrote, each with its results.json.
@@ -202,7 +202,7 @@ pub enum ChartKind {
     Frames,
 }
 
-/// `skiagraph report`.
+/// Arguments of `skiagraph report`.
 #[derive(Args, Debug)]
 pub struct ReportArgs {
     /// Folders that `compare --out` or `stress --out` wrote. Results of one scene, machine, GPU and
@@ -214,7 +214,7 @@ pub struct ReportArgs {
     pub out: Option<PathBuf>,
 }
 
-/// `skiagraph merge`.
+/// Arguments of `skiagraph merge`.
 #[derive(Args, Debug)]
 pub struct MergeArgs {
     /// Folders that `compare --out` or `merge --out` wrote, or their results.json.
@@ -225,14 +225,14 @@ pub struct MergeArgs {
     pub out: PathBuf,
 }
 
-/// `skiagraph completions`.
+/// Arguments of `skiagraph completions`.
 #[derive(Args, Debug)]
 pub struct CompletionsArgs {
     /// Shell for which the script is printed.
     pub shell: clap_complete::Shell,
 }
 
-/// `skiagraph new`.
+/// Arguments of `skiagraph new`.
 #[derive(Args, Debug)]
 pub struct NewArgs {
     /// Name of the new method: NAME.ron and NAME.wgsl are written into the current folder.
@@ -242,7 +242,7 @@ pub struct NewArgs {
     pub from: Option<String>,
 }
 
-/// `skiagraph show`.
+/// Arguments of `skiagraph show`.
 #[derive(Args, Debug)]
 pub struct ShowArgs {
     /// Name of a preset or scene, or path of a document or shader, also relative to pipelines/ or
@@ -254,7 +254,7 @@ pub struct ShowArgs {
     pub flat: bool,
 }
 
-/// `skiagraph schema`.
+/// Arguments of `skiagraph schema`.
 #[derive(Args, Debug)]
 pub struct SchemaArgs {
     /// Kind of files whose format is described.
@@ -283,7 +283,7 @@ pub enum SchemaFormat {
     Markdown,
 }
 
-/// `skiagraph run`.
+/// Arguments of `skiagraph run`.
 #[derive(Args, Debug)]
 pub struct RunArgs {
     /// The method to run.
@@ -317,7 +317,7 @@ pub struct RunArgs {
     pub poison: bool,
 }
 
-/// `skiagraph profile`.
+/// Arguments of `skiagraph profile`.
 #[derive(Args, Debug)]
 pub struct ProfileArgs {
     /// Presets by name, or graphs (.ron). `crsm@n=1,depth=plane` is a method with params of its
@@ -332,8 +332,8 @@ pub struct ProfileArgs {
         default_value = "1024x1024"
     )]
     pub size: Vec<Size>,
-    /// Shadow map sizes in texels, separated by commas: the param `map_size` of the graphs that
-    /// have it.
+    /// Widths of square shadow maps in texels, separated by commas: the param `map_size` of the
+    /// graphs that have it.
     #[arg(long, value_name = "N,…", value_delimiter = ',',
           value_parser = texels(), allow_negative_numbers = true)]
     pub map_size: Vec<u32>,
@@ -367,7 +367,7 @@ pub struct ProfileArgs {
     pub baseline: Option<PathBuf>,
 }
 
-/// `skiagraph stress`.
+/// Arguments of `skiagraph stress`.
 #[derive(Args, Debug)]
 pub struct StressArgs {
     /// Presets by name, or graphs (.ron) with the output `visibility`, and perhaps `status`.
@@ -384,8 +384,8 @@ pub struct StressArgs {
     /// Viewport size in pixels.
     #[arg(long, value_name = "WxH", default_value = "128x128")]
     pub size: Size,
-    /// Shadow map sizes in texels, separated by commas: the param `map_size` of the graphs that
-    /// have it.
+    /// Widths of square shadow maps in texels, separated by commas: the param `map_size` of the
+    /// graphs that have it.
     #[arg(long, value_name = "N,…", value_delimiter = ',', default_value = "128",
           value_parser = texels(), allow_negative_numbers = true)]
     pub map_size: Vec<u32>,
@@ -417,7 +417,7 @@ pub enum StressFormat {
     Json,
 }
 
-/// `skiagraph check`.
+/// Arguments of `skiagraph check`.
 #[derive(Args, Debug)]
 pub struct CheckArgs {
     /// Graphs (.ron), or presets by name.
@@ -441,7 +441,7 @@ pub enum CheckFormat {
     Json,
 }
 
-/// `skiagraph presets`.
+/// Arguments of `skiagraph presets`.
 #[derive(Args, Debug)]
 pub struct PresetsArgs {
     /// Format of the list.
@@ -458,7 +458,7 @@ pub enum PresetsFormat {
     Markdown,
 }
 
-/// `skiagraph graph`.
+/// Arguments of `skiagraph graph`.
 #[derive(Args, Debug)]
 pub struct GraphArgs {
     /// The method to plan.
@@ -487,7 +487,7 @@ pub enum DrawingFormat {
     Json,
 }
 
-/// `skiagraph view`.
+/// Arguments of `skiagraph view`.
 #[derive(Args, Debug)]
 pub struct ViewArgs {
     /// One or two presets by name, or graphs (.ron), each perhaps with params of its own.
@@ -499,7 +499,7 @@ pub struct ViewArgs {
     /// Viewport of the methods in pixels; the window scales their pictures.
     #[arg(long, value_name = "WxH", default_value = "512x512")]
     pub size: Size,
-    /// Shadow map size in texels: the param `map_size`.
+    /// Width of the square shadow map in texels: the param `map_size`.
     #[arg(long, value_name = "N", value_parser = texels(), allow_negative_numbers = true)]
     pub map_size: Option<u32>,
     /// A param of the graphs that have it. May be repeated.

@@ -134,7 +134,7 @@ pub struct SceneArgs {
 /// Choice of the materials of a mesh file that are read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Materials {
-    /// Colours and masks; a mask that is missing is an error.
+    /// Colours and alpha masks; a missing mask file is an error.
     All,
     /// Colours; every surface is opaque, and missing files are warnings.
     Color,
@@ -258,7 +258,7 @@ pub struct MethodArgs {
     /// Viewport size in pixels.
     #[arg(long, value_name = "WxH", default_value = "1024x1024")]
     pub size: Size,
-    /// Shadow map size in texels: the param `map_size`.
+    /// Width of the square shadow map in texels: the param `map_size`.
     #[arg(long, value_name = "N", value_parser = texels(), allow_negative_numbers = true)]
     pub map_size: Option<u32>,
     /// A param of the graph. May be repeated.

@@ -87,7 +87,7 @@ impl Method {
         }
     }
 
-    /// Returns the method under another name.
+    /// Returns the method with another name in results.
     pub fn named(self, name: &str) -> Self {
         Self {
             name: name.to_owned(),
@@ -152,7 +152,8 @@ impl Method {
         self.values.get(name)
     }
 
-    /// Returns all params with the values that the method runs with, as JSON values.
+    /// Returns all params, defaults included, with the values that the method runs with, as JSON
+    /// values.
     pub fn all_params(&self) -> BTreeMap<String, serde_json::Value> {
         let entry = |(name, value): (&String, &ParamValue)| (name.clone(), json(value));
         self.values.iter().map(entry).collect()

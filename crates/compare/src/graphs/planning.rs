@@ -32,7 +32,7 @@ pub struct Capabilities {
     pub limits: wgpu::Limits,
     /// Features of the device.
     pub features: wgpu::Features,
-    /// The backend, if it offers less than WebGPU; `None` otherwise.
+    /// The graphics backend, if it lacks part of WebGPU, as OpenGL does; `None` otherwise.
     pub partial_backend: Option<PartialBackend>,
     /// Bytes that the textures and buffers of a graph may take; `None` for no limit.
     pub memory: Option<u64>,

@@ -121,7 +121,7 @@ pub struct GroundTruthView<'a> {
     light: LightKind,
     primitives: Vec<u32>,
     mode: OracleMode,
-    /// The oracle's answer for each pixel.
+    /// The reference's answer for each pixel: lit, in shadow, or a share of light.
     pub ground_truth: GroundTruth,
     /// Number of pixels that the GPU rasterised with a surface that is hidden behind another one by
     /// more than rounding. Methods are judged on the rasterised surface nevertheless.
@@ -243,7 +243,7 @@ impl<'a> GroundTruthView<'a> {
     }
 }
 
-/// Frames of a view or path with their ground truth.
+/// Frames of a still view or camera path with their ground truth.
 pub struct GroundTruthFrames<'a> {
     /// Camera pose and mesh of each frame.
     pub frames: &'a FrameSequence,

@@ -320,7 +320,7 @@ impl MeasureContext<'_> {
         }
     }
 
-    /// Removes GPU times of a frame if timestamps cannot be trusted.
+    /// Sets the GPU times in `frame` to `None` if timestamps cannot be trusted.
     pub fn distrust(&self, frame: &mut FrameTimes) {
         if !self.timestamps {
             frame.without_gpu();

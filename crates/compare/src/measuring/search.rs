@@ -36,7 +36,7 @@ pub struct Axis {
 /// The best combination that a search found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
-    /// The combination.
+    /// The combination, as indices of values.
     pub point: Point,
     /// Its error; infinite if no combination could run.
     pub error: f64,

@@ -8,9 +8,9 @@ use skiagraph_gpu::ExecuteError;
 
 /// Reason why the frames of a method ended early.
 pub enum Stop {
-    /// The device refuses the method, or is lost.
+    /// The device refuses the method, for example for want of memory, or is lost.
     Refused(Box<ExecuteError>),
-    /// Any other error.
+    /// Any other error, such as an early end that the sink asked for.
     Failed(CompareError),
 }
 

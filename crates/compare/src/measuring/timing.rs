@@ -138,9 +138,9 @@ pub fn timed_frame(
 
 /// Order statistics of the times of some frames, of each pass and of whole frames.
 pub struct Times {
-    /// Times of each pass.
+    /// Order statistics of the times of each pass, in the order in which the passes ran.
     pub passes: Vec<Pass>,
-    /// Times of whole frames.
+    /// Order statistics of the times of whole frames, and the time of each frame.
     pub frame: FrameTimes,
     /// Names of the passes that did not run in the first of the frames.
     pub skipped: Vec<String>,

@@ -37,7 +37,7 @@ impl TrialView<'_> {
     }
 }
 
-/// Limits of trials.
+/// Limits of work, frame time and memory for trials.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
     /// Number of plans and frames that may be run, added up.

@@ -53,7 +53,7 @@ impl FromStr for DataFormat {
 /// Numbers of an array, all of one type.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Values {
-    /// Floating-point numbers.
+    /// 32-bit floating-point numbers.
     F32(Vec<f32>),
     /// Unsigned 32-bit integers.
     U32(Vec<u32>),

@@ -69,13 +69,13 @@ pub struct Conditions {
     pub preset: String,
     /// Name of the view.
     pub view: String,
-    /// Width and height in pixels.
+    /// Width and height of the viewport in pixels.
     pub viewport: [u32; 2],
-    /// All params of the graph with the values it ran with.
+    /// All params of the graph, defaults included, with the values that it ran with.
     pub params: BTreeMap<String, serde_json::Value>,
     /// Number of timed frames that were requested. There are fewer samples if the work ended early.
     pub frames: u32,
-    /// Number of warm-up frames before the timed ones.
+    /// Number of untimed warm-up frames before the timed ones.
     pub warmup: u32,
 }
 
@@ -135,19 +135,20 @@ pub struct PassProfile {
     /// Share of the frame's GPU time that the pass takes, 0 to 1, as the median over the frames;
     /// null without GPU times. Passes may overlap, so that shares need not add up to 1.
     pub share: Option<f64>,
-    /// Milliseconds of encoding the pass on the CPU.
+    /// CPU time of encoding the pass, in milliseconds, for each frame.
     pub cpu_ms: Series,
 }
 
 /// Times of whole frames, in milliseconds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrameProfile {
-    /// GPU time from the start of the first pass to the end of the last; null if there are no
-    /// timestamps or they cannot be trusted.
+    /// GPU time from the start of a frame's first pass to the end of its last, in milliseconds;
+    /// null if there are no timestamps or they cannot be trusted.
     pub gpu_ms: Option<Series>,
-    /// CPU time of encoding all passes.
+    /// CPU time of encoding all passes of a frame, in milliseconds.
     pub cpu_ms: Series,
-    /// Time from the start of encoding until the GPU was done, measured by the CPU's clock.
+    /// Time from the start of encoding a frame until the GPU was done, by the CPU's clock, in
+    /// milliseconds.
     pub wall_ms: Series,
 }
 

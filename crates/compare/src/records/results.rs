@@ -93,7 +93,7 @@ impl Results {
 pub struct Adapter {
     /// Name of the GPU by its driver.
     pub name: String,
-    /// Graphics API: vulkan, metal or dx12.
+    /// Graphics API: vulkan, metal, dx12 or gl.
     pub backend: String,
     /// Driver and its version.
     pub driver: String,
@@ -145,7 +145,7 @@ pub struct Scene {
     pub name: String,
     /// Number of triangles in the mesh.
     pub triangles: u64,
-    /// Numbers of open and closed parts of the mesh.
+    /// Numbers of open and of all parts (connected sets of triangles) of the mesh.
     pub parts: OpenParts,
 }
 
@@ -216,11 +216,12 @@ pub struct Run {
     /// Name of the light, where the view is compared under several; absent elsewhere.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub light: Option<String>,
-    /// Width and height in pixels.
+    /// Width and height of the viewport in pixels.
     pub viewport: [u32; 2],
-    /// Value of the param `map_size`; null where the graph has none.
+    /// Width and height of the shadow map in texels (the param `map_size`); null where the graph
+    /// has no such param.
     pub map_size: Option<u32>,
-    /// All params of the graph with the values it ran with.
+    /// All params of the graph, defaults included, with the values that it ran with.
     pub params: BTreeMap<String, serde_json::Value>,
     /// Hash of everything but the params that the run depends on: the files of the graph, its
     /// includes and shaders; those of the graph that finds the visible triangles; mesh, light and
@@ -260,10 +261,11 @@ pub struct Run {
     /// Sampling of the reference for a light with an extent; absent for other lights.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub area: Option<AreaReference>,
-    /// The measurements; absent where the preset is unavailable.
+    /// The measurements; absent where the method could not run.
     #[serde(flatten)]
     pub measured: Option<Measured>,
-    /// Reason why the preset could not run on this adapter; absent where it did.
+    /// Reason why the method could not run on this adapter, or its outputs are not those of a
+    /// shadow method; absent where it was measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unavailable: Option<String>,
     /// Figures that others have published about the run, with `--beside`.
@@ -353,7 +355,7 @@ impl Run {
     }
 }
 
-/// Promise that a document makes about its method's answers.
+/// Promise that a method's document makes about which of its pixels are right.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Promise {
     /// Pixels that are promised to be right: `exact` for all, `certain` for those that the method
@@ -370,7 +372,8 @@ pub struct Promise {
 pub enum Answer {
     /// Answers 0 and 1: the output `visibility` is a texture of integers.
     Hard,
-    /// Answers that are shares of light.
+    /// Answers that are shares of light, 0 to 1: the output `visibility` is a texture of floats or
+    /// normalised integers.
     Graded,
 }
 
@@ -416,19 +419,19 @@ impl AreaReference {
     }
 }
 
-/// A part of some pixels, as two counts.
+/// Number of pixels of some kind, with the number of all pixels among which they are counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Part {
-    /// Number of pixels in the part.
+    /// Number of pixels of that kind.
     pub count: u64,
-    /// Number of all pixels of which these are a part.
+    /// Number of all pixels among which they are counted.
     pub of: u64,
 }
 
 /// A figure that others have published about a run, or about its view and viewport.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Published {
-    /// Label of the publication.
+    /// Label of the publication, from `--beside LABEL:FILE.csv`.
     pub by: String,
     /// Name of the quantity: `wrong_percent`, `ms.trace_rays` …
     pub quantity: String,
@@ -453,7 +456,8 @@ pub struct Measured {
     /// Counts of the certain and the uncertain pixels, and of the wrong ones among them, separately
     /// for pixels that the reference lights and pixels in its shadow.
     pub split: Split,
-    /// Number of rays traced per frame; null where the graph does not count them.
+    /// Number of rays traced in the frame, for a camera path in all frames together; null where the
+    /// graph does not count them.
     pub rays: Option<u64>,
     /// Numbers of pixels on which method and reference disagree. Pixels facing the light are
     /// judged, and those that only the method takes for facing it.
@@ -475,11 +479,12 @@ pub struct Measured {
     /// Errors of the shares of light that the method shows, against the reference; a hard answer
     /// shows 0 or 1.
     pub graded: Graded,
-    /// Distances of wrong pixels from the edges of the reference's shadows.
+    /// Distances in pixels of wrong pixels from the edges of the reference's shadows.
     pub edges: EdgeDistances,
-    /// Times of each pass, in the order in which they ran.
+    /// Times of each pass over the timed frames, in the order in which they ran.
     pub passes: Vec<Pass>,
-    /// Times of whole frames.
+    /// Times of whole frames: of a still view with every pass run, of a camera path with passes
+    /// skipped whose inputs had not changed.
     pub frame: FrameTimes,
     /// Times of frames in which only the camera moved and unchanged passes were skipped; null if no
     /// pass was skipped.
@@ -487,7 +492,7 @@ pub struct Measured {
     /// Bytes of the textures and buffers that the graph makes; memory that several share counts
     /// once.
     pub memory_bytes: u64,
-    /// Bytes saved by letting textures and buffers share memory.
+    /// Bytes by which `memory_bytes` is less because textures and buffers share memory.
     pub saved_bytes: u64,
     /// Bytes of the scene's resources that the graph reads, such as positions, indices and
     /// hierarchy.

@@ -42,7 +42,7 @@ pub struct Baseline {
     all: Vec<Results>,
 }
 
-/// Comparison of results with a baseline.
+/// Comparison of results with a baseline, older results.
 #[derive(Debug)]
 pub struct Changes {
     /// Path of the baseline's file or folder.
@@ -71,7 +71,7 @@ pub struct CellChange {
     pub view: String,
     /// Width and height of the viewport in pixels.
     pub viewport: [u32; 2],
-    /// Figures of the baseline.
+    /// Figures of the cell in the baseline.
     pub then: Figures,
     /// New figures; `None` for a method that could not run this time.
     pub now: Option<Figures>,
@@ -96,7 +96,7 @@ pub struct Figures {
     pub ms: f64,
 }
 
-/// Direction of a change.
+/// Direction of a change since the baseline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Change {
     /// Fewer errors or less time.

@@ -50,9 +50,9 @@ pub struct SequenceFrame {
     pub wrong_outside_band: u64,
     /// Errors of the shares of light, 0 to 1, that the frame shows.
     pub graded: Graded,
-    /// Number of rays traced; null where the graph does not count them.
+    /// Number of rays traced in the frame; null where the graph does not count them.
     pub rays: Option<u64>,
-    /// Times of the frame. In JSON the fields of this struct stand beside the other fields.
+    /// Times of the frame. In JSON the fields of this struct are beside the other fields.
     #[serde(flatten)]
     pub cost: FrameCost,
     /// Counts of the answers that changed since the frame before; absent in the first frame.
@@ -75,7 +75,7 @@ pub struct SequenceFrame {
 /// triangles.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Remade {
-    /// Name of the resource.
+    /// Name of the resource in graph documents.
     pub name: String,
     /// `made` if it was built from scratch, `refitted` for a hierarchy whose boxes were updated.
     pub how: String,
@@ -83,7 +83,7 @@ pub struct Remade {
     pub ms: f64,
 }
 
-/// Times of one frame.
+/// Times of one frame of a camera path.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrameCost {
     /// GPU time in milliseconds, from the start of the first pass to the end of the last; null if

@@ -24,7 +24,7 @@ pub use skiagraph_cases::Casters;
 use skiagraph_reference::{PixelCounts, Statistics, WrongCounts};
 use std::collections::BTreeMap;
 
-/// Results of `stress`: a matrix with a row per case and a column per method.
+/// Results of the command `stress`: a matrix with a row per case and a column per method.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Report {
     /// Version of this schema: 1.
@@ -33,7 +33,7 @@ pub struct Report {
     pub program: String,
     /// GPU on which the cases ran.
     pub adapter: Adapter,
-    /// Width and height in pixels.
+    /// Width and height of the viewport in pixels.
     pub viewport: [u32; 2],
     /// Methods, the columns of the matrix.
     pub methods: Vec<Column>,
@@ -47,7 +47,8 @@ pub struct Report {
 pub struct Column {
     /// Name of the preset, or path of the graph.
     pub preset: String,
-    /// Value of the param `map_size`; null where the graph has none.
+    /// Width and height of the shadow map in texels (the param `map_size`); null where the graph
+    /// has no such param.
     pub map_size: Option<u32>,
     /// All params of the graph with the values that it runs with. A cell with `set` differs in that
     /// one param.
@@ -68,9 +69,10 @@ pub struct Column {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Guarantee {
-    /// All pixels of the final picture.
+    /// All pixels of the final picture, but for those whose answer rounding decides.
     Exact,
-    /// Only the pixels that the method calls certain.
+    /// Only the pixels that the method calls certain by its output `status`, but for those whose
+    /// answer rounding decides.
     Certain,
 }
 
@@ -89,7 +91,7 @@ impl Guarantee {
 pub struct Case {
     /// Name of the case in the catalogue.
     pub name: String,
-    /// Fault in shadow methods that the case provokes.
+    /// Fault in shadow methods that the case provokes, as a line of text.
     pub reason: String,
     /// Kind of the case's casters: closed or open.
     pub casters: Casters,
@@ -102,7 +104,7 @@ pub struct Case {
     /// Reason why the case has no reference, and so no cells; absent where it has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failed: Option<String>,
-    /// Numbers of pixels by the reference's answer.
+    /// Numbers of the viewport's pixels by the reference's answer.
     pub pixels: PixelCounts,
     /// Number of pixels facing the light whose answer flips within the rounding error of receiver
     /// and casters: the band.
@@ -120,14 +122,15 @@ pub struct Case {
 pub struct Cell {
     /// Name of the preset, or path of the graph.
     pub preset: String,
-    /// Value of the param `map_size`; null where the graph has none.
+    /// Width and height of the shadow map in texels (the param `map_size`); null where the graph
+    /// has no such param.
     pub map_size: Option<u32>,
     /// Assignment in which the cell differs from the method's params: `cull=none`. Null if there is
     /// none.
     pub set: Option<String>,
-    /// The cell's verdict.
+    /// Verdict on the method on this case.
     pub verdict: Verdict,
-    /// Counts of the cell's pixels; absent where the method could not run.
+    /// Counts of the method's wrong and uncertain pixels; absent where the method could not run.
     #[serde(flatten)]
     pub counts: Option<Counts>,
     /// Reason why the method could not run; absent where it could.
@@ -155,7 +158,7 @@ pub enum Verdict {
     Unjudged,
 }
 
-/// Counts of a cell's pixels.
+/// Counts of a method's wrong and uncertain pixels on one case.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Counts {
     /// Numbers of the pixels on which method and reference disagree.
@@ -175,11 +178,12 @@ pub struct Counts {
 /// Numbers of the wrong pixels outside the band (the pixels whose answer rounding decides).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct OutsideBand {
-    /// Number of pixels lit by the method, but not by the reference.
+    /// Number of pixels outside the band that are lit by the method, but not by the reference.
     pub lit: u64,
-    /// Number of pixels in shadow by the method, but lit by the reference.
+    /// Number of pixels outside the band that are in shadow by the method, but lit by the
+    /// reference.
     pub shadow: u64,
-    /// Number of wrong pixels of both kinds that the method called certain.
+    /// Number of wrong pixels outside the band that the method called certain, lit or in shadow.
     pub certain: u64,
 }
 
@@ -238,7 +242,7 @@ impl Counts {
 }
 
 impl Cell {
-    /// True if the cell belongs to the method of `column`.
+    /// True if the cell has the preset and map size of `column`.
     pub fn is_of(&self, column: &Column) -> bool {
         (&self.preset, self.map_size) == (&column.preset, column.map_size)
     }

@@ -82,7 +82,8 @@ pub fn length(length: f64) -> String {
     }
 }
 
-/// Returns a count with its noun in singular or plural: `1 frame`, `2 frames`.
+/// Returns a count with its noun, to which `s` is added unless the count is 1: `1 frame`, `2
+/// frames`.
 pub fn plural(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }

@@ -112,9 +112,10 @@ const GROWING: u32 = 8;
 /// frame's content) had room for everything that a frame writes.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Growth {
-    /// Number of frames that were run; 0 if the graph has no growing buffers.
+    /// Number of frames that were run; 0 if the graph has no buffers whose size depends on the
+    /// frame's content.
     pub frames: u32,
-    /// Full names of the graph's growing buffers and textures.
+    /// Full names of the graph's buffers and textures whose size depends on the frame's content.
     pub buffers: Vec<String>,
     /// True if the last of these frames needed no larger buffers. False if eight frames were not
     /// enough.

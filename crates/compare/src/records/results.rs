@@ -268,7 +268,7 @@ pub struct Run {
     /// shadow method; absent where it was measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unavailable: Option<String>,
-    /// Figures that others have published about the run, with `--beside`.
+    /// Figures that others have published about the run, from the files of `--beside`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub published: Vec<Published>,
 }
@@ -358,8 +358,8 @@ impl Run {
 /// Promise that a method's document makes about which of its pixels are right.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Promise {
-    /// Pixels that are promised to be right: `exact` for all, `certain` for those that the method
-    /// calls certain.
+    /// Pixels that are promised to be right, but where rounding decides the answer: `exact` for
+    /// all, `certain` for those that the method's output `status` calls certain.
     pub of: String,
     /// True if the promise holds for closed casters alone, since the method culls faces from its
     /// shadow map.
@@ -467,7 +467,7 @@ pub struct Measured {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub certain_wrong_blockers: Option<BlockerCounts>,
     /// A setting that makes most wrong pixels right; absent if none was found, if methods were
-    /// tuned, if answers are graded, and for a camera path.
+    /// tuned, if answers are shares of light, and for a camera path.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hint: Option<Hint>,
     /// Number of pixels that face the light by the reference but not by the method's output

@@ -89,8 +89,9 @@ pub struct Figures {
     /// for a method that reuses results of earlier frames the mean over its steady state, rounded
     /// up.
     pub wrong: u64,
-    /// Root mean square error of the shares of light, 0 to 1, outside the band; for a method that
-    /// reuses results of earlier frames the mean over its steady state, of all pixels.
+    /// Root mean square error of the shares of light, 0 to 1, without pixels whose answer rounding
+    /// decides; for a method that reuses results of earlier frames the mean over its steady state,
+    /// of all pixels.
     pub rmse: f64,
     /// Median milliseconds of a frame in which every pass runs: GPU time, or wall time without it.
     pub ms: f64,
@@ -138,7 +139,8 @@ impl Baseline {
     /// ([`with_scenes`](read_back::with_scenes)).
     ///
     /// # Errors
-    /// The errors of [`read_back::kept`]; results of an older version, whose cells have no ids.
+    /// The errors of [`read_back::kept`]; results of an older version, whose runs have no ids of
+    /// cells.
     pub fn read(place: &Path) -> Result<Self, CompareError> {
         let mut all = Vec::new();
         for place in read_back::with_scenes(&[place.to_path_buf()]) {
@@ -328,8 +330,8 @@ impl CellChange {
         }
     }
 
-    /// Returns the verdict on the cell: worse if errors or times are worse, else better if one of
-    /// both is better.
+    /// Returns the verdict on the method on this view: worse if errors or frame times are worse
+    /// than in the baseline, otherwise better if one of both is better.
     pub fn verdict(&self) -> Change {
         let both = [self.errors, self.times()];
         let is = |change: &Change| both.contains(change);

@@ -42,8 +42,8 @@ pub struct Sequence {
 pub struct SequenceFrame {
     /// Number of pixels whose visible surface faces the light.
     pub facing_light: u64,
-    /// Number of pixels facing the light on which method and reference disagree, pixels in the band
-    /// included.
+    /// Number of pixels facing the light on which method and reference disagree, also where
+    /// rounding decides the answer.
     pub wrong: u64,
     /// Number of wrong pixels facing the light outside the band, which is the set of pixels whose
     /// answer rounding decides.

@@ -50,16 +50,16 @@ pub struct Column {
     /// Width and height of the shadow map in texels (the param `map_size`); null where the graph
     /// has no such param.
     pub map_size: Option<u32>,
-    /// All params of the graph with the values that it runs with. A cell with `set` differs in that
-    /// one param.
+    /// All params of the graph with the values that it runs with. A [`Cell`] with
+    /// [`set`](Cell::set) differs in that one param.
     pub params: BTreeMap<String, Value>,
     /// Pixels that the method guarantees to be right; null where nothing is guaranteed.
     #[serde(rename = "promise")]
     pub guarantee: Option<Guarantee>,
     /// Reason for the guarantee; null where nothing is guaranteed.
     pub because: Option<String>,
-    /// Reason why the method cannot run on this adapter; absent where it can. Such a method has no
-    /// cells.
+    /// Reason why the method cannot run on this adapter, so that it has no results; absent where it
+    /// can.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unavailable: Option<String>,
 }
@@ -101,7 +101,7 @@ pub struct Case {
     /// Verdict on the case itself: `Fail` if the band (the pixels whose answer rounding decides) is
     /// above `band_cap` or the case has no reference, otherwise `Pass`.
     pub verdict: Verdict,
-    /// Reason why the case has no reference, and so no cells; absent where it has one.
+    /// Reason why the case has no reference, and so no results of methods; absent where it has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failed: Option<String>,
     /// Numbers of the viewport's pixels by the reference's answer.
@@ -112,8 +112,8 @@ pub struct Case {
     /// Number of pixels whose primitive, as rasterised, is hidden behind another one by more than
     /// rounding.
     pub wrong_surface: u64,
-    /// Results of the methods: one cell per method that can run, and a second one with `cull=none`
-    /// if the guarantee can only be judged in that way.
+    /// Results of the methods: one per method that can run, and a second one with `cull=none`
+    /// (front and back faces cast shadows) if the guarantee can only be judged in that way.
     pub cells: Vec<Cell>,
 }
 
@@ -125,8 +125,8 @@ pub struct Cell {
     /// Width and height of the shadow map in texels (the param `map_size`); null where the graph
     /// has no such param.
     pub map_size: Option<u32>,
-    /// Assignment in which the cell differs from the method's params: `cull=none`. Null if there is
-    /// none.
+    /// Assignment in which this run of the method differs from its params: `cull=none`. Null if
+    /// there is none.
     pub set: Option<String>,
     /// Verdict on the method on this case.
     pub verdict: Verdict,
@@ -136,7 +136,8 @@ pub struct Cell {
     /// Reason why the method could not run; absent where it could.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failed: Option<String>,
-    /// File names of the cell's pictures in the folder of `--save`; absent without pictures.
+    /// File names of the method's pictures of this case in the folder of `--save`; absent without
+    /// pictures.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub images: Option<Images>,
 }
@@ -153,8 +154,8 @@ pub enum Verdict {
     /// Not judged: the case has open casters, and the method's guarantee holds for closed casters
     /// only.
     Open,
-    /// Not judged: the method guarantees nothing, or it guarantees only certain pixels and calls
-    /// none certain.
+    /// Not judged: the method guarantees nothing, or only the pixels that its output `status` calls
+    /// certain, and there are none.
     Unjudged,
 }
 
@@ -178,12 +179,14 @@ pub struct Counts {
 /// Numbers of the wrong pixels outside the band (the pixels whose answer rounding decides).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct OutsideBand {
-    /// Number of pixels outside the band that are lit by the method, but not by the reference.
+    /// Number of pixels that are lit by the method, but not by the reference, without those whose
+    /// answer rounding decides.
     pub lit: u64,
-    /// Number of pixels outside the band that are in shadow by the method, but lit by the
-    /// reference.
+    /// Number of pixels that are in shadow by the method, but lit by the reference, without those
+    /// whose answer rounding decides.
     pub shadow: u64,
-    /// Number of wrong pixels outside the band that the method called certain, lit or in shadow.
+    /// Number of wrong pixels of both kinds that the method called certain by its output `status`,
+    /// without those whose answer rounding decides.
     pub certain: u64,
 }
 
@@ -202,7 +205,7 @@ impl Verdict {
     /// Judges a method that ran on a case with these casters. `culls` is true if the method culls
     /// faces from its shadow map; the guarantee then does not cover open casters. `certain` is the
     /// number of pixels that the method calls certain; `outside` counts its wrong pixels outside
-    /// the band.
+    /// the band (the pixels whose answer rounding decides).
     pub fn new(
         guarantee: Option<Guarantee>,
         culls: bool,
@@ -265,14 +268,14 @@ impl Case {
 }
 
 impl Report {
-    /// Returns the number of cells with the verdict `verdict`.
+    /// Returns the number of results (one method on one case) with the verdict `verdict`.
     pub fn count(&self, verdict: Verdict) -> usize {
         let cells = self.cases.iter().flat_map(|case| &case.cells);
         cells.filter(|cell| cell.verdict == verdict).count()
     }
 
-    /// Returns the number of cells that passed, but whose method called all pixels facing the light
-    /// uncertain.
+    /// Returns the number of results (one method on one case) that passed although the method
+    /// called all pixels facing the light uncertain, so that its shadow map was not tested.
     pub fn left_to_rays(&self) -> usize {
         let cases = self.cases.iter();
         let cells = cases.flat_map(|case| case.cells.iter().map(move |cell| (case, cell)));

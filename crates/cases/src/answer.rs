@@ -26,8 +26,8 @@ pub(crate) fn among_at(point: DVec3, place: DVec3, blocks: &[Block], margin: f64
     judge(blocks.iter().filter_map(inside), margin)
 }
 
-/// Returns the depth inside a box of the ray from a point to a light that travels along `light`;
-/// `None` for a point on the box's surface.
+/// Returns the depth (scene units, negative for a miss) inside a box of the ray from a point to a
+/// light that travels along `light`; `None` for a point on the box's surface.
 pub(crate) fn in_block(point: DVec3, light: DVec3, block: Block) -> Option<f64> {
     in_block_before(point, -light.normalize(), f64::INFINITY, block)
 }
@@ -61,23 +61,25 @@ pub(crate) fn at_height(point: DVec3, light: DVec3, y: f64) -> Option<DVec2> {
     (t * light.length() > 1e-9).then_some(DVec2::new(met.x, met.z))
 }
 
-/// Returns the depth inside a horizontal rectangle (its corners as x and z) at height `y` of the
-/// ray from a point to a light that travels along `light`; −∞ if the ray does not pass that height.
+/// Returns the depth (scene units, negative for a miss) inside a horizontal rectangle, given by two
+/// corners of x and z, at height `y` of the ray from a point to a light that travels along `light`;
+/// −∞ if the ray does not pass that height.
 pub(crate) fn in_sheet(point: DVec3, light: DVec3, sheet: [[f32; 2]; 2], y: f32) -> f64 {
     let [low, high] = sheet.map(|corner| glam::Vec2::from(corner).as_dvec2());
     let inside = |met: DVec2| (met - low).min(high - met).min_element();
     at_height(point, light, f64::from(y)).map_or(f64::NEG_INFINITY, inside)
 }
 
-/// Returns the depth inside a horizontal disc around `[x, y, z]` of the ray from a point to a light
-/// that travels along `light`; −∞ if the ray does not pass its height.
+/// Returns the depth (scene units, negative for a miss) inside a horizontal disc around `[x, y, z]`
+/// of the ray from a point to a light that travels along `light`; −∞ if the ray does not pass its
+/// height.
 pub(crate) fn in_disc(point: DVec3, light: DVec3, [x, y, z]: [f64; 3], radius: f64) -> f64 {
     let inside = |met: DVec2| radius - met.distance(DVec2::new(x, z));
     at_height(point, light, y).map_or(f64::NEG_INFINITY, inside)
 }
 
-/// Returns the depth inside a triangle of the ray from a point to a light that travels along
-/// `light`; −∞ if the ray does not pass its plane.
+/// Returns the depth (scene units, negative for a miss) inside a triangle of the ray from a point
+/// to a light that travels along `light`; −∞ if the ray does not pass its plane.
 pub(crate) fn in_triangle(point: DVec3, light: DVec3, corners: [[f32; 3]; 3]) -> f64 {
     let [a, b, c] = corners.map(|corner| glam::Vec3::from(corner).as_dvec3());
     let normal = (b - a).cross(c - a);

@@ -156,7 +156,7 @@ pub struct OpenParts {
     pub all: u64,
     /// Number of open parts, which have an edge with a triangle on one side only.
     pub open: u64,
-    /// Number of triangles in open parts.
+    /// Number of triangles in open parts, those that have an edge with a triangle on one side only.
     pub open_triangles: u64,
 }
 

@@ -76,8 +76,8 @@ pub fn merge(places: &[PathBuf], out: &Path, sink: &dyn Sink) -> Result<(), Comp
     if sources.len() > 1 {
         let count = plural(sources.len(), "group");
         sink.note(&format!(
-            "{count} of results, which differ in scene, adapter, machine, program or protocol, are \
-             kept apart"
+            "{count} of results, which differ in scene, adapter, machine, program or protocol, or \
+             give one label to several settings, are kept apart"
         ));
     }
     results_csv::save(&results, out)?;

@@ -90,11 +90,10 @@ pub fn is_default_of(other: &Row, row: &Row) -> bool {
 
 /// True if a method is exact whatever its params are.
 fn is_exact_anyway(row: &Row) -> bool {
-    let is_exact = |promise: &Promise| promise.of == "exact" && !promise.closed_only;
     row.tuned().is_none()
         && row
             .runs()
-            .all(|(run, _)| run.promise.as_ref().is_some_and(is_exact))
+            .all(|(run, _)| run.promise.as_ref().is_some_and(Promise::is_exact_for_all))
         && row.views() > 0
 }
 

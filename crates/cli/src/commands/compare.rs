@@ -22,7 +22,7 @@ use skiagraph_compare::measuring::{
     date, device,
     ground_truth::PrimaryVisibility,
     resume::Kept,
-    scene_folders::scene_folders,
+    scene_folders::{check_kind, scene_folders},
     series::Series,
     tune::tune,
     view_or_path::{ViewOrPath, under_lights},
@@ -175,17 +175,10 @@ struct Target {
 impl Target {
     /// The folder of each scene.
     fn all(args: &CompareArgs) -> Result<Vec<Self>, CliError> {
+        check_kind(&args.out, args.scene.scenes.len() > 1).map_err(CliError::Input)?;
         if args.scene.scenes.len() == 1 {
             let folder = args.out.clone();
             return Ok(vec![Self { folder, name: None }]);
-        }
-        let single = args.out.join("results.json");
-        if single.exists() {
-            return Err(CliError::Input(format!(
-                "{} holds results of a single scene, which would hide those of several: name \
-                 another folder (--out), or delete it",
-                single.display()
-            )));
         }
         let names = scene_folders(&args.scene.scenes).into_iter();
         let target = |name: String| Self {

@@ -152,12 +152,33 @@ impl Method {
         self.values.get(name)
     }
 
+    /// Returns the params that are set, but neither by the name (`bias` in `nsm@bias=0`) nor as the
+    /// size of the map: those given to all methods by `--set`.
+    pub fn given(&self) -> ParamValues {
+        let words = self.name.split_once('@').map_or("", |(_, words)| words);
+        let is_named = |name: &str| {
+            words
+                .split(',')
+                .any(|word| word.split('=').next() == Some(name))
+        };
+        let given = self.params.iter();
+        let given = given.filter(|(name, _)| *name != MAP_SIZE && !is_named(name));
+        given
+            .map(|(name, value)| (name.clone(), value.clone()))
+            .collect()
+    }
+
     /// Returns all params, defaults included, with the values that the method runs with, as JSON
     /// values.
     pub fn all_params(&self) -> BTreeMap<String, serde_json::Value> {
-        let entry = |(name, value): (&String, &ParamValue)| (name.clone(), json(value));
-        self.values.iter().map(entry).collect()
+        as_json(&self.values)
     }
+}
+
+/// Returns values of params as JSON values, as results.json holds them.
+pub fn as_json(values: &ParamValues) -> BTreeMap<String, serde_json::Value> {
+    let entry = |(name, value): (&String, &ParamValue)| (name.clone(), json(value));
+    values.iter().map(entry).collect()
 }
 
 /// A param's value for `results.json`. An f32 is written as the short decimal that it was read

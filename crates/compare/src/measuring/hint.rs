@@ -52,10 +52,8 @@ pub fn find(
     };
     for changes in candidates(method, cause) {
         session.check_stopped()?;
-        let set = changes
-            .iter()
-            .map(|(name, value)| format!("{name}={value}"))
-            .join(",");
+        let set = method.given().into_iter().chain(changes.clone());
+        let set = set.map(|(name, value)| format!("{name}={value}")).join(",");
         let mut params = method.params.clone();
         params.extend(changes);
         let other = Method::on(

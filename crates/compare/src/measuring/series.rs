@@ -437,13 +437,24 @@ impl<'a> Series<'a> {
             return Ok(());
         }
         let capabilities = Capabilities::new(self.session.gpu);
-        if let Err(diagnostics) = method.plan(viewport, capabilities, &self.provider) {
-            let run = Run {
-                unavailable: Some(reasons(&diagnostics)),
-                ..run.clone()
-            };
-            self.done(place, run);
-            self.save(&[])?;
+        match method.plan(viewport, capabilities, &self.provider) {
+            Err(diagnostics) => {
+                let run = Run {
+                    unavailable: Some(reasons(&diagnostics)),
+                    ..run.clone()
+                };
+                self.done(place, run);
+                self.save(&[])?;
+            }
+            // It is of this session from here on, not of the one in which it could not run.
+            Ok(_) => {
+                self.planned[place] = Run {
+                    session: self.results.began.clone(),
+                    commit: self.comparison.commit.clone(),
+                    machine: Some(self.results.machine.clone()),
+                    ..run.clone()
+                };
+            }
         }
         Ok(())
     }

@@ -26,7 +26,7 @@
 use crate::comparison::Comparison;
 use crate::default_view::more_views;
 use crate::error::CompareError;
-use crate::graphs::method::{Method, ParamValues};
+use crate::graphs::method::{Method, ParamValues, as_json};
 use crate::graphs::variants::MAP_SIZE;
 use crate::lists::entry;
 use crate::measuring::ground_truth::GroundTruthView;
@@ -34,7 +34,6 @@ use crate::measuring::search::{Axis, Trial, search};
 use crate::measuring::trial::{Limits, TrialView, Trials};
 use crate::measuring::view_or_path::ViewOrPath;
 use crate::measuring::{device, guarantee};
-use crate::records::results::Promise;
 use crate::records::tuned::{Tuned, named};
 use crate::sink::{Session, Silent, Step};
 use crate::wording::size;
@@ -153,8 +152,8 @@ fn check_methods(methods: &[Method]) -> Result<(), CompareError> {
 /// True if [`tune`] searches for settings of a method: its document marks with `tune` params that
 /// the method does not set, and does not promise exact shadows for all casters.
 pub fn needs_tuning(method: &Method) -> bool {
-    let is_exact = |promise: Promise| promise.of == "exact" && !promise.closed_only;
-    !guarantee::promise(method).is_some_and(is_exact) && !axes(method).is_empty()
+    let promise = guarantee::promise(method);
+    !promise.is_some_and(|promise| promise.is_exact_for_all()) && !axes(method).is_empty()
 }
 
 /// A param to tune, with its values; the first one is that which the method has.
@@ -364,6 +363,7 @@ fn best(
         params,
         Tuned {
             of: method.name.clone(),
+            given: as_json(&method.given()),
             set: changed.collect(),
             tried: found.tried,
             is_whole: found.is_whole,

@@ -19,7 +19,8 @@ pub struct Hint {
     pub explained: u64,
     /// Number of wrong pixels, without those whose right answer rounding may flip.
     pub wrong: u64,
-    /// The method with the setting to try: `nsm@cull=none,slope_bias=1`.
+    /// The method with the setting to try and what `--set` gave to it, as an argument of `compare`:
+    /// `nsm@cull=none,slope_bias=1`.
     pub set: String,
     /// Number of wrong pixels with that setting, counted as `wrong` is.
     pub wrong_then: u64,

@@ -18,6 +18,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+use crate::records::assignments::assignments;
 use crate::records::budgets::Budgets;
 use crate::records::hint::Hint;
 use crate::records::sequence::Sequence;
@@ -26,6 +27,7 @@ use crate::records::steady::Steady;
 use crate::records::tuned::Tuned;
 use crate::records::turns::Turns;
 use crate::wording::{size, thousands};
+use itertools::Itertools;
 use serde::{Deserialize, Serialize};
 use skiagraph_reference::{
     AreaVisibility, BlockerCounts, CertainCounts, EdgeDistances, Graded, GroundTruthPixels,
@@ -333,19 +335,7 @@ impl Run {
 
     /// Returns all params as assignments, separated by semicolons: `cull=front;slope_bias=1.5`.
     pub fn assignments(&self) -> String {
-        let text = |value: &serde_json::Value| match value {
-            serde_json::Value::String(word) => word.clone(),
-            serde_json::Value::Array(numbers) => {
-                let numbers: Vec<String> = numbers.iter().map(ToString::to_string).collect();
-                numbers.join(",")
-            }
-            value => value.to_string(),
-        };
-        let params = self.params.iter();
-        let params: Vec<String> = params
-            .map(|(name, value)| format!("{name}={}", text(value)))
-            .collect();
-        params.join(";")
+        assignments(&self.params).join(";")
     }
 
     /// Returns preset and map size as the name of a row: `nsm 1024`.
@@ -364,6 +354,13 @@ pub struct Promise {
     /// True if the promise holds for closed casters alone, since the method culls faces from its
     /// shadow map.
     pub closed_only: bool,
+}
+
+impl Promise {
+    /// True if all answers are promised to be right for all casters.
+    pub fn is_exact_for_all(&self) -> bool {
+        self.of == "exact" && !self.closed_only
+    }
 }
 
 /// Kind of a method's answers.

@@ -31,7 +31,8 @@ impl Material {
         }
     }
 
-    /// True if the material's content stays from frame to frame.
+    /// True if the material's content stays from frame to frame (`keep: true`); false for a
+    /// sampler.
     pub fn keeps(&self) -> bool {
         match self {
             Self::Texture(texture) => texture.keep,
@@ -40,7 +41,8 @@ impl Material {
         }
     }
 
-    /// Calls `each` with every leaf of the expressions for the material's size and format.
+    /// Calls `each` with every leaf (param, word, material, constant or feature) of the expressions
+    /// for the material's size, format and growth.
     pub fn visit<'a>(&'a self, each: &mut dyn FnMut(Leaf<'a>)) {
         let (grow, exprs) = match self {
             Self::Texture(texture) => {

@@ -9,11 +9,11 @@ macro_rules! codes {
         pub enum Code { $($(#[doc = $doc])+ $name,)+ }
 
         impl Code {
-            /// All kinds of mistakes, in the order of their declaration.
+            /// All kinds of mistakes, in the order of their declaration, each once.
             pub const ALL: &[Self] = &[$(Self::$name),+];
 
-            /// Returns the kind's kebab-case name, as it is printed and written to machine-readable
-            /// output.
+            /// Returns the kind's kebab-case name, such as `missing-file`, as it is printed and
+            /// written to machine-readable output.
             pub fn as_str(self) -> &'static str {
                 match self { $(Code::$name => $text,)+ }
             }

@@ -62,9 +62,26 @@ pub fn shown<'a>(sources: &[Source], all: &'a [(usize, Summary<'a>)]) -> Vec<Sho
         }
     };
     let tables = all.iter();
-    tables
+    let mut tables: Vec<Shown> = tables
         .map(|(source, summary)| table(*source, summary))
-        .collect()
+        .collect();
+    // Sources that have other cells under the same labels are told apart by their folders, or by
+    // their numbers.
+    let alike = tables.iter().map(|table| table.title.clone()).duplicates();
+    for title in alike.collect::<Vec<_>>() {
+        let folder = |of: &Shown| sources[of.source].folders.first().cloned();
+        let alike = || tables.iter().filter(|table| table.title == title);
+        let by_folder = alike().map(folder).all_unique();
+        let mut number = 0;
+        for table in tables.iter_mut().filter(|table| table.title == title) {
+            number += 1;
+            table.title += &match folder(table) {
+                Some(folder) if by_folder => format!(" · {}", folder.display()),
+                _ => format!(" · group {number}"),
+            };
+        }
+    }
+    tables
 }
 
 /// The protocol of results in words.

@@ -152,8 +152,9 @@ impl Method {
         self.values.get(name)
     }
 
-    /// Returns the params that are set, but neither by the name (`bias` in `nsm@bias=0`) nor as the
-    /// size of the map: those given to all methods by `--set`.
+    /// Returns the values that were set for all methods of a comparison (`--set`): those of
+    /// [`params`](Self::params) without the params in the method's name (`bias` in `nsm@bias=0`)
+    /// and without `map_size`.
     pub fn given(&self) -> ParamValues {
         let words = self.name.split_once('@').map_or("", |(_, words)| words);
         let is_named = |name: &str| {
@@ -175,7 +176,7 @@ impl Method {
     }
 }
 
-/// Returns values of params as JSON values, as results.json holds them.
+/// Converts values of params, by name, into JSON values as results.json holds them.
 pub fn as_json(values: &ParamValues) -> BTreeMap<String, serde_json::Value> {
     let entry = |(name, value): (&String, &ParamValue)| (name.clone(), json(value));
     values.iter().map(entry).collect()

@@ -357,7 +357,8 @@ pub struct Promise {
 }
 
 impl Promise {
-    /// True if all answers are promised to be right for all casters.
+    /// True if all pixels are promised to be right (but where rounding decides), for closed and
+    /// open casters.
     pub fn is_exact_for_all(&self) -> bool {
         self.of == "exact" && !self.closed_only
     }

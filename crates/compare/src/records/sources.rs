@@ -1,6 +1,6 @@
-//! Joins the results of several folders and machines. What was measured alike becomes one source;
-//! results of other machines, adapters, scenes or protocols stay apart, and so do other cells of
-//! one label.
+//! Joins the results of several folders and machines. Results of one machine, adapter, scene and
+//! protocol become one source; others stay apart, and so do methods that have the same label and
+//! other params.
 //!
 //! ```
 //! use skiagraph_compare::records::sources::{Kept, merged, sources};
@@ -37,8 +37,8 @@ pub struct Kept {
 }
 
 impl Kept {
-    /// Reads the results of `place`: a folder with a results.json, or the path of that file. A file
-    /// that `merge` wrote gives one entry for each machine, adapter, scene and protocol.
+    /// Reads the results of `place`: a folder with a results.json, or the path of that file.
+    /// Returns one entry for each machine, adapter, scene and protocol in it.
     ///
     /// # Errors
     /// The errors of [`read_back::kept`].
@@ -83,7 +83,8 @@ fn by_machine(mut results: Results) -> Vec<Results> {
     parts
 }
 
-/// Measurements of one scene on one machine and adapter under one protocol.
+/// Measurements of one scene on one machine and adapter under one protocol, in which each label of
+/// a method is of one choice of params.
 #[derive(Debug)]
 pub struct Source {
     /// All runs of the source, with their conditions.

@@ -25,7 +25,7 @@ use std::collections::BTreeMap;
 pub struct Tuned {
     /// Name of the method as it was before the search: `nsm`. Its runs stand beside the tuned ones.
     pub of: String,
-    /// Params that were given to all methods of the comparison (`--set`), with their values.
+    /// Values of the params that were set for all methods of the comparison (`--set`), by name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub given: BTreeMap<String, serde_json::Value>,
     /// Params that the search changed, with their values; empty if no setting was better than the

@@ -21,8 +21,8 @@ pub struct Shown<'a> {
     pub table: Table,
     /// True if the times are wall times, since a row has no GPU times.
     pub by_wall: bool,
-    /// Heading: scene, views and viewport, and the adapter, machine or protocol if the sources
-    /// differ in it.
+    /// Heading: scene, views and viewport, the adapter, machine or protocol if the sources differ
+    /// in it, and the folder or a number if it would be that of another table.
     pub title: String,
 }
 

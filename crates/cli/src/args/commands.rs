@@ -197,8 +197,8 @@ pub enum ChartKind {
     /// Time and memory against the number of triangles: two panels per scene, view and viewport, a
     /// line per method and map size. Give a folder for each number of triangles.
     Growth,
-    /// Errors over the frames of camera paths: a panel per folder, path and viewport, a line per
-    /// method and map size.
+    /// Errors (wrong pixels, or RMSE of shares) over the frames of camera paths: a panel per
+    /// folder, path and viewport, a line per method and map size.
     Frames,
 }
 

@@ -1,4 +1,4 @@
-//! Sentences on what the search for good settings (`compare --tune`) brought.
+//! Writes sentences on the outcome of the search for good settings (`compare --tune`).
 
 use crate::summary::Row;
 use itertools::Itertools;
@@ -79,7 +79,7 @@ pub fn sentences(rows: &[Row]) -> Vec<String> {
     said
 }
 
-/// True if `other` is the method of `row` before it was tuned.
+/// True if `other` is the method of `row` with its params as they were before it was tuned.
 pub fn is_default_of(other: &Row, row: &Row) -> bool {
     let Some(of) = row.tuned() else {
         return false;

@@ -22,23 +22,26 @@ pub enum Show {
     Shaded,
     /// The output `visibility`, with colours for the background and for surfaces that face away.
     Visibility,
-    /// The shaded scene with the pixels marked uncertain in purple.
+    /// The shaded scene, with those pixels in purple that the method's output `status` calls
+    /// uncertain.
     Uncertain,
-    /// The errors of the method against the reference.
+    /// The errors of the method against the reference: blue where too light, red where too dark.
     Difference,
-    /// Content of a material after a pass.
+    /// Content of a material, after a pass or at the end of the frame.
     Material(Capture),
 }
 
-/// How a pane shows a material.
+/// Mip or layer, channel and colours with which a pane, one of the window's two pictures, shows a
+/// material.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reading {
     /// Index of the shown part in [`Drawn::parts`]: the layers of the first mip, then those of the
     /// next.
     pub part: usize,
-    /// Index of the channel to show as a heat map; `None` for the colours that saved pictures have.
+    /// Index of the channel to show as a heat map; `None` for the colours of the pictures that `run
+    /// --save` writes.
     pub heat: Option<usize>,
-    /// Index of the channel in the histogram.
+    /// Index of the channel whose values the histogram counts.
     pub channel: usize,
 }
 
@@ -73,8 +76,9 @@ impl Drawn {
     }
 }
 
-/// Draws the content of a pane for the method with this index in the snapshot. `answer` is the
-/// reference's answer to this frame, if there is one.
+/// Draws the content of a pane for the method with the index `index` in the snapshot. `reading`
+/// applies to materials only. `answer` is the reference's answer to this frame; `None` if there is
+/// none yet.
 pub fn draw(
     snapshot: &FrameSnapshot,
     index: usize,
@@ -171,7 +175,8 @@ fn difference(
     })
 }
 
-/// Says for a legend which pixels have a reference when every `stride`-th of a row and column has.
+/// Returns the words of a legend for the pixels that have a reference: every `stride`-th (1, 3 or
+/// 9) of each row and column.
 pub fn of_pixels(stride: u32) -> &'static str {
     match stride {
         1 => "of all pixels",

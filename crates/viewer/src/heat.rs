@@ -14,7 +14,7 @@ const VIRIDIS: [[u8; 3]; 9] = [
     [253, 231, 37],
 ];
 
-/// Returns the RGB colour of a value from 0 to 1; values outside are clamped.
+/// Returns the RGB colour of a value from 0 (dark blue) to 1 (yellow); values outside are clamped.
 pub fn colour(share: f64) -> [u8; 3] {
     let place = share.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
     let from = (place as usize).min(VIRIDIS.len() - 2);

@@ -18,7 +18,8 @@ use std::{
     thread,
 };
 
-/// Callback that makes the window update after news from a thread.
+/// Callback that makes the window call [`Viewer::update`]; the threads call it after each event or
+/// answer.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
 /// Methods, scene and settings with which [`open`](crate::open) opens the window.
@@ -35,14 +36,16 @@ pub struct Opening {
     pub size: [u32; 2],
     /// Name of the scene to show first, for [`load_scene`](Self::load_scene).
     pub scene: String,
-    /// Function that loads the first scene, and scenes that the user chooses in the window.
+    /// Function that loads the first scene, and scenes that the user chooses in the window, by
+    /// name.
     pub load_scene: LoadScene,
     /// Choice of the GPU that runs the methods.
     pub gpu: GpuRequest,
 }
 
 /// Starts the threads and creates the state that shows their results. Methods may contain errors;
-/// the window shows them. The watcher of the methods' files is `None` if it could not be started.
+/// the window shows them. Returns the state, and the watch on the methods' files; `None` if it
+/// could not be started, so that changed files are not read again.
 ///
 /// # Errors
 /// If no GPU can be opened, a method is unknown, or a method lacks a given param.

@@ -25,7 +25,7 @@ use std::{
 
 /// Commands of the window to the thread that runs the graphs.
 pub enum Command {
-    /// Show this state.
+    /// Run a frame of this state, and send it to the window.
     Show(Box<DesiredState>),
     /// Read the methods' files again; they may have changed.
     Reload,
@@ -37,7 +37,7 @@ pub enum Command {
 pub type LoadScene =
     Box<dyn Fn(&str) -> Result<(Scene, Vec<View>), Box<dyn Error + Send + Sync>> + Send>;
 
-/// Function that sends an event to the window.
+/// Function that sends an event to the window; its thread calls it.
 pub type Tell = Box<dyn Fn(Event) + Send>;
 
 /// The scene that is there, and what stands on it.
@@ -49,7 +49,7 @@ struct Stage {
     primitives: Option<(Executor, [u32; 2])>,
 }
 
-/// State of the thread that runs the graphs.
+/// State of the thread that runs the graphs: the GPU, the scene and the methods.
 pub struct Worker {
     request: GpuRequest,
     load_scene: LoadScene,
@@ -65,7 +65,8 @@ pub struct Worker {
 }
 
 impl Worker {
-    /// Creates the worker for a GPU, which was opened as `request` says.
+    /// Creates the worker for a GPU that was opened by `request`, by which it is opened again after
+    /// it is lost. `sources` has the methods' files, and `tell` gets the events.
     pub fn new(
         gpu: Gpu,
         (request, load_scene): (GpuRequest, LoadScene),
@@ -86,7 +87,7 @@ impl Worker {
         }
     }
 
-    /// Runs commands until their channel closes.
+    /// Runs commands until the other end of their channel is dropped.
     pub fn work(mut self, commands: &mpsc::Receiver<Command>) {
         let mut desired: Option<DesiredState> = None;
         while let Ok(first) = commands.recv() {

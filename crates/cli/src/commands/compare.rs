@@ -285,7 +285,7 @@ fn check_gates(gates: &[Gate], methods: &[Method]) -> Result<(), CliError> {
     )))
 }
 
-/// Prints the methods on which `--map-size` has no effect.
+/// Prints a note on the methods without a param `map_size`, unless `map_sizes` is empty.
 pub fn note_without_map(methods: &[Method], map_sizes: &[u32]) {
     let without = methods.iter().filter(|method| method.map_size.is_none());
     let without: Vec<&str> = without.map(|method| method.name.as_str()).collect();

@@ -13,11 +13,12 @@ use crate::records::read_back::with_scenes;
 use skiagraph_scene::MeshFile;
 use std::path::Path;
 
-/// Checks that a folder for results holds none of the other kind: results of a single scene hide
-/// those of several from `report`. `of_several` is true if several scenes are to be compared.
+/// Checks that results may be written into `folder`: results of a single scene (in the folder
+/// itself) must not be mixed with those of several (in its subfolders), which `report` would not
+/// find then. `of_several` is true if several scenes are to be compared.
 ///
 /// # Errors
-/// Results of the other kind, with the way out.
+/// The folder holds results of the other kind. The text for the user says so, with advice.
 pub fn check_kind(folder: &Path, of_several: bool) -> Result<(), String> {
     let (own, page) = (folder.join("results.json"), folder.join("report.html"));
     let refused = |holds: &str, others: &str| {
@@ -39,8 +40,8 @@ pub fn check_kind(folder: &Path, of_several: bool) -> Result<(), String> {
 
 /// Returns the names of the folders below a common one that hold the results of scenes, no two
 /// alike. `scenes` are names or paths as `--scene` takes them: `park`, `city:1000000`,
-/// `levels/room.glb`. A folder is called after its scene (`city-1000000`, `room`), the second of
-/// one name `room-2`.
+/// `levels/room.glb`. A folder has the name of its scene (`city-1000000`, `room`); the second of
+/// the same name is `room-2`.
 pub fn scene_folders(scenes: &[String]) -> Vec<String> {
     let mut folders: Vec<String> = Vec::new();
     for scene in scenes {

@@ -59,11 +59,12 @@ const MOST_COST: u64 = 10;
 /// odd view does not decide.
 const OTHERS: usize = 3;
 
-/// Searches good settings for the methods of a comparison, and adds each as a method behind the one
-/// that it is a setting of. If the comparison has several views, every second one is taken out of
-/// it, and settings are chosen on these; otherwise they are chosen on other views of the scene, and
-/// on generated ones where it has fewer than three. Params that a method sets stay as they are. A
-/// method that promises to be exact for all casters needs no search.
+/// Searches good values of the params that documents mark with `tune`, and adds each method with
+/// the best ones as a method of its own behind it. If the comparison has several views, every
+/// second one is taken out of it, and settings are chosen on these; otherwise they are chosen on
+/// other views of the scene, and on generated ones where it has fewer than three. Params that a
+/// method sets stay as they are. A method whose document promises exact shadows for all casters is
+/// not searched.
 ///
 /// The work is bounded: plans and frames of a method, those of its tuned setting included, are at
 /// most ten times those of its part in the comparison.
@@ -148,7 +149,8 @@ fn check_methods(methods: &[Method]) -> Result<(), CompareError> {
     )))
 }
 
-/// True if a method has params to tune, and is not exact for all casters anyway.
+/// True if [`tune`] searches for settings of a method: its document marks with `tune` params that
+/// the method does not set, and does not promise exact shadows for all casters.
 pub fn needs_tuning(method: &Method) -> bool {
     let promise = guarantee::promise(method);
     !promise.is_some_and(|promise| promise.is_exact_for_all()) && !axes(method).is_empty()

@@ -57,7 +57,7 @@ impl ViewOrPath {
         view.ends_with('@').then_some(light)
     }
 
-    /// Returns the hash `of` extended by all data of the view or path.
+    /// Returns the hash `of` extended by all fields of the view or path.
     pub fn fingerprint(&self, of: Fingerprint) -> Fingerprint {
         match self {
             Self::Still(view) => of.with_view(view),
@@ -66,8 +66,8 @@ impl ViewOrPath {
     }
 
     /// Returns the path of `paths` that is named `name`, or all of `paths` if the name is `all`.
-    /// With `light`, each path is put under the light of that name; `all` gives one path for each
-    /// light of the path.
+    /// With `light`, each path is put under the light of that name; the light `all` gives one path
+    /// for each light that [`Scene::lights_of`] lists for its view.
     ///
     /// # Errors
     /// The scene has no path of this name, no light of this name, or no paths at all.
@@ -116,9 +116,9 @@ fn lit(scene: &Scene, path: &CameraPath, mut view: View) -> Result<CameraPath, C
     Ok(path)
 }
 
-/// Returns the views under the light named `name`. The name `all` gives one view for each light of
-/// a view; these views are named `VIEW@LIGHT` if there are several lights. With `None` the views
-/// are returned unchanged.
+/// Returns the views under the light named `name`. The name `all` gives one view for each light
+/// that [`Scene::lights_of`] lists for a view; these views are named `VIEW@LIGHT` if there are
+/// several. With `None` the views are returned unchanged.
 ///
 /// # Errors
 /// The scene has no such light.

@@ -3,7 +3,7 @@
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// Returns params as assignments, as `--set` takes them: `cull=front`, `slope_bias=1.5`.
+/// Returns each of `params` as an assignment: `cull=front`, `slope_bias=1.5`.
 pub(crate) fn assignments(params: &BTreeMap<String, Value>) -> impl Iterator<Item = String> {
     let params = params.iter();
     params.map(|(name, value)| format!("{name}={}", text(value)))

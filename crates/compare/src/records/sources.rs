@@ -1,6 +1,6 @@
-//! Joins the results of several folders and machines. What was measured alike becomes one source;
-//! results of other machines, adapters, scenes or protocols stay apart, and so do other cells of
-//! one label.
+//! Joins the results of several folders and machines. Results of one machine, adapter, scene and
+//! protocol become one source; others stay apart, and so do methods that have the same label and
+//! other params.
 //!
 //! ```
 //! use skiagraph_compare::records::sources::{Kept, merged, sources};
@@ -31,13 +31,14 @@ use std::path::{Path, PathBuf};
 pub struct Kept {
     /// The folder that the results were read from, with their pictures.
     pub folder: PathBuf,
-    /// Results from the folder's `results.json` that were measured alike: `others` is empty.
+    /// Results from the folder's `results.json` of one machine, adapter, scene and protocol:
+    /// `others` is empty.
     pub results: Results,
 }
 
 impl Kept {
-    /// Reads the results of a folder, or of a results.json whose folder has its pictures. A file
-    /// that `merge` wrote may hold several.
+    /// Reads the results of `place`: a folder with a results.json, or the path of that file.
+    /// Returns one entry for each machine, adapter, scene and protocol in it.
     ///
     /// # Errors
     /// The errors of [`read_back::kept`].
@@ -82,21 +83,23 @@ fn by_machine(mut results: Results) -> Vec<Results> {
     parts
 }
 
-/// Measurements of one scene on one machine and adapter under one protocol.
+/// Measurements of one scene on one machine and adapter under one protocol, in which each label of
+/// a method is of one choice of params.
 #[derive(Debug)]
 pub struct Source {
     /// All runs of the source, with their conditions.
     pub results: Results,
-    /// The folders that the runs come from.
+    /// The folders of the joined results, in the order in which they were joined.
     pub folders: Vec<PathBuf>,
     /// Index of each run's folder.
     places: Vec<usize>,
-    /// Number of runs that were left out, as a newer one of the same cell is there.
+    /// Number of runs that were left out because there is a newer one of the same method, params,
+    /// view and viewport.
     pub replaced: usize,
 }
 
 impl Source {
-    /// Returns the folder with the pictures of the run with this index in the results.
+    /// Returns the folder with the pictures of the run with the index `run` in `results.runs`.
     pub fn folder_of(&self, run: usize) -> &Path {
         &self.folders[self.places[run]]
     }
@@ -168,9 +171,10 @@ impl Source {
     }
 }
 
-/// Joins kept results into sources, one for each scene, machine, adapter and protocol, in the order
-/// of the folders. Of the runs of one cell in a source the newest one counts; results with other
-/// cells under the same labels, of another `--set` for example, are a source of their own.
+/// Joins results into sources, one for each scene, machine, adapter and protocol, in the order of
+/// `kept`. Of several runs of one method with the same params, view and viewport only the newest
+/// stays in a source; results in which methods of the same labels have other params, of another
+/// `--set` for example, are a source of their own.
 pub fn sources(kept: Vec<Kept>) -> Vec<Source> {
     let mut sources: Vec<Source> = Vec::new();
     for Kept { folder, results } in kept {
@@ -186,7 +190,7 @@ pub fn sources(kept: Vec<Kept>) -> Vec<Source> {
 }
 
 /// Returns the content of one results.json with all sources, for the folder `out`; `None` without
-/// sources. Runs whose pictures are in other folders have none in it.
+/// sources. Runs whose pictures are in other folders list no pictures in it.
 pub fn merged(sources: &[Source], out: &Path) -> Option<Results> {
     let mut each = sources.iter().map(|source| {
         let mut results = source.results.clone();

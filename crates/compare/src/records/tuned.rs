@@ -25,21 +25,23 @@ use std::collections::BTreeMap;
 pub struct Tuned {
     /// Name of the method as it was before the search: `nsm`. Its runs stand beside the tuned ones.
     pub of: String,
-    /// Params that were given to all methods of the comparison (`--set`), with their values.
+    /// Values of the params that were set for all methods of the comparison (`--set`), by name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub given: BTreeMap<String, serde_json::Value>,
     /// Params that the search changed, with their values; empty if no setting was better than the
     /// defaults.
     pub set: BTreeMap<String, serde_json::Value>,
-    /// Names of the views on which the settings were chosen. The runs are of other views.
+    /// Names of the views on which the settings were chosen. The runs in the results are of other
+    /// views.
     pub chosen_on: Vec<String>,
     /// Number of settings that were tried, the defaults included.
     pub tried: u32,
-    /// True if the search came to its own end; false if it ended at the bound of its cost.
+    /// True if the search ended because no change helps; false if it ended at the limit of its
+    /// cost.
     pub is_whole: bool,
-    /// Error of the defaults on the views of `chosen_on`, from 0 to 1: the share of wrong pixels
-    /// outside the band among those that face the light; under lights with an extent the mean
-    /// square error of the shares of light.
+    /// Error of the defaults on the views of `chosen_on`, from 0 to 1: the share of the pixels
+    /// facing the light that are wrong, without those whose right answer rounding may flip; under
+    /// lights with an extent the mean square error of the shares of light.
     pub default_error: f64,
     /// Error of the tuned setting on the views of `chosen_on`, in the same unit.
     pub error: f64,

@@ -1,4 +1,4 @@
-//! All rows: the tables of the terminal, joined.
+//! Writes the rows of all tables as HTML.
 
 use crate::html::charts::sign;
 use crate::html::shown::{Shown, part};
@@ -14,7 +14,8 @@ use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::size;
 use std::path::{Path, PathBuf};
 
-/// Returns one HTML table with the rows of all tables.
+/// Returns one HTML table with the rows of all tables. The page's script shows those of the chosen
+/// ones.
 pub fn tables(tables: &[Shown]) -> String {
     let each = tables.iter().map(|of| &of.table);
     // Tables of paths have columns that others lack.
@@ -56,8 +57,8 @@ pub fn tables(tables: &[Shown]) -> String {
     part("rows", &all, None, &table)
 }
 
-/// Returns HTML tables of each method under each light, for the sources and viewports with several
-/// lights.
+/// Returns HTML tables with a row for each method and a column for each light, one for each source
+/// and viewport with several lights; empty if there are none. `tables` are those of the page.
 pub fn lights(sources: &[Source], tables: &[Shown]) -> String {
     let of_source = |source: &Source| {
         let of_lights = by_light(&source.results).into_iter();
@@ -90,8 +91,9 @@ fn sign_of(tables: &[Shown], table: &Table, row: usize) -> String {
     row.map_or(String::new(), |row| sign(tables, &row.method))
 }
 
-/// Returns the overview of the sources' scenes as HTML: tables whose cells link to the table of
-/// their scene among the page's `tables`, and the verdicts. It is empty for results of one scene.
+/// Returns the overview of the sources' scenes as HTML: tables of methods and scenes, whose cells
+/// link to the table of their scene among the page's `tables`, and the verdicts. It is empty for
+/// results of one scene.
 pub fn overview(sources: &[Source], tables: &[Shown]) -> String {
     let scenes = sources.iter().map(|source| {
         let folder = source.folders.first().map(PathBuf::as_path);

@@ -34,8 +34,9 @@ pub fn by_summary<'a>(
 
 /// Returns, for each viewport with several lights, its size in pixels and a table with a row for
 /// each method and a column for each light. Cells show the percentage of the pixels facing the
-/// light that are wrong outside the band (the pixels whose answer rounding decides), the
-/// milliseconds of a frame, and the memory.
+/// light that are wrong outside the band (the pixels whose answer rounding decides), over all
+/// views; the milliseconds of a frame, the mean of the views' medians; and the memory, the most on
+/// a view.
 pub fn by_light(results: &Results) -> Vec<([u32; 2], Table)> {
     let summaries = summaries(results);
     let mut tables = Vec::new();

@@ -42,8 +42,9 @@ pub struct Matrix {
     pub summaries: Vec<usize>,
 }
 
-/// Returns a name for each scene, in order. Each is given with the folder of its results: its name
-/// is the scene's own, or the folder's if several scenes have the same name.
+/// Returns a name for each scene, in order; each scene is given with the folder of its results. The
+/// name is the scene's own. Scenes of one name get the last component of their folder, or the whole
+/// path if these components are not distinct either.
 pub fn scene_names<'a>(scenes: &[(&'a Path, &'a Results)]) -> Vec<String> {
     let scene = |results: &'a Results| results.scene.name.as_str();
     let last = |folder: &'a Path| folder.file_name().map(|name| name.to_string_lossy());

@@ -93,7 +93,8 @@ impl<'a> Summary<'a> {
         is_another_hour(row.session(), sessions.max().unwrap_or_default())
     }
 
-    /// True if the light has an extent, so that methods are judged by their shares of light.
+    /// True if the light of a measured run has an extent, so that methods are judged by their
+    /// shares of light.
     pub fn is_soft(&self) -> bool {
         self.rows.iter().any(Row::is_soft)
     }

@@ -48,9 +48,10 @@ pub struct Reading {
 /// Content of a pane: picture, legend and numbers.
 #[derive(Default)]
 pub struct Drawn {
-    /// The picture; `None` if there is none, and the legend says why.
+    /// The picture; `None` for a buffer, or if there is none.
     pub image: Option<Image>,
-    /// Meaning of the colours, or the reason why the picture is missing.
+    /// Meaning of the picture's colours; for a buffer, which of its items the table shows; or the
+    /// reason why there is neither. Empty for a method that the snapshot lacks.
     pub legend: String,
     /// The numbers of the picture's pixels; `None` if the picture has none.
     pub texels: Option<Texels>,

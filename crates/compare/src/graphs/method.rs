@@ -124,7 +124,9 @@ impl Method {
     }
 
     /// Plans the method for a viewport in pixels, an adapter and the scene of `provider`, with only
-    /// the outputs named in `outputs`.
+    /// the outputs named in `outputs`. Params that are not set have their defaults under these
+    /// conditions: call [`at`](Self::at) and [`settled`](Self::settled) first, and
+    /// [`value`](Self::value) and [`map_size`](Self::map_size) agree with the plan.
     ///
     /// # Errors
     /// All faults of the graph and its params under these conditions.

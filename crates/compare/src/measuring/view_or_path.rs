@@ -48,8 +48,9 @@ impl ViewOrPath {
         scene.light_of(self.view())
     }
 
-    /// Returns the name of the light if the view's name has the form `VIEW@LIGHT`, as
-    /// [`under_lights`] gives it; `None` for other views.
+    /// Returns the name of the view's or path's own light if its name ends in `@` and that name, as
+    /// views and paths under several lights are named by [`under_lights`] and
+    /// [`paths`](Self::paths); `None` otherwise.
     pub fn one_of_lights(&self) -> Option<&str> {
         let view = self.view();
         let light = &view.light.as_ref()?.name;
@@ -67,7 +68,8 @@ impl ViewOrPath {
 
     /// Returns the path of `paths` that is named `name`, or all of `paths` if the name is `all`.
     /// With `light`, each path is put under the light of that name; the light `all` gives one path
-    /// for each light that [`Scene::lights_of`] lists for its view.
+    /// for each light that [`Scene::lights_of`] lists for its view, named `PATH@LIGHT` if there are
+    /// several.
     ///
     /// # Errors
     /// The scene has no path of this name, no light of this name, or no paths at all.

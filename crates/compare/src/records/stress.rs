@@ -112,8 +112,11 @@ pub struct Case {
     /// Number of pixels whose primitive, as rasterised, is hidden behind another one by more than
     /// rounding.
     pub wrong_surface: u64,
-    /// Results of the methods: one per method that can run, and a second one with `cull=none`
-    /// (front and back faces cast shadows) if the guarantee can only be judged in that way.
+    /// Results of the methods, in the order of [`Report::methods`]. A method that is `unavailable`
+    /// or does not take the case's kind of light has none; one that failed on this case has one,
+    /// with `failed`. On open casters a method that culls faces and guarantees something has a
+    /// second one behind its first, with `cull=none` (front and back faces cast shadows). Empty if
+    /// the case has no reference.
     pub cells: Vec<Cell>,
 }
 
@@ -133,7 +136,7 @@ pub struct Cell {
     /// Counts of the method's wrong and uncertain pixels; absent where the method could not run.
     #[serde(flatten)]
     pub counts: Option<Counts>,
-    /// Reason why the method could not run; absent where it could.
+    /// Reason why the method failed on this case; absent where it ran.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failed: Option<String>,
     /// File names of the method's pictures of this case in the folder of `--save`; absent without

@@ -167,6 +167,8 @@ mod tests {
         let on = |host: &str| {
             let mut results = sample();
             results.machine.host = Some(host.into());
+            let runs = results.runs.iter_mut();
+            runs.for_each(|run| run.machine = Some(results.machine.clone()));
             results
         };
         let far = folder(&place("far"), &on("far"));

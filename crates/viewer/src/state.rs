@@ -7,7 +7,7 @@ use crate::desired_state::{
 use crate::drawn::{Drawn, Reading, Show, draw};
 use crate::flight;
 use crate::ground_truth::{Answer, GroundTruthThread};
-use crate::worker::Command;
+use crate::worker::{Command, WorkerThread};
 use glam::DVec3;
 use skiagraph_graph::{Capture, ParamValue};
 use skiagraph_scene::{Light, LightKind, View};
@@ -48,8 +48,8 @@ pub struct Pane {
 
 /// Channels between the window and the threads that run the graphs and trace the reference.
 pub struct Channels {
-    /// Commands to the thread that runs the graphs.
-    pub commands: mpsc::Sender<Command>,
+    /// Handle of the thread that runs the graphs.
+    pub worker: WorkerThread,
     /// Events of the thread that runs the graphs.
     pub events: mpsc::Receiver<Event>,
     /// Handle of the thread that traces the reference.
@@ -137,7 +137,7 @@ impl Viewer {
         if self.sent.as_ref() != Some(&self.desired) {
             self.sent = Some(self.desired.clone());
             let command = Command::Show(Box::new(self.desired.clone()));
-            if self.channels.commands.send(command).is_err() {
+            if self.channels.worker.commands().send(command).is_err() {
                 self.notify_error("the thread that runs the methods has ended: start anew");
             }
         }

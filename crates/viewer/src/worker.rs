@@ -19,8 +19,10 @@ use skiagraph_reference::{Progress, unshadowed};
 use skiagraph_scene::{Scene, View};
 use std::{
     error::Error,
+    io,
     sync::{Arc, mpsc},
-    time::Instant,
+    thread,
+    time::{Duration, Instant},
 };
 
 /// Commands of the window to the thread that runs the graphs.
@@ -29,6 +31,47 @@ pub enum Command {
     Show(Box<DesiredState>),
     /// Read the methods' files again; they may have changed.
     Reload,
+    /// End the thread behind the frame that runs.
+    End,
+}
+
+/// Handle of the thread that runs the graphs. The thread ends when the handle is dropped, which
+/// waits for a frame that runs: a process that ends while a driver works may crash.
+pub struct WorkerThread {
+    commands: mpsc::Sender<Command>,
+    thread: thread::JoinHandle<()>,
+}
+
+/// Longest time that a dropped handle waits for a frame.
+const LAST_FRAME: Duration = Duration::from_secs(20);
+
+impl WorkerThread {
+    /// Starts the thread.
+    ///
+    /// # Errors
+    /// If the system cannot create a thread.
+    pub fn start(worker: Worker) -> io::Result<Self> {
+        let (commands, received) = mpsc::channel();
+        let named = thread::Builder::new().name("methods".into());
+        let thread = named.spawn(move || worker.work(&received))?;
+        Ok(Self { commands, thread })
+    }
+
+    /// Returns the sender of commands to the thread.
+    pub fn commands(&self) -> &mpsc::Sender<Command> {
+        &self.commands
+    }
+}
+
+impl Drop for WorkerThread {
+    fn drop(&mut self) {
+        let began = Instant::now();
+        // A failed send means that it has ended.
+        let _ = self.commands.send(Command::End);
+        while !self.thread.is_finished() && began.elapsed() < LAST_FRAME {
+            thread::sleep(Duration::from_millis(2));
+        }
+    }
 }
 
 /// Function that loads a scene by name. It returns the scene, and further views that the window
@@ -98,6 +141,7 @@ impl Worker {
                 match command {
                     Command::Show(next) => (desired, is_changed) = (Some(*next), true),
                     Command::Reload => reload = true,
+                    Command::End => return,
                 }
             }
             if reload {

@@ -48,7 +48,7 @@ fn step_along(pixel: vec2<u32>, direction: vec2<i32>, texel: vec2<f32>) -> f32 {
 }
 
 // Filters like a sampler with `Linear`, by one with `Nearest`, which asks nothing of a format.
-fn filtered(map: texture_2d<f32>, nearest: sampler, look: Look) -> vec2<f32> {
+fn filtered(map: texture_2d<f32>, nearest: sampler, look: Look) -> vec4<f32> {
     let coarsest = f32(textureNumLevels(map) - 1u);
     let mip = min(look.mip, coarsest);
     let finer = bilinear(map, nearest, look.place, floor(mip));
@@ -56,7 +56,7 @@ fn filtered(map: texture_2d<f32>, nearest: sampler, look: Look) -> vec2<f32> {
     return mix(finer, coarser, fract(mip));
 }
 
-fn bilinear(map: texture_2d<f32>, nearest: sampler, place: vec2<f32>, mip: f32) -> vec2<f32> {
+fn bilinear(map: texture_2d<f32>, nearest: sampler, place: vec2<f32>, mip: f32) -> vec4<f32> {
     // Halved as often, rounded down.
     let size = f32(max(textureDimensions(map).x >> u32(mip), 1u));
     let corner = place * size - 0.5;
@@ -73,5 +73,5 @@ fn bilinear(map: texture_2d<f32>, nearest: sampler, place: vec2<f32>, mip: f32) 
         textureSampleLevel(map, nearest, high, mip),
         part.x,
     );
-    return mix(upper, lower, part.y).xy;
+    return mix(upper, lower, part.y);
 }

@@ -1,14 +1,11 @@
 // Stage to filter the shadow map around each pixel as widely as the light's extent and the depth of
-// what blocks it ask; a full-screen triangle. Fernando, "Percentage-Closer Soft Shadows", SIGGRAPH
-// 2005 sketches: blockers are searched for within the light's cone, their mean depth gives the
-// penumbra by similar triangles, which is filtered. Taps lie in the plane of the receiver, one in
-// each of as many parts of equal area.
+// its blockers ask; a full-screen triangle. Fernando, "Percentage-Closer Soft Shadows", SIGGRAPH
+// 2005 sketches: a search for blockers, their mean penumbra by similar triangles, a filter of that
+// size. Taps lie on the receiver's plane, one in each of as many parts of equal area.
 
-#import "shared/depth_bias.wgsl"
+#import "shared/compared_lookup.wgsl"
 #import "shared/geometry.wgsl"
 #import "shared/light_area.wgsl"
-#import "shared/map_layers.wgsl"
-#import "shared/receiver.wgsl"
 #import "shared/strata.wgsl"
 
 struct Params {
@@ -20,73 +17,25 @@ struct Params {
 }
 
 var<uniform> params: Params;
-var shadow_maps: texture_depth_2d_array;
-var nearer: sampler_comparison;
 
-struct Receiver {
-    place: vec3<f32>,
-    to_light: vec3<f32>,
-    // What its plane rises towards the light per unit across.
-    slope: vec3<f32>,
-    bias: f32,
-    jitter: vec2<f32>,
-}
+fn share_of_light(lookup: Lookup) -> f32 {
+    let pixel = lookup.pixel;
+    let receiver = lookup.receiver.xyz;
+    let bias = bias_of(lookup, params.bias, params.slope_bias);
+    let axes = light_on_plane(textureLoad(primitive, pixel, 0).x, to_light_from(receiver));
+    let jitter = random_pair(pixel.y * textureDimensions(position).x + pixel.x, 0u);
 
-struct Tap {
-    layer: u32,
-    // 0 to 1 across the layer; z: the plane's depth there, less the bias.
-    place: vec3<f32>,
-    is_outside: bool,
-}
-
-// Tap `index` of `count` over the penumbra of a blocker that lies `spread` before the receiver:
-// under a lamp as a share of its own way from the light.
-fn tap(receiver: Receiver, index: u32, count: u32, spread: f32) -> Tap {
-    let point = disk_point(stratum_point(index, count, receiver.jitter));
-    let across = spread * across_light(point, receiver.to_light);
-    let at = receiver.place + across - receiver.to_light * dot(across, receiver.slope);
-    let layer = layer_of(at);
-    let fit = fit_of(layer);
-    let place = texel_of(fit, at);
-    return Tap(layer, vec3(place.xy / fit.size, place.z - receiver.bias), is_outside_of(fit, place.xy));
-}
-
-fn spread_of(depth: f32, blocker: f32) -> f32 {
-    if light_kind == LIGHT_DIRECTIONAL {
-        return (depth - blocker) * light.extent.z;
-    }
-    return (depth - blocker) / blocker;
-}
-
-@fragment
-fn fragment(@builtin(position) centre: vec4<f32>) -> @location(0) f32 {
-    let pixel = vec2<u32>(centre.xy);
-    let place = textureLoad(position, pixel, 0);
-    let status = initial_status(pixel, place);
-    if status != STATUS_UNCERTAIN {
-        return f32(initial_visibility(status));
-    }
-    let to_light = to_light_from(place.xyz);
-    let number = pixel.y * textureDimensions(position).x + pixel.x;
-    let slope = plane_slope(textureLoad(primitive, pixel, 0).x, to_light);
-    let fit = fit_of(layer_of(place.xyz));
-    let at = texel_of(fit, place.xyz);
-    let bias = bias_at(fit, place.xyz, at, place.w, params.bias, params.slope_bias);
-    let receiver = Receiver(place.xyz, to_light, slope, bias, random_pair(number, 0u));
-
-    let depth = at.z;
-    let search = spread_of(depth, select(params.near * depth, 0.0, light_kind == LIGHT_DIRECTIONAL));
-    let count = samples_needed(params.blockers);
+    let search = penumbra(lookup.place.z, 0.0);
+    let blockers = samples_needed(params.blockers);
     var found = 0.0;
     var sum = 0.0;
-    for (var i = 0u; i < count; i++) {
-        let tap = tap(receiver, i, count, search);
-        let texel = vec2<i32>(tap.place.xy * f32(textureDimensions(shadow_maps).x));
-        let stored = textureLoad(shadow_maps, texel, tap.layer, 0);
-        if !tap.is_outside && stored < tap.place.z {
-            found += 1.0;
-            sum += spread_of(tap.place.z, stored);
-        }
+    for (var i = 0u; i < blockers; i++) {
+        let at = receiver + axes * (search * disk_point(stratum_point(i, blockers, jitter)));
+        let tap = texel_of(fit_of(layer_of(at)), at);
+        let texel = vec2<u32>(clamp(tap.xy, vec2(0.0), vec2(lookup.fit.size - 1.0)));
+        let width = penumbra(tap.z - bias, textureLoad(shadow_maps, texel, layer_of(at), 0));
+        found += select(0.0, 1.0, width > 0.0);
+        sum += max(width, 0.0);
     }
     if found == 0.0 {
         return 1.0;
@@ -94,20 +43,31 @@ fn fragment(@builtin(position) centre: vec4<f32>) -> @location(0) f32 {
     let taps = samples_needed(params.taps);
     var lit = 0.0;
     for (var i = 0u; i < taps; i++) {
-        let tap = tap(receiver, i, taps, sum / found);
-        if tap.is_outside {
-            lit += 1.0;
-            continue;
-        }
-        lit += textureSampleCompareLevel(shadow_maps, nearer, tap.place.xy, tap.layer, tap.place.z);
+        let at = receiver + axes * (sum / found * disk_point(stratum_point(i, taps, jitter)));
+        let tap = texel_of(fit_of(layer_of(at)), at);
+        let place = tap.xy / lookup.fit.size;
+        lit += textureSampleCompareLevel(shadow_maps, nearer, place, layer_of(at), tap.z - bias);
     }
-    return saturate(lit / f32(taps));
+    return lit / f32(taps);
 }
 
-// None of a plane that the light grazes, or of a receiver whose primitive is not known.
-fn plane_slope(id: u32, to_light: vec3<f32>) -> vec3<f32> {
+// Half width of the penumbra of a blocker, in half widths of the light: of a directional light in
+// those at distance 1. Not above 0 where nothing is blocked.
+fn penumbra(receiver: f32, blocker: f32) -> f32 {
+    if light_kind == LIGHT_DIRECTIONAL {
+        return (receiver - blocker) * light.extent.z;
+    }
+    return (receiver - blocker) / max(blocker, params.near * receiver);
+}
+
+// The axes of the light's disk, moved along the light into the plane of a primitive, but for one
+// that the light grazes or that is not known.
+fn light_on_plane(id: u32, to_light: vec3<f32>) -> mat2x3<f32> {
     let a = corner_position(3u * id);
     let normal = cross(corner_position(3u * id + 1u) - a, corner_position(3u * id + 2u) - a);
     let facing = dot(normal, to_light);
-    return select(normal / facing, vec3(0.0), abs(facing) <= 0.02 * length(normal));
+    let slope = select(normal / facing, vec3(0.0), abs(facing) <= 0.02 * length(normal));
+    let right = across_light(vec2(1.0, 0.0), to_light);
+    let up = across_light(vec2(0.0, 1.0), to_light);
+    return mat2x3(right - to_light * dot(right, slope), up - to_light * dot(up, slope));
 }

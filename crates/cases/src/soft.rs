@@ -15,6 +15,14 @@ const TWO_OCCLUDERS: [Block; 3] = [
     [[-8.0, 6.0, -2.0], [-6.0, 6.05, 1.5]],
 ];
 
+/// A third plate between the two, whose shadow ends beside that of the highest.
+const THREE_OCCLUDERS: [Block; 4] = [
+    TWO_OCCLUDERS[0],
+    TWO_OCCLUDERS[1],
+    TWO_OCCLUDERS[2],
+    [[-5.4, 3.5, -1.8], [-3.44, 3.55, 1.6]],
+];
+
 const ACROSS: DVec3 = DVec3::new(0.2, -1.0, 0.9);
 const CONTACT: [Block; 2] = [
     [[-5.0, -0.5, -5.0], [5.0, 0.0, 5.0]],
@@ -35,6 +43,12 @@ pub(crate) const CASES: &[HardCase] = &[
         "a silhouette within another's shadow: the variance of depths lets light through",
         seen([3.6, 2.2, 2.4], [0.1, 0.0, 0.0], OBLIQUE),
         (&TWO_OCCLUDERS, 1e-4),
+    ),
+    HardCase::boxes(
+        "three_occluders",
+        "two silhouettes side by side within a third shadow: more depths than four moments can tell",
+        seen([3.6, 2.2, 2.4], [0.1, 0.0, 0.0], OBLIQUE),
+        (&THREE_OCCLUDERS, 1e-4),
     ),
     HardCase::boxes(
         "contact",

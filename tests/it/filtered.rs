@@ -1,5 +1,5 @@
-//! Filtered shadow maps: `pcf`, `pcss`, `vsm`, `evsm`, `msm`, `esm`. Each shows its known artefact on
-//! the case made for it, and less of it by the param that is meant against it.
+//! Filtered shadow maps: `pcf`, `pcss`, `vsm`, `evsm`, `msm`, `esm`. Each shows its known artefact
+//! on the case made for it, and less of it by the param that is meant against it.
 
 use crate::support::{
     graphs::{open, plan, provider, run_on, shares, values},
@@ -206,8 +206,12 @@ fn msm_leaks_less_than_vsm_but_behind_three_occluders() {
     let fine = [map(512), number("radius", 4)];
     // 16 bytes a texel for 8.
     let coarse = [map(256), number("radius", 2)];
-    let two = [("vsm", fine), ("msm", coarse)].map(|(preset, params)| leaks("two_occluders", preset, &params));
-    println!("behind two vsm leaks at {} pixels, msm at {}", two[0], two[1]);
+    let two = [("vsm", fine), ("msm", coarse)]
+        .map(|(preset, params)| leaks("two_occluders", preset, &params));
+    println!(
+        "behind two vsm leaks at {} pixels, msm at {}",
+        two[0], two[1]
+    );
     assert!(two[0] > 50 && 4 * two[1] < two[0], "{two:?}");
     let three = [1e-7, 1e-4].map(|bias| {
         let params = [map(512), number("radius", 4), float("moment_bias", bias)];
@@ -215,7 +219,10 @@ fn msm_leaks_less_than_vsm_but_behind_three_occluders() {
     });
     println!("msm leaks behind two and three at {three:?}");
     let [[two, three], [biased, _]] = three;
-    assert!(three > 30 && three > 4 * two && biased > 2 * two, "{two}, {three}, {biased}");
+    assert!(
+        three > 30 && three > 4 * two && biased > 2 * two,
+        "{two}, {three}, {biased}"
+    );
 }
 
 /// Pixels in the penumbra of the plate near the floor, and of that far above it.
@@ -251,16 +258,24 @@ fn pcss_hardens_at_contact_and_pcf_does_not() {
     for radius in [2, 6] {
         let pcf = see(&scene, "pcf", &[map(512), number("radius", radius)]);
         let [near, far] = penumbrae(&pcf.visibility, &pcf.position);
-        println!("pcf, radius {radius}: {near} and {far} pixels, RMSE {}", pcf.rmse());
+        println!(
+            "pcf, radius {radius}: {near} and {far} pixels, RMSE {}",
+            pcf.rmse()
+        );
         assert!(near > 100, "{near}");
         let ratio = far as f64 / near as f64;
         assert!((0.4..2.5).contains(&ratio), "{ratio}");
-        assert!(2.0 * pcss.rmse() < pcf.rmse(), "{}, {}", pcss.rmse(), pcf.rmse());
+        assert!(
+            2.0 * pcss.rmse() < pcf.rmse(),
+            "{}, {}",
+            pcss.rmse(),
+            pcf.rmse()
+        );
     }
 }
 
-/// Of the two plates the map has the one that is nearer to the light: where it hides the other, the
-/// shadow of that is as soft as its own.
+/// The map has the plate that is nearer to the light alone: where it hides the other, the shadow of
+/// that is as soft as its own.
 #[test]
 fn pcss_knows_no_blocker_behind_the_nearest() {
     let hidden = wide_sun(Some(DVec3::new(-0.25, -1.0, 0.1)));
@@ -322,8 +337,14 @@ fn pcf_and_pcss_are_right_but_for_their_blur_under_lamps() {
                     let pixels = seen.inside(class, 3);
                     let wrong = |pixel: &&usize| (seen.visibility[**pixel] - light).abs() > 0.1;
                     let wrong = pixels.iter().filter(wrong).count() as f64 / pixels.len() as f64;
-                    println!("{preset} {lamp:?} {class:?}: {wrong} of {} wrong", pixels.len());
-                    assert!(pixels.len() > 300 && wrong <= most, "{preset} {lamp:?} {class:?}");
+                    println!(
+                        "{preset} {lamp:?} {class:?}: {wrong} of {} wrong",
+                        pixels.len()
+                    );
+                    assert!(
+                        pixels.len() > 300 && wrong <= most,
+                        "{preset} {lamp:?} {class:?}"
+                    );
                 }
             }
         }

@@ -46,7 +46,7 @@ pub(crate) const CASES: &[HardCase] = &[
     ),
     HardCase::boxes(
         "three_occluders",
-        "two silhouettes side by side within a third shadow: more depths than four moments can tell",
+        "two silhouettes side by side within a shadow: more depths than four moments tell",
         seen([3.6, 2.2, 2.4], [0.1, 0.0, 0.0], OBLIQUE),
         (&THREE_OCCLUDERS, 1e-4),
     ),

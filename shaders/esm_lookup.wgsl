@@ -13,6 +13,6 @@ struct Params {
 
 var<uniform> params: Params;
 
-fn share_of_light(stored: vec4<f32>, depth: f32) -> f32 {
-    return exp(params.exponent * (stored.x - depth));
+fn share_of_light(stored: vec4<f32>, look: Look) -> f32 {
+    return exp(params.exponent * (stored.x - look.depth));
 }

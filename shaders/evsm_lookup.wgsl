@@ -15,8 +15,8 @@ struct Params {
 
 var<uniform> params: Params;
 
-fn share_of_light(stored: vec4<f32>, depth: f32) -> f32 {
-    let at = warped(depth, params.exponent);
+fn share_of_light(stored: vec4<f32>, look: Look) -> f32 {
+    let at = warped(look.depth, params.exponent);
     // A variance of depth becomes one of the warp by its derivative, squared.
     let slope = 2.0 * params.exponent * at;
     let least = params.min_variance * slope * slope;

@@ -6,14 +6,19 @@
 struct Params {
     radius: u32,
     moment_bias: f32,
+    slope_bias: f32,
     bleed_reduction: f32,
 }
 
 var<uniform> params: Params;
 
-fn share_of_light(stored: vec4<f32>, depth: f32) -> f32 {
+// Moments of 0.628 of the depths at the ends of the depth range, the others in its middle.
+const SPREAD: vec4<f32> = vec4(0.0, 0.157, 0.0, 0.03925);
+
+fn share_of_light(stored: vec4<f32>, look: Look) -> f32 {
+    let depth = look.depth - params.slope_bias * look.rise;
     // Rounded moments may be those of no depths: a share of valid ones makes them so.
-    let b = mix(stored, vec4(0.5), params.moment_bias);
+    let b = mix(stored, SPREAD, params.moment_bias);
     // Cholesky's factors of the Hankel matrix of 1, b, solved for the polynomial whose roots are
     // the two other depths that would darken the receiver most.
     let d22 = b.y - b.x * b.x;
@@ -23,8 +28,10 @@ fn share_of_light(stored: vec4<f32>, depth: f32) -> f32 {
     c.z = (c.z - l32 * c.y) / d33;
     c.y = c.y / d22 - l32 * c.z;
     c.x -= dot(c.yz, b.xy);
-    let middle = -0.5 * c.y / c.z;
-    let apart = sqrt(max(middle * middle - c.x / c.z, 0.0));
+    // At the mean depth of a flat surface rounding leaves nothing of either: any two will do.
+    let divisor = select(c.z, 1e-30, c.z == 0.0);
+    let middle = -0.5 * c.y / divisor;
+    let apart = sqrt(max(middle * middle - c.x / divisor, 0.0));
     let low = middle - apart;
     let high = middle + apart;
     if depth <= low {

@@ -12,6 +12,6 @@ struct Params {
 
 var<uniform> params: Params;
 
-fn share_of_light(stored: vec4<f32>, depth: f32) -> f32 {
-    return chebyshev(stored.xy, depth, params.min_variance);
+fn share_of_light(stored: vec4<f32>, look: Look) -> f32 {
+    return chebyshev(stored.xy, look.depth, params.min_variance);
 }

@@ -1,5 +1,5 @@
 // The entry points of a stage that looks a filtered map up; one thread per pixel. The importing
-// file has `fn share_of_light(stored: vec4<f32>, depth: f32) -> f32`, and params `radius` and
+// file has `fn share_of_light(stored: vec4<f32>, look: Look) -> f32`, and params `radius` and
 // `bleed_reduction`.
 
 #import "shared/filtered_map.wgsl"
@@ -15,7 +15,7 @@ fn sampled(@builtin(global_invocation_id) thread: vec3<u32>) {
     var share = look.visibility;
     if look.at_map {
         let stored = textureSampleLevel(map, trilinear, look.place, look.mip);
-        share = reduced(share_of_light(stored, look.depth));
+        share = reduced(share_of_light(stored, look));
     }
     textureStore(visibility, thread.xy, vec4(share));
 }
@@ -25,7 +25,7 @@ fn by_hand(@builtin(global_invocation_id) thread: vec3<u32>) {
     let look = look(thread.xy, params.radius);
     var share = look.visibility;
     if look.at_map {
-        share = reduced(share_of_light(filtered(map, nearest, look), look.depth));
+        share = reduced(share_of_light(filtered(map, nearest, look), look));
     }
     textureStore(visibility, thread.xy, vec4(share));
 }

@@ -1,7 +1,7 @@
-// A depth under two exponential warps, one that grows away from the light and one that grows
+// A depth, from the middle of its range on, under two exponential warps, one that grows away from the light and one that grows
 // towards it. Lauritzen, McCool, "Layered Variance Shadow Maps", GI 2008.
 
 fn warped(depth: f32, exponent: f32) -> vec2<f32> {
-    let z = 2.0 * depth - 1.0;
+    let z = 2.0 * depth;
     return vec2(exp(exponent * z), -exp(-exponent * z));
 }

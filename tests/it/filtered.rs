@@ -90,17 +90,24 @@ impl Seen {
         pixels.iter().filter(lit).count()
     }
 
+    /// Returns what is shown of the light and what is true, of each pixel that faces it.
+    fn facing(&self) -> impl Iterator<Item = (f32, f32)> {
+        let answers = self.visibility.iter().zip(&self.shares).zip(&self.classes);
+        let faces = |(_, class): &(_, &Class)| matches!(class, Class::Lit | Class::Shadow);
+        answers
+            .filter(faces)
+            .map(|((shown, share), _)| (*shown, *share))
+    }
+
     /// Counts the pixels that see none of the light and get more than this share of it.
     fn lit_umbra(&self, more_than: f32) -> usize {
-        let pixels = self.visibility.iter().zip(&self.shares);
-        let is_lit = |(shown, share): &(&f32, &f32)| **share == 0.0 && **shown > more_than;
-        pixels.filter(is_lit).count()
+        let lit = |&(shown, share): &(f32, f32)| share == 0.0 && shown > more_than;
+        self.facing().filter(lit).count()
     }
 
     fn rmse(&self) -> f32 {
-        let pixels = self.visibility.iter().zip(&self.shares);
-        let squares: f32 = pixels.map(|(a, b)| (a - b) * (a - b)).sum();
-        (squares / self.shares.len() as f32).sqrt()
+        let squares: f32 = self.facing().map(|(a, b)| (a - b) * (a - b)).sum();
+        (squares / self.facing().count() as f32).sqrt()
     }
 }
 
@@ -148,8 +155,11 @@ fn vsm_bleeds_behind_two_occluders_and_less_when_it_is_cut() {
 fn esm_fails_at_contact_and_less_with_a_greater_exponent() {
     let scene = case("contact");
     let leaks = |preset: &str, params: Params| see(&scene, preset, params).leaks(2, 0.1);
-    let fading = [40.0, 80.0, 1000.0]
-        .map(|exponent| leaks("esm", &[map(2048), float("exponent", exponent)]));
+    let whole = float("bleed_reduction", 0.0);
+    let fading = [40.0, 80.0, 1000.0].map(|exponent| {
+        let params = [map(2048), float("exponent", exponent), whole.clone()];
+        leaks("esm", &params)
+    });
     println!("esm leaks at {fading:?} pixels");
     assert!(fading[1] > 300, "{fading:?}");
     assert!(
@@ -194,8 +204,7 @@ fn evsm_leaks_less_than_vsm_and_esm() {
     assert!(2 * evsm < esm, "{esm}, {evsm}");
 }
 
-/// With half as many bits. Three depths under one filter are more than four moments can tell, and a
-/// greater bias blurs them.
+/// With half as many bits. Three depths under one filter are more than four moments can tell.
 #[test]
 fn msm_leaks_less_than_vsm_but_behind_three_occluders() {
     let whole = float("bleed_reduction", 0.0);
@@ -213,16 +222,10 @@ fn msm_leaks_less_than_vsm_but_behind_three_occluders() {
         two[0], two[1]
     );
     assert!(two[0] > 50 && 4 * two[1] < two[0], "{two:?}");
-    let three = [1e-7, 1e-4].map(|bias| {
-        let params = [map(512), number("radius", 4), float("moment_bias", bias)];
-        ["two_occluders", "three_occluders"].map(|name| leaks(name, "msm", &params))
-    });
-    println!("msm leaks behind two and three at {three:?}");
-    let [[two, three], [biased, _]] = three;
-    assert!(
-        three > 30 && three > 4 * two && biased > 2 * two,
-        "{two}, {three}, {biased}"
-    );
+    let fine = [map(512), number("radius", 4)];
+    let [two, three] = ["two_occluders", "three_occluders"].map(|name| leaks(name, "msm", &fine));
+    println!("msm leaks at {two} pixels behind two, at {three} behind three");
+    assert!(three > 30 && three > 4 * two, "{two}, {three}");
 }
 
 /// Pixels in the penumbra of the plate near the floor, and of that far above it.
@@ -291,8 +294,7 @@ fn the_noise_of_pcss_falls_with_its_taps() {
     let off = [4, 16, 64].map(|taps| {
         let params = [map(512), number("taps", taps), number("blockers", taps)];
         let seen = see(&scene, "pcss", &params);
-        let pixels = seen.visibility.iter().zip(&seen.shares);
-        pixels.filter(|(a, b)| (*a - *b).abs() > 0.125).count()
+        seen.facing().filter(|(a, b)| (a - b).abs() > 0.125).count()
     });
     println!("pcss is off by more than 1/8 at {off:?} pixels");
     assert!(off[0] > 2 * off[1] && off[1] > off[2], "{off:?}");
@@ -422,7 +424,10 @@ fn a_lit_floor_does_not_shade_itself() {
     let scene = case("near_and_far");
     for preset in ["pcf", "pcss", "vsm", "evsm", "msm", "esm"] {
         for size in [1, 3, 64, 1000] {
-            let seen = see(&scene, preset, &[map(size)]);
+            // Four moments see the plane's own depths before a receiver.
+            let bias = (preset == "msm").then(|| float("slope_bias", 1.0));
+            let params: Vec<_> = [map(size)].into_iter().chain(bias).collect();
+            let seen = see(&scene, preset, &params);
             // Far from all shadows.
             let edge = |pixel: &usize| seen.position[*pixel].z < -1.2;
             let lit = seen.inside(Class::Lit, 3);

@@ -15,12 +15,13 @@ const TWO_OCCLUDERS: [Block; 3] = [
     [[-8.0, 6.0, -2.0], [-6.0, 6.05, 1.5]],
 ];
 
-/// A third plate between the two, whose shadow ends beside that of the highest.
+/// A floor, a plate just above it, and two high ones whose shadows end side by side within the low
+/// one's.
 const THREE_OCCLUDERS: [Block; 4] = [
     TWO_OCCLUDERS[0],
-    TWO_OCCLUDERS[1],
-    TWO_OCCLUDERS[2],
-    [[-5.4, 3.5, -1.8], [-3.44, 3.55, 1.6]],
+    [[-1.3, 0.3, -1.0], [0.7, 0.35, 1.0]],
+    [[-5.0, 3.0, -1.8], [-2.37, 3.05, 1.6]],
+    [[-8.0, 6.0, -2.0], [-5.45, 6.05, 1.5]],
 ];
 
 const ACROSS: DVec3 = DVec3::new(0.2, -1.0, 0.9);

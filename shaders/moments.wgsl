@@ -1,4 +1,4 @@
-// Stages to write what is blurred of the depth of each texel; a full-screen triangle. `powers`: its
+// Stage to write what is blurred of the depth of each texel; a full-screen triangle. `powers`: its
 // first four moments from the middle of the depth range on, of which a target keeps as many as it
 // has channels. Donnelly, Lauritzen,
 // "Variance Shadow Maps", I3D 2006, equations 1 and 2; Peters, Klein, "Moment Shadow Mapping", I3D

@@ -225,7 +225,7 @@ fn msm_leaks_less_than_vsm_but_behind_three_occluders() {
     let fine = [map(512), number("radius", 4)];
     let [two, three] = ["two_occluders", "three_occluders"].map(|name| leaks(name, "msm", &fine));
     println!("msm leaks at {two} pixels behind two, at {three} behind three");
-    assert!(three > 30 && three > 4 * two, "{two}, {three}");
+    assert!(three > 15 && three > 4 * two, "{two}, {three}");
 }
 
 /// Pixels in the penumbra of the plate near the floor, and of that far above it.
@@ -312,7 +312,7 @@ fn pcss_widens_under_lamps_with_an_extent() {
         let scene = under(&scene, lamp);
         let [pcf, pcss] = ["pcf", "pcss"].map(|preset| see(&scene, preset, &[map(512)]).rmse());
         println!("{lamp:?}: pcf {pcf}, pcss {pcss}");
-        assert!(2.0 * pcss < pcf, "{lamp:?}: {pcf}, {pcss}");
+        assert!(3.0 * pcss < 2.0 * pcf, "{lamp:?}: {pcf}, {pcss}");
     }
 }
 

@@ -18,7 +18,7 @@ fn share_of_light(stored: vec4<f32>, look: Look) -> f32 {
     // of the range, the others in its middle, makes them valid.
     let b = mix(stored, vec4(0.0, 0.157, 0.0, 0.03925), params.moment_bias);
     // Cholesky's factors of the Hankel matrix of 1, b, solved for the polynomial whose roots are
-    // the two other depths that would darken the receiver most. The least values are what rounding
+    // the two other depths that would darken the receiver least. The least values are what rounding
     // may take from a flat surface; there any two depths will do.
     let d22 = max(b.y - b.x * b.x, 1e-9);
     let l32 = (b.z - b.x * b.y) / d22;

@@ -13,7 +13,7 @@ struct Look {
     // From the middle of the depth range, as the map has it, so that its powers keep their digits.
     depth: f32,
     mip: f32,
-    // What the receiver's plane rises over half of what is filtered.
+    // Rise of the receiver's plane over half of the filter.
     rise: f32,
 }
 

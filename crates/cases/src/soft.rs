@@ -1,4 +1,4 @@
-//! Cases that filtered maps get wrong, each map by its own means.
+//! Defines cases that filtered shadow maps get wrong.
 
 use crate::{
     case::HardCase,

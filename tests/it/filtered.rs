@@ -209,7 +209,7 @@ fn evsm_leaks_less_than_vsm_and_esm() {
 fn msm_leaks_less_than_vsm_but_behind_three_occluders() {
     let whole = float("bleed_reduction", 0.0);
     let leaks = |name: &str, preset: &str, params: Params| {
-        let params = [params, &[whole.clone()]].concat();
+        let params = [params, std::slice::from_ref(&whole)].concat();
         see(&case(name), preset, &params).leaks(4, 0.1)
     };
     let fine = [map(512), number("radius", 4)];

@@ -46,7 +46,7 @@ pub struct Degenerate {
     /// Number of degenerate triangles, those of the faces in `first` included.
     pub triangles: usize,
     /// First faces with such a triangle, in file order: at most
-    /// [`FACES_SHOWN`](crate::error::FACES_SHOWN).
+    /// [`FACES_SHOWN`].
     pub first: Vec<FaceRef>,
 }
 

@@ -154,7 +154,7 @@ fn lit_samples(asking: Asking, asked: Asked) -> u32 {
     return select(TOO_MANY, countOneBits(lit.x) + countOneBits(lit.y), is_done);
 }
 
-// As aim_samples.wgsl has it.
+// As aim_samples.wgsl has it, of the unit disk.
 fn sample_point(asking: Asking, i: u32) -> vec2<f32> {
     let sample = first_sample + i;
     return disk_point(stratum_point(sample, asking.wanted, random_pair(asking.pixel, sample)));
@@ -213,7 +213,7 @@ fn inside_bits(
     return bits.x | bits.y | bits.z | bits.w;
 }
 
-// The tracer's answer for the ray that aim_samples.wgsl aims.
+// The tracer's answer for the ray of a sample.
 fn hides(receiver: vec3<f32>, t_min: f32, primitive: u32, point: vec2<f32>) -> bool {
     let asked = Ray(receiver, t_min, to_light_from(receiver), light_distance(receiver));
     let ray = aimed(asked, point);

@@ -33,8 +33,10 @@ fn main(
         var inside = texels_in(caster, tile);
         while any(inside != vec2(0u)) {
             let texel = tile * TILE + first_of(inside);
-            let max_depth = atomicLoad(&texels[texel_number(binned_layer, texel)].max_receiver_depth);
-            let is_one = may_shade_texel(caster, vec2<f32>(texel) + 0.5, max_depth);
+            let centre = vec2<f32>(texel) + 0.5;
+            let place = texel_number(binned_layer, texel);
+            let max_depth = atomicLoad(&texels[place].max_receiver_depth);
+            let is_one = may_shade_texel(caster, centre, max_depth);
             entries_here += select(0u, step, is_one);
             inside &= ~first_bit(inside);
         }

@@ -14,7 +14,7 @@ override samples: u32 = 64u;
 override first_sample: u32 = 0u;
 
 // Rounds of a thread's loops after which it begins no more; with the last candidate's samples and
-// the points 128 more. llvmpipe ends loops after 65,535 rounds of the threads that run in step,
+// the points 130 more. llvmpipe ends loops after 65,535 rounds of the threads that run in step,
 // sixteen of them at most.
 const MOST_ROUNDS: u32 = 3900u;
 const TOO_MANY: u32 = 0xffffffffu;
@@ -71,7 +71,7 @@ fn fragment(@builtin(position) centre: vec4<f32>) -> Answer {
     return Answer(share, select(STATUS_SHADOW, STATUS_LIGHT, share >= 0.5));
 }
 
-// What is so near to a lamp asks rays: lists and bounds are of receivers beyond twice its radius.
+// Receivers within twice a lamp's radius ask rays: lists and bounds are for those beyond.
 fn is_inside_light(receiver: vec3<f32>) -> bool {
     let way = light_way(receiver);
     return light_kind != LIGHT_DIRECTIONAL
@@ -196,7 +196,7 @@ fn inside_of_edges(
     return Inside(bits, min(min(near.x, near.y), min(near.z, near.w)));
 }
 
-// Of four samples.
+// The same for four samples.
 fn inside_bits(
     sides: Sides,
     error: f32,

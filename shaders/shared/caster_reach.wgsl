@@ -19,7 +19,7 @@ fn reach_of(triangle: LightTriangle, plane: DepthPlane, tolerance: f32) -> Reach
     return Reach(0.0);
 }
 
-// Of a triangle that counts as being everywhere in a face.
+// The reach of a triangle that counts as being everywhere in a face.
 fn reach_of_whole_face() -> Reach {
     return Reach(0.0);
 }

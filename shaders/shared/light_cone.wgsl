@@ -1,4 +1,5 @@
-// A triangle before the disk of a light, as a receiver sees it: which points of the disk it hides, as far as that is clear of rounding. Bounds: docs/light_buffer_area.md.
+// A triangle before the disk of a light, as a receiver sees it: which points of the disk it hides,
+// as far as that is clear of rounding. Bounds: docs/light_buffer_area.md.
 
 #import "shared/geometry.wgsl"
 #import "shared/light_area.wgsl"
@@ -54,7 +55,7 @@ fn sight_of(receiver: vec3<f32>, t_min: f32) -> Sight {
         let seen = radius / distance;
         return Sight(receiver, t_min, axes.x, axes.y, to_light, seen, distance, distance);
     }
-    // Of the sphere around the disk.
+    // The sphere around the disk has this radius.
     let seen = radius * inverseSqrt(distance * distance - radius * radius) * 1.00001;
     return Sight(
         receiver, t_min, axes.x, axes.y, to_light, seen, distance - radius, distance + radius,

@@ -5,13 +5,18 @@ use crate::support::graphs::{plan_files, provider, run, values};
 use glam::{DVec3, Vec3};
 use skiagraph_graph::PassSummary;
 use skiagraph_reference::{Class, Graded, GroundTruth, Oracle, OracleMode, Progress, area};
-use skiagraph_scene::{DirectionalLight, LightKind, PointLight, Scene, SpotLight, View};
+use skiagraph_scene::{DirectionalLight, LightKind, Mesh, PointLight, Scene, SpotLight, View};
 use std::sync::Arc;
 
 const VIEWPORT: [u32; 2] = [64, 48];
 
 /// A thin plate above a floor.
 fn scene(light: impl Into<LightKind>) -> Arc<Scene> {
+    let mesh = support::meshes::box_over_floor(6.0, Vec3::new(1.2, 0.2, 1.1));
+    scene_of(mesh, light)
+}
+
+fn scene_of(mesh: Mesh, light: impl Into<LightKind>) -> Arc<Scene> {
     let view = View {
         name: "main".into(),
         eye: DVec3::new(0.5, 6.0, 7.0),
@@ -24,8 +29,8 @@ fn scene(light: impl Into<LightKind>) -> Arc<Scene> {
     };
     let light = skiagraph_scene::Light::only(light);
     Arc::new(Scene {
-        name: "plate".into(),
-        mesh: support::meshes::box_over_floor(6.0, Vec3::new(1.2, 0.2, 1.1)),
+        name: "test".into(),
+        mesh,
         views: vec![view],
         lights: vec![light],
     })
@@ -281,6 +286,14 @@ fn lists_answer_each_sample_of_lamps_as_its_ray_does() {
     ] {
         let asked = assert_lists_answer_as_rays_do(&scene(light.clone()), samples, "");
         assert_eq!(asked > 0, asks, "{asked} pixels asked rays: {light:?}");
+    }
+    // Over, and between, masked leaves.
+    let leaves = || support::meshes::foliage(60, 0.35, 4.0, 1);
+    for light in [
+        spot(at(1.5, 6.0, -1.0), 100.0, 0.3),
+        point(at(0.3, 1.0, 0.2), 0.1),
+    ] {
+        assert_lists_answer_as_rays_do(&scene_of(leaves(), light), 33, "");
     }
 }
 

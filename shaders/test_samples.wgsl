@@ -14,7 +14,7 @@ override samples: u32 = 64u;
 override first_sample: u32 = 0u;
 
 // Rounds of a thread's loops after which it begins no more; with the last candidate's samples and
-// the points 130 more. llvmpipe ends loops after 65,535 rounds of the threads that run in step,
+// the points 128 more. llvmpipe ends loops after 65,535 rounds of the threads that run in step,
 // sixteen of them at most.
 const MOST_ROUNDS: u32 = 3900u;
 const TOO_MANY: u32 = 0xffffffffu;
@@ -122,20 +122,31 @@ fn lit_samples(asking: Asking, asked: Asked) -> u32 {
                 ys[i / 4u][i % 4u] = point.y;
             }
         }
-        let first = inside_of_edges(cone.sides, cone.error, &xs, &ys);
+        // Samples that are certainly hidden, if the cone is clear, and that perhaps are. Unrolled,
+        // so that none is looked up by a number that is not known beforehand.
+        var low = vec2(0u);
+        var high = vec2(0u);
+        if samples > 0u { low |= sides_of(cone, xs[0], ys[0]) << vec2(0u); }
+        if samples > 4u { low |= sides_of(cone, xs[1], ys[1]) << vec2(4u); }
+        if samples > 8u { low |= sides_of(cone, xs[2], ys[2]) << vec2(8u); }
+        if samples > 12u { low |= sides_of(cone, xs[3], ys[3]) << vec2(12u); }
+        if samples > 16u { low |= sides_of(cone, xs[4], ys[4]) << vec2(16u); }
+        if samples > 20u { low |= sides_of(cone, xs[5], ys[5]) << vec2(20u); }
+        if samples > 24u { low |= sides_of(cone, xs[6], ys[6]) << vec2(24u); }
+        if samples > 28u { low |= sides_of(cone, xs[7], ys[7]) << vec2(28u); }
+        if samples > 32u { high |= sides_of(cone, xs[8], ys[8]) << vec2(0u); }
+        if samples > 36u { high |= sides_of(cone, xs[9], ys[9]) << vec2(4u); }
+        if samples > 40u { high |= sides_of(cone, xs[10], ys[10]) << vec2(8u); }
+        if samples > 44u { high |= sides_of(cone, xs[11], ys[11]) << vec2(12u); }
+        if samples > 48u { high |= sides_of(cone, xs[12], ys[12]) << vec2(16u); }
+        if samples > 52u { high |= sides_of(cone, xs[13], ys[13]) << vec2(20u); }
+        if samples > 56u { high |= sides_of(cone, xs[14], ys[14]) << vec2(24u); }
+        if samples > 60u { high |= sides_of(cone, xs[15], ys[15]) << vec2(28u); }
         // Where a mask has holes the tracer finds them.
         let is_clear = cone.is_clear && !is_masked(candidate);
-        lit &= ~select(vec2(0u), first.bits, is_clear);
-        // Samples near an edge, perhaps inside of all; of a triangle that may be turned either way
-        // those that are perhaps outside of all, too.
-        var unsure = vec2(0u);
-        var turn = select(0u, 2u, is_clear && first.nearest > cone.error);
-        while turn < 2u {
-            let sides = turned(cone.sides, turn == 1u);
-            unsure |= lit & inside_of_edges(sides, -cone.error, &xs, &ys).bits;
-            turn += select(1u, 2u, is_clear);
-            rounds += 1u;
-        }
+        let certain = select(vec2(0u), vec2(low.x, high.x), is_clear);
+        lit &= ~certain;
+        var unsure = lit & vec2(low.y, high.y);
         while any(unsure != vec2(0u)) {
             let bit = first_bit(unsure);
             unsure &= ~bit;
@@ -160,57 +171,19 @@ fn sample_point(asking: Asking, i: u32) -> vec2<f32> {
     return disk_point(stratum_point(sample, asking.wanted, random_pair(asking.pixel, sample)));
 }
 
-struct Inside {
-    // A bit for each sample of the turn.
-    bits: vec2<u32>,
-    // How near a sample is to an edge's line, as `error` is measured.
-    nearest: f32,
-}
-
-// Samples that are farther inside of all edges than that. Unrolled, so that none is looked up by a
-// number that is not known beforehand.
-fn inside_of_edges(
-    sides: Sides,
-    error: f32,
-    xs: ptr<function, array<vec4<f32>, 16>>,
-    ys: ptr<function, array<vec4<f32>, 16>>,
-) -> Inside {
-    var bits = vec2(0u);
-    var near = vec4(3e38);
-    if samples > 0u { bits.x |= inside_bits(sides, error, (*xs)[0], (*ys)[0], &near) << 0u; }
-    if samples > 4u { bits.x |= inside_bits(sides, error, (*xs)[1], (*ys)[1], &near) << 4u; }
-    if samples > 8u { bits.x |= inside_bits(sides, error, (*xs)[2], (*ys)[2], &near) << 8u; }
-    if samples > 12u { bits.x |= inside_bits(sides, error, (*xs)[3], (*ys)[3], &near) << 12u; }
-    if samples > 16u { bits.x |= inside_bits(sides, error, (*xs)[4], (*ys)[4], &near) << 16u; }
-    if samples > 20u { bits.x |= inside_bits(sides, error, (*xs)[5], (*ys)[5], &near) << 20u; }
-    if samples > 24u { bits.x |= inside_bits(sides, error, (*xs)[6], (*ys)[6], &near) << 24u; }
-    if samples > 28u { bits.x |= inside_bits(sides, error, (*xs)[7], (*ys)[7], &near) << 28u; }
-    if samples > 32u { bits.y |= inside_bits(sides, error, (*xs)[8], (*ys)[8], &near) << 0u; }
-    if samples > 36u { bits.y |= inside_bits(sides, error, (*xs)[9], (*ys)[9], &near) << 4u; }
-    if samples > 40u { bits.y |= inside_bits(sides, error, (*xs)[10], (*ys)[10], &near) << 8u; }
-    if samples > 44u { bits.y |= inside_bits(sides, error, (*xs)[11], (*ys)[11], &near) << 12u; }
-    if samples > 48u { bits.y |= inside_bits(sides, error, (*xs)[12], (*ys)[12], &near) << 16u; }
-    if samples > 52u { bits.y |= inside_bits(sides, error, (*xs)[13], (*ys)[13], &near) << 20u; }
-    if samples > 56u { bits.y |= inside_bits(sides, error, (*xs)[14], (*ys)[14], &near) << 24u; }
-    if samples > 60u { bits.y |= inside_bits(sides, error, (*xs)[15], (*ys)[15], &near) << 28u; }
-    return Inside(bits, min(min(near.x, near.y), min(near.z, near.w)));
-}
-
-// The same for four samples.
-fn inside_bits(
-    sides: Sides,
-    error: f32,
-    x: vec4<f32>,
-    y: vec4<f32>,
-    near: ptr<function, vec4<f32>>,
-) -> u32 {
-    let ab = sides.at.x + sides.right.x * x + sides.up.x * y;
-    let bc = sides.at.y + sides.right.y * x + sides.up.y * y;
-    let ca = sides.at.z + sides.right.z * x + sides.up.z * y;
+// Returns two bits for each of four samples: certainly inside of all edges; and, since a triangle
+// that is not clear may be turned either way, not certainly inside of one and outside of another.
+fn sides_of(cone: Cone, x: vec4<f32>, y: vec4<f32>) -> vec2<u32> {
+    let ab = cone.at.x + cone.right.x * x + cone.up.x * y;
+    let bc = cone.at.y + cone.right.y * x + cone.up.y * y;
+    let ca = cone.at.z + cone.right.z * x + cone.up.z * y;
     let least = min(ab, min(bc, ca));
-    *near = min(*near, abs(least));
-    let bits = select(vec4(0u), vec4(1u, 2u, 4u, 8u), least > vec4(error));
-    return bits.x | bits.y | bits.z | bits.w;
+    let most = max(ab, max(bc, ca));
+    let bits = vec4(1u, 2u, 4u, 8u);
+    let hit = select(vec4(0u), bits, least > vec4(cone.error));
+    let is_mixed = (least < vec4(-cone.error)) & (most > vec4(cone.error));
+    let perhaps = select(bits, vec4(0u), is_mixed);
+    return vec2(hit.x | hit.y | hit.z | hit.w, perhaps.x | perhaps.y | perhaps.z | perhaps.w);
 }
 
 // The tracer's answer for the ray of a sample.

@@ -5,16 +5,12 @@
 #import "shared/light_area.wgsl"
 #import "shared/predicates.wgsl"
 
-// Sides of the edges ab, bc and ca: at + right * x + up * y is positive where the point (x, y) of
-// the unit disk is inside.
-struct Sides {
+struct Cone {
+    // Sides of the edges ab, bc and ca: at + right * x + up * y is positive where the point (x, y)
+    // of the unit disk is inside.
     at: vec3<f32>,
     right: vec3<f32>,
     up: vec3<f32>,
-}
-
-struct Cone {
-    sides: Sides,
     // Below this size only the tracer's own test tells a sign.
     error: f32,
     // True if a point inside of all edges is hidden and one outside of any is not.
@@ -89,7 +85,7 @@ fn cone_of(sight: Sight, primitive: u32) -> Cone {
     let across = sqrt(max(dot(a.xy, a.xy), max(dot(b.xy, b.xy), dot(c.xy, c.xy))));
     let beside = across + radius * size;
     let roundings = select(256.0, 128.0, light_kind == LIGHT_DIRECTIONAL);
-    let error = max(roundings * HALF_ULP * (1.0 + radius) * size * beside, 1e-37);
+    let error = roundings * HALF_ULP * (1.0 + radius) * size * beside;
 
     let at = vec3(
         cross_2d(a.xy, b.xy - a.xy),
@@ -131,10 +127,5 @@ fn cone_of(sight: Sight, primitive: u32) -> Cone {
     let is_elsewhere = farthest < -room || is_beyond || is_mixed;
     let is_beside = is_elsewhere || (has_side && (is_out || is_behind));
     let is_clear = has_side && is_before && ends_beyond;
-    return Cone(Sides(sides, turn * right, turn * up), error, is_clear, is_beside);
-}
-
-fn turned(sides: Sides, other_way: bool) -> Sides {
-    let turn = select(1.0, -1.0, other_way);
-    return Sides(turn * sides.at, turn * sides.right, turn * sides.up);
+    return Cone(sides, turn * right, turn * up, error, is_clear, is_beside);
 }

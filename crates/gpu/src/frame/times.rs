@@ -12,15 +12,15 @@ pub struct FrameTiming {
 /// GPU and CPU times of one pass in one frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PassTiming {
-    /// Name of the pass.
+    /// Name of the pass, as in [`PassSummary::name`](skiagraph_graph::PassSummary::name).
     pub name: String,
     /// Time on the GPU at which the pass began, counted from the earliest begin of a pass in the
     /// frame. `None` if `gpu` is `None`.
     pub begin: Option<Duration>,
-    /// GPU time from the begin of the pass's first draw, dispatch or copy to the end of its last.
-    /// `None` if there are no valid timestamps, for example because the adapter has none.
+    /// GPU time from the begin of the pass's first draw, dispatch, copy or clear to the end of its
+    /// last. `None` if there are no valid timestamps, for example because the adapter has none.
     pub gpu: Option<Duration>,
-    /// CPU time that encoding the pass took.
+    /// CPU time that the encoding of the pass's commands took.
     pub cpu: Duration,
 }
 
@@ -38,7 +38,7 @@ impl FrameTiming {
         Some(end - begin)
     }
 
-    /// Returns the CPU time that encoding took: the sum over all passes that ran.
+    /// Returns the CPU time that the encoding of commands took: the sum over all passes that ran.
     pub fn cpu(&self) -> Duration {
         self.passes.iter().map(|pass| pass.cpu).sum()
     }

@@ -67,9 +67,11 @@ fn by_machine(mut results: Results) -> Vec<Results> {
         let known = parts.iter().position(|part| part.machine.is_same(&machine));
         let index = known.unwrap_or_else(|| {
             parts.push(Results {
-                machine: match machine.is_same(&results.machine) {
-                    true => results.machine.clone(),
-                    false => machine,
+                // Load is that of the comparison, where it is the same machine.
+                machine: if machine.is_same(&results.machine) {
+                    results.machine.clone()
+                } else {
+                    machine
                 },
                 ..results.clone()
             });

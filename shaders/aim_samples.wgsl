@@ -3,8 +3,7 @@
 // Cook, Porter, Carpenter, "Distributed Ray Tracing", SIGGRAPH 1984.
 
 #import "shared/groups.wgsl"
-#import "shared/light_area.wgsl"
-#import "shared/ray.wgsl"
+#import "shared/aimed_ray.wgsl"
 #import "shared/strata.wgsl"
 
 struct Params {
@@ -33,18 +32,4 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     let square = stratum_point(sample, samples_needed(params.samples), jitter);
     sample_rays[thread] = aimed(asked_rays[slot], disk_point(square));
     sample_primitives[thread] = ray_primitives[slot];
-}
-
-fn aimed(asked: Ray, point: vec2<f32>) -> Ray {
-    // To the bit the ray that is asked: the answer of a light without extent is the tracer's.
-    if light_area.radius == 0.0 {
-        return asked;
-    }
-    let across = across_light(point, asked.direction);
-    if light_kind == LIGHT_DIRECTIONAL {
-        return Ray(asked.origin, asked.t_min, asked.direction + across, asked.t_max);
-    }
-    let way = light_way(asked.origin) + across;
-    let distance = length(way);
-    return Ray(asked.origin, asked.t_min, way / distance, distance * (1.0 - LIGHT_GAP));
 }

@@ -3,6 +3,7 @@
 // decide, the rest the tracer's own test of the sample's own ray. Receivers that no list answers,
 // or not within a thread's rounds, are left to rays. `status` says which half of the light counts.
 
+#import "shared/aimed_ray.wgsl"
 #import "shared/asked_list.wgsl"
 #import "shared/light_cone.wgsl"
 #import "shared/ray_triangle.wgsl"
@@ -48,8 +49,11 @@ fn fragment(@builtin(position) centre: vec4<f32>) -> Answer {
     if pixel_status != STATUS_UNCERTAIN {
         return whole_answer(pixel_status);
     }
+    if is_inside_light(receiver.xyz) {
+        return whole_answer(STATUS_UNCERTAIN);
+    }
     let asked = asked_list(receiver.xyz);
-    if asked.head == LIST_END || light_area.radius > WIDEST {
+    if asked.head == LIST_END || is_too_wide() {
         return whole_answer(select(STATUS_UNCERTAIN, asked.status, asked.head == LIST_END));
     }
     let wanted = samples_needed(samples);
@@ -67,12 +71,25 @@ fn fragment(@builtin(position) centre: vec4<f32>) -> Answer {
     return Answer(share, select(STATUS_SHADOW, STATUS_LIGHT, share >= 0.5));
 }
 
+// Receivers within twice a lamp's radius ask rays: lists and bounds are for those beyond.
+fn is_inside_light(receiver: vec3<f32>) -> bool {
+    let way = light_way(receiver);
+    return light_kind != LIGHT_DIRECTIONAL
+        && !(dot(way, way) > 4.004 * light_area.radius * light_area.radius);
+}
+
+// Bounds are of lights no wider.
+fn is_too_wide() -> bool {
+    return light_kind == LIGHT_DIRECTIONAL && light_area.radius > WIDEST;
+}
+
 fn whole_answer(pixel_status: u32) -> Answer {
     return Answer(f32(initial_visibility(pixel_status)), pixel_status);
 }
 
 // Returns how many samples of the turn no caster of the list hides.
 fn lit_samples(asking: Asking, asked: Asked) -> u32 {
+    let sight = sight_of(asking.receiver, asked.t_min);
     var xs: array<vec4<f32>, 16>;
     var ys: array<vec4<f32>, 16>;
     var is_ready = false;
@@ -93,14 +110,14 @@ fn lit_samples(asking: Asking, asked: Asked) -> u32 {
         if candidate == NO_PRIMITIVE {
             continue;
         }
-        let cone = cone_of(asking.receiver, candidate, asked.t_min);
+        let cone = cone_of(sight, candidate);
         if cone.is_beside {
             continue;
         }
         if !is_ready {
             is_ready = true;
             for (var i = 0u; i < asking.count; i++) {
-                let point = sample_point(asking, i);
+                let point = seen_point(sight, sample_point(asking, i));
                 xs[i / 4u][i % 4u] = point.x;
                 ys[i / 4u][i % 4u] = point.y;
             }
@@ -135,7 +152,10 @@ fn lit_samples(asking: Asking, asked: Asked) -> u32 {
             unsure &= ~bit;
             rounds += 1u;
             let i = first_number(bit);
-            let point = vec2(xs[i / 4u][i % 4u], ys[i / 4u][i % 4u]);
+            var point = vec2(xs[i / 4u][i % 4u], ys[i / 4u][i % 4u]);
+            if light_kind == LIGHT_SPOT {
+                point = sample_point(asking, i);
+            }
             if hides(asking.receiver, asked.t_min, candidate, point) {
                 lit &= ~bit;
             }
@@ -145,7 +165,7 @@ fn lit_samples(asking: Asking, asked: Asked) -> u32 {
     return select(TOO_MANY, countOneBits(lit.x) + countOneBits(lit.y), is_done);
 }
 
-// As aim_samples.wgsl has it.
+// As aim_samples.wgsl has it, of the unit disk.
 fn sample_point(asking: Asking, i: u32) -> vec2<f32> {
     let sample = first_sample + i;
     return disk_point(stratum_point(sample, asking.wanted, random_pair(asking.pixel, sample)));
@@ -166,15 +186,12 @@ fn sides_of(cone: Cone, x: vec4<f32>, y: vec4<f32>) -> vec2<u32> {
     return vec2(hit.x | hit.y | hit.z | hit.w, perhaps.x | perhaps.y | perhaps.z | perhaps.w);
 }
 
-// The tracer's answer for the ray that aim_samples.wgsl aims.
+// The tracer's answer for the ray of a sample.
 fn hides(receiver: vec3<f32>, t_min: f32, primitive: u32, point: vec2<f32>) -> bool {
-    var direction = to_light_from(receiver);
-    if light_area.radius != 0.0 {
-        direction += across_light(point, direction);
-    }
-    let end = light_distance(receiver);
-    var hit = Hit(end, NO_PRIMITIVE, 0.0, 0.0);
-    return intersect(sheared(Ray(receiver, t_min, direction, end)), primitive, t_min, &hit);
+    let asked = Ray(receiver, t_min, to_light_from(receiver), light_distance(receiver));
+    let ray = aimed(asked, point);
+    var hit = Hit(ray.t_max, NO_PRIMITIVE, 0.0, 0.0);
+    return intersect(sheared(ray), primitive, t_min, &hit);
 }
 
 fn bits_below(count: u32) -> u32 {

@@ -79,15 +79,21 @@ fn bin(caster: Binned, first: u32, end: u32, step: u32) {
     }
 }
 
+// Returns true if the caster may shade a receiver in a texel, around that centre, whose farthest
+// one has a depth of those bits.
+fn may_shade_texel(caster: Binned, centre: vec2<f32>, max_depth_bits_here: u32) -> bool {
+    let may_shade = depth_bits(least_depth(caster, centre)) <= max_depth_bits_here;
+    let shading = shading_functions(caster, centre, bitcast<f32>(max_depth_bits_here));
+    return all(shading >= -caster.edge_threshold) && may_shade;
+}
+
 // Returns true if a texel's list gets the caster; counts it.
 fn is_listed(caster: Binned, texel: vec2<u32>) -> bool {
     let number = texel_number(binned_layer, texel);
     let centre = vec2<f32>(texel) + 0.5;
     let depth_bits_here = atomicLoad(&texels[number].max_receiver_depth);
     let max_depth = bitcast<f32>(depth_bits_here);
-    let may_shade = depth_bits(least_depth(caster, centre)) <= depth_bits_here;
-    let shading = shading_functions(caster, centre, max_depth);
-    if !(all(shading >= -caster.edge_threshold) && may_shade) {
+    if !may_shade_texel(caster, centre, depth_bits_here) {
         return false;
     }
     // The texel, larger by 4 times the slack on every side, is inside of what covers it.

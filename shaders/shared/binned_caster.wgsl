@@ -153,13 +153,13 @@ fn caster_of_whole_face(
     plane: DepthPlane,
     depth_tolerance: f32,
 ) -> Binned {
-    let beside = is_beside(a, b, c);
+    let beside = is_beside(a, b, c, light_beyond());
     let first = select(vec2(0u), vec2(1u), beside);
     let last = select(vec2(u32(map_fit.size) - 1u), vec2(0u), beside);
     let nowhere = LightTriangle(vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
-    let reach = reach_of(nowhere, plane, depth_tolerance);
     return Binned(
-        primitive, nowhere, plane, first, last, vec3(1e30), SLACK, depth_tolerance, reach,
+        primitive, nowhere, plane, first, last, vec3(1e30), SLACK, depth_tolerance,
+        reach_of_whole_face(),
     );
 }
 

@@ -19,6 +19,17 @@ fn reach_of(triangle: LightTriangle, plane: DepthPlane, tolerance: f32) -> Reach
     return Reach(0.0);
 }
 
+// The reach of a triangle that counts as being everywhere in a face.
+fn reach_of_whole_face() -> Reach {
+    return Reach(0.0);
+}
+
+// How far beyond the sides of its face, and behind itself, a spot or point light has casters that
+// shade receivers in the face.
+fn light_beyond() -> f32 {
+    return 0.0;
+}
+
 // Returns true if the depth of the plane at a receiver's own place tells whether it is before it.
 fn has_usable_plane(plane: DepthPlane) -> bool {
     return true;

@@ -1,6 +1,7 @@
-// As shared/caster_reach.wgsl, of a directional light with an extent. What is d nearer to the light
-// than a receiver shades it from d times the light's radius beside it. All bounds are linear in the
-// caster's points, so that its corners have the extremes: docs/light_buffer_area.md.
+// As shared/caster_reach.wgsl, of a light with an extent. What is d nearer to the light than a
+// receiver shades it from d times the light's radius beside it, where depths are linear across the
+// map: `map_depths`. All bounds are linear in the caster's points, so that its corners have the
+// extremes: docs/light_buffer_area.md.
 
 #import "shared/light_triangle.wgsl"
 #import "shared/light_area.wgsl"
@@ -15,6 +16,8 @@ struct Reach {
     low: vec2<f32>,
     high: vec2<f32>,
     box_spread: vec2<f32>,
+    // The depth of the nearest corner.
+    least: f32,
     // How steep the plane is: at 1 as steep as the light's outermost rays.
     steepness: f32,
 }
@@ -24,21 +27,77 @@ var<uniform> max_depth_bits: u32;
 
 // From this steepness on only the corners tell how near to the light a caster may be.
 const STEEPEST_PLANE: f32 = 0.9;
+// The most that `point_spread` may be: sqrt(3) in a corner of the face, 3.42 near the lamp.
+const MOST_POINT_SPREAD: f32 = 6.0;
 
 fn traced() -> f32 {
+    if light_kind != LIGHT_DIRECTIONAL {
+        return 48.0 * HALF_ULP;
+    }
     return 16.0 * HALF_ULP * (1.0 + light_area.radius);
 }
 
+fn light_beyond() -> f32 {
+    return light_area.radius * (1.0 + light_spread());
+}
+
+// Depths that are linear across the map, of casters and of receivers: rounded apart. Those of spot
+// and point lights are shares of `range`, so the negative reciprocals of such.
+fn map_depths(depth: vec3<f32>) -> vec3<f32> {
+    if light_kind == LIGHT_DIRECTIONAL {
+        return depth;
+    }
+    return -1.000001 / max(depth, vec3(1e-9));
+}
+
+fn map_depth_of_receiver(depth: f32) -> f32 {
+    if light_kind == LIGHT_DIRECTIONAL {
+        return depth;
+    }
+    return -0.999999 / max(depth, 1e-9);
+}
+
+struct Rim {
+    right: vec2<f32>,
+    up: vec2<f32>,
+}
+
 // In texels, where the light's rim moves what is a depth of 1 nearer to it; for rounding, more.
-fn rim_shift(rim: vec3<f32>) -> vec2<f32> {
-    let clip = (light.clip_from_relative * vec4(rim, 0.0)).xy * light.extent.z * 1.0001;
-    return vec2(dot(map_fit.x.xy, clip), dot(map_fit.y.xy, clip));
+fn rim_shifts() -> Rim {
+    let x = map_fit.x.xy * 1.0001;
+    let y = map_fit.y.xy * 1.0001;
+    if light_kind == LIGHT_POINT {
+        let radius = light_area.radius / light.range;
+        return Rim(radius * vec2(x.x, y.x), radius * vec2(x.y, y.y));
+    }
+    let scale = select(1.0 / light.range, light.extent.z, light_kind == LIGHT_DIRECTIONAL);
+    let right = (light.clip_from_relative * vec4(light_area.right, 0.0)).xy * scale;
+    let up = (light.clip_from_relative * vec4(light_area.up, 0.0)).xy * scale;
+    return Rim(vec2(dot(x, right), dot(y, right)), vec2(dot(x, up), dot(y, up)));
+}
+
+// A point light's disk faces each receiver: for one in the direction (p, 1) of a face it is up to
+// sqrt(1 + p²) times as wide across the face, and w / (w - s) times where a point of it is nearer
+// by s than its centre, seen along the face's axis. For receivers of the tile around a place.
+fn point_spread(point: vec2<f32>, max_depth: f32) -> f32 {
+    if light_kind != LIGHT_POINT {
+        return 1.0;
+    }
+    let away = abs(point - vec2(map_fit.x.z, map_fit.y.z)) + 0.5 * f32(TILE) + 0.5;
+    let across = min(away / map_fit.scale, vec2(1.0));
+    return sqrt(1.0 + dot(across, across)) * near_spread(max_depth);
+}
+
+// Least where the receiver is farthest. Nearer ones than twice the radius ask rays.
+fn near_spread(max_depth: f32) -> f32 {
+    // sqrt(2/3): the most of the disk's radius that is along the axis.
+    let share = 0.8165 * light_area.radius / (light.range * max(max_depth, 1e-9));
+    return 1.00001 / (1.0 - min(share, 0.7072));
 }
 
 fn steepness_of(plane: DepthPlane) -> f32 {
-    let right = rim_shift(light_area.right);
-    let up = rim_shift(light_area.up);
-    return length(vec2(dot(plane.slope, right), dot(plane.slope, up)));
+    let rim = rim_shifts();
+    return length(vec2(dot(plane.slope, rim.right), dot(plane.slope, rim.up)));
 }
 
 fn has_usable_plane(plane: DepthPlane) -> bool {
@@ -47,30 +106,30 @@ fn has_usable_plane(plane: DepthPlane) -> bool {
 }
 
 fn reach_of(triangle: LightTriangle, plane: DepthPlane, tolerance: f32) -> Reach {
-    let a = triangle.a;
-    let b = triangle.b;
-    let c = triangle.c;
-    let right = rim_shift(light_area.right);
-    let up = rim_shift(light_area.up);
-    let spread = vec3(
-        spread_of(b.xy - a.xy, right, up),
-        spread_of(c.xy - b.xy, right, up),
-        spread_of(a.xy - c.xy, right, up),
-    );
+    let a = triangle.a.xy;
+    let b = triangle.b.xy;
+    let c = triangle.c.xy;
+    let depths = map_depths(vec3(triangle.a.z, triangle.b.z, triangle.c.z) - tolerance);
+    let rim = rim_shifts();
+    let spread = vec3(spread_of(b - a, rim), spread_of(c - b, rim), spread_of(a - c, rim));
     // The corner opposite an edge counts from where it shows beyond it.
-    let opposite = vec3(c.z, a.z, b.z) + vec3(triangle.area) / max(spread, vec3(1e-30));
-    let own = vec3(min(a.z, b.z), min(b.z, c.z), min(c.z, a.z));
-    let box = vec2(length(vec2(right.x, up.x)), length(vec2(right.y, up.y)));
-    let low = min(a.xy + a.z * box, min(b.xy + b.z * box, c.xy + c.z * box));
-    let high = max(a.xy - a.z * box, max(b.xy - b.z * box, c.xy - c.z * box));
-    return Reach(
-        spread, min(own, opposite) - tolerance, low - tolerance * box, high + tolerance * box, box,
-        steepness_of(plane),
-    );
+    let most = spread * select(1.0, MOST_POINT_SPREAD, light_kind == LIGHT_POINT);
+    let opposite = depths.zxy + vec3(triangle.area) / max(most, vec3(1e-30));
+    let own = min(depths, depths.yzx);
+    let box = vec2(length(vec2(rim.right.x, rim.up.x)), length(vec2(rim.right.y, rim.up.y)))
+        * select(1.0, 1.7321, light_kind == LIGHT_POINT);
+    let low = min(a + depths.x * box, min(b + depths.y * box, c + depths.z * box));
+    let high = max(a - depths.x * box, max(b - depths.y * box, c - depths.z * box));
+    let least = min(depths.x, min(depths.y, depths.z));
+    return Reach(spread, min(own, opposite), low, high, box, least, steepness_of(plane));
 }
 
-fn spread_of(edge: vec2<f32>, right: vec2<f32>, up: vec2<f32>) -> f32 {
-    return length(vec2(cross_2d(edge, right), cross_2d(edge, up)));
+fn reach_of_whole_face() -> Reach {
+    return Reach(vec3(0.0), vec3(0.0), vec2(-1e30), vec2(1e30), vec2(0.0), 0.0, 0.0);
+}
+
+fn spread_of(edge: vec2<f32>, rim: Rim) -> f32 {
+    return length(vec2(cross_2d(edge, rim.right), cross_2d(edge, rim.up)));
 }
 
 fn shaded_box(triangle: LightTriangle, reach: Reach) -> vec4<f32> {
@@ -78,8 +137,12 @@ fn shaded_box(triangle: LightTriangle, reach: Reach) -> vec4<f32> {
 }
 
 fn box_at(reach: Reach, max_depth: f32) -> vec4<f32> {
-    let shift = max_depth * reach.box_spread;
-    return vec4(reach.low - shift, reach.high + shift);
+    let depth = map_depth_of_receiver(max_depth);
+    var shift = depth;
+    if light_kind == LIGHT_POINT {
+        shift += (near_spread(max_depth) - 1.0) * max(depth - reach.least, 0.0);
+    }
+    return vec4(reach.low - shift * reach.box_spread, reach.high + shift * reach.box_spread);
 }
 
 fn shaded_texels(caster: Binned, max_depth: f32) -> vec4<u32> {
@@ -96,7 +159,8 @@ fn shaded_texels(caster: Binned, max_depth: f32) -> vec4<u32> {
 
 fn shading_functions(caster: Binned, point: vec2<f32>, max_depth: f32) -> vec3<f32> {
     let reach = caster.reach;
-    let moved = reach.spread * max(vec3(max_depth) - reach.from_depth, vec3(0.0));
+    let way = max(vec3(map_depth_of_receiver(max_depth)) - reach.from_depth, vec3(0.0));
+    let moved = reach.spread * way * point_spread(point, max_depth);
     return edge_functions(caster.triangle, point) + moved;
 }
 

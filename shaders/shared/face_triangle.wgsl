@@ -5,10 +5,10 @@
 #import "shared/light_triangle.wgsl"
 
 // Returns true if all of it is beyond one of the planes x = w, x = -w, y = w, y = -w, or behind the
-// light, by more than rounding.
-fn is_beside(a: vec4<f32>, b: vec4<f32>, c: vec4<f32>) -> bool {
+// light, by more than that and rounding.
+fn is_beside(a: vec4<f32>, b: vec4<f32>, c: vec4<f32>, beyond: f32) -> bool {
     let spread = light_spread();
-    let tolerance = 2.0 * CLIP_ROUNDING * (1.0 + spread) * light.range
+    let tolerance = beyond + 2.0 * CLIP_ROUNDING * (1.0 + spread) * light.range
         + 8.0 * HALF_ULP * light.max_distance * spread;
     let wide = (1.0 + 2.0 / map_fit.size) * vec3(a.w, b.w, c.w) + tolerance;
     let x = vec3(a.x, b.x, c.x);
@@ -57,7 +57,7 @@ fn face_triangle(primitive: u32) -> FaceTriangle {
         (1.0 + map_fit.scale + map_fit.extent) * summed,
         select(0.0, volume, is_clear),
         nearest,
-        is_beside(seen[0], seen[1], seen[2]),
+        is_beside(seen[0], seen[1], seen[2], 0.0),
     );
 }
 

@@ -22,10 +22,21 @@ fn across_light(point: vec2<f32>, to_light: vec3<f32>) -> vec3<f32> {
     if light_kind != LIGHT_POINT {
         return light_area.right * point.x + light_area.up * point.y;
     }
+    let axes = axes_across(to_light);
+    return light_area.radius * (axes.x * point.x + axes.y * point.y);
+}
+
+// Unit vectors across a direction and each other.
+struct AxesAcross {
+    x: vec3<f32>,
+    y: vec3<f32>,
+}
+
+fn axes_across(to_light: vec3<f32>) -> AxesAcross {
     // Any axis across will do; this one is never along the light.
     let helper = select(vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0), abs(to_light.x) > 0.5);
-    let right = normalize(cross(to_light, helper));
-    return light_area.radius * (right * point.x + cross(right, to_light) * point.y);
+    let x = normalize(cross(to_light, helper));
+    return AxesAcross(x, cross(x, to_light));
 }
 
 // A bit beyond the number of samples that were seen: one of them has no answer.

@@ -1,5 +1,5 @@
-// A triangle before the disk of a directional light, as a receiver sees it: which points of the
-// disk it hides, as far as that is clear of rounding. Bounds: docs/light_buffer_area.md.
+// A triangle before the disk of a light, as a receiver sees it: which points of the disk it hides,
+// as far as that is clear of rounding. Bounds: docs/light_buffer_area.md.
 
 #import "shared/geometry.wgsl"
 #import "shared/light_area.wgsl"
@@ -19,34 +19,73 @@ struct Cone {
     is_beside: bool,
 }
 
-// Axes across the light's direction in which its disk is measured.
-struct LightAxes {
+// The light as a receiver sees it: a disk at distance 1 and at right angles to the way to its
+// centre, which the light's own disk lies in.
+struct Sight {
+    receiver: vec3<f32>,
+    // Nearer hits do not count.
+    t_min: f32,
     x: vec3<f32>,
     y: vec3<f32>,
+    to_light: vec3<f32>,
+    radius: f32,
+    // How far away the disk's nearest and farthest point are. A directional light's is beyond all.
+    nearest: f32,
+    farthest: f32,
 }
 
-fn light_axes() -> LightAxes {
-    // Not to be divided by 0; of a light without extent nothing is clear.
-    let scale = 1.0 / max(light_area.radius, 1e-30);
-    return LightAxes(light_area.right * scale, light_area.up * scale);
+fn sight_of(receiver: vec3<f32>, t_min: f32) -> Sight {
+    let radius = light_area.radius;
+    if light_kind == LIGHT_DIRECTIONAL {
+        // Not to be divided by 0; of a light without extent nothing is clear.
+        let scale = 1.0 / max(radius, 1e-30);
+        let x = light_area.right * scale;
+        let y = light_area.up * scale;
+        return Sight(receiver, t_min, x, y, light.to_light, radius, 3e38, 3e38);
+    }
+    let to_light = to_light_from(receiver);
+    let distance = length(light_way(receiver));
+    // As `across_light` has them.
+    let axes = axes_across(to_light);
+    if light_kind == LIGHT_POINT {
+        let seen = radius / distance;
+        return Sight(receiver, t_min, axes.x, axes.y, to_light, seen, distance, distance);
+    }
+    // The sphere around the disk has this radius.
+    let seen = radius * inverseSqrt(distance * distance - radius * radius) * 1.00001;
+    return Sight(
+        receiver, t_min, axes.x, axes.y, to_light, seen, distance - radius, distance + radius,
+    );
+}
+
+// A point of the light's unit disk on that of a receiver's sight.
+fn seen_point(sight: Sight, point: vec2<f32>) -> vec2<f32> {
+    if light_kind != LIGHT_SPOT || light_area.radius == 0.0 {
+        return point;
+    }
+    let across = across_light(point, sight.to_light);
+    let distance = 0.5 * (sight.nearest + sight.farthest) + dot(across, sight.to_light);
+    return vec2(dot(across, sight.x), dot(across, sight.y)) / (distance * sight.radius);
 }
 
 // Place across the light and distance towards it.
-fn seen_along_light(way: vec3<f32>, axes: LightAxes) -> vec3<f32> {
-    return vec3(dot(way, axes.x), dot(way, axes.y), dot(way, light.to_light));
+fn seen_along_light(sight: Sight, position: vec3<f32>) -> vec3<f32> {
+    let way = position - sight.receiver;
+    return vec3(dot(way, sight.x), dot(way, sight.y), dot(way, sight.to_light));
 }
 
-fn cone_of(receiver: vec3<f32>, primitive: u32, t_min: f32) -> Cone {
-    let axes = light_axes();
-    let radius = light_area.radius;
-    let a = seen_along_light(corner_position(3u * primitive) - receiver, axes);
-    let b = seen_along_light(corner_position(3u * primitive + 1u) - receiver, axes);
-    let c = seen_along_light(corner_position(3u * primitive + 2u) - receiver, axes);
+fn cone_of(sight: Sight, primitive: u32) -> Cone {
+    let radius = sight.radius;
+    let t_min = sight.t_min;
+    let a = seen_along_light(sight, corner_position(3u * primitive));
+    let b = seen_along_light(sight, corner_position(3u * primitive + 1u));
+    let c = seen_along_light(sight, corner_position(3u * primitive + 2u));
     // The farthest corner, and the farthest from any ray to the light.
     let size = sqrt(max(dot(a, a), max(dot(b, b), dot(c, c))));
     let across = sqrt(max(dot(a.xy, a.xy), max(dot(b.xy, b.xy), dot(c.xy, c.xy))));
     let beside = across + radius * size;
-    let error = 128.0 * HALF_ULP * (1.0 + radius) * size * beside;
+    let roundings = select(256.0, 128.0, light_kind == LIGHT_DIRECTIONAL);
+    let error = roundings * HALF_ULP * (1.0 + radius) * size * beside;
 
     let at = vec3(
         cross_2d(a.xy, b.xy - a.xy),
@@ -73,10 +112,20 @@ fn cone_of(receiver: vec3<f32>, primitive: u32, t_min: f32) -> Cone {
     let is_before = nearest > room || volume > volume_error;
     let is_behind = farthest < -room || volume < -volume_error;
     let has_side = abs(area) > area_change && radius > 0.0;
+    var ends_beyond = true;
+    var is_beyond = false;
+    if light_kind != LIGHT_DIRECTIONAL {
+        let end = sight.nearest * (1.0 - 2.0 * LIGHT_GAP);
+        let least_area = max(abs(area) - area_change, 0.0);
+        ends_beyond = farthest + room < end || volume + volume_error < end * least_area;
+        is_beyond = nearest - room > sight.farthest;
+    }
 
     let sides = turn * at;
     let is_out = any(sides + change < vec3(0.0));
     let is_mixed = is_out && any(sides - change > vec3(0.0));
-    let is_beside = farthest < -room || is_mixed || (has_side && (is_out || is_behind));
-    return Cone(sides, turn * right, turn * up, error, has_side && is_before, is_beside);
+    let is_elsewhere = farthest < -room || is_beyond || is_mixed;
+    let is_beside = is_elsewhere || (has_side && (is_out || is_behind));
+    let is_clear = has_side && is_before && ends_beyond;
+    return Cone(sides, turn * right, turn * up, error, is_clear, is_beside);
 }

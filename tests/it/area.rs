@@ -5,13 +5,18 @@ use crate::support::graphs::{plan_files, provider, run, values};
 use glam::{DVec3, Vec3};
 use skiagraph_graph::PassSummary;
 use skiagraph_reference::{Class, Graded, GroundTruth, Oracle, OracleMode, Progress, area};
-use skiagraph_scene::{DirectionalLight, LightKind, PointLight, Scene, SpotLight, View};
+use skiagraph_scene::{DirectionalLight, LightKind, Mesh, PointLight, Scene, SpotLight, View};
 use std::sync::Arc;
 
 const VIEWPORT: [u32; 2] = [64, 48];
 
 /// A thin plate above a floor.
 fn scene(light: impl Into<LightKind>) -> Arc<Scene> {
+    let mesh = support::meshes::box_over_floor(6.0, Vec3::new(1.2, 0.2, 1.1));
+    scene_of(mesh, light)
+}
+
+fn scene_of(mesh: Mesh, light: impl Into<LightKind>) -> Arc<Scene> {
     let view = View {
         name: "main".into(),
         eye: DVec3::new(0.5, 6.0, 7.0),
@@ -24,8 +29,8 @@ fn scene(light: impl Into<LightKind>) -> Arc<Scene> {
     };
     let light = skiagraph_scene::Light::only(light);
     Arc::new(Scene {
-        name: "plate".into(),
-        mesh: support::meshes::box_over_floor(6.0, Vec3::new(1.2, 0.2, 1.1)),
+        name: "test".into(),
+        mesh,
         views: vec![view],
         lights: vec![light],
     })
@@ -235,10 +240,9 @@ fn eight_maps_agree_in_light_and_umbra_and_leave_the_penumbra_to_rays() {
 /// Lists beside rays: shares of every pixel, and the pixels that asked rays.
 fn assert_lists_answer_as_rays_do(scene: &Arc<Scene>, samples: u32, set: &str) -> usize {
     let samples = format!(r#""samples": {samples}"#);
-    let only_suns = |name: &str, set: &str| preset(name, set).replace(", spot, point", "");
-    let rays = shown(&only_suns("rt_area", &samples), scene);
+    let rays = shown(&preset("rt_area", &samples), scene);
     let lists = shown(
-        &only_suns("light_buffer_area", &format!("{samples}{set}")),
+        &preset("light_buffer_area", &format!("{samples}{set}")),
         scene,
     );
     let bits = |shown: &Shown| -> Vec<u32> {
@@ -256,6 +260,40 @@ fn lists_answer_each_sample_as_its_ray_does() {
     for (angle, samples) in [(0.5, 64), (12.0, 7), (40.0, 64)] {
         let asked = assert_lists_answer_as_rays_do(&scene(sun(angle)), samples, "");
         assert_eq!(asked, 0, "{angle} degrees");
+    }
+}
+
+#[test]
+fn lists_answer_each_sample_of_lamps_as_its_ray_does() {
+    let at = DVec3::new;
+    let spot = |position, cone_degrees, radius| {
+        LightKind::Spot(SpotLight {
+            position,
+            direction: at(-0.25, -1.0, 0.2),
+            cone_degrees,
+            radius,
+        })
+    };
+    let point = |position, radius| LightKind::Point(PointLight { position, radius });
+    // Above the plate; beside a corner of it, which several faces see, and through which the lamp
+    // reaches; and so near to it that receivers lie within twice the lamp's radius.
+    for (light, samples, asks) in [
+        (spot(at(1.5, 6.0, -1.0), 100.0, 0.7), 64, false),
+        (point(at(1.5, 6.0, -1.0), 0.7), 64, false),
+        (point(at(1.5, 2.2, 1.4), 0.2), 16, false),
+        (point(at(1.0, 1.9, 0.9), 0.4), 16, true),
+        (spot(at(0.5, 2.4, 0.2), 170.0, 0.5), 16, true),
+    ] {
+        let asked = assert_lists_answer_as_rays_do(&scene(light.clone()), samples, "");
+        assert_eq!(asked > 0, asks, "{asked} pixels asked rays: {light:?}");
+    }
+    // Over, and between, masked leaves.
+    let leaves = || support::meshes::foliage(60, 0.35, 4.0, 1);
+    for light in [
+        spot(at(1.5, 6.0, -1.0), 100.0, 0.3),
+        point(at(0.3, 1.0, 0.2), 0.1),
+    ] {
+        assert_lists_answer_as_rays_do(&scene_of(leaves(), light), 33, "");
     }
 }
 
@@ -282,21 +320,19 @@ fn lists_in_turns_and_lists_cut_short_answer_as_rays_do() {
 
 #[test]
 fn without_extent_lists_answer_as_those_of_hard_shadows() {
-    let scene = scene(sun(0.0));
-    let soft = shown(
-        &preset("light_buffer_area", r#""samples": 64"#).replace(", spot, point", ""),
-        &scene,
-    );
-    let mut provider = provider(&scene, &scene.views[0], VIEWPORT);
-    let plan = plan_files(
-        &[("test.ron", &preset("light_buffer", ""))],
-        &provider,
-        VIEWPORT,
-    );
-    let report = run(plan, &mut provider, &["visibility", "status"]);
-    let hard = values(&report, "visibility");
-    let hard: Vec<f32> = hard.iter().map(|&lit| lit as f32).collect();
-    assert_eq!(soft.shares, hard);
-    assert_eq!(soft.status, values(&report, "status"));
-    assert!(hard.iter().filter(|share| **share == 0.0).count() > 100);
+    let (position, radius) = (DVec3::new(1.5, 2.2, 1.4), 0.0);
+    let point = LightKind::Point(PointLight { position, radius });
+    for light in [LightKind::from(sun(0.0)), point] {
+        let scene = scene(light);
+        let soft = shown(&preset("light_buffer_area", r#""samples": 64"#), &scene);
+        let mut provider = provider(&scene, &scene.views[0], VIEWPORT);
+        let hard = preset("light_buffer", "");
+        let plan = plan_files(&[("test.ron", &hard)], &provider, VIEWPORT);
+        let report = run(plan, &mut provider, &["visibility", "status"]);
+        let hard = values(&report, "visibility");
+        let hard: Vec<f32> = hard.iter().map(|&lit| lit as f32).collect();
+        assert_eq!(soft.shares, hard);
+        assert_eq!(soft.status, values(&report, "status"));
+        assert!(hard.iter().filter(|share| **share == 0.0).count() > 100);
+    }
 }

@@ -1,0 +1,39 @@
+// Stage to choose lists or rays for all receivers, by an estimate of how long either takes; a
+// single thread. Their answers are the same. Figures: docs/light_buffer_area.md.
+
+#import "shared/groups.wgsl"
+#import "shared/light_area.wgsl"
+#import "shared/light_buffer.wgsl"
+
+struct Params {
+    samples: u32,
+}
+
+var<uniform> params: Params;
+// Entries of one caster in 31, texels with a receiver, and receivers.
+var<storage, read> estimate: array<u32, 3>;
+var<storage, read_write> texels: array<Texel>;
+// The workgroups of `bin`: none where rays are chosen.
+var<storage, read_write> bin_groups: array<u32, 3>;
+
+// As long as a ray takes: to make an entry, to walk over one, and to test 64 samples of one, fewer
+// where there are fewer.
+const MAKING: f32 = 0.065;
+const WALKING: f32 = 0.04;
+const TESTING: f32 = 0.03;
+
+@compute @workgroup_size(1)
+fn main() {
+    let entries = 31.0 * f32(estimate[0]);
+    let length = entries / max(f32(estimate[1]), 1.0);
+    let turns = (params.samples + 63u) / 64u;
+    let tested = f32(turns) * WALKING + f32(params.samples) / 64.0 * TESTING;
+    let lists = MAKING * entries / max(f32(estimate[2]), 1.0) + length * tested;
+    // A light without extent takes one ray.
+    if lists > f32(params.samples) && light_area.radius > 0.0 {
+        texels[arrayLength(&texels) - 1u].length = LIST_LACKS;
+        bin_groups = array(0u, 0u, 0u);
+        return;
+    }
+    bin_groups = groups_for(arrayLength(&scene_indices) / 3u);
+}

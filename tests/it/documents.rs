@@ -44,6 +44,7 @@ fn presets_are_listed_by_name() {
     assert_eq!(
         names,
         [
+            "contact",
             "crsm",
             "crsm_d",
             "crsm_depth",
@@ -67,6 +68,7 @@ fn presets_are_listed_by_name() {
             "pssm",
             "rt",
             "rt_area",
+            "sdsm",
             "tsm",
             "vsm"
         ]

@@ -66,7 +66,13 @@ pub fn sources(sink: &dyn Sink) -> LayeredSources {
 
 /// Folders of presets, shaders and the files that they share, as paths in the working directory and
 /// among the built-in files.
-pub const FOLDERS: [&str; 4] = ["pipelines", "pipelines/shared", "shaders", "shaders/shared"];
+pub const FOLDERS: [&str; 5] = [
+    "pipelines",
+    "pipelines/shared",
+    "pipelines/shared/splits",
+    "shaders",
+    "shaders/shared",
+];
 
 /// Which files of a folder stand in for built-in ones that differ: a line for the presets, one for
 /// each folder of what they are made of.

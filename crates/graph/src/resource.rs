@@ -82,6 +82,8 @@ pub enum ResourceKind {
     Provided(Provided),
     /// An acceleration structure that the host's provider makes.
     AccelerationStructure,
+    /// Work for the CPU that the host's provider makes.
+    CpuWork,
     /// The uniform `frame`, which the executor fills before each frame: index, seconds and flags
     /// ([`FRAME_BYTES`], `shared/frame.wgsl`).
     Frame,
@@ -109,6 +111,7 @@ impl ResourceKind {
             Self::Sampler(_) => "a sampler without `compare`",
             Self::Provided(_) => "a provided buffer",
             Self::AccelerationStructure => "an acceleration structure",
+            Self::CpuWork => "work for the CPU",
             Self::Frame => "the frame's uniform",
         }
     }

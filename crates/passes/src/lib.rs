@@ -32,6 +32,8 @@
 mod atlas;
 mod buffers;
 mod built;
+#[cfg(feature = "embree")]
+mod embree;
 mod error;
 mod eye;
 mod hierarchies;

@@ -398,7 +398,8 @@ impl MeasureContext<'_> {
     }
 }
 
-/// Returns the bytes of the resources that the scene gives to a plan.
+/// Returns the bytes of the buffers that the scene gives to a plan. What is no buffer, such as an
+/// acceleration structure, does not tell its size.
 ///
 /// # Errors
 /// A resource that cannot be built.
@@ -410,10 +411,11 @@ pub fn scene_bytes(
     let mut bytes = 0;
     let provided = plan.provided().into_iter();
     // Last frame's camera is a copy of the executor's own.
-    for name in provided
-        .filter(|name| provider.describe(name).is_some())
-        .collect::<Vec<_>>()
-    {
+    let is_buffer = |name: &&str| {
+        let described = provider.describe(name);
+        described.is_some_and(|provided| !provided.binding.usages().is_empty())
+    };
+    for name in provided.filter(is_buffer).collect::<Vec<_>>() {
         let built = provider.build(name, &session.gpu.device, &session.gpu.queue);
         let buffer = built.map_err(|error| ExecuteError::Provider {
             name: name.to_owned(),

@@ -18,9 +18,10 @@ pub struct PassTiming {
     /// frame. `None` if `gpu` is `None`.
     pub begin: Option<Duration>,
     /// GPU time from the begin of the pass's first draw, dispatch or copy to the end of its last.
-    /// `None` if there are no valid timestamps, for example because the adapter has none.
+    /// `None` if there are no valid timestamps, for example because the adapter has none. Of a pass
+    /// that works on the CPU, how long the GPU stands still for it.
     pub gpu: Option<Duration>,
-    /// CPU time that encoding the pass took.
+    /// CPU time that encoding the pass took, or its work if it works on the CPU.
     pub cpu: Duration,
 }
 

@@ -34,7 +34,7 @@ pub struct LinkedPass {
     pub name: Located<String>,
     /// Kind of the pass, as the document writes it, such as `Compute`; or [`CAPTURE`].
     pub kind: &'static str,
-    /// GPU work of the pass, in the order in which it is done.
+    /// Work of the pass, in the order in which it is done.
     pub steps: Vec<Step<Ids>>,
     /// Every read and write of a resource by the steps, in the order of the steps.
     pub accesses: Vec<Access>,
@@ -52,7 +52,7 @@ impl LinkedPass {
     }
 
     /// Iterates over the bytes of the `params` uniform of each step, in the order of the steps;
-    /// `None` for a step whose shader has no global `params`, and for a copy or clear.
+    /// `None` for a step whose shader has no global `params`, and for one without a shader.
     pub fn params(&self) -> impl Iterator<Item = Option<&[u8]>> {
         self.steps.iter().map(|step| step.program()?.params())
     }
@@ -89,7 +89,7 @@ pub enum Usage {
     Texture(wgt::TextureUsages),
     /// Usage of a buffer.
     Buffer(wgt::BufferUsages),
-    /// No usage: the resource is a sampler or an acceleration structure.
+    /// No usage: the resource is a sampler, an acceleration structure or work for the CPU.
     None,
 }
 
@@ -103,6 +103,7 @@ impl Stage for Ids {
     type Operand = Target;
     type Arguments = Target;
     type Program = LinkedProgram;
+    type Work = ResourceId;
     type Size = [u32; 3];
     type Canvas = Attachment;
 }
@@ -226,7 +227,7 @@ pub(crate) fn block_mut(step: &mut Step<Ids>) -> Option<&mut Block> {
     let program = match step {
         Step::Draw(draw) => &mut draw.program,
         Step::Dispatch(dispatch) => &mut dispatch.program,
-        Step::Copy { .. } | Step::Clear { .. } => return None,
+        Step::Copy { .. } | Step::Clear { .. } | Step::Cpu(_) => return None,
     };
     let mut bindings = program.bindings.iter_mut();
     bindings.find_map(|binding| match &mut binding.target {

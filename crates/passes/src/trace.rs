@@ -234,14 +234,18 @@ impl PassKind for Trace {
                 Self::announce(engine, pass);
             }
         }
-        let engine = pass.word(&self.engine, &Engine::WORDS);
-        Self::announce(engine, pass);
+        let mut engine = pass.word(&self.engine, &Engine::WORDS);
+        if engine == Engine::Embree && !pass.is_provided(EMBREE) {
+            self.refuse_embree(pass);
+            // So that nothing that follows from it is told, too.
+            engine = Engine::Hierarchy;
+        }
         let Some(shader) = engine.shader() else {
-            if !pass.is_provided(EMBREE) {
-                self.refuse_embree(pass);
-            }
+            // For hosts without it, as above.
+            Self::announce(Engine::Hierarchy, pass);
             return self.lower_to_cpu(pass);
         };
+        Self::announce(engine, pass);
         let groups = match &self.groups {
             Some(groups) => Operand::from(groups),
             None => self.count_groups(pass),

@@ -25,7 +25,7 @@ LEVELS = ["sponza", "bench", "park", "level", "avenue", "lamps", "room", "hedge"
 # The params of each method that have an effect with its others.
 PARAMS = {
     "nsm": ["cull", "fit", "slope_bias", "bias"],
-    "pssm": ["cull", "slope_bias", "bias", "split_lambda", "fit_to_receivers"],
+    "pssm": ["cull", "slope_bias", "bias", "split_lambda", "fit_to_receivers", "normal_offset"],
     "pcf": ["cull", "fit", "radius", "slope_bias", "bias"],
 }
 # Most settings that one command compares.

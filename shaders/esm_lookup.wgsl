@@ -8,10 +8,11 @@
 struct Params {
     radius: u32,
     exponent: f32,
+    bleed_reduction: f32,
 }
 
 var<uniform> params: Params;
 
-fn share_of_light(stored: vec2<f32>, depth: f32) -> f32 {
-    return saturate(exp(params.exponent * (stored.x - depth)));
+fn share_of_light(stored: vec4<f32>, look: Look) -> f32 {
+    return exp(params.exponent * (stored.x - look.depth));
 }

@@ -30,7 +30,12 @@ fn over_receivers() {
 // The upright rectangle around the eye's frustum: as the dissertation fits its light.
 @compute @workgroup_size(1)
 fn over_camera() {
+    let end = fit_end(params.fit_distance);
+    if stable {
+        map_fits[0].fit = fit_over_ball(camera.near, end, f32(params.map_size), params.rounding);
+        return;
+    }
     let axes = upright();
-    let around = around_frustum(axes, camera.near, fit_end(params.fit_distance));
+    let around = around_frustum(axes, camera.near, end);
     map_fits[0].fit = fit_over_rectangle(axes, around, f32(params.map_size), params.rounding);
 }

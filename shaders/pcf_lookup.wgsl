@@ -3,9 +3,7 @@
 // Cook, "Rendering Antialiased Shadows with Depth Maps", SIGGRAPH 1987, with every texel of the
 // region instead of some by chance.
 
-#import "shared/depth_bias.wgsl"
-#import "shared/map_layers.wgsl"
-#import "shared/receiver.wgsl"
+#import "shared/compared_lookup.wgsl"
 
 const COMPARE_SAMPLER: u32 = 0u;
 
@@ -17,31 +15,15 @@ struct Params {
 }
 
 var<uniform> params: Params;
-var shadow_maps: texture_depth_2d_array;
-var nearer: sampler_comparison;
 
-@fragment
-fn fragment(@builtin(position) centre: vec4<f32>) -> @location(0) f32 {
-    let pixel = vec2<u32>(centre.xy);
-    let receiver = textureLoad(position, pixel, 0);
-    let status = initial_status(pixel, receiver);
-    if status != STATUS_UNCERTAIN {
-        return f32(initial_visibility(status));
-    }
-    let layer = layer_of(receiver.xyz);
-    let fit = fit_of(layer);
-    let place = texel_of(fit, receiver.xyz);
-    if is_outside_of(fit, place.xy) {
-        return 1.0;
-    }
+fn share_of_light(lookup: Lookup) -> f32 {
     // The plane rises over all of the square.
     let slope_bias = params.slope_bias * f32(params.radius + 1u);
-    let bias = bias_at(fit, receiver.xyz, place, receiver.w, params.bias, slope_bias);
-    let depth = place.z - bias;
+    let depth = lookup.place.z - bias_of(lookup, params.bias, slope_bias);
     if params.compare == COMPARE_SAMPLER {
-        return sampled(place.xy, layer, depth);
+        return sampled(lookup.place.xy, lookup.layer, depth);
     }
-    return by_hand(place.xy, layer, depth);
+    return by_hand(lookup.place.xy, lookup.layer, depth);
 }
 
 // The mean of 2 · radius + 1 bilinear comparisons in each direction.
@@ -54,7 +36,7 @@ fn sampled(place: vec2<f32>, layer: u32, depth: f32) -> f32 {
             lit += textureSampleCompareLevel(shadow_maps, nearer, at, layer, depth);
         }
     }
-    return saturate(lit / f32((2 * radius + 1) * (2 * radius + 1)));
+    return lit / f32((2 * radius + 1) * (2 * radius + 1));
 }
 
 // The same, each texel compared once: those between count whole, the outermost by what a square of
@@ -75,6 +57,5 @@ fn by_hand(place: vec2<f32>, layer: u32, depth: f32) -> f32 {
             lit += cover.x * cover.y * select(0.0, 1.0, depth <= stored);
         }
     }
-    // The sum over parts of texels is rounded.
-    return saturate(lit / f32(last * last));
+    return lit / f32(last * last);
 }

@@ -4,6 +4,7 @@
 #import "shared/depth_bias.wgsl"
 #import "shared/map_layers.wgsl"
 #import "shared/receiver.wgsl"
+#import "shared/unmoved.wgsl"
 
 struct Params {
     bias: f32,
@@ -30,12 +31,13 @@ fn compare(pixel: vec2<u32>) -> u32 {
     if status != STATUS_UNCERTAIN {
         return status;
     }
-    return select(STATUS_SHADOW, STATUS_LIGHT, is_lit(receiver.xyz, receiver.w));
+    return select(STATUS_SHADOW, STATUS_LIGHT, is_lit(pixel, receiver.xyz, receiver.w));
 }
 
-fn is_lit(receiver: vec3<f32>, n_dot_l: f32) -> bool {
-    let layer = layer_of(receiver);
+fn is_lit(pixel: vec2<u32>, seen: vec3<f32>, n_dot_l: f32) -> bool {
+    let layer = layer_of(seen);
     let fit = fit_of(layer);
+    let receiver = moved(fit, pixel, seen);
     let place = texel_of(fit, receiver);
     if is_outside_of(fit, place.xy) {
         return true;

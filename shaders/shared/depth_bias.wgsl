@@ -1,4 +1,5 @@
-// Bias that is added to a stored depth before a receiver is compared with it.
+// Bias that is added to a stored depth before a receiver is compared with it, and the edge of a
+// texel at the receiver.
 
 #import "shared/map_fit.wgsl"
 
@@ -12,6 +13,14 @@ fn bias_at(
     bias: f32,
     slope_bias: f32,
 ) -> f32 {
+    let texel = texel_edge_at(fit, receiver, place);
+    let slope = sqrt(max(1.0 - n_dot_l * n_dot_l, 0.0)) / n_dot_l;
+    return bias + slope_bias * slope * texel / light.extent.z;
+}
+
+// The longer edge, in units of the scene.
+fn texel_edge_at(fit: MapFit, receiver: vec3<f32>, place: vec3<f32>) -> f32 {
+    // Growth of the map's x and y per unit of clip x and y.
     var x = fit.x.xy;
     var y = fit.y.xy;
     if map_is_projective {
@@ -25,20 +34,7 @@ fn bias_at(
         x /= max(place.z, 1e-6);
         y /= max(place.z, 1e-6);
     }
-    return depth_bias_of(x, y, n_dot_l, bias, slope_bias);
-}
-
-// `x` and `y`: what the map's x and y grow by per unit of clip x and y.
-fn depth_bias_of(
-    x: vec2<f32>,
-    y: vec2<f32>,
-    n_dot_l: f32,
-    bias: f32,
-    slope_bias: f32,
-) -> f32 {
-    // Units of the scene.
     let extent = light.extent.xy;
     let texel = 1.0 / vec2(length(x / extent), length(y / extent));
-    let slope = sqrt(max(1.0 - n_dot_l * n_dot_l, 0.0)) / n_dot_l;
-    return bias + slope_bias * slope * max(texel.x, texel.y) / light.extent.z;
+    return max(texel.x, texel.y);
 }

@@ -9,6 +9,12 @@
 // For layers that everybody may ask.
 const ANY_DISTANCE: f32 = 3e38;
 
+// True if texels stay where they are in light space while the eye moves.
+override stable: bool = false;
+// Lengths that change with what is seen go in steps then, as powers of two: texels keep their size
+// for a while, and are at most a fifth larger than need be.
+const STABLE_STEP: f32 = 0.25;
+
 fn affine_fit(x: vec3<f32>, y: vec3<f32>, size: f32) -> MapFit {
     let scale = abs(vec2(x.x, y.x)) + abs(vec2(x.y, y.y));
     let reach = scale + abs(vec2(x.z, y.z));
@@ -33,16 +39,32 @@ fn fit_over_box(bits: vec4<u32>, size: f32, rounding: f32) -> MapFit {
     let box = bitcast<vec4<f32>>(bits);
     let high = box.xy;
     let low = 1.0 - box.zw;
+    if any(high < low) {
+        return fit_over_scene(size, rounding);
+    }
+    var share = max(high - low, vec2(1e-6));
+    if stable {
+        share = exp2(STABLE_STEP * ceil(log2(share) / STABLE_STEP));
+    }
+    return fit_over_shares(low, share, size, rounding);
+}
+
+// From `low` on, in shares of the scene's edges. Its texels are some of a grid over the scene:
+// where their size stays, texels do.
+fn fit_over_shares(
+    low: vec2<f32>,
+    share: vec2<f32>,
+    size: f32,
+    rounding: f32,
+) -> MapFit {
     // A map of a few texels has no room to spare.
-    if any(high < low) || size < 8.0 {
+    if size < 8.0 {
         return fit_over_scene(size, rounding);
     }
     // Edges of the map if it went over the scene. Room for a box that begins within a texel, and
     // for rounding.
     let room = size - 4.0;
-    let edges = floor(
-        min(room / max(high - low, vec2(1e-6)), vec2(2.0 * greatest_scale(0.0, rounding))),
-    );
+    let edges = floor(min(room / share, vec2(2.0 * greatest_scale(0.0, rounding))));
     let first = max(floor(low * edges) - 1.0, vec2(0.0));
     let half = 0.5 * edges;
     let x = vec3(half.x, 0.0, half.x - first.x);
@@ -68,6 +90,22 @@ fn frustum_corner(corner: u32, begin: f32, end: f32) -> vec3<f32> {
     return camera.eye + distance * way;
 }
 
+// Over the ball around a slab of the eye's frustum, so of one size whichever way the eye looks; cut
+// to the scene. Valient, "Stable Rendering of Cascaded Shadow Maps", ShaderX6, 2008.
+fn fit_over_ball(begin: f32, end: f32, size: f32, rounding: f32) -> MapFit {
+    // The ball touches both ends' corners, or those of the far end alone if that is wide. `spread`:
+    // how far a corner is from the axis at distance 1.
+    let spread = length(vec2(camera.half_width, camera.half_height));
+    let along = min(0.5 * (begin + end) * (1.0 + spread * spread), end);
+    let radius = length(vec2(end - along, spread * end));
+    let clip = light_clip(camera.eye + along * camera.forward).xy;
+    // The scene's edges are two extents long.
+    let share = min(radius / light.extent.xy, vec2(1.0));
+    let middle = vec2(clip.x, -clip.y) * 0.5 + 0.5;
+    let low = clamp(middle - 0.5 * share, vec2(0.0), 1.0 - share);
+    return fit_over_shares(low, share, size, rounding);
+}
+
 // World units along the sides of rectangles per unit of clip x and y.
 struct Axes {
     u: vec2<f32>,
@@ -87,6 +125,28 @@ fn upright() -> Axes {
     let u = vec2(dot(right, clip_right), dot(right, clip_up)) * light.extent.xy;
     let v = vec2(dot(up, clip_right), dot(up, clip_up)) * light.extent.xy;
     return Axes(u, v);
+}
+
+// Axes along the sides of light space.
+fn along_scene() -> Axes {
+    return Axes(vec2(light.extent.x, 0.0), vec2(0.0, light.extent.y));
+}
+
+// True if boxes of receivers may lie along the way that the eye looks, where they are narrower.
+override turned: bool = false;
+
+fn along_view() -> Axes {
+    let way = (light.clip_from_relative * vec4(camera.forward, 0.0)).xy * light.extent.xy;
+    let size = length(way);
+    // Any axes where the eye looks along the light.
+    let along = select(vec2(1.0, 0.0), way / size, size > 1e-3);
+    return Axes(along * light.extent.xy, vec2(-along.y, along.x) * light.extent.xy);
+}
+
+// Where a place lies between the sides of a square around the scene along these axes.
+fn share_along(axes: Axes, clip: vec2<f32>) -> vec2<f32> {
+    let place = vec2(dot(axes.u, clip), dot(axes.v, clip));
+    return place / length(light.extent.xy) * 0.5 + 0.5;
 }
 
 // A rectangle in those units.

@@ -32,6 +32,9 @@ var<uniform> map_fit: MapFit;
 // Nothing divides unless the graph says so.
 override map_is_projective: bool = false;
 
+// Share of the way to a split's end before which some receivers go over to the next one.
+override split_blend: f32 = 0.0;
+
 // x and y in texels; z is the map's depth, which grows away from the light.
 fn light_texel(position: vec3<f32>) -> vec3<f32> {
     return texel_of(map_fit, position);

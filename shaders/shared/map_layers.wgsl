@@ -4,6 +4,7 @@
 
 #import "shared/camera.wgsl"
 #import "shared/map_fit.wgsl"
+#import "shared/strata.wgsl"
 
 override map_layers: u32 = 1u;
 
@@ -20,10 +21,23 @@ fn layer_of(receiver: vec3<f32>) -> u32 {
     }
     let distance = dot(camera.forward, relative_to_eye(receiver));
     var layer = 0u;
-    while layer + 1u < map_layers && distance > map_fits[layer].fit.end {
+    while layer + 1u < map_layers && distance > end_of(layer, receiver) {
         layer += 1u;
     }
     return layer;
+}
+
+// How far from the eye a receiver asks this layer: to the end of its split, or by chance less far.
+// Cells of light space, about a pixel wide there, have one chance each: while the eye moves,
+// nothing flickers that lies in one.
+fn end_of(layer: u32, receiver: vec3<f32>) -> f32 {
+    let end = map_fits[layer].fit.end;
+    if split_blend == 0.0 {
+        return end;
+    }
+    let across = light_clip(receiver).xy * light.extent.xy;
+    let cell = bitcast<vec2<u32>>(vec2<i32>(floor(across * 512.0 / end)));
+    return end * (1.0 - split_blend * random_pair(cell.x, cell.y).x);
 }
 
 fn fit_of(layer: u32) -> MapFit {

@@ -44,6 +44,7 @@ fn presets_are_listed_by_name() {
     assert_eq!(
         names,
         [
+            "contact",
             "crsm",
             "crsm_d",
             "crsm_depth",
@@ -53,17 +54,21 @@ fn presets_are_listed_by_name() {
             "crsma_d",
             "crsma_full",
             "esm",
+            "evsm",
             "hybrid_pcf",
             "hybrid_pcf_area",
             "hybrid_pcf_d",
             "light_buffer",
             "light_buffer_area",
+            "msm",
             "nsm",
             "nsm_d",
             "pcf",
+            "pcss",
             "pssm",
             "rt",
             "rt_area",
+            "sdsm",
             "tsm",
             "vsm"
         ]

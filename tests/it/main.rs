@@ -19,8 +19,10 @@ mod shadows;
 mod support;
 
 mod area;
+mod cascades;
 mod changes;
 mod compiled_apart;
+mod contact;
 mod cpu_one_rings;
 mod cpu_reference;
 mod cpu_status;

@@ -108,6 +108,8 @@ fn maps_have_holes_where_casters_have() {
         ("nsm", point, "scene"),
         ("nsm", sun, "scene"),
         ("nsm", sun, "pssm"),
+        ("pssm", sun, "pssm"),
+        ("sdsm", sun, "pssm"),
         ("nsm", sun, "tsm"),
     ] {
         let scene = scene_under(2, light);
@@ -118,7 +120,7 @@ fn maps_have_holes_where_casters_have() {
             ("fit", word(fit)),
             ("slope_bias", ParamValue::F32(1.0)),
         ];
-        let asked = if preset == "nsm" { 4 } else { 3 };
+        let asked = if preset == "hybrid_pcf" { 3 } else { 4 };
         let counts = bench.judge(preset, &params[..asked]);
         let wrong = counts.wrong.total - counts.wrong.in_band;
         println!(

@@ -14,14 +14,14 @@ use skiagraph_scene::{DirectionalLight, Mesh, Scene, SceneLibrary, SceneRequest}
 use skiagraph_tests::cpu_reference::trapezoid::{normalization, trapezoid};
 use std::sync::Arc;
 
-const VIEWPORT: [u32; 2] = [256, 160];
+pub(crate) const VIEWPORT: [u32; 2] = [256, 160];
 
-fn word(word: &str) -> ParamValue {
+pub(crate) fn word(word: &str) -> ParamValue {
     ParamValue::Choice(word.to_owned())
 }
 
 /// The avenue under one of its views, whose light is the scene's then.
-fn avenue(view: &str) -> Arc<Scene> {
+pub(crate) fn avenue(view: &str) -> Arc<Scene> {
     let request = SceneRequest {
         argument: "avenue".into(),
         obj: None,
@@ -33,7 +33,7 @@ fn avenue(view: &str) -> Arc<Scene> {
     Arc::new(scene)
 }
 
-fn wrong(counts: &Statistics) -> u64 {
+pub(crate) fn wrong(counts: &Statistics) -> u64 {
     counts.wrong.total - counts.wrong.in_band
 }
 
@@ -252,7 +252,7 @@ fn where_splits_meet_their_errors_jump() {
 }
 
 /// How far from the eye each pixel's receiver is, along the view.
-fn distances(scene: &Arc<Scene>, viewport: [u32; 2]) -> Vec<f64> {
+pub(crate) fn distances(scene: &Arc<Scene>, viewport: [u32; 2]) -> Vec<f64> {
     let view = &scene.views[0];
     let mut provider = provider(scene, view, viewport);
     let plan = plan("pipelines/shared/gbuffer.ron", &provider, viewport, |_| {});
@@ -266,7 +266,7 @@ fn distances(scene: &Arc<Scene>, viewport: [u32; 2]) -> Vec<f64> {
 }
 
 /// Returns the share of wrong pixels among those that face the light at such a distance.
-fn wrong_share(answers: &Answers, distances: &[f64], between: [f64; 2]) -> f64 {
+pub(crate) fn wrong_share(answers: &Answers, distances: &[f64], between: [f64; 2]) -> f64 {
     let (mut wrong, mut all) = (0.0, 0.0);
     for (pixel, class) in answers.truth.classes.iter().enumerate() {
         if class.faces_light() && (between[0]..between[1]).contains(&distances[pixel]) {

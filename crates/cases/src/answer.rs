@@ -1,31 +1,33 @@
-//! Where light arrives, told from the geometry: how deep the way from a point to the light runs
-//! inside a caster (negative: by how much it misses), and what follows.
+//! Finds from the geometry if light reaches a point. Its measure is the depth of the ray from the
+//! point to the light inside a caster; it is negative if the ray misses the caster by so much.
 
 use crate::shape::Block;
 use glam::{DVec2, DVec3};
 
-/// Lit or not, from the depth inside every caster; `None` if none blocks the way and some does or
-/// does not by less than `margin`.
+/// Returns true if the greatest of `depths`, the depths of the ray to the light inside each caster,
+/// is negative: the point is lit. `None` if it is within `margin` of 0.
 pub(crate) fn judge(depths: impl IntoIterator<Item = f64>, margin: f64) -> Option<bool> {
     let deepest = depths.into_iter().fold(f64::NEG_INFINITY, f64::max);
     (deepest.abs() > margin).then_some(deepest < 0.0)
 }
 
-/// Among boxes of which none hides a part of another's surface by more than its own volume: a point
-/// on a box's own surface, which faces the light, is not shaded by this box.
+/// Returns true if light that travels along `light` reaches a point of a surface that faces it,
+/// past the boxes `blocks`; `None` within `margin` of a shadow's edge. A box does not shade points
+/// of its own surface.
 pub(crate) fn among(point: DVec3, light: DVec3, blocks: &[Block], margin: f64) -> Option<bool> {
     let inside = |&block: &Block| in_block(point, light, block);
     judge(blocks.iter().filter_map(inside), margin)
 }
 
-/// The same under a light at a place; boxes beyond it cast no shadow.
+/// Does the same as [`among`] for a light at the position `place`; boxes beyond it cast no shadow.
 pub(crate) fn among_at(point: DVec3, place: DVec3, blocks: &[Block], margin: f64) -> Option<bool> {
     let way = place - point;
     let inside = |&block: &Block| in_block_before(point, way.normalize(), way.length(), block);
     judge(blocks.iter().filter_map(inside), margin)
 }
 
-/// Inside a box, or `None` for a point on its surface.
+/// Returns the depth (scene units, negative for a miss) inside a box of the ray from a point to a
+/// light that travels along `light`; `None` for a point on the box's surface.
 pub(crate) fn in_block(point: DVec3, light: DVec3, block: Block) -> Option<f64> {
     in_block_before(point, -light.normalize(), f64::INFINITY, block)
 }
@@ -50,7 +52,8 @@ fn in_block_before(point: DVec3, to_light: DVec3, end: f64, block: Block) -> Opt
     Some((leave - enter).min(leave).min(within).min(end - enter))
 }
 
-/// Where the way to the light passes height `y`, as x and z; `None` if it does not.
+/// Returns x and z at which the ray from a point to a light that travels along `light` passes the
+/// height `y`; `None` if it does not.
 pub(crate) fn at_height(point: DVec3, light: DVec3, y: f64) -> Option<DVec2> {
     let t = (y - point.y) / -light.y;
     let met = point - light * t;
@@ -58,20 +61,25 @@ pub(crate) fn at_height(point: DVec3, light: DVec3, y: f64) -> Option<DVec2> {
     (t * light.length() > 1e-9).then_some(DVec2::new(met.x, met.z))
 }
 
-/// Inside a horizontal rectangle at height `y`.
+/// Returns the depth (scene units, negative for a miss) inside a horizontal rectangle, given by two
+/// corners of x and z, at height `y` of the ray from a point to a light that travels along `light`;
+/// −∞ if the ray does not pass that height.
 pub(crate) fn in_sheet(point: DVec3, light: DVec3, sheet: [[f32; 2]; 2], y: f32) -> f64 {
     let [low, high] = sheet.map(|corner| glam::Vec2::from(corner).as_dvec2());
     let inside = |met: DVec2| (met - low).min(high - met).min_element();
     at_height(point, light, f64::from(y)).map_or(f64::NEG_INFINITY, inside)
 }
 
-/// Inside a horizontal disc at height `y` around `centre`.
+/// Returns the depth (scene units, negative for a miss) inside a horizontal disc around `[x, y, z]`
+/// of the ray from a point to a light that travels along `light`; −∞ if the ray does not pass its
+/// height.
 pub(crate) fn in_disc(point: DVec3, light: DVec3, [x, y, z]: [f64; 3], radius: f64) -> f64 {
     let inside = |met: DVec2| radius - met.distance(DVec2::new(x, z));
     at_height(point, light, y).map_or(f64::NEG_INFINITY, inside)
 }
 
-/// Inside a triangle.
+/// Returns the depth (scene units, negative for a miss) inside a triangle of the ray from a point
+/// to a light that travels along `light`; −∞ if the ray does not pass its plane.
 pub(crate) fn in_triangle(point: DVec3, light: DVec3, corners: [[f32; 3]; 3]) -> f64 {
     let [a, b, c] = corners.map(|corner| glam::Vec3::from(corner).as_dvec3());
     let normal = (b - a).cross(c - a);

@@ -1,4 +1,4 @@
-//! One hard case.
+//! Describes one stress case, and builds its scene.
 
 use crate::{
     answer::{among, among_at},
@@ -65,7 +65,8 @@ pub enum Shows {
 }
 
 impl HardCase {
-    /// Creates a case of closed casters.
+    /// Creates a case of closed casters, with at most 1 % indeterminate pixels and both light and
+    /// shadow in its picture.
     pub(crate) const fn closed(
         name: &'static str,
         reason: &'static str,
@@ -85,8 +86,8 @@ impl HardCase {
         }
     }
 
-    /// Creates a case of boxes, which tells where light arrives for all points but those within a
-    /// margin of an edge.
+    /// Creates a case of closed boxes, whose [`lit`](Self::lit) has answers for all points but
+    /// those within the margin (scene units) of a shadow's edge.
     pub(crate) const fn boxes(
         name: &'static str,
         reason: &'static str,
@@ -99,7 +100,7 @@ impl HardCase {
         }
     }
 
-    /// Creates a case of open casters.
+    /// Creates a case of open casters; otherwise as [`closed`](Self::closed).
     pub(crate) const fn open(
         name: &'static str,
         reason: &'static str,
@@ -112,30 +113,30 @@ impl HardCase {
         }
     }
 
-    /// Changes the case's scene after it is built.
+    /// Returns the case with a function that changes its scene after it is built.
     pub(crate) const fn changed(mut self, change: fn(&mut Scene)) -> Self {
         self.change = change;
         self
     }
 
-    /// Gives the case an answer from the geometry, as [`HardCase::lit`] returns it.
+    /// Returns the case with a function that [`HardCase::lit`] calls.
     pub(crate) const fn with_answer(mut self, lit: fn(DVec3) -> Option<bool>) -> Self {
         self.lit = Some(lit);
         self
     }
 
-    /// Marks a case in which all points that face the light are lit.
+    /// Returns the case as one in which all points that face the light are lit.
     pub(crate) const fn all_lit(self) -> Self {
         self.with_answer(|_| Some(true)).showing(Shows::LitOnly)
     }
 
-    /// Marks a case whose picture does not show both light and shadow.
+    /// Returns the case with another value of [`HardCase::shows`].
     pub(crate) const fn showing(mut self, shows: Shows) -> Self {
         self.shows = shows;
         self
     }
 
-    /// Sets the largest share of indeterminate pixels, a hundredth without it.
+    /// Returns the case with another value, 0 to 1, of [`HardCase::indeterminate_cap`].
     pub(crate) const fn indeterminate_up_to(mut self, share: f64) -> Self {
         self.indeterminate_cap = share;
         self
@@ -153,9 +154,9 @@ impl HardCase {
         scene
     }
 
-    /// Tells from the geometry, without tracing rays, if light reaches a point of a surface (world
-    /// space) that faces the light. Returns `None` for a point too close to a shadow edge to call,
-    /// or if the case is not [analytic](Self::is_analytic).
+    /// Returns true if light reaches a point (world space) of a surface that faces the light,
+    /// computed from the geometry without tracing rays. Returns `None` for a point so close to a
+    /// shadow's edge that rounding may decide, or if the case is not [analytic](Self::is_analytic).
     pub fn lit(&self, point: DVec3) -> Option<bool> {
         match (self.lit, self.geometry, self.seen.light) {
             (Some(lit), ..) => lit(point),

@@ -1,4 +1,4 @@
-//! All cases.
+//! Lists all cases.
 
 use crate::{
     case::HardCase, fences, lamps, light, lists, map, masked, plain, rounding, soft, solids, thin,

@@ -1,4 +1,4 @@
-//! Casters with gaps between them, thin against a texel.
+//! Defines cases of casters with gaps between them, both narrower than a texel.
 
 use crate::{
     answer::{among, in_block, judge},

@@ -1,4 +1,5 @@
-//! Spot and point lights: where they are, and where they end.
+//! Defines cases of spot and point lights: their positions, and the borders of the space that they
+//! light.
 
 use crate::{
     answer::among_at,

@@ -1,4 +1,4 @@
-//! Directions of light at which surfaces stand along it.
+//! Defines cases in which the light is parallel, or nearly so, to surfaces.
 
 use crate::{
     answer::{in_sheet, judge},

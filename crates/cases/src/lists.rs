@@ -1,4 +1,5 @@
-//! Much in few texels, and casters that reach over much: what lists of casters per texel find hard.
+//! Defines cases that are hard for lists of casters per texel: many casters in few texels, and
+//! casters that cover many texels.
 
 use crate::{
     answer::{among, in_triangle, judge},

@@ -1,4 +1,4 @@
-//! Where things lie in the map.
+//! Defines cases in which casters or receivers have special places in the shadow map.
 
 use crate::{
     answer::{in_sheet, judge},

@@ -1,4 +1,4 @@
-//! Triangles that are cut out by masks.
+//! Defines cases with alpha masks, which cut holes into triangles.
 
 use crate::{
     answer::at_height,

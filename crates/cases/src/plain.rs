@@ -1,4 +1,4 @@
-//! Simple scenes, and scenes of next to nothing.
+//! Defines simple cases, and cases with few triangles or none.
 
 use crate::{
     case::{HardCase, Shows},

@@ -1,4 +1,4 @@
-//! Gaps, extents and places at which f32 runs out of digits.
+//! Defines cases with gaps, extents and positions at which f32 runs out of digits.
 
 use crate::{
     answer::{among, in_sheet, judge},

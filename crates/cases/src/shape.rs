@@ -1,4 +1,4 @@
-//! Shapes that the cases are built from.
+//! Builds the meshes and views of the cases.
 
 use glam::{DVec3, Vec3};
 use skiagraph_scene::{DirectionalLight, Light, LightKind, Mesh, Scene, View, weld::Welder};
@@ -6,7 +6,8 @@ use skiagraph_scene::{DirectionalLight, Light, LightKind, Mesh, Scene, View, wel
 /// The lower and the upper corner of a box.
 pub(crate) type Block = [[f32; 3]; 2];
 
-/// Triangles by their corners, flat-shaded unless told otherwise.
+/// Triangles by their corners in scene units, y up; flat-shaded unless [`smooth`](Self::smooth) is
+/// called.
 #[derive(Clone, Default)]
 pub(crate) struct Shape {
     corners: Vec<[Vec3; 3]>,
@@ -14,45 +15,47 @@ pub(crate) struct Shape {
 }
 
 impl Shape {
-    /// One triangle, counter-clockwise seen from outside.
+    /// Adds a triangle, counter-clockwise seen from outside.
     pub fn triangle(mut self, corners: [[f32; 3]; 3]) -> Self {
         self.corners.push(corners.map(Vec3::from));
         self
     }
 
-    /// Many of them.
+    /// Adds triangles, each as [`triangle`](Self::triangle) does.
     pub fn triangles(self, corners: impl IntoIterator<Item = [[f32; 3]; 3]>) -> Self {
         corners.into_iter().fold(self, Self::triangle)
     }
 
-    /// A plane quadrilateral, counter-clockwise seen from outside.
+    /// Adds a plane quadrilateral, counter-clockwise seen from outside.
     pub fn quad(self, [a, b, c, d]: [[f32; 3]; 4]) -> Self {
         self.triangle([a, b, c]).triangle([a, c, d])
     }
 
-    /// A horizontal rectangle that faces up.
+    /// Adds a horizontal rectangle at height `y` that faces up, between two corners of x and z.
     pub fn sheet(self, [[x0, z0], [x1, z1]]: [[f32; 2]; 2], y: f32) -> Self {
         self.quad([[x0, y, z1], [x1, y, z1], [x1, y, z0], [x0, y, z0]])
     }
 
-    /// A horizontal square that faces up, around the origin.
+    /// Adds a horizontal square at height `y` that faces up, with edges of `2 * half`, around x = z
+    /// = 0.
     pub fn floor(self, half: f32, y: f32) -> Self {
         self.sheet([[-half; 2], [half; 2]], y)
     }
 
-    /// A closed box between two corners.
+    /// Adds a closed box between two corners.
     pub fn cuboid(self, block: Block) -> Self {
         self.moved_cuboid(block, |corner| corner)
     }
 
-    /// Several of them.
+    /// Adds closed boxes, each between two corners.
     pub fn cuboids(self, blocks: &[Block]) -> Self {
         blocks
             .iter()
             .fold(self, |shape, &block| shape.cuboid(block))
     }
 
-    /// A closed box whose corners are moved: an affine map keeps its faces plane, up to rounding.
+    /// Adds a closed box whose corners `place` moves; an affine map keeps its faces plane, up to
+    /// rounding.
     pub fn moved_cuboid(self, block: Block, place: impl Fn([f32; 3]) -> [f32; 3]) -> Self {
         let at = |x: usize, y: usize, z: usize| place([block[x][0], block[y][1], block[z][2]]);
         self.quad([at(0, 1, 1), at(1, 1, 1), at(1, 1, 0), at(0, 1, 0)])
@@ -63,8 +66,9 @@ impl Shape {
             .quad([at(0, 0, 0), at(0, 0, 1), at(0, 1, 1), at(0, 1, 0)])
     }
 
-    /// A closed slab whose upper side is y = 0: a square of `half` and, around it, frames of which
-    /// each is four times as large, so that no triangle is huge where the detail is.
+    /// Adds a closed slab of this thickness below y = 0. Its upper side is a square with edges of
+    /// `2 * half` and, around it, `frames` rings, each four times as large as the one before, so
+    /// that no triangle is huge near the centre.
     pub fn graded_slab(mut self, half: f32, frames: i32, thickness: f32) -> Self {
         let square = |frame: i32, y: f32| {
             let half = half * 4f32.powi(frame);
@@ -89,8 +93,8 @@ impl Shape {
         })
     }
 
-    /// Quads between `rows` × `columns` cells of a lattice, counter-clockwise along (row, column);
-    /// cells that collapse to a line are left out.
+    /// Adds the quadrilaterals of a lattice of `rows` × `columns` cells with the corners `at(row,
+    /// column)`, counter-clockwise along (row, column); cells that collapse to a line are left out.
     pub fn lattice(self, rows: u32, columns: u32, at: impl Fn(u32, u32) -> DVec3) -> Self {
         let at = |row, column| at(row, column).as_vec3().to_array();
         let cells = (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));
@@ -106,7 +110,8 @@ impl Shape {
         self.triangles(halves.filter(|[a, b, c]| a != b && b != c && c != a))
     }
 
-    /// A closed convex prism: an outline in x and y, counter-clockwise seen from +z, between two z.
+    /// Adds a closed convex prism: an outline in x and y, counter-clockwise seen from +z, between
+    /// two values of z.
     pub fn prism(self, outline: &[[f32; 2]], [back, front]: [f32; 2]) -> Self {
         let at = |i: usize, z: f32| {
             let [x, y] = outline[i % outline.len()];
@@ -123,14 +128,14 @@ impl Shape {
         })
     }
 
-    /// Everything once more, wound the other way.
+    /// Adds all triangles once more, wound the other way.
     pub fn and_reversed(mut self) -> Self {
         let reversed: Vec<_> = self.corners.iter().map(|&[a, b, c]| [a, c, b]).collect();
         self.corners.extend(reversed);
         self
     }
 
-    /// Everything wound the other way.
+    /// Winds all triangles the other way.
     pub fn reversed(mut self) -> Self {
         self.corners
             .iter_mut()
@@ -138,13 +143,13 @@ impl Shape {
         self
     }
 
-    /// All of another shape.
+    /// Adds the triangles of another shape.
     pub fn and(mut self, other: Self) -> Self {
         self.corners.extend(other.corners);
         self
     }
 
-    /// Normals are averaged where triangles meet.
+    /// Makes the shading smooth: normals are averaged where triangles meet.
     pub fn smooth(mut self) -> Self {
         self.smooth = true;
         self
@@ -176,8 +181,8 @@ impl Shape {
         mesh
     }
 
-    /// The scene, still without a name, seen by a camera at `eye` that looks at `target`, up being
-    /// y unless that is where it looks.
+    /// Returns a scene of the shape, without a name, with the view `main` from `eye` to `target`
+    /// and one light. Up is y, or −z if the view is nearly vertical.
     pub fn scene(self, Seen { eye, target, light }: Seen) -> Scene {
         let eye = DVec3::from(eye);
         let direction = DVec3::from(target) - eye;
@@ -200,7 +205,7 @@ impl Shape {
     }
 }
 
-/// From where a case is seen, and under which light.
+/// Position of the eye, point at which it looks, and light of a case.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Seen {
     pub eye: [f64; 3],
@@ -208,7 +213,7 @@ pub(crate) struct Seen {
     pub light: LightKind,
 }
 
-/// Under a light that travels in this direction.
+/// Returns the eye and target given, with a directional light that travels along `light`.
 pub(crate) const fn seen(eye: [f64; 3], target: [f64; 3], light: DVec3) -> Seen {
     seen_under(
         eye,
@@ -217,7 +222,7 @@ pub(crate) const fn seen(eye: [f64; 3], target: [f64; 3], light: DVec3) -> Seen 
     )
 }
 
-/// Under any light.
+/// Returns the eye, target and light given.
 pub(crate) const fn seen_under(eye: [f64; 3], target: [f64; 3], light: LightKind) -> Seen {
     Seen { eye, target, light }
 }

@@ -1,4 +1,4 @@
-//! Cases that filtered maps get wrong, each map by its own means.
+//! Defines cases that filtered shadow maps get wrong.
 
 use crate::{
     case::HardCase,
@@ -13,6 +13,15 @@ const TWO_OCCLUDERS: [Block; 3] = [
     [[-3.0, -0.5, -2.5], [3.0, 0.0, 2.5]],
     [[-2.0, 1.0, -1.0], [0.0, 1.05, 1.0]],
     [[-8.0, 6.0, -2.0], [-6.0, 6.05, 1.5]],
+];
+
+/// A floor, a plate just above it, and two high ones whose shadows end side by side within the low
+/// one's.
+const THREE_OCCLUDERS: [Block; 4] = [
+    TWO_OCCLUDERS[0],
+    [[-1.3, 0.3, -1.0], [0.7, 0.35, 1.0]],
+    [[-5.0, 3.0, -1.8], [-2.37, 3.05, 1.6]],
+    [[-8.0, 6.0, -2.0], [-5.45, 6.05, 1.5]],
 ];
 
 const ACROSS: DVec3 = DVec3::new(0.2, -1.0, 0.9);
@@ -35,6 +44,12 @@ pub(crate) const CASES: &[HardCase] = &[
         "a silhouette within another's shadow: the variance of depths lets light through",
         seen([3.6, 2.2, 2.4], [0.1, 0.0, 0.0], OBLIQUE),
         (&TWO_OCCLUDERS, 1e-4),
+    ),
+    HardCase::boxes(
+        "three_occluders",
+        "two silhouettes side by side within a shadow: more depths than four moments tell",
+        seen([3.6, 2.2, 2.4], [0.1, 0.0, 0.0], OBLIQUE),
+        (&THREE_OCCLUDERS, 1e-4),
     ),
     HardCase::boxes(
         "contact",

@@ -1,4 +1,4 @@
-//! Closed surfaces, and how they touch.
+//! Defines cases of closed surfaces, some of which touch.
 
 use crate::{
     answer::{among, in_disc, judge},

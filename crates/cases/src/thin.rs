@@ -1,4 +1,4 @@
-//! Triangles that are thin, or nothing at all.
+//! Defines cases with thin triangles, and triangles without an area.
 
 use crate::{
     answer::{among, at_height, in_block, in_sheet, judge},

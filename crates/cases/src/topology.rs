@@ -1,4 +1,4 @@
-//! Sheets whose triangles meet in ways that a solid's do not.
+//! Defines cases of sheets whose triangles meet in ways that those of a solid do not.
 
 use crate::{
     answer::{at_height, in_disc, in_sheet, judge},

@@ -15,8 +15,9 @@ const FILL: f64 = 0.84;
 /// Above the highest bar, as a share of it: a mark stands on it.
 const MARGIN: f64 = 0.06;
 
-/// Draws a panel of bars into a rectangle of `root`, given by corner and size. The axes are fitted
-/// to all panels in `fitted`.
+/// Draws a panel of bars into a rectangle of `root`, given by its top left corner and size in
+/// pixels. `groups` are the names of the groups, and `look` gives colour and shape of a series by
+/// name. The axes are fitted to all panels in `fitted`.
 pub(crate) fn draw(
     panel: &Panel,
     groups: &[String],
@@ -66,7 +67,7 @@ pub(crate) fn draw(
     Ok(())
 }
 
-/// Returns the upper end of a linear axis that is fitted to these panels.
+/// Returns the upper end of a linear vertical axis from 0 that is fitted to these panels.
 pub(crate) fn top(fitted: &[Panel]) -> f64 {
     let marks = |series: &Series| series.marks.iter().map(|mark| mark.y).fold(0.0, f64::max);
     let series = fitted.iter().flat_map(|panel| &panel.series);
@@ -85,7 +86,7 @@ fn label_step(groups: &[String], wide: f64) -> usize {
     (f64::from(widest.unwrap_or(0)) / wide).ceil().max(1.0) as usize
 }
 
-/// Returns the label of a tick, without rounding errors of f64.
+/// Returns the label of a tick of a linear axis, without rounding errors of f64.
 pub(crate) fn tick(value: &f64) -> String {
     let rounded: f64 = format!("{value:.9e}").parse().unwrap_or(*value);
     rounded.to_string()

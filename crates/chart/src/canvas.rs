@@ -53,8 +53,8 @@ impl Canvas {
         Ok(drawn)
     }
 
-    /// Adds the elements that `draw` draws. If a page holds the picture, they form a group with
-    /// these attributes, which also contains the elements in `words`.
+    /// Adds the elements that `draw` draws. If the picture is part of a web page, they form a `g`
+    /// element with these attributes, which also contains `words`, elements as SVG text.
     pub fn group(
         &mut self,
         attributes: &str,
@@ -70,8 +70,8 @@ impl Canvas {
         Ok(())
     }
 
-    /// Returns the picture as SVG. If a page holds it, its colours are variables of the page's
-    /// style.
+    /// Returns the picture as SVG. If it is part of a web page, its colours are variables of the
+    /// page's style.
     pub fn svg(self) -> String {
         let (width, height) = self.size;
         let svg = format!(
@@ -93,7 +93,7 @@ impl From<DrawingAreaErrorKind<io::Error>> for Error {
     }
 }
 
-/// Draws text that begins at `at` and is vertically centred there.
+/// Draws text of this font size that begins at `at` (pixels) and is vertically centred there.
 pub(crate) fn words(root: &Root, at: (i32, i32), size: f64, text: &str) -> Result<(), Error> {
     let style = style(size).pos(Pos::new(HPos::Left, VPos::Center));
     // The library centres at half the height of an x, which is less than that of most words.
@@ -102,7 +102,8 @@ pub(crate) fn words(root: &Root, at: (i32, i32), size: f64, text: &str) -> Resul
     Ok(())
 }
 
-/// Returns the style of black text of this size; titles are bold.
+/// Returns the style of text of this font size in pixels: bold if it is larger than [`HEAD`], as
+/// titles are.
 pub(crate) fn style(size: f64) -> TextStyle<'static> {
     let font = ("sans-serif", size * TOLD).into_font();
     let font = if size > HEAD {

@@ -21,17 +21,17 @@ pub(crate) const INK: RGBColor = RGBColor(30, 30, 30);
 pub(crate) const AXIS: RGBColor = RGBColor(90, 90, 90);
 /// Colours of grid lines at labels, and between labels.
 pub(crate) const GRID: [RGBColor; 2] = [RGBColor(205, 205, 205), RGBColor(234, 234, 234)];
-/// Background of the strip for zero.
+/// Background of the strip below a logarithmic axis in which values of 0 stand.
 pub(crate) const STRIP: RGBColor = RGBColor(238, 238, 238);
 /// Colour of the line of the Pareto front.
 pub(crate) const FRONT: RGBColor = RGBColor(70, 70, 70);
-/// Colour of the line of slope 1.
+/// Colour of the dashed line of slope 1 in [`Kind::Growth`](crate::Kind::Growth).
 pub(crate) const GUIDE: RGBColor = RGBColor(120, 120, 120);
 
 /// Names of these colours in the style of a page.
 const VARIABLES: &str = "s0 s1 s2 s3 s4 s5 s6 s7 ink quiet quiet front line faint strip card";
 
-/// Replaces the colours of a picture by variables of a page's style.
+/// Replaces the colours of an SVG picture by the variables of a web page's style.
 pub(crate) fn as_variables(svg: String) -> String {
     let others = [INK, AXIS, GUIDE, FRONT, GRID[0], GRID[1], STRIP, WHITE];
     let all = LOOKS.into_iter().chain(others).zip(VARIABLES.split(' '));

@@ -76,7 +76,7 @@ impl Mark {
         }
     }
 
-    /// Returns the name: the first line of the text.
+    /// Returns the mark's name: the first line of [`about`](Self::about).
     pub(crate) fn name(&self) -> &str {
         self.about.lines().next().unwrap_or_default()
     }

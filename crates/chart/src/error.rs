@@ -20,7 +20,7 @@ pub enum Error {
         panel: String,
         /// Name of the series.
         series: String,
-        /// Value or size of the mark and the expected ones, as text.
+        /// The value or size of the mark, and those that are expected, as text.
         why: String,
     },
     /// The drawing library failed; the text is its message.

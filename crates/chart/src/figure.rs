@@ -50,7 +50,7 @@ impl Figure {
     ///
     /// # Errors
     /// [`Error::Empty`] if a panel has no marks; [`Error::Mark`] if a mark has a value that its
-    /// axes cannot show, or an unknown size.
+    /// axes cannot show, or an unknown size; [`Error::Drawing`] if the drawing library fails.
     pub fn to_svg(&self) -> Result<String, Error> {
         self.check()?;
         let names = self.names();
@@ -93,8 +93,8 @@ impl Figure {
     }
 
     /// Returns the mark of the series with this name, in its colour and shape, as SVG of 18 × 18
-    /// pixels for the legend of a web page. A name that no panel and no list has gets a neutral
-    /// mark.
+    /// pixels for the legend of a web page. A name that neither a panel nor [`looks`](Self::looks)
+    /// has gets a neutral mark.
     ///
     /// # Errors
     /// If the drawing library fails.

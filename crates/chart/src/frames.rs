@@ -1,4 +1,5 @@
-//! A panel over the frames of a path: linear from 0, the marks of a series joined.
+//! Draws a panel over the frames of a camera path: linear axes from 0, the marks of a series
+//! joined.
 
 use crate::{
     bars::{tick, top},
@@ -10,8 +11,9 @@ use crate::{
     text::HEAD,
 };
 
-/// Draws a panel of frames into a rectangle of the canvas, given by corner and size. The axes are
-/// fitted to all panels in `fitted`.
+/// Draws a panel of frames into a rectangle of the canvas, given by its top left corner and size in
+/// pixels. `look` gives colour and shape of a series by name. The axes are fitted to all panels in
+/// `fitted`.
 pub(crate) fn draw(
     panel: &Panel,
     fitted: &[Panel],

@@ -1,4 +1,4 @@
-//! The legend: rows of entries above the panels.
+//! Lays out and draws the legend: rows of entries above the panels.
 
 use crate::{
     canvas::{Root, WIDTH, words},
@@ -34,7 +34,7 @@ pub(crate) struct Entry {
     pub begins_row: bool,
 }
 
-/// Entries with their positions, and the height of the legend in pixels.
+/// Entries with their positions, and the height of the legend, in pixels.
 pub(crate) struct Legend {
     entries: Vec<(Entry, (i32, i32))>,
     pub height: i32,

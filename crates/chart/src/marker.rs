@@ -41,7 +41,8 @@ pub(crate) struct Look {
 }
 
 impl Look {
-    /// Returns the look of the series with this index in the legend.
+    /// Returns the colour and shape of the series with this index in the legend; they repeat after
+    /// 48.
     pub fn new(index: usize) -> Self {
         // The colours come around with another shape each.
         let (round, colour) = (index / LOOKS.len(), index % LOOKS.len());
@@ -51,7 +52,7 @@ impl Look {
         }
     }
 
-    /// Returns the look of marks outside any series.
+    /// Returns the colour and shape of marks that belong to no series.
     pub fn neutral() -> Self {
         Self {
             colour: AXIS,
@@ -59,7 +60,8 @@ impl Look {
         }
     }
 
-    /// Draws a mark; one that is not `full` is white inside.
+    /// Draws a mark with its centre at `at` (pixels) in the size with the index `size`; one that is
+    /// not `full` is white inside.
     pub fn draw(self, root: &Root, at: (i32, i32), size: usize, full: bool) -> Result<(), Error> {
         let radius = RADIUS.0 + RADIUS.1 * size as f64;
         let inside = if full { self.colour } else { WHITE };

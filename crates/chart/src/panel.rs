@@ -1,4 +1,4 @@
-//! One panel: axes, strip for zero, lines, front, marks.
+//! Draws one logarithmic panel: axes, the strip for values of 0, lines, Pareto front, marks.
 
 use crate::{
     canvas::{Canvas, Root, style, words},
@@ -51,7 +51,7 @@ fn scales(fitted: &[Panel]) -> (Scale, Scale) {
     (x, y)
 }
 
-/// Returns the height of a panel whose axes are fitted to these panels, in pixels.
+/// Returns the height in pixels of a panel whose axes are fitted to these panels.
 pub(crate) fn height(fitted: &[Panel]) -> i32 {
     match fitted.first().map(|panel| &panel.kind) {
         Some(Kind::Bars(_) | Kind::Frames) => ABOVE + BARS + LABELS.1,
@@ -59,7 +59,7 @@ pub(crate) fn height(fitted: &[Panel]) -> i32 {
     }
 }
 
-/// Returns a chart builder with room for labels.
+/// Returns a plotters chart builder with room for labels of axes.
 pub(crate) fn builder<'a, 'c>(area: &'a Root<'c>) -> ChartBuilder<'a, 'static, SVGBackend<'c>> {
     let mut chart = ChartBuilder::on(area);
     chart
@@ -72,7 +72,8 @@ pub(crate) fn builder<'a, 'c>(area: &'a Root<'c>) -> ChartBuilder<'a, 'static, S
     chart
 }
 
-/// Sets the grid lines, the text style and the axis titles of a mesh.
+/// Sets the grid lines, the text style and the axis titles of plotters' mesh (its axes and grid)
+/// for a panel.
 pub(crate) fn label<'m, 'a, 'b, X: Ranged, Y: Ranged, B: DrawingBackend>(
     mesh: &'m mut MeshStyle<'a, 'b, X, Y, B>,
     panel: &Panel,
@@ -86,8 +87,10 @@ pub(crate) fn label<'m, 'a, 'b, X: Ranged, Y: Ranged, B: DrawingBackend>(
 
 type Axes<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<Scale, Scale>>;
 
-/// Draws a logarithmic panel into a rectangle of the canvas, given by corner and size. The axes are
-/// fitted to all panels in `fitted`.
+/// Draws a logarithmic panel into a rectangle of the canvas, given by its top left corner and size
+/// in pixels. `ticks` are labels of the horizontal axis, as
+/// [`Figure::ticks`](crate::Figure::ticks); `look` gives colour and shape of a series by name. The
+/// axes are fitted to all panels in `fitted`.
 pub(crate) fn draw(
     panel: &Panel,
     fitted: &[Panel],
@@ -164,7 +167,7 @@ fn draw_bar(root: &Root, [left, right]: [i32; 2], y: i32, look: Look) -> Result<
     Ok(())
 }
 
-/// Draws the line that joins the marks of a series.
+/// Draws the line that joins `places`, the marks' centres in pixels, of a series.
 pub(crate) fn draw_line(
     canvas: &mut Canvas,
     series: &Series,
@@ -177,8 +180,8 @@ pub(crate) fn draw_line(
     canvas.group(&of, "", |root| Ok(root.draw(&line)?))
 }
 
-/// Draws a mark of a series as a group that a page's script can find. `name` is the element with
-/// the mark's name, or empty.
+/// Draws a mark of a series as a group that a page's script can find. `name` is an SVG text element
+/// with the mark's name, or empty.
 pub(crate) fn draw_mark(
     canvas: &mut Canvas,
     (series, mark): (&Series, &Mark),

@@ -1,4 +1,4 @@
-//! A logarithmic axis, with or without a strip for zero.
+//! Maps values to a logarithmic axis, with or without a strip for zero.
 
 use crate::text::{clean, number};
 use plotters::coord::ranged1d::{
@@ -18,8 +18,8 @@ const LEADS: [f64; 9] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0];
 const MARGIN: f64 = 0.06;
 
 /// A logarithmic axis with an optional strip for zero. Values above 0 lie at their logarithm. A
-/// value −k stands for the k-th lane of the strip, counted from above; 0 is the middle of the
-/// strip.
+/// value −k stands for the k-th lane of the strip, counted from above and from 1; 0 is the middle
+/// of the strip.
 #[derive(Clone, Debug)]
 pub(crate) struct Scale {
     /// Logarithms to base 10 of both ends.
@@ -54,7 +54,7 @@ impl Scale {
         }
     }
 
-    /// Returns the height of the strip for zero in pixels.
+    /// Returns the height of the strip for zero in pixels; 0 without lanes.
     pub fn strip(&self) -> f64 {
         if self.lanes == 0 {
             return 0.0;
@@ -62,7 +62,7 @@ impl Scale {
         self.lanes as f64 * LANE + 2.0 * RIM
     }
 
-    /// Returns the values at both ends of the logarithmic part.
+    /// Returns the least and the greatest value of the logarithmic part.
     pub fn ends(&self) -> (f64, f64) {
         (10f64.powf(self.low), 10f64.powf(self.high))
     }

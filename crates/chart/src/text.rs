@@ -7,13 +7,13 @@ pub(crate) const HEAD: f64 = 14.0;
 /// Size of everything else, pixels.
 pub(crate) const BODY: f64 = 13.0;
 
-/// Returns the width of a text in pixels, never less than in a browser; the reader's font is
-/// unknown.
+/// Returns the width of a text of this font size in pixels, never less than in a browser; the
+/// reader's font is unknown.
 pub(crate) fn width(text: &str, size: f64) -> i32 {
     (text.chars().count() as f64 * size * 0.62).ceil() as i32
 }
 
-/// Breaks a text between words into lines no wider than `room`.
+/// Breaks a text of this font size between words into lines no wider than `room` pixels.
 pub(crate) fn wrap(text: &str, size: f64, room: i32) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
@@ -46,7 +46,7 @@ pub fn xml(text: &str) -> String {
     lines.collect::<Vec<_>>().join("&#10;")
 }
 
-/// Returns the label of a tick: `0.05`, `200`, `10⁵`, `2·10⁵`.
+/// Returns the label of a tick of a logarithmic axis: `0.05`, `200`, `10⁵`, `2·10⁵`.
 pub(crate) fn number(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();

@@ -7,10 +7,10 @@ use std::{error::Error, io};
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CliError {
-    /// Arguments that are valid one by one but not together.
+    /// Arguments that are valid one by one but not together. Holds the message.
     #[error("{0}\n\nFor more information, try '--help'.")]
     Usage(String),
-    /// A file, name or value of the user that cannot be used.
+    /// A file, name or value of the user that cannot be used. Holds the message.
     #[error("{0}")]
     Input(String),
     /// A scene that cannot be loaded.
@@ -21,13 +21,13 @@ pub enum CliError {
         /// Error of the scene's files.
         source: Box<dyn Error + Send + Sync>,
     },
-    /// Methods or cases that failed their check; the output before names them.
+    /// Methods or cases that failed their check, which the output names. Holds the message.
     #[error("{0}")]
     Judged(String),
-    /// A figure beyond a limit of `--fail-if`.
+    /// A figure beyond a limit of `--fail-if`. Holds the message.
     #[error("{0}")]
     Gate(String),
-    /// A method that has become more wrong or slower than in `--baseline`.
+    /// A method that has become more wrong or slower than in `--baseline`. Holds the message.
     #[error("{0}")]
     Baseline(String),
     /// A write to standard output failed.
@@ -39,7 +39,7 @@ pub enum CliError {
         /// Results that were kept, as text for the user.
         kept: String,
     },
-    /// Any other error of a comparison.
+    /// Any other error of the measuring library.
     #[error(transparent)]
     Compare(CompareError),
 }
@@ -56,7 +56,7 @@ impl From<CompareError> for CliError {
 }
 
 impl CliError {
-    /// Returns the exit code of the process.
+    /// Returns the exit code of the process; 0 if only the reader of standard output has gone.
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Usage(_) => 2,

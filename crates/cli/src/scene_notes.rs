@@ -1,4 +1,4 @@
-//! Notes on a scene before it is drawn: what its mesh file holds, and what was chosen for it.
+//! Writes notes on a scene: the parts that its mesh file holds, and those chosen for it.
 
 use crate::args::shared::SceneArgs;
 use glam::DVec3;
@@ -7,7 +7,7 @@ use skiagraph_compare::own_scene::{Chosen, OwnScene};
 use skiagraph_compare::wording::length;
 use skiagraph_scene::{Scene, View};
 
-/// Returns the notes on a mesh file: its views and lights, its size, and how to choose otherwise.
+/// Returns lines on a mesh file: its views and lights, its size, and options to choose others.
 pub fn of_mesh(args: &SceneArgs, own: &OwnScene) -> Vec<String> {
     let chosen = &own.chosen;
     let notes = [
@@ -101,7 +101,7 @@ fn floor(args: &SceneArgs, chosen: &Chosen) -> Option<String> {
     }
 }
 
-/// That a sun of one's own shines upwards, which most often is its direction turned round.
+/// Returns a warning if the user's own sun shines upwards, as its direction may be reversed.
 pub fn from_below(views: &[View], args: &SceneArgs) -> Option<String> {
     let direction = args.own_light()?;
     let up = views.first()?.up;

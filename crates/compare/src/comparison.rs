@@ -43,7 +43,7 @@ pub struct Protocol {
     /// Number of timed frames of a still view. The frame that is judged and pictured is an extra
     /// one, so that its readback is not timed.
     pub frames: u32,
-    /// Number of warm-up frames before the timed ones.
+    /// Number of untimed warm-up frames before the timed ones.
     pub warmup: u32,
     /// Number of timed frames in which only the camera changes, so that passes with unchanged
     /// inputs may be skipped; 0 to time none.
@@ -57,10 +57,10 @@ pub struct Protocol {
     /// Number of shadow rays that the reference traces from a pixel to a light with an extent;
     /// other lights take one ray.
     pub reference_samples: u32,
-    /// True if pictures of every run are drawn into the folder of the results.
+    /// True if pictures of every run are written into the folder of the results.
     pub pictures: bool,
-    /// Format in which the answers of every run and of the reference are written into that folder;
-    /// `None` to write none.
+    /// Format of the files with the visibility and status of each pixel, by every run and by the
+    /// reference, that are written into the folder of the results; `None` to write none.
     pub data: Option<DataFormat>,
 }
 
@@ -80,7 +80,7 @@ impl Default for Protocol {
 }
 
 impl Protocol {
-    /// True if runs have files of their own, pictures or data.
+    /// True if files are written for each run: pictures or data.
     pub fn has_files(&self) -> bool {
         self.pictures || self.data.is_some()
     }
@@ -89,7 +89,7 @@ impl Protocol {
 /// Methods, a scene, views or camera paths, viewports and the protocol. Every method runs on every
 /// view or path in every viewport.
 pub struct Comparison {
-    /// The scene on which the methods run.
+    /// The scene that the methods draw.
     pub scene: Arc<Scene>,
     /// Still views and camera paths from which the scene is seen.
     pub views: Vec<ViewOrPath>,
@@ -99,19 +99,19 @@ pub struct Comparison {
     pub methods: Vec<Method>,
     /// Settings of how the methods are run, timed and judged.
     pub protocol: Protocol,
-    /// Searches for good settings that ended in methods of the list, by the index of the method:
-    /// see [`tune`](crate::measuring::tune::tune). Empty if none was made.
+    /// Records of the searches that chose params of methods, by the index of the method in
+    /// `methods`: see [`tune`](crate::measuring::tune::tune). Empty if no search was made.
     pub tuned: BTreeMap<usize, Tuned>,
     /// Graph that finds the visible triangle of each pixel for the reference.
     pub primary: PrimaryVisibility,
-    /// Limits on frame time, wrong pixels and memory. All methods are measured whether they keep
-    /// to them or not; the results record the limits, and a report's verdict takes no method that
-    /// exceeds one.
+    /// Limits on frame time, wrong pixels and memory. They change no measurement: the results
+    /// record them, and a report recommends no method that exceeds one.
     pub budgets: Budgets,
-    /// Published figures. Those that apply to a run are shown beside the run's own figures.
+    /// Figures that others have published, such as those of a paper. Those for the scene, view,
+    /// viewport, map size and preset of a run are shown beside the run's own figures.
     pub published: Vec<Row>,
-    /// Command line that the results record, so that they can be measured again; `None` to record
-    /// none.
+    /// Command line that the results record, so that the measurement can be repeated; `None` to
+    /// record none.
     pub command: Option<String>,
     /// Commit that the measuring program was built from, for the results to record; `None` to
     /// record none.
@@ -142,11 +142,12 @@ impl Comparison {
     }
 
     /// Checks a comparison before it runs: plans every method in every viewport, so that a mistake
-    /// in the last one is found at once. Tells the session's sink which params have no effect.
+    /// in the last one is found at once. Tells the session's sink which params were set but have no
+    /// effect.
     ///
     /// # Errors
-    /// Every fault of every graph together; no method that this GPU can run; runs whose pictures
-    /// would overwrite each other.
+    /// The faults of all graphs together; a GPU that can run none of the methods; runs whose
+    /// pictures would have the same file name.
     pub fn check(&self, session: Session) -> Result<(), CompareError> {
         let device = Capabilities::new(session.gpu);
         let mut provider = SceneProvider::new(self.scene.clone());
@@ -181,7 +182,8 @@ impl Comparison {
         lights.unique_by(|light| light.word()).collect()
     }
 
-    /// Hashes everything that all runs depend on.
+    /// Hashes the inputs that all runs share: mesh, lights, the graph of the visible triangles, and
+    /// the protocol's rays and jitter.
     pub(crate) fn fingerprint(&self) -> Fingerprint {
         let scene = &self.scene;
         let mut of = self

@@ -61,7 +61,7 @@ struct Eye {
     openness: f64,
 }
 
-/// A view that was chosen for a mesh, with a position for a lamp.
+/// A view that [`default_view`] chose for a mesh, with a position for a lamp.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DefaultView {
     /// The view. Its far plane lies behind the whole mesh, its near plane at 1/10,000 of that
@@ -69,18 +69,20 @@ pub struct DefaultView {
     pub view: View,
     /// True if the eye is inside the mesh, with surfaces all around it.
     pub is_inside: bool,
-    /// True if the eye is inside and less than 1 % of the pixels would be lit by the scene's light.
-    /// The view was then chosen under a lamp at `lamp` instead.
+    /// True if the eye is inside, and even the best view under the given light has less than 1 % of
+    /// its pixels lit. The view was then chosen as if a lamp at `lamp` were the light.
     pub is_dark: bool,
-    /// Position for a lamp, in front of the eye and above it.
+    /// Position at which a lamp would light the view, in front of the eye and above it, in the
+    /// mesh's units.
     pub lamp: DVec3,
 }
 
 /// Chooses a view of a mesh under a light, with an up direction and a vertical field of view in
-/// degrees. The view is from inside if surfaces stand all around at a quarter or more of the places
-/// that are tried above the floors; otherwise it is from outside and shows the whole mesh. Among
-/// the candidates, the one with most light beside shadow and the farthest sight wins. Returns
-/// `None` if the mesh is empty, `up` is zero or no candidate is a valid view.
+/// degrees. It tries eyes above the floors of a grid of 9 × 9 columns through the mesh. The view is
+/// from inside if surfaces surround an eye in a quarter or more of the columns that have a floor;
+/// otherwise it is from outside and shows the whole mesh. Views that show both lit and shadowed
+/// surfaces, far away, are preferred. Returns `None` if the mesh is empty, `up` is zero or no
+/// candidate is a valid view.
 pub fn default_view(
     mesh: &Mesh,
     light: &LightKind,
@@ -120,11 +122,11 @@ const ASIDE: [f64; 4] = [-0.6, 0.6, -1.2, 1.2];
 const TURNS: u32 = 8;
 const SAME_ANGLE: f64 = 0.7;
 
-/// Chooses at most `count` other views of a mesh, for a method that is to be tried on several: at
-/// most two that show from other sides what `like` shows, then some in other directions and from
-/// other places inside the mesh, or around it where it surrounds none. Of each kind those with most
-/// light beside shadow and the farthest sight win. They have no name. The list is shorter if fewer
-/// show any surface.
+/// Chooses at most `count` views of a mesh other than `like`, for methods that are to be tried on
+/// several views. First come at most two that show from other sides what `like` shows, then views
+/// in other directions and from other places, inside the mesh if it surrounds the camera. Views
+/// that show both lit and shadowed surfaces, far away, are preferred. Their names are empty. The
+/// list is shorter if there are too few views that differ and show any surface.
 pub fn more_views(mesh: &Mesh, light: &LightKind, like: &View, count: usize) -> Vec<View> {
     let (Some((min, max)), Some(up)) = (mesh.bounds(), like.up.try_normalize()) else {
         return Vec::new();

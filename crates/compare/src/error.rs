@@ -18,7 +18,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Reason why a command or a step of it ended early.
+/// Reason why a comparison, a step of one, or a command of `skiagraph` failed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CompareError {
@@ -37,8 +37,8 @@ pub enum CompareError {
         /// Last line of the message, such as `2 errors in 1 graph`.
         summary: String,
     },
-    /// Outputs of graphs that ran but break the contract of a shadow method's outputs (their size,
-    /// format and values). Holds the message.
+    /// Graphs ran, but the size, format or values of their outputs are not those that a shadow
+    /// method must have. Holds the message.
     #[error("{0}")]
     InvalidOutputs(String),
     /// No GPU adapter can be used. Holds the message.
@@ -63,7 +63,8 @@ pub enum CompareError {
     /// The work ended early, because [`Sink::stop`](crate::sink::Sink::stop) asked for it.
     #[error("stopped; {kept}")]
     Interrupted {
-        /// Text for the user that says which results are kept; empty if the caller has to say it.
+        /// Text for the user that says which results are kept on disk; empty if the code that made
+        /// the error does not know it.
         kept: String,
     },
 }
@@ -77,8 +78,8 @@ impl CompareError {
         }
     }
 
-    /// Creates the error for an early end. Its `kept` is empty, as only the caller knows which
-    /// results are kept.
+    /// Creates the error [`CompareError::Interrupted`] with an empty `kept`: only the caller knows
+    /// which results are kept.
     pub fn interrupted() -> Self {
         Self::Interrupted {
             kept: String::new(),
@@ -86,8 +87,8 @@ impl CompareError {
     }
 }
 
-/// Returns lists of faults as text with the faulty source lines, coloured for a terminal if
-/// `colour` is true.
+/// Returns faults as text with the faulty source lines, in ANSI colours if `colour` is true. Each
+/// list is of one graph or set of files, as in [`CompareError::Diagnostics`].
 pub fn rendered(faults: &[Vec<Diagnostic>], colour: bool) -> String {
     let rendered = faults.iter().map(|list| diagnostics::render(list, colour));
     rendered.collect()

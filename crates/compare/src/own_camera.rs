@@ -20,8 +20,8 @@ use skiagraph_scene::{Mesh, View};
 /// A depth buffer of 32-bit floats tells depths apart well over this range.
 const NEAR_TO_FAR: f64 = 1e4;
 
-/// Parts of a camera that take the place of a view's. `None` keeps the view's part. Lengths are in
-/// the scene's units.
+/// Parts of a camera that replace those of a view. `None` keeps the view's part. Lengths are in the
+/// scene's units.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct OwnCamera {
     /// Position of the eye.
@@ -32,20 +32,21 @@ pub struct OwnCamera {
     pub up: Option<DVec3>,
     /// Vertical field of view in degrees, between 0 and 180.
     pub fov_y_degrees: Option<f64>,
-    /// Distance of the near plane.
+    /// Distance of the near plane from the eye.
     pub near: Option<f64>,
-    /// Distance of the far plane.
+    /// Distance of the far plane from the eye.
     pub far: Option<f64>,
 }
 
 impl OwnCamera {
-    /// True if it keeps all parts of a view's camera.
+    /// True if all parts are `None`, so that a view's camera is kept.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
 
-    /// Returns a view with these parts in the place of its own. If `fits` is true, clip planes that
-    /// are `None` are fitted to the mesh: far just behind it, near at a ten-thousandth of far.
+    /// Returns a view whose camera has these parts instead of its own. If `fits` is true, clip
+    /// planes that are `None` are fitted to the mesh: far just behind it, near at a ten-thousandth
+    /// of far.
     pub fn of_view(&self, view: &View, mesh: &Mesh, fits: bool) -> View {
         let mut own = View {
             eye: self.eye.unwrap_or(view.eye),

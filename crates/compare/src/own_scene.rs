@@ -37,13 +37,15 @@ const DEFAULT_FOV: f64 = 60.0;
 /// Settings that turn a mesh file into a scene.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct MeshSceneOptions {
-    /// How the file is read.
+    /// Settings for reading the file: its polygons and materials.
     pub file: MeshFileOptions,
-    /// Camera of the view that is chosen for a file without cameras; its clip planes are not used.
+    /// Parts of the camera of the view that is chosen for a file without cameras; `near` and `far`
+    /// are ignored here.
     pub camera: OwnCamera,
-    /// Direction in which a sun shines on a file without lights; `None` chooses a sun or a lamp.
+    /// Direction in which the light of a sun travels, for a file without lights; `None` chooses a
+    /// sun or a lamp.
     pub sun: Option<DVec3>,
-    /// True to add a ground below a mesh that has no floor.
+    /// True to add a ground, a square slab, below a mesh that has no floor.
     pub ground: bool,
 }
 
@@ -71,17 +73,17 @@ pub struct Chosen {
     pub ground: Option<Ground>,
 }
 
-/// A loaded scene, with the parts that were chosen for it. A scene that no mesh file alone makes up
-/// has nothing chosen and no clips.
+/// A loaded scene, with the parts that were chosen because its mesh file lacks them. For a built-in
+/// scene or a scene file nothing is chosen, and there are no clips.
 #[derive(Debug)]
 pub struct OwnScene {
     /// The loaded scene.
     pub scene: Scene,
     /// Changes that the import made, and parts that it left out.
     pub report: ImportReport,
-    /// Parts of the scene that the file lacked.
+    /// The parts that were chosen because the mesh file lacks them.
     pub chosen: Chosen,
-    /// Animations of the mesh file.
+    /// Animations of the mesh file; empty for other scenes.
     pub clips: Vec<Clip>,
 }
 
@@ -155,10 +157,11 @@ impl OwnScene {
         })
     }
 
-    /// Returns the views of the scene that `name` selects: the first one without a name, `all` for
-    /// every view. `camera` and `sun`, the direction in which a sun shines, take the place of
-    /// theirs; the views are then named `own`, or `VIEW-own` if there are several, except for a
-    /// view that was chosen.
+    /// Returns the views of the scene that `name` selects: the first view for `None`, every view
+    /// for `all`. `camera` replaces parts of their cameras, and `sun`, the direction in which the
+    /// light of a sun travels, their lights. Such views are named `own`, or `VIEW-own` if there are
+    /// several, but a chosen view keeps its name. `sun` is ignored if the scene's light was chosen,
+    /// as it is that sun then.
     ///
     /// # Errors
     /// The scene has no such view, or `camera` or `sun` does not make a valid view or light.
@@ -214,8 +217,8 @@ impl OwnScene {
         }
     }
 
-    /// Returns the camera paths of the scene's animations, and the reasons why others are left out.
-    /// A path without a moving camera is seen from `standing`.
+    /// Returns the camera paths of the scene's animations, and the reasons why other animations
+    /// have none. A path without a moving camera is seen from `standing`.
     pub fn paths(&self, standing: &View) -> (Vec<CameraPath>, Vec<String>) {
         let Scene { views, lights, .. } = &self.scene;
         let clips = self.clips.iter();
@@ -223,8 +226,8 @@ impl OwnScene {
         paths.partition_result()
     }
 
-    /// Returns the scene file of a scene that was loaded with `options` from the mesh file `mesh`,
-    /// with `paths` as its camera paths.
+    /// Returns the scene file of this scene, which [`of_mesh`](Self::of_mesh) loaded with `options`
+    /// from the mesh file `mesh`, with `paths` as its camera paths.
     pub fn file(
         &self,
         mesh: &str,

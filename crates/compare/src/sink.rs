@@ -27,8 +27,8 @@ use skiagraph_gpu::device::Gpu;
 use skiagraph_graph::{Diagnostic, diagnostics};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Receives progress and remarks of work under way, from any thread, and can ask for an early end.
-/// Only [`note`](Self::note) has to be implemented; the other functions have defaults.
+/// Receives progress and remarks of work under way, from any thread, and can ask the work to end
+/// early. Only [`note`](Self::note) has to be implemented; the other functions have defaults.
 pub trait Sink: Sync {
     /// Receives a remark that is not an error: text of one or several lines.
     fn note(&self, text: &str);
@@ -75,7 +75,7 @@ impl Sink for Silent {
     fn note(&self, _text: &str) {}
 }
 
-/// An opened GPU, and the sink that receives the progress of work on the GPU.
+/// An opened GPU, and the [`Sink`] that receives the progress of work on it.
 #[derive(Clone, Copy)]
 pub struct Session<'a> {
     /// The GPU that work runs on.

@@ -63,8 +63,8 @@ pub fn thousands(number: u64) -> String {
     text
 }
 
-/// Returns a length, which has no sign, with three significant digits, and whole from 100 on:
-/// `3,200`, `12.3`, `0.0123`.
+/// Returns a length, which is not negative, with three significant digits, and as a whole number
+/// from 100 on: `3,200`, `12.3`, `0.0123`.
 pub fn length(length: f64) -> String {
     if length >= 100.0 {
         return thousands(length.round() as u64);
@@ -82,7 +82,8 @@ pub fn length(length: f64) -> String {
     }
 }
 
-/// Returns a count with its noun in singular or plural: `1 frame`, `2 frames`.
+/// Returns a count with its noun, to which `s` is added unless the count is 1: `1 frame`, `2
+/// frames`.
 pub fn plural(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
@@ -104,8 +105,8 @@ pub fn did_you_mean<'a>(wanted: &str, names: impl Iterator<Item = &'a str>) -> S
     closest(wanted, names).map_or(String::new(), hint)
 }
 
-/// Returns a message about an unknown name: the text `what`, the name in `known` that is closest to
-/// `wanted`, and a line with `nouns` and all of `known`.
+/// Returns a message about the unknown name `wanted`: the text `what`, the name in `known` that is
+/// closest to it, and a line with `nouns` (such as `views`) and all of `known`.
 pub fn unknown(what: &str, wanted: &str, nouns: &str, known: &[&str]) -> String {
     let hint = did_you_mean(wanted, known.iter().copied());
     format!("{what}{hint}\n  {nouns}: {}", known.join(", "))

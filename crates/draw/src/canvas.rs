@@ -1,8 +1,8 @@
-//! SVG that grows, element by element.
+//! Builds SVG element by element.
 
 use crate::{chart::Area, text::xml};
 
-/// Elements of an SVG document.
+/// Text of the elements of an SVG document.
 #[derive(Default)]
 pub(crate) struct Canvas(pub String);
 
@@ -12,7 +12,7 @@ impl Canvas {
         self.0.push('\n');
     }
 
-    /// Draws `inside` as a group with these attributes and a tooltip.
+    /// Draws `inside` as a `g` element with the attributes `style` and the tooltip `title`.
     pub fn group(&mut self, style: &str, title: &str, inside: impl FnOnce(&mut Self)) {
         self.add(format!("<g {style}><title>{}</title>", xml(title)));
         inside(self);

@@ -38,7 +38,7 @@ pub(crate) struct Row<'a> {
     pub band: Area,
     /// Area of the pass's name and kind.
     pub label: Area,
-    /// Vertical position of the row's marks.
+    /// Vertical position of the middle of the row's marks.
     pub middle: f64,
     /// Horizontal position of the row's last mark, where the line from its name ends. `None`
     /// without marks.
@@ -50,12 +50,14 @@ pub(crate) struct Column<'a> {
     pub material: &'a Material,
     pub name: Label,
     pub detail: String,
-    /// Width of the widest note at the column's marks.
+    /// Width of the widest note (the accessed part, such as `m0`) at the column's marks.
     pub notes: f64,
     pub x: f64,
-    /// Top and bottom of the lifetime's bar; `None` if no pass that runs uses the material.
+    /// Vertical positions of top and bottom of the bar of the lifetime; `None` if no pass that runs
+    /// uses the material.
     pub bar: Option<[f64; 2]>,
-    /// Bottom of the column's line: its last mark, also of passes that do not run.
+    /// Vertical position of the bottom of the column's line: its last mark, also in rows of passes
+    /// that do not run.
     pub end: f64,
 }
 
@@ -68,7 +70,7 @@ pub(crate) struct Mark {
     pub reads: bool,
     pub writes: bool,
     pub runs: bool,
-    /// The accessed part, or empty for the whole material.
+    /// The accessed part, such as `m0→m1`; empty for the whole material.
     pub note: String,
     pub title: String,
 }
@@ -79,7 +81,7 @@ pub(crate) struct Arc<'a> {
     pub hazard: Hazard,
     /// Indices of the rows of the earlier and the later pass.
     pub rows: [usize; 2],
-    /// Distance by which the arc swings out to the left.
+    /// Greatest distance of the arc from the rows, to the left.
     pub swing: f64,
 }
 
@@ -90,7 +92,7 @@ pub(crate) struct Group {
     pub title: String,
 }
 
-/// Returns the index of each name.
+/// Maps each name to its index in `names`.
 pub(crate) fn numbers<'n>(names: impl Iterator<Item = &'n str>) -> HashMap<&'n str, usize> {
     names.zip(0..).collect()
 }

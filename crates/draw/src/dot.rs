@@ -1,4 +1,4 @@
-//! Draws a plan as a graph of nodes and links for Graphviz.
+//! Writes a plan as a graph of nodes and links for Graphviz.
 
 use crate::{
     drawing::{Access, Drawing, Edge, Material, Origin, Pass},

@@ -26,7 +26,8 @@ pub struct Drawing {
     /// Bytes of the textures and buffers that the graph allocates; memory that materials share
     /// counts once.
     pub memory_bytes: u64,
-    /// Bytes saved by sharing memory between materials.
+    /// Bytes saved because materials share memory: those that `memory_bytes` would be more without
+    /// it.
     pub saved_bytes: u64,
 }
 
@@ -38,7 +39,7 @@ impl Drawing {
         self
     }
 
-    /// Returns the materials by name.
+    /// Maps the name of each material to the material.
     pub(crate) fn by_name(&self) -> HashMap<&str, &Material> {
         let materials = self.materials.iter();
         materials
@@ -158,8 +159,8 @@ pub struct Material {
     /// Names under which the host can read the material, or a part of it, back after the frame: its
     /// outputs and captures.
     pub outputs: Vec<String>,
-    /// Number of the allocation that the material shares: materials with the same number use its
-    /// memory one after another. `None` if the material shares no memory.
+    /// Number of the allocation that the material shares: materials with the same number use the
+    /// same memory one after another. `None` if the material shares no memory.
     pub memory: Option<usize>,
 }
 
@@ -206,7 +207,8 @@ pub struct Edge {
     pub from: String,
     /// Name of the pass that must run after it.
     pub to: String,
-    /// Reasons for the order, one for each kind of conflict, the strongest first.
+    /// Reasons for the order, one for each kind of conflict: read after write, write after read,
+    /// write after write, in this order.
     pub because: Vec<Reason>,
     /// True if other edges together already imply this order; [`to_dot`](crate::to_dot) leaves such
     /// edges out.
@@ -214,7 +216,8 @@ pub struct Edge {
 }
 
 impl Edge {
-    /// Returns the strongest reason; `None` without reasons.
+    /// Returns the kind of conflict of the first reason in the order of [`because`](Self::because);
+    /// `None` without reasons.
     pub(crate) fn hazard(&self) -> Option<Hazard> {
         self.because.iter().map(|reason| reason.hazard).min()
     }

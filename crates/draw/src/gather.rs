@@ -12,7 +12,8 @@ use std::{
     ops::Range,
 };
 
-/// Converts a graph's plan into plain values that can be serialised or drawn.
+/// Converts a graph's plan into plain values that can be serialised, or drawn by
+/// [`to_svg`](crate::to_svg) and [`to_dot`](crate::to_dot). The title is empty.
 pub fn from_plan(plan: &Plan) -> Drawing {
     let mut positions = vec![None; plan.all_passes().len()];
     for (position, pass) in plan.schedule().passes.iter().enumerate() {

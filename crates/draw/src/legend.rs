@@ -41,8 +41,8 @@ impl Tint {
         }
     }
 
-    /// Returns the colour, after Okabe and Ito, Color Universal Design (2008), for colour-blind
-    /// readers.
+    /// Returns the colour as SVG writes it, after Okabe and Ito, Color Universal Design (2008), for
+    /// colour-blind readers.
     pub fn colour(self) -> &'static str {
         match self {
             Self::Texture => "#56b4e9",
@@ -87,8 +87,9 @@ impl Item {
     }
 }
 
-/// Returns the items with their positions and the height of the legend. Positions begin at `start`;
-/// lines are at most `room` wide. Marks and bars come first, edges on a line of their own.
+/// Returns the legend's items, each behind its position, and the height of the legend, in pixels.
+/// Positions begin at `start`; lines are at most `room` wide. Marks and bars come first, edges on a
+/// line of their own.
 pub(crate) fn place(drawing: &Drawing, start: [f64; 2], room: f64) -> (Vec<([f64; 2], Item)>, f64) {
     let [left, top] = start;
     let mut at = start;

@@ -1,9 +1,10 @@
-//! Which edges others imply: the transitive reduction of an acyclic graph.
+//! Finds the edges that others imply: the transitive reduction of an acyclic graph.
 
 use petgraph::{adj::UnweightedList, algo::tred::dag_transitive_reduction_closure};
 
-/// Returns the edges that a longer path makes superfluous. `edges` must be sorted and lead from
-/// smaller to greater numbers, which are below `nodes`.
+/// Returns the edges that are implied, as a longer path leads from their first to their second
+/// node. `edges` must be sorted and lead from smaller to greater node numbers, which are below
+/// `nodes`.
 pub(crate) fn implied(nodes: usize, edges: &[[usize; 2]]) -> Vec<[usize; 2]> {
     let mut graph = UnweightedList::<usize>::with_capacity(nodes);
     for _ in 0..nodes {

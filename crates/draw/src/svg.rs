@@ -1,4 +1,4 @@
-//! The chart as SVG. Everything stands where the layout put it; here is only how it looks.
+//! Draws the chart as SVG, at the positions that the layout has chosen.
 
 use crate::{
     canvas::Canvas,

@@ -1,4 +1,4 @@
-//! Words in drawings: escaped, and measured without a font.
+//! Escapes text for drawings, and measures it without a font.
 
 use skiagraph_graph::text::cut;
 
@@ -40,12 +40,12 @@ fn advance(character: char) -> f64 {
     }
 }
 
-/// Returns the width of a text in pixels, never less than in a browser.
+/// Returns the width of a text of this font size in pixels, never less than in a browser.
 pub(crate) fn width(text: &str, size: f64) -> f64 {
     size * text.chars().map(advance).sum::<f64>()
 }
 
-/// Returns the width of a bold text in pixels.
+/// Returns the width of a bold text of this font size in pixels.
 pub(crate) fn bold(text: &str, size: f64) -> f64 {
     1.1 * width(text, size)
 }
@@ -73,7 +73,7 @@ pub(crate) fn wrap(text: &str, size: f64, room: f64) -> Vec<String> {
     lines
 }
 
-/// Returns the count with the noun: `1 pass`, `2 passes`.
+/// Returns the count with its noun, `one` or `many`: `1 pass`, `2 passes`.
 pub(crate) fn plural(count: usize, one: &str, many: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { many })
 }

@@ -1,4 +1,4 @@
-//! Words of charts and graphs about passes and materials.
+//! Writes texts about passes and materials for charts and graphs.
 
 use crate::{
     drawing::{Access, Aspect, Drawing, Edge, Kind, Material, Origin, Part, Pass, Reason},
@@ -109,7 +109,8 @@ impl Unit {
         }
     }
 
-    /// Returns the abbreviation for notes at marks.
+    /// Returns the abbreviation for notes at marks: the first letter of [`word`](Self::word), `z`
+    /// for a slice.
     pub fn letter(self) -> &'static str {
         match self {
             Self::Slice => "z",
@@ -137,7 +138,7 @@ pub(crate) fn verb(access: &Access) -> &'static str {
     }
 }
 
-/// Says how the later pass conflicts with the earlier one.
+/// Returns the later pass's part in a conflict with the earlier one, such as `reads what it wrote`.
 pub(crate) fn consequence(hazard: Hazard) -> &'static str {
     match hazard {
         Hazard::ReadAfterWrite => "reads what it wrote",
@@ -146,8 +147,8 @@ pub(crate) fn consequence(hazard: Hazard) -> &'static str {
     }
 }
 
-/// Returns the units in which a part is narrower than the whole material, each with its range. An
-/// aspect has no range.
+/// Returns the units (mips, layers, depth or stencil) of which a part has not all, each with its
+/// range, whose end is excluded; `None` for an aspect.
 pub(crate) fn narrowed<'a>(
     part: &'a Part,
     material: &Material,
@@ -173,7 +174,7 @@ fn numbers(range: &Range<u32>) -> String {
     }
 }
 
-/// Describes a part of a material: `mip 1, layers 0–3`.
+/// Describes a part of a material: `mip 1, layers 0–3`, both ends included.
 pub(crate) fn part(part: &Part, material: &Material) -> String {
     let words = |(unit, range): (Unit, Option<&Range<u32>>)| match range {
         None => unit.word().to_owned(),
@@ -209,7 +210,8 @@ pub(crate) fn note(accesses: &[&Access], material: &Material) -> String {
     }
 }
 
-/// Describes a pass: kind, shaders and run condition. A shader named like the pass is left out.
+/// Describes a pass in a few words: kind, shaders and run condition. A shader named like the pass
+/// is left out.
 pub(crate) fn about(pass: &Pass) -> String {
     let stem = |path: &str| {
         let file = path.rsplit('/').next().unwrap_or(path);
@@ -263,7 +265,7 @@ pub(crate) fn because(edge: &Edge) -> String {
     )
 }
 
-/// Returns the names of the outputs that differ from their material's name.
+/// Returns the names of the material's outputs that differ from its own name, as text.
 pub(crate) fn renamed(material: &Material) -> String {
     let names = material.outputs.iter().map(String::as_str);
     let names: Vec<&str> = names.filter(|name| *name != material.name).collect();

@@ -22,26 +22,27 @@ use std::{cmp::Reverse, time::Duration};
 pub struct Gpu {
     /// The wgpu instance that the adapter was found in.
     pub instance: wgpu::Instance,
-    /// The adapter that the device was opened on.
+    /// The adapter (physical device or software rasteriser) that `device` was opened on.
     pub adapter: wgpu::Adapter,
     /// The device. It has all limits of the adapter. Its features are those of [`useful_features`]
     /// and of [`Wanted::features`] that the adapter offers.
     pub device: wgpu::Device,
     /// The queue that work for the device is submitted to.
     pub queue: wgpu::Queue,
-    /// Most bytes that the textures and buffers of a graph may take together, for
-    /// [`PlanRequest::memory_limit`](skiagraph_graph::PlanRequest::memory_limit). `None` for no
+    /// Most bytes that the textures and buffers of a graph may take together. The host passes it on
+    /// as [`PlanRequest::memory_limit`](skiagraph_graph::PlanRequest::memory_limit). `None` for no
     /// limit, as [`open`] and [`open_with`] set it; wgpu does not tell how much memory a device
     /// has.
     pub memory: Option<u64>,
-    /// Longest time that a frame may take, for
+    /// Longest time to wait for the GPU to finish a frame. The host passes it on to
     /// [`Executor::finish_within`](crate::Executor::finish_within). `None` for no limit, as
     /// [`open`] and [`open_with`] set it.
     pub timeout: Option<Duration>,
 }
 
 /// Choice of the device that [`open_with`] opens. The [`Default`] accepts any adapter of
-/// [`BACKENDS`], unless the environment variables named below say otherwise.
+/// [`BACKENDS`], unless the environment variables `WGPU_ADAPTER_NAME` and `WGPU_BACKEND` say
+/// otherwise.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Wanted<'a> {
     /// Text that the adapter's name must contain; upper and lower case are the same. `None` takes
@@ -52,23 +53,25 @@ pub struct Wanted<'a> {
     /// lists, separated by commas, or [`BACKENDS`] if that is not set.
     pub backends: Option<wgpu::Backends>,
     /// Features that the device gets besides [`useful_features`] if the adapter offers them;
-    /// usually the features that the graph names (`Graph::features`). Experimental features of wgpu
-    /// stay off, except `EXPERIMENTAL_RAY_QUERY`, whose use here was reviewed.
+    /// usually those that the graph to be run names
+    /// ([`Graph::features`](skiagraph_graph::Graph::features)). Experimental features of wgpu are
+    /// ignored here, except `EXPERIMENTAL_RAY_QUERY`, whose use in this crate was reviewed.
     pub features: wgpu::Features,
 }
 
-/// The backends that are searched by default: Vulkan, Metal and Direct3D 12. GL is left out: it
-/// would list the same GPU a second time with fewer features, and not every graph is tested on it.
+/// The backends that [`open`] and [`open_with`] search by default: Vulkan, Metal and Direct3D 12.
+/// GL is left out: it would list the same GPU a second time with fewer features, and not every
+/// graph is tested on it.
 pub const BACKENDS: wgpu::Backends = wgpu::Backends::VULKAN
     .union(wgpu::Backends::METAL)
     .union(wgpu::Backends::DX12);
 
-/// Reasons why no device could be opened.
+/// Reasons why [`open`] or [`open_with`] could not open a device.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum GpuError {
-    /// No adapter was found: none on [`BACKENDS`] if no backends were requested, or else none on
-    /// any backend.
+    /// No adapter was found: none on [`BACKENDS`] if neither [`Wanted::backends`] nor
+    /// `WGPU_BACKEND` named backends, or else none on any backend.
     #[error(
         "no usable GPU adapter was found (Vulkan, Metal and Direct3D 12 were tried).\n\
          Install a driver; without a GPU, a software one: \
@@ -77,16 +80,19 @@ pub enum GpuError {
          `pacman -S vulkan-swrast vulkan-icd-loader` on Arch"
     )]
     NoAdapter,
-    /// The requested backends have no adapter, but others have.
+    /// The backends that [`Wanted::backends`] or `WGPU_BACKEND` named have no adapter, but others
+    /// have.
     #[error(
         "no GPU adapter of the backend {wanted} was found; there are: {seen}.\n\
          GL needs the driver's EGL: `apt-get install libegl1 libgles2 libgl1-mesa-dri` on Debian \
          and Ubuntu"
     )]
     NoSuchBackend {
-        /// Names of the requested backends, or the text of `WGPU_BACKEND`.
+        /// Names of the requested backends, separated by commas, or the text of `WGPU_BACKEND`; in
+        /// backticks.
         wanted: String,
-        /// Names and backends of the adapters of all backends, as text.
+        /// Names of the adapters of all backends, each with its backend in brackets, separated by
+        /// commas.
         seen: String,
     },
     /// No adapter of the searched backends has a name that contains the requested text.
@@ -94,15 +100,16 @@ pub enum GpuError {
     NoSuchAdapter {
         /// The requested text: [`Wanted::adapter`], or else `WGPU_ADAPTER_NAME`.
         name: String,
-        /// Names and backends of the adapters of the searched backends, as text.
+        /// Names of the adapters of the searched backends, each with its backend in brackets,
+        /// separated by commas.
         seen: String,
     },
     /// The adapter refused to open a device.
     #[error("the adapter `{adapter}` gives no device: {why}")]
     Device {
-        /// Name of the adapter.
+        /// Name of the adapter that refused.
         adapter: String,
-        /// The driver's reason.
+        /// Message of wgpu.
         why: String,
     },
 }
@@ -121,7 +128,8 @@ pub fn useful_features() -> wgpu::Features {
 }
 
 /// Returns the description of a backend that lacks part of WebGPU, for
-/// [`PlanRequest::partial_backend`](skiagraph_graph::PlanRequest). `None` for every backend but GL.
+/// [`PlanRequest::partial_backend`](skiagraph_graph::PlanRequest). Only GL lacks a part; `None` for
+/// every other backend.
 pub fn partial(backend: wgpu::Backend) -> Option<PartialBackend> {
     (backend == wgpu::Backend::Gl).then(|| PartialBackend {
         name: backend.to_str().to_owned(),
@@ -180,7 +188,8 @@ pub fn open(name: Option<&str>) -> Result<Gpu, GpuError> {
     })
 }
 
-/// Opens a device as [`open`] does, on the chosen backends and with additional features.
+/// Opens a device as [`open`] does, with the adapter name, backends and additional features that
+/// `wanted` chooses.
 ///
 /// # Errors
 /// See [`GpuError`].

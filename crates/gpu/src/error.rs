@@ -11,29 +11,31 @@ pub enum ExecuteError {
     /// wgpu refused a pipeline, bind group or command of a pass.
     #[error("{place}: pass `{pass}` was refused by the device: {message}")]
     Gpu {
-        /// Name of the pass.
+        /// Name of the refused pass, as in the graph document.
         pass: String,
         /// File, line and column of the pass in the graph document, as text.
         place: String,
-        /// Message of wgpu.
+        /// wgpu's message.
         message: String,
     },
     /// wgpu refused to create a texture, buffer, sampler or query set.
     #[error("`{name}` could not be made: {message}")]
     Resource {
-        /// Name of the resource.
+        /// Name of the texture, buffer, sampler or query set. Resources of a graph that share their
+        /// memory are named together, separated by ` / `.
         name: String,
-        /// Message of wgpu.
+        /// wgpu's message.
         message: String,
     },
-    /// wgpu, naga, a driver layer or a provider panicked, which is a bug in that code.
+    /// wgpu, naga, a driver layer or a [`Provider`](crate::Provider) panicked, which is a bug in
+    /// that code.
     #[error(
         "{name}: {panicked}; this is a mistake of the library, which may take the same written \
          differently"
     )]
     Panicked {
-        /// Name of the resource, in backticks, or of the pass, with its place in the graph
-        /// document.
+        /// Name of the resource that was being created, in backticks, or place in the graph
+        /// document and name of the pass that was being created or encoded.
         name: String,
         /// Message and source position of the panic.
         panicked: Panicked,
@@ -41,39 +43,40 @@ pub enum ExecuteError {
     /// The device has too little memory for a resource or pass.
     #[error("the device has not enough memory for `{name}`")]
     OutOfMemory {
-        /// Name of the resource or pass.
+        /// Name of the resource or pass that needed the memory.
         name: String,
         /// The largest resources of the graph as text ([`Plan::memory_table`]); empty if no plan
-        /// was at hand.
+        /// was at hand when the error arose.
         table: String,
     },
-    /// The provider failed to build a resource.
+    /// The [`Provider`](crate::Provider) failed to build a resource.
     #[error("the provided resource `{name}` could not be built: {why}")]
     Provider {
-        /// Name of the resource.
+        /// Name of the resource that was to be built, such as `scene.positions`.
         name: String,
-        /// Message of the provider.
+        /// Text of the [`ProviderError`](crate::ProviderError).
         why: String,
     },
-    /// The provider now describes a resource in another way than when the graph was planned: with
-    /// another binding, number of items, bytes per item or kind of light.
+    /// The [`Provider`](crate::Provider) now describes a resource in another way than when the
+    /// graph was planned: with another binding, number of items, bytes per item or kind of light.
     #[error(
         "{}: plan the graph anew (`executor.plan().with(|request| request.provider = …)`) and hand \
          the plan to `replace_graph`",
         change(name, planned, given)
     )]
     OtherThanPlanned {
-        /// Name of the resource.
+        /// Name of the resource whose description changed.
         name: String,
         /// The provider's description when the graph was planned.
         planned: Provided,
         /// The provider's description now.
         given: Provided,
     },
-    /// A pass that runs reads a provided resource that the provider cannot build yet.
+    /// A pass that runs in the frame reads a resource that the [`Provider`](crate::Provider) cannot
+    /// build yet.
     #[error("{place}: pass `{pass}` reads `{name}`, which is not there yet: {why}")]
     NotProvided {
-        /// Name of the resource.
+        /// Name of the resource that cannot be built yet.
         name: String,
         /// Name of the first pass that reads the resource.
         pass: String,
@@ -86,56 +89,60 @@ pub enum ExecuteError {
     /// named in [`PlanRequest::imports`](skiagraph_graph::PlanRequest).
     #[error("the plan has no import `{name}`; it has {known}")]
     NoSuchImport {
-        /// Name that the host gave.
+        /// Name that the host gave to [`Executor::import_texture`](crate::Executor::import_texture)
+        /// or its counterpart for a buffer or sampler.
         name: String,
         /// Names of the plan's imports, separated by commas; `none` if there are none.
         known: String,
     },
-    /// The name given to [`Executor::touch`](crate::Executor::touch) is neither an import nor a
-    /// provided resource.
+    /// The name given to [`Executor::touch`](crate::Executor::touch) is neither an import (a
+    /// texture, buffer or sampler that the host sets) nor a resource of the
+    /// [`Provider`](crate::Provider).
     #[error(
         "neither an import nor a provided resource is called `{name}`; live passes use {known}"
     )]
     NotOfHost {
-        /// Name that the host gave.
+        /// Name that the host gave to [`Executor::touch`](crate::Executor::touch).
         name: String,
-        /// Names of the imports and provided resources that live passes use, separated by commas;
-        /// `none` if there are none.
+        /// Names of the imports and provided resources that passes whose results are needed use,
+        /// separated by commas; `none` if there are none.
         known: String,
     },
-    /// A texture, buffer or sampler that the host set as an import differs from the description
-    /// that the graph was planned for.
+    /// A texture, buffer or sampler that the host set as an import differs from its description in
+    /// [`PlanRequest::imports`](skiagraph_graph::PlanRequest), which the graph was planned for.
     #[error(
         "`{name}` cannot be imported where another was planned for: {why}; plan again with what \
          it is"
     )]
     Import {
-        /// Name of the import.
+        /// Name of the import that was to be set.
         name: String,
-        /// Differences between the planned and the given import, as text.
+        /// Differences between the described and the given import, as text.
         why: String,
     },
-    /// A pass uses an import that the host has not set yet.
+    /// A pass that runs in the frame uses an import (a texture, buffer or sampler of the host) that
+    /// the host has not set yet.
     #[error(
         "{place}: pass `{pass}` uses the import `{name}`, which was not handed over: call \
          `import_texture`, `import_buffer` or `import_sampler` first"
     )]
     NotImported {
-        /// Name of the import.
+        /// Name of the import that is not set.
         name: String,
         /// Name of the first pass that uses the import.
         pass: String,
         /// File, line and column of the pass in the graph document, as text.
         place: String,
     },
-    /// The graph cannot be planned for the new viewport or param value, or is not proven on the
-    /// device's backend.
+    /// The graph cannot be planned for the new viewport or param value; or the device's backend
+    /// lacks part of WebGPU, and the graph document does not list it in `proven_on`.
     #[error("{0}")]
     Plan(Box<Diagnostics>),
-    /// The plan has no output or capture of this name.
+    /// The plan has no output or capture of the name that was to be read back. A capture is a
+    /// content named in [`PlanRequest::captures`](skiagraph_graph::PlanRequest).
     #[error("the plan has no output `{name}`; it has {known}")]
     NoSuchOutput {
-        /// Name that the host gave.
+        /// Name that the host gave in [`Frame::read`](crate::Frame::read).
         name: String,
         /// Names of the plan's outputs and captures, separated by commas.
         known: String,
@@ -144,19 +151,20 @@ pub enum ExecuteError {
     /// without the usage `COPY_SRC`.
     #[error("`{name}` cannot be read back: the host must make it with {usage}")]
     NotReadable {
-        /// Name of the output.
+        /// Name of the output that cannot be copied.
         name: String,
         /// The usage that the texture or buffer lacks, as wgpu writes it: `TextureUsages::COPY_SRC`
         /// or `BufferUsages::COPY_SRC`.
         usage: &'static str,
     },
-    /// The content of an output or capture, or the pipeline statistics, could not be read back.
+    /// The content of an output or capture, or the pipeline statistics, could not be copied to the
+    /// host, because wgpu could not map the staging buffer.
     #[error("the content of `{name}` could not be read back")]
     Readback {
         /// Name of the output or capture, or `pipeline statistics`.
         name: String,
     },
-    /// The device was lost or did not answer; the text is the symptom.
+    /// The device was lost or did not answer; the text describes the symptom.
     #[error("the device was lost: {0}")]
     DeviceLost(String),
     /// The GPU had not finished its work within the timeout of
@@ -166,9 +174,9 @@ pub enum ExecuteError {
         after.as_secs_f64()
     )]
     Unfinished {
-        /// Time that the call waited.
+        /// Time that the call waited before it gave up.
         after: Duration,
-        /// Names of the passes that ran in the last encoded frame, separated by commas.
+        /// Names of the passes that ran in the frame that was encoded last, separated by commas.
         passes: String,
     },
     /// A pass does its work on the CPU, for which a frame waits, and

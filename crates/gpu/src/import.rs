@@ -1,5 +1,6 @@
-//! Describes textures and buffers of the host for
-//! [`PlanRequest::imports`](skiagraph_graph::PlanRequest::imports).
+//! Describes textures and buffers of the host program for
+//! [`PlanRequest::imports`](skiagraph_graph::PlanRequest::imports), which the host later sets in
+//! the executor under the same names.
 //!
 //! ```no_run
 //! use skiagraph_gpu::{Executor, device::Gpu, import};
@@ -36,8 +37,9 @@ pub fn texture(texture: &wgpu::Texture) -> Import {
 }
 
 /// Returns the description of a buffer that the host will hand over with
-/// [`Executor::import_buffer`](crate::Executor::import_buffer). `items` is the number of array
-/// items that it holds; `None` is enough unless a pass is dispatched over the items or counts them.
+/// [`Executor::import_buffer`](crate::Executor::import_buffer): its size in bytes and usages.
+/// `items` is the number of array items that it holds; `None` is enough unless a pass of the graph
+/// is dispatched over the items or uses their number.
 pub fn buffer(buffer: &wgpu::Buffer, items: Option<u64>) -> Import {
     Import::Buffer {
         bytes: buffer.size(),

@@ -3,30 +3,31 @@
 use skiagraph_graph::{Describe, NoProvider};
 use std::{fmt::Debug, sync::Arc};
 
-/// Builds the resources that a graph expects from its host: scene buffers, camera and light
+/// Builds the resources that a graph expects from its host program: scene buffers, camera and light
 /// uniforms, acceleration structures. The supertrait [`Describe`] describes them without a device.
 /// An [`Executor`](crate::Executor) calls these methods with names that [`Describe::names`] lists.
 pub trait Provider: Describe {
     /// Returns the version of the resource `name`: a number that changes whenever its content or
     /// buffer does. [`Executor::refresh`](crate::Executor::refresh) rebuilds the resources whose
-    /// version has changed. The default is always 0.
+    /// version has changed. The default implementation returns 0 for every name, so a built
+    /// resource is never rebuilt.
     fn version(&self, name: &str) -> u64 {
         let _ = name;
         0
     }
 
-    /// Returns the reason, as text, why a resource cannot be built before the host has set
-    /// something; `None`, the default, if it can be built now. An executor is created without
-    /// missing resources, and [`refresh`](crate::Executor::refresh) asks for them again. Until then
-    /// [`encode`](crate::Executor::encode) fails with the returned text if a pass that reads the
-    /// resource runs.
+    /// Returns the reason, as text, why the resource `name` cannot be built yet, for example
+    /// because the host has to set something first; `None`, the default, if it can be built now. An
+    /// executor is created without missing resources, and [`refresh`](crate::Executor::refresh)
+    /// asks for them again. Until then [`encode`](crate::Executor::encode) fails with the returned
+    /// text if a pass that reads the resource runs.
     fn missing(&self, name: &str) -> Option<String> {
         let _ = name;
         None
     }
 
     /// Builds the buffer of the resource `name`, or returns the buffer built before. It is called
-    /// only for names that a live pass binds. The buffer needs the
+    /// only for names that a pass binds whose results are needed. The buffer needs the
     /// [usages](skiagraph_graph::ProvidedBinding::usages) of its description's binding, and
     /// `COPY_SRC` if it may be read back or is read as `.previous` (as it was in the frame before).
     ///
@@ -43,11 +44,12 @@ pub trait Provider: Describe {
         queue: &wgpu::Queue,
     ) -> Result<wgpu::Buffer, ProviderError>;
 
-    /// Builds the top-level acceleration structure of a resource that is described as
+    /// Builds the top-level acceleration structure of the resource `name`, which
+    /// [`Describe::describe`] describes as
     /// [`ACCELERATION_STRUCTURE`](skiagraph_graph::Provided::ACCELERATION_STRUCTURE), or returns
     /// the structure built before. The commands that build it must be submitted to `queue` before
-    /// this method returns. It is called only for names that a live pass binds, on devices with
-    /// `EXPERIMENTAL_RAY_QUERY`.
+    /// this method returns. It is called only for names that a pass binds whose results are needed,
+    /// on devices with `EXPERIMENTAL_RAY_QUERY`.
     ///
     /// # Errors
     /// If the structure cannot be built. The default implementation always fails.
@@ -88,7 +90,7 @@ pub trait CpuWork: Debug + Send + Sync {
     fn run(&self, entry: &str, reads: &[&[u8]], writes: &mut [u8]) -> Result<(), ProviderError>;
 }
 
-/// Reason why a provider could not build a resource, as text for the user.
+/// Reason why a [`Provider`] could not build a resource, as text for the user.
 #[derive(Clone, Debug, thiserror::Error)]
 #[error("{0}")]
 pub struct ProviderError(pub String);

@@ -6,7 +6,7 @@
 pub struct Readback {
     /// Name of the output or capture, as in [`Frame::read`](crate::Frame::read).
     pub name: String,
-    /// Content of the output or capture.
+    /// Texels or bytes of the output or capture.
     pub content: Content,
 }
 
@@ -15,13 +15,13 @@ pub struct Readback {
 pub enum Content {
     /// The mips and layers of a texture that belong to the output.
     Texture {
-        /// Format of the texels in `bytes`.
+        /// Format of the texels in `bytes`, one of the formats of wgpu.
         format: wgpu::TextureFormat,
         /// Width and height in texels of each part. A part is one mip of one layer (or slice). All
         /// layers of the first mip come first, then all layers of the second mip, and so on.
         parts: Vec<[u32; 2]>,
-        /// Texels of all parts, one part behind the other in the order of `parts`: rows from the
-        /// top, without padding.
+        /// Texels of all parts in the layout of `format`, one part behind the other in the order of
+        /// `parts`: rows from the top, without padding.
         bytes: Vec<u8>,
     },
     /// Bytes of a buffer, or of its items that belong to the output.
@@ -63,7 +63,8 @@ impl Content {
         parts.iter().map(part).collect()
     }
 
-    /// Returns the raw bytes of the buffer, or of all parts of the texture in the order of `parts`.
+    /// Returns the raw bytes of the buffer, or of all parts of the texture in the order of `parts`:
+    /// rows from the top, without padding.
     pub fn bytes(&self) -> &[u8] {
         match self {
             Self::Texture { bytes, .. } | Self::Buffer(bytes) => bytes,

@@ -136,12 +136,12 @@ impl Graph {
         }
     }
 
-    /// Returns the path that the document was loaded from.
+    /// Returns the path of the document, as it was given to [`Graph::load`].
     pub fn path(&self) -> &str {
         self.0.path()
     }
 
-    /// Returns the `description` of the document; empty if it has none.
+    /// Returns the section `description` of the document, on one line; empty if it has none.
     pub fn description(&self) -> &str {
         &self.0.document.description
     }
@@ -152,8 +152,9 @@ impl Graph {
         &self.0.document.params
     }
 
-    /// Returns the names of all outputs that are textures or buffers, in the order of the document.
-    /// Outputs marked `on_request`, and outputs whose `if` may be false, are in the list, too.
+    /// Returns the names of all outputs that are textures or buffers, in the order of the document;
+    /// outputs that are named values are left out. Outputs marked `on_request`, and outputs whose
+    /// `if` may be false, are in the list, too.
     pub fn outputs(&self) -> Vec<&str> {
         let outputs = self.0.document.material_outputs();
         outputs.map(|output| output.name.as_str()).collect()
@@ -206,13 +207,14 @@ impl Graph {
     }
 
     /// Returns the warnings that loading the document gave, such as those about unused materials;
-    /// empty without warnings.
+    /// empty without warnings. [`Plan::warnings`] has those of planning.
     pub fn warnings(&self) -> &[Diagnostic] {
         &self.0.warnings
     }
 
     /// Reads the value of the param `name` from text as the command line writes it: `1024`, `0.5`,
-    /// `true`, `front`, `1,2,3`.
+    /// `true`, the word `front`, the vector `1,2,3`. The graph does not change; pass the value in
+    /// [`PlanRequest::params`](crate::Request::params).
     ///
     /// # Errors
     /// If the graph has no param of this name, or the value has the wrong type or is out of range.

@@ -13,7 +13,7 @@ use crate::{
 use serde::Serialize;
 use std::{collections::BTreeMap, fmt, sync::Arc};
 
-/// Reason why a param of a graph cannot be set.
+/// Reason why a [`Param`] of a graph cannot be set.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ParamError {
@@ -28,7 +28,8 @@ pub enum ParamError {
         /// params, or a note that the graph has none.
         hint: String,
     },
-    /// The value has the wrong type or is out of range.
+    /// The graph has the param, but the value has the wrong type, is out of range or is not an
+    /// allowed word.
     #[error("param `{name}` of `{graph}`: {why}")]
     Value {
         /// Path of the graph's document.
@@ -57,7 +58,7 @@ pub(crate) fn find<'p>(
     })
 }
 
-/// Type of a [`Param`].
+/// Type of a [`Param`] and of its values.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ParamType {
     /// 32-bit float.
@@ -155,33 +156,33 @@ impl fmt::Display for ParamValue {
 pub struct Param {
     /// Name, as in `params.NAME` of a shader and `--set NAME=…` on the command line, with its place
     /// in the document. A param that a named include exposes has the include's name before it:
-    /// `left.radius`.
+    /// `left.radius`, `params.left_radius` in a shader.
     pub name: Located<String>,
-    /// Type of the param's values.
+    /// Type of the param's values; for a `Choice` with its words.
     pub ty: ParamType,
     /// Expression for the value that the param has unless it is set; `None` if the document gives
     /// none. A param of an included document must then be set by the include, or be a param of the
     /// including document, too. A param of the loaded document that has no default and is not set
-    /// has its `min` or 1, false, or its first word.
+    /// has its `min`, or 1 (at most its `max`) without one; false; or its first allowed word.
     pub default: Option<Expr>,
-    /// Least allowed value of a number, or of each component of a vector; `None` for no lower
-    /// bound.
+    /// Least allowed value of the param if it is a number, or of each of its components if it is a
+    /// vector; `None` for no lower bound.
     pub min: Option<f64>,
-    /// Greatest allowed value of a number, or of each component of a vector; `None` for no upper
-    /// bound.
+    /// Greatest allowed value of the param if it is a number, or of each of its components if it is
+    /// a vector; `None` for no upper bound.
     pub max: Option<f64>,
     /// Description of the param's effect, as its document gives it; may be empty.
     pub description: String,
     /// Words of a [`ParamType::Choice`] that cannot be set because the section `narrow` of a
-    /// document excludes them: each word with the reason that the document gives. Empty for other
-    /// types.
+    /// document excludes them: each word with the reason that the document gives. Empty if no word
+    /// is excluded, and for other types.
     pub refused: BTreeMap<String, String>,
-    /// Values that a search for good settings tries, all different; empty if it leaves the param
-    /// alone.
+    /// Values that the search of `skiagraph compare --tune` for good settings tries, at least two
+    /// and all different; empty if the search leaves the param alone.
     pub tune: Vec<ParamValue>,
 }
 
-/// Reason why a value does not fit a param.
+/// Reason why a value does not fit a [`Param`].
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ParamFault {
     /// The value has another type; holds the expected type in words, such as `f32` or `front|back`.
@@ -194,8 +195,8 @@ pub enum ParamFault {
 }
 
 impl Param {
-    /// Iterates over the words of a [`ParamType::Choice`] that may be set, in its order, without
-    /// those in [`refused`](Self::refused). Empty for every other type.
+    /// Iterates over the words of a [`ParamType::Choice`] that may be set, in the order of the
+    /// type's list, without those in [`refused`](Self::refused). Empty for every other type.
     pub fn words(&self) -> impl Iterator<Item = &Name> {
         let words = match &self.ty {
             ParamType::Choice(words) => &words[..],
@@ -325,8 +326,8 @@ impl Param {
         }
     }
 
-    /// Reads a value from text, as the command line writes it: `1024`, `0.5`, `true`, `front`,
-    /// `1,2,3`.
+    /// Reads a value from text, as the command line writes it: `1024`, `0.5`, `true` or `1`, the
+    /// word `front`, the vector `1,2,3`.
     ///
     /// # Errors
     /// If the text is not a value of the param's type, or the value is out of range, not finite or

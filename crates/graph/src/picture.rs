@@ -3,13 +3,14 @@
 use std::sync::Arc;
 use wgt::TextureFormat as F;
 
-/// A decoded picture, the content of a texture with a `file`: RGBA texels with 16 bits per channel.
+/// A decoded picture, the content of a texture that a document declares with `file: …`: RGBA texels
+/// with 16 bits per channel.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Picture {
-    /// Width and height in texels.
+    /// Width and height of the picture in texels.
     pub size: [u32; 2],
-    /// Red, green, blue and alpha of each texel, row by row from the top, each row from the left;
-    /// 65,535 means 1.0.
+    /// Red, green, blue and alpha of each texel of the picture, row by row from the top, each row
+    /// from the left; 65,535 means 1.0.
     pub texels: Arc<[[u16; 4]]>,
 }
 
@@ -48,10 +49,11 @@ pub(crate) fn can_hold(format: F) -> bool {
 }
 
 impl Picture {
-    /// Returns the texels as bytes of a texture format: row by row from the top, without padding,
-    /// numbers in little-endian order. Channels that the format lacks are left out. Values are
-    /// converted linearly, for sRGB formats too; 65,535 becomes 1.0. `None` if a texture of this
-    /// format cannot hold a picture.
+    /// Returns the texels as bytes of the texture format `format`: row by row from the top, without
+    /// padding, numbers in little-endian order. Channels that the format lacks are left out. Values
+    /// are converted linearly, for sRGB formats too; 65,535 becomes 1.0. `None` for formats other
+    /// than R, Rg and Rgba with 8-bit unorm, 16-bit float or 32-bit float channels, and
+    /// `Rgba8UnormSrgb`.
     pub fn bytes(&self, format: F) -> Option<Vec<u8>> {
         let (count, channel) = channels(format)?;
         let mut bytes = Vec::new();

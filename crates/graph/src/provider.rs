@@ -19,23 +19,26 @@ pub trait Describe {
     fn describe(&self, name: &str) -> Option<Provided>;
 }
 
-/// Description of a provided buffer, acceleration structure or work for the CPU.
+/// Description of a buffer, an acceleration structure or work for the CPU that the host makes and a
+/// graph only reads, as [`Describe::describe`] returns it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Provided {
-    /// Number of items of the buffer; `None` if it is not known before the buffer is built.
+    /// Number of items of the buffer; `None` if it is not known before the buffer is built, and for
+    /// an acceleration structure.
     pub items: Option<u64>,
-    /// Size in bytes of one item, or of the whole buffer for a uniform; 0 for what is not a
-    /// buffer.
+    /// Size in bytes of one item of the buffer, or of the whole buffer for one that is bound as a
+    /// uniform; 0 for what is not a buffer.
     pub stride: u64,
-    /// Ways in which shaders may bind the resource.
+    /// Ways in which shaders may bind the buffer or acceleration structure.
     pub binding: ProvidedBinding,
-    /// Kind of a resource that comes in several kinds, such as the kind of a light; `None` for a
-    /// resource without kinds.
+    /// Kind of the resource, if it comes in several kinds, as a light does; `None` for a resource
+    /// without kinds.
     pub kind: Option<ProvidedKind>,
 }
 
 impl Provided {
-    /// Description of an acceleration structure, which shaders declare as `acceleration_structure`.
+    /// Description of an acceleration structure, which shaders declare as `acceleration_structure`;
+    /// it has no items and no kind.
     pub const ACCELERATION_STRUCTURE: Self = Self {
         items: None,
         stride: 0,
@@ -51,24 +54,26 @@ impl Provided {
     };
 }
 
-/// Ways in which shaders may bind a provided resource ([`Provided`]).
+/// Ways in which shaders may bind a resource that the host's provider describes ([`Provided`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProvidedBinding {
-    /// As `var<uniform>`, the whole buffer.
+    /// The whole buffer, as `var<uniform>`.
     Uniform,
-    /// As `var<storage, read>`.
+    /// The whole array or some of its items, as `var<storage, read>`.
     Storage,
-    /// As `var<storage, read>` for a whole array, or as `var<uniform>` for one of its items, such
-    /// as `lights[2]`.
+    /// The whole array or some of its items, as `var<storage, read>`, or one of its items, such as
+    /// `lights[2]`, as `var<uniform>`.
     Both,
-    /// As `acceleration_structure`, for ray queries. The resource is not a buffer.
+    /// The acceleration structure, as `acceleration_structure`, for ray queries. The resource is
+    /// not a buffer.
     AccelerationStructure,
     /// By no shader: a [`CpuCall`](crate::step::CpuCall) calls it. The resource is not a buffer.
     CpuWork,
 }
 
 impl ProvidedBinding {
-    /// Returns the usages that the buffer must be created with; empty for what is not a buffer.
+    /// Returns the usages that a buffer needs to be bound in these ways; empty for what is not a
+    /// buffer.
     pub fn usages(self) -> wgt::BufferUsages {
         match self {
             Self::Uniform => wgt::BufferUsages::UNIFORM,
@@ -84,38 +89,41 @@ impl ProvidedBinding {
 /// culled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Import {
-    /// A texture.
+    /// A texture, which the host has created.
     Texture {
-        /// Format of the texels.
+        /// Format of the texture's texels.
         format: wgt::TextureFormat,
-        /// Width and height of mip 0 in texels.
+        /// Width and height of the texture's mip 0 in texels.
         size: [u32; 2],
-        /// Number of mip levels.
+        /// Number of mip levels, at least 1.
         mips: u32,
-        /// Number of array layers, or of slices of mip 0 of a 3D texture.
+        /// Number of array layers, or of slices of mip 0 of a 3D texture; 1 for a plain 2D texture.
         layers: u32,
-        /// True for a 3D texture.
+        /// True for a 3D texture, false for a 2D texture or a 2D array.
         is_3d: bool,
         /// Number of samples of each texel; 1 without multisampling.
         samples: u32,
-        /// Usages that the texture was created with.
+        /// Usages that the texture was created with. Planning reports an error if a pass needs
+        /// others.
         usage: wgt::TextureUsages,
     },
-    /// A buffer.
+    /// A buffer, which the host has created.
     Buffer {
-        /// Size in bytes.
+        /// Size of the buffer in bytes.
         bytes: u64,
-        /// Number of items; may be `None` unless a pass is dispatched over the items or an
-        /// expression asks for their `count`.
+        /// Number of items of the buffer; may be `None` unless a pass is dispatched over the items
+        /// or an expression asks for their `count`.
         items: Option<u64>,
-        /// Usages that the buffer was created with.
+        /// Usages that the buffer was created with. Planning reports an error if a pass needs
+        /// others.
         usage: wgt::BufferUsages,
     },
-    /// A sampler.
+    /// A sampler, which the host has created.
     Sampler {
-        /// Filter of the sampler.
+        /// Filter that the sampler was created with.
         filter: Filter,
-        /// True for a comparison sampler.
+        /// True for a comparison sampler, which the document's input must then ask for (`compare:
+        /// true`).
         compare: bool,
     },
 }

@@ -11,9 +11,10 @@ use std::collections::BTreeMap;
 /// another backend may fail on it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PartialBackend {
-    /// Name of the backend, as documents list it in `proven_on`.
+    /// Name of the backend, such as `gl`, as documents list it in `proven_on`.
     pub name: String,
-    /// Abilities that the backend lacks, as text for error messages: "no 32-bit float targets".
+    /// Abilities that the backend lacks, as text for error messages, such as "no 32-bit float
+    /// targets".
     pub lacks: String,
 }
 
@@ -35,44 +36,52 @@ pub struct Request<P> {
     /// Names of the outputs to compute; the document must declare them. `None` means all that the
     /// document declares, except those marked `on_request` that no capture names.
     pub outputs: Option<Vec<String>>,
-    /// Materials (textures and buffers) to read back in addition to the outputs.
+    /// Textures and buffers to read back in addition to the outputs, each at the end of a frame or
+    /// as it is after one of the passes.
     pub captures: Vec<Capture>,
-    /// Limits of the device that will run the graph.
+    /// Limits of the device that will run the graph. Planning reports an error for a graph that
+    /// exceeds them ([`any_adapter`](Self::any_adapter): a warning).
     pub limits: wgt::Limits,
-    /// Features of the device that will run the graph.
+    /// Features that the device that will run the graph is created with. Planning reports an error
+    /// for a graph that requires others ([`any_adapter`](Self::any_adapter): a warning);
+    /// expressions of documents test features by `has(…)`.
     pub features: wgt::Features,
-    /// The backend of the device, if it lacks part of WebGPU; `None` for any other. A graph that
-    /// does not list this backend in `proven_on` is refused. The executor, which runs the plan on a
-    /// device, refuses it too, so `None` only delays the error.
+    /// The backend of the device, if it lacks part of WebGPU; `None` for any other. Planning
+    /// returns an error if the document does not list this backend in `proven_on`. The executor,
+    /// which runs the plan on a device, refuses such a plan too, so `None` only delays the error.
     pub partial_backend: Option<PartialBackend>,
     /// Most bytes that the graph's own textures and buffers may take together. A graph that takes
-    /// more is refused before anything is allocated, with a table of the largest allocations.
-    /// `None` sets no limit. (wgpu does not tell how much memory a device has.)
+    /// more is refused before anything is allocated: planning returns an error with a table of the
+    /// largest allocations. `None` sets no limit. (wgpu does not tell how much memory a device
+    /// has.)
     pub memory_limit: Option<u64>,
     /// Descriptions of the textures, buffers and samplers that the host hands over, each under the
     /// name of an input of the loaded document ([`Graph::inputs`](crate::Graph::inputs)).
     pub imports: BTreeMap<String, Import>,
     /// Number of items that growing buffers (with `grow`) need, or of layers that growing textures
-    /// need, by full name of the material. Each is made at least that large, but not larger than
-    /// its `max`. To keep grown sizes when a graph is loaded again, pass the result of
-    /// [`Plan::grown`].
+    /// need, by full name of the material ([`Resource::name`](crate::Resource::name)). Each is made
+    /// at least that large, but not larger than its `max`. To keep grown sizes when a graph is
+    /// loaded again, pass the result of [`Plan::grown`].
     ///
     /// [`Plan::grown`]: crate::Plan::grown
     pub grown: BTreeMap<String, u64>,
-    /// Byte that the memory of a resource is filled with before its first use in a frame; `None`
-    /// fills nothing. A graph whose outputs change with this byte reads memory that it has not
-    /// written. Filling costs time; it is meant for finding mistakes.
+    /// Byte that the memory of the graph's own textures and buffers is filled with before its first
+    /// use in a frame; `None` fills nothing. Resources whose content lasts from frame to frame are
+    /// left out. A graph whose outputs change with this byte reads memory that it has not written.
+    /// Filling costs time; it is meant for finding mistakes.
     pub poison: Option<u8>,
-    /// True if the device that will run the graph is not known. Exceeding `limits` and `features`
-    /// is then a warning instead of an error.
+    /// True if the device that will run the graph is not known. Planning then warns of needs beyond
+    /// `limits` and `features`, which are errors otherwise.
     pub any_adapter: bool,
-    /// Describes the resources that the graph does not make itself: scene buffers, camera, lights.
+    /// Describes the resources that the graph does not make itself, such as scene buffers, camera
+    /// and lights ([`NoProvider`](crate::NoProvider) for a graph that needs none).
     pub provider: P,
 }
 
 impl<'a> PlanRequest<'a> {
     /// Creates a request with wgpu's default limits, no features, default params and the default
-    /// outputs. `viewport` is width and height in pixels.
+    /// outputs. `viewport` is width and height in pixels; `provider` describes scene buffers,
+    /// camera and lights ([`NoProvider`](crate::NoProvider) for a graph that needs none).
     pub fn new(viewport: [u32; 2], provider: &'a dyn Describe) -> Self {
         Self {
             viewport,
@@ -122,12 +131,13 @@ impl<P> Request<P> {
     }
 }
 
-/// A material whose content is to be read back after a frame.
+/// A material (texture or buffer) whose content is to be read back after a frame, as it is at the
+/// end of the frame or after one of its passes.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Capture {
-    /// Full name of a material (`left.depth` for the material `depth` of the include `left`), or a
-    /// part of one, such as `maps[2]`. Without `after` also the name of an output; with `after`
-    /// also the name of a provided buffer.
+    /// Full name of a material ([`Resource::name`](crate::Resource::name)), such as `left.depth`
+    /// for the output `depth` of the include `left`, or a part of one, such as `maps[2]`. Without
+    /// `after` also the name of an output; with `after` also the name of a provided buffer.
     pub material: String,
     /// Full name of the pass after which the content is captured, as in
     /// [`PassSummary::name`](crate::PassSummary::name); `None` captures it at the end of the frame.

@@ -13,31 +13,36 @@ use std::{ops::Range, sync::Arc};
 pub struct ResourceId(pub(crate) usize);
 
 impl ResourceId {
-    /// Returns the index, counted from 0.
+    /// Returns the index of the resource in [`Plan::resources`](crate::Plan::resources), counted
+    /// from 0.
     pub fn index(self) -> usize {
         self.0
     }
 }
 
-/// A texture, buffer, sampler or acceleration structure of a plan that passes may use, or its
-/// uniform `frame`.
+/// A texture, buffer, sampler or acceleration structure that passes of a plan may use, or the
+/// uniform buffer `frame` ([`ResourceKind::Frame`]).
 #[derive(Clone, Debug)]
 pub struct Resource {
-    /// Full name: the name in the document; for a material of a named include, with the include's
-    /// name in front: `left.depth`.
+    /// Full name of the resource: the name by which the loaded document knows it, `left.depth` for
+    /// the output `depth` of the include `left`. A material that an included document keeps to
+    /// itself has the names of the includes and groups around it in front: `gbuffer.scratch`. An
+    /// include without a name counts by the name of its file. The content of the frame before has
+    /// `.previous` behind the name.
     pub name: String,
-    /// Place of the declaration in a document; `None` for a resource that no document declares,
-    /// such as a provided one or a buffer that only one pass uses.
+    /// Place where a document declares the resource. `None` for a resource that no document
+    /// declares, such as one that the host's provider describes ([`Describe`](crate::Describe)) or
+    /// a buffer that only one pass uses.
     pub declared: Option<Span>,
-    /// Kind of the resource, with its description.
+    /// Kind of the resource (texture, buffer, …), with its format, sizes and other properties.
     pub kind: ResourceKind,
-    /// Origin of the content: the graph, the document, the host, or the frame before.
+    /// Origin of the resource's content: the graph, the document, the host, or the frame before.
     pub origin: Origin,
-    /// Growth of the number of items of a buffer, or of layers of a texture, between frames; `None`
-    /// if the number is fixed.
+    /// Growth of the number of items of a buffer, or of layers of a texture, between frames (`grow`
+    /// in the document); `None` if the number is fixed.
     pub growth: Option<Growth>,
-    /// True if the content stays from frame to frame until a pass overwrites it (`keep: true` in
-    /// the document).
+    /// True if the resource's content stays from frame to frame until a pass overwrites it (`keep:
+    /// true` in the document).
     pub keep: bool,
 }
 
@@ -55,42 +60,52 @@ impl Resource {
     }
 }
 
-/// Origin of a resource's content.
+/// Origin of the content of a [`Resource`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {
-    /// The graph: its passes write the content.
+    /// The graph: its passes write the content. Samplers of the graph have this origin, too.
     Own,
-    /// The document: a picture file, or numbers that stand in the document. No pass may write it.
+    /// The document: the content is a picture file (`file: …`) or numbers (`data: …`) that the
+    /// document gives. No pass may write the resource.
     Constant,
-    /// The host: the resource is imported or provided, and has content before the first pass.
+    /// The host: the resource is an import ([`Import`](crate::Import)), described by the host's
+    /// provider ([`Describe`](crate::Describe)), or the uniform `frame`. It has content before the
+    /// first pass runs.
     Host,
     /// The frame before: this resource holds the content that the resource with this id had at the
-    /// end of that frame (`.previous` in documents).
+    /// end of that frame (`.previous` in documents). In the first frame it holds zeros, or for a
+    /// resource of the host that resource's current content.
     Previous(ResourceId),
 }
 
-/// Kind of a resource, with its description.
+/// Kind of a [`Resource`], with its format, sizes and other properties.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ResourceKind {
-    /// A texture.
+    /// A texture of the graph, or one that the host imports.
     Texture(Texture),
-    /// A buffer.
+    /// A buffer of the graph, or one that the host imports.
     Buffer(Buffer),
-    /// A sampler.
+    /// A sampler of the graph, or one that the host imports.
     Sampler(Sampler),
-    /// A buffer that the host's provider makes, by its description.
+    /// A buffer that the host's provider makes, such as the scene's indices or the camera
+    /// ([`Describe`](crate::Describe)).
     Provided(Provided),
-    /// An acceleration structure that the host's provider makes.
+    /// An acceleration structure, for ray queries, that the host's provider makes.
     AccelerationStructure,
     /// Work for the CPU that the host's provider makes.
     CpuWork,
-    /// The uniform `frame`, which the executor fills before each frame: index, seconds and flags
-    /// ([`FRAME_BYTES`], `shared/frame.wgsl`).
+    /// The uniform buffer `frame`, which is filled before each frame: index, seconds and flags
+    /// ([`FRAME_BYTES`]).
     Frame,
 }
 
-/// Size in bytes of the uniform `frame`: the frame's index as `u32`, the seconds as `f32`, the
-/// flags `changed_scene`, `changed_light` and `fresh` as a `u32` each, then padding.
+/// Size in bytes of the uniform buffer `frame`, which any shader may bind. It holds the frame's
+/// index (`u32`, 0 for the first frame), the time in seconds that the host gives (`f32`), and three
+/// flags (`u32`, 1 or 0); the rest is padding.
+///
+/// The flags `changed_scene` and `changed_light` tell that the scene or a light has changed since
+/// the frame before, `fresh` that a resource whose content lasts from frame to frame has new
+/// memory. All three are 1 in the first frame.
 pub const FRAME_BYTES: u64 = 32;
 
 /// Size in bytes of index and seconds, which stand at the start of the uniform `frame`.
@@ -116,8 +131,8 @@ impl ResourceKind {
         }
     }
 
-    /// Returns the size in bytes of a texture or buffer; 0 for every other kind, provided buffers
-    /// included.
+    /// Returns the size in bytes of a texture or buffer, as [`Texture::bytes`] and
+    /// [`Buffer::bytes`]; 0 for every other kind, provided buffers included.
     pub fn bytes(&self) -> u64 {
         match self {
             Self::Texture(texture) => texture.bytes(),
@@ -127,28 +142,31 @@ impl ResourceKind {
     }
 }
 
-/// Description of a 2D texture, a 2D array texture or a 3D texture.
+/// Description of a 2D texture, a 2D array texture or a 3D texture, made by the graph or imported
+/// by the host.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
-    /// Format of the texels.
+    /// Format of the texture's texels.
     pub format: wgt::TextureFormat,
-    /// Width and height of mip 0 in texels.
+    /// Width and height in texels of the texture's mip 0.
     pub size: [u32; 2],
-    /// Number of array layers, or of slices of mip 0 of a 3D texture; 1 for a plain 2D texture.
+    /// Number of array layers of the texture, or of slices of mip 0 of a 3D texture; 1 for a plain
+    /// 2D texture.
     pub layers: u32,
-    /// True for a 3D texture, whose `layers` are slices.
+    /// True for a 3D texture, whose `layers` are slices; false for a 2D texture or a 2D array.
     pub is_3d: bool,
-    /// Number of mip levels.
+    /// Number of mip levels of the texture, at least 1.
     pub mips: u32,
-    /// Number of samples of each texel; 1 without multisampling.
+    /// Number of samples of each texel of the texture; 1 without multisampling.
     pub samples: u32,
     /// Picture that the document fills the texture with (`file: …`); `None` for a texture without a
-    /// picture.
+    /// picture, such as one that passes write.
     pub picture: Option<Picture>,
 }
 
 impl Texture {
-    /// Returns the width and height in texels of the mip level `mip`, counted from 0.
+    /// Returns the width and height in texels, each at least 1, of the mip level `mip`, counted
+    /// from 0.
     pub fn mip_size(&self, mip: u32) -> [u32; 2] {
         self.size.map(|edge| (edge >> mip).max(1))
     }
@@ -163,7 +181,8 @@ impl Texture {
         }
     }
 
-    /// Returns the size in bytes of all texels of all mips, layers and samples.
+    /// Returns the size in bytes of all texels of all mips, layers and samples of the texture,
+    /// without padding.
     pub fn bytes(&self) -> u64 {
         let footprint = |format: wgt::TextureFormat| {
             format.theoretical_memory_footprint(wgt::Extent3d::default())
@@ -179,7 +198,8 @@ impl Texture {
         (0..self.mips).map(mip).fold(0, u64::saturating_add)
     }
 
-    /// Returns the range of all mips, all layers and all aspects.
+    /// Returns the part that holds all of the texture: every mip, every layer or slice, and every
+    /// aspect.
     pub fn whole(&self) -> SubresourceRange {
         SubresourceRange {
             mips: 0..self.mips,
@@ -189,56 +209,65 @@ impl Texture {
     }
 }
 
-/// Description of a buffer.
+/// Description of a buffer, made by the graph or imported by the host.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Buffer {
-    /// Number of items of the buffer's runtime-sized array; `None` if the document gives none
-    /// (`count: …`), because shaders declare the buffer with a fixed size.
+    /// Number of items of the buffer: of the runtime-sized array that shaders declare, or of
+    /// `data`; for a buffer that only one pass uses, of 4-byte words. `None` if the document gives
+    /// neither `count` nor `data`, because shaders declare the buffer with a fixed size, and for an
+    /// import without a known number.
     pub count: Option<u64>,
-    /// Distance in bytes from one item to the next; 0 before linking, and if no shader declares the
-    /// buffer as a runtime-sized array.
+    /// Distance in bytes from one item of the buffer's runtime-sized array to the next, as shaders
+    /// declare it. 0 for an import, and if no shader of the graph declares the buffer as such an
+    /// array.
     pub stride: u64,
-    /// Size in bytes. Before linking it is 0, because item layouts come from WGSL, except for an
-    /// import.
+    /// Size of the buffer in bytes: of the layout that shaders declare, with all items, rounded up
+    /// to a multiple of 4; for an import, of the host's buffer.
     pub bytes: u64,
-    /// Content that the document gives (`data: …`): one entry for each item, with one number for
-    /// each scalar of the item. `None` for a buffer without `data`.
+    /// Content that the document gives the buffer (`data: …`): one entry for each item, with one
+    /// number for each scalar of the item, in the order of the scalars' offsets. `None` for a
+    /// buffer without `data`.
     pub data: Option<Arc<Vec<Vec<f64>>>>,
-    /// The bytes of `data` in the layout of the shader; `None` before linking, or without `data`.
+    /// The bytes of `data` in the item layout that shaders declare, numbers in little-endian order;
+    /// `None` without `data`.
     pub content: Option<Arc<[u8]>>,
 }
 
-/// Rule by which a buffer gets more items, or a texture more layers, from frame to frame.
+/// Rule by which a buffer gets more items, or a texture more layers, in later frames (`grow` in
+/// documents). If `counter` tells that a frame needed more than there are, the executor, which runs
+/// the plan on a device, replaces the resource by one with the needed number and a quarter more.
+/// Its content is lost unless it has `keep`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Growth {
-    /// Buffer, or item of a buffer, whose first `u32` holds the number of items or layers that the
-    /// frame would have needed.
+    /// Buffer, or item of a buffer, whose first `u32` holds after a frame the number of items or
+    /// layers that the frame would have needed.
     pub counter: Target,
-    /// Greatest number of items or layers, which the buffer or texture never exceeds.
+    /// Greatest number of items or layers, which the growing buffer or texture never exceeds.
     pub max: u64,
 }
 
-/// Description of a sampler.
+/// Description of a sampler, made by the graph or imported by the host.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sampler {
-    /// Filter for minification, for magnification and between mips.
+    /// Filter of the sampler for minification, for magnification and between mips.
     pub filter: Filter,
-    /// Address mode in all directions, for coordinates outside of the texture.
+    /// Address mode of the sampler in all directions, for coordinates outside of the texture.
     pub address: Address,
-    /// Comparison function; `None` for a sampler that does not compare.
+    /// Comparison function of a comparison sampler; `None` for a sampler that does not compare.
     pub compare: Option<wgt::CompareFunction>,
 }
 
 /// Part of a texture or buffer: a range of mips and layers of a texture (slices, if it is 3D), or a
-/// range of items of a buffer. The items are in the field `layers`.
+/// range of items of a buffer. The items are in the field `layers`. Ends of ranges are excluded.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SubresourceRange {
-    /// Range of mip levels, counted from 0; `0..1` for a buffer.
+    /// Range of a texture's mip levels, counted from 0, the end excluded; `0..1` for a buffer.
     pub mips: Range<u32>,
-    /// Range of array layers, slices or items, counted from 0; `0..u32::MAX` for a whole buffer.
+    /// Range of a texture's array layers or slices, or of a buffer's items, counted from 0, the end
+    /// excluded; `0..u32::MAX` for a whole buffer.
     pub layers: Range<u32>,
-    /// `DepthOnly` or `StencilOnly` if the part is one aspect of a texture with depth and stencil;
-    /// otherwise `All`.
+    /// Aspect of a texture with depth and stencil: `DepthOnly` or `StencilOnly` for one of the two,
+    /// `All` for both. `All` for any other texture or buffer.
     pub aspect: wgt::TextureAspect,
 }
 
@@ -266,7 +295,8 @@ impl SubresourceRange {
         self.mips.len() == 1 && self.layers.len() == 1
     }
 
-    /// Returns the range of items if this is a part of a buffer; `None` if it is the whole buffer.
+    /// Returns the range of items, the end excluded, if this is a part of a buffer; `None` if it is
+    /// the whole buffer. Call it for buffers only.
     pub fn items(&self) -> Option<Range<u32>> {
         (*self != Self::WHOLE).then(|| self.layers.clone())
     }
@@ -280,11 +310,12 @@ impl SubresourceRange {
     }
 }
 
-/// A resource, and the part of it that is used.
+/// A resource of a plan, and the part of it that is meant, such as the part that a pass reads or an
+/// output holds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Target {
-    /// Id of the resource.
+    /// Id of the resource that is meant, whole or in part.
     pub id: ResourceId,
-    /// Mips and layers of the texture, or items of the buffer, that are used.
+    /// Mips and layers of the texture, or items of the buffer, that are meant.
     pub part: SubresourceRange,
 }

@@ -129,10 +129,10 @@ written!(ClaimEntry, "Claim", generator => {
     json_schema!({ "anyOf": [condition, long] })
 });
 
-/// Returns the JSON Schema (draft 2020-12) of documents whose passes are of the kinds in
-/// `registry`. It describes RON as JSON: `Kind(field: value)` is `{"Kind": {"field": value}}`, a
-/// bare word is a string, a tuple is an array. The schema checks neither names nor values of
-/// expressions; [`Graph::check`](crate::Graph::check) does.
+/// Returns the JSON Schema (draft 2020-12) of graph documents (RON files) whose passes are of the
+/// kinds in `registry`. It describes RON as JSON: `Kind(field: value)` is `{"Kind": {"field":
+/// value}}`, a bare word is a string, a tuple is an array. The schema checks neither names nor
+/// values of expressions; [`Graph::check`](crate::Graph::check) does.
 pub fn schema(registry: &Registry) -> Value {
     let mut generator = SchemaGenerator::default();
     let mut sections = Map::new();

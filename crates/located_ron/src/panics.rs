@@ -7,22 +7,22 @@ use std::{
     sync::Once,
 };
 
-/// A panic that [`caught`] has caught, with its place in the source code of the library that
-/// panicked.
+/// A panic of a library that [`caught`] has caught, with its place in the library's source code.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{message} ({place})")]
 pub struct Panicked {
-    /// Message of the panic.
+    /// Message of the panic; `a panic without words` if its payload is not a text.
     pub message: String,
     /// File and line in the library's source code, from the folder of the crate on:
-    /// `naga-30.0.1/src/proc/a.rs:12`; `unknown place` if another panic hook was set meanwhile.
+    /// `naga-30.0.1/src/proc/a.rs:12`; `unknown place` if another panic hook has been set since the
+    /// first call of [`caught`].
     pub place: String,
 }
 
 impl Panicked {
-    /// Returns the text for the field `help` of a [`Diagnostic`](crate::diagnostics::Diagnostic):
-    /// it tells the author of the file that was read that the library is at fault, and to write the
-    /// file differently.
+    /// Returns a hint for the author of the file on which the library panicked, for the help of a
+    /// [`Diagnostic`](crate::diagnostics::Diagnostic): it says that the library is at fault, and to
+    /// write the file differently.
     pub fn way_out(&self) -> String {
         format!(
             "this is a mistake of the library ({}), which may take the same written differently",

@@ -46,9 +46,9 @@ fn fail(diagnostic: impl FnOnce(&SourceFile) -> Option<Diagnostic>) {
     });
 }
 
-/// Returns a serde error for `mistake`, for implementations of `Deserialize` to return. The
-/// function that reads the [`Node`], such as [`Node::parse`], then returns `mistake` with its
-/// places, not just the text of the serde error.
+/// Returns a serde error that stands for `mistake`. For use in implementations of `Deserialize`,
+/// which return it. The function that reads the [`Node`], such as [`Node::parse`], then returns
+/// `mistake` with its places, not just the text of the serde error.
 pub fn refuse<E: serde::de::Error>(mistake: impl Into<Diagnostic>) -> E {
     let diagnostic = mistake.into();
     let message = diagnostic.message.clone();
@@ -126,7 +126,8 @@ fn word_around(text: &str, start: usize, end: usize, base: usize) -> Range<usize
 /// place in the file that is being read. For use in implementations of `Deserialize`.
 ///
 /// # Errors
-/// If the value is not well-formed RON, or is not read through a [`Node`].
+/// If the value is not well-formed RON, or is not read through a [`Node`], for example by
+/// [`Node::parse`] or [`from_fields`].
 pub fn raw<'de, D: Deserializer<'de>>(deserializer: D) -> Result<(&'de str, Span), D::Error> {
     let text = bare(<&RawValue>::deserialize(deserializer)?);
     let span = READING.with_borrow(|reading| {
@@ -162,21 +163,22 @@ pub type Node = Span;
 /// A field of a RON struct, `name: value`, whose value is not read yet.
 #[derive(Clone, Debug)]
 pub struct Field {
-    /// Name of the field, with its place.
+    /// Name of the struct's field, with its place in the file.
     pub name: Located<String>,
-    /// Place of the field's value.
+    /// Value of the struct's field, which is not read yet: its place in the file.
     pub node: Node,
 }
 
 impl Node {
-    /// Returns the node of the whole text of a file, without a byte order mark at its start.
+    /// Returns the node of the whole text of `file`, without a byte order mark at its start.
     pub fn root(file: &SourceFile) -> Self {
         // Some editors begin UTF-8 with a byte order mark.
         let start = file.text.len() - file.text.trim_start_matches('\u{feff}').len();
         file.span(start..file.text.len())
     }
 
-    /// Returns the place of the node's first line, for diagnostics about a node of many lines.
+    /// Returns the place of the first line of the node's text, for diagnostics about a node of many
+    /// lines.
     pub fn head(&self) -> Span {
         let start = self.range.start;
         let length = self.text().lines().next().map_or(0, str::len);
@@ -188,7 +190,7 @@ impl Node {
         self.file.span(range)
     }
 
-    /// Deserialises the node's text as a `T`.
+    /// Deserialises the node's text, RON, as a `T`.
     ///
     /// # Errors
     /// The first mistake as a diagnostic, at the innermost place that failed.
@@ -278,8 +280,9 @@ impl Node {
         }
     }
 
-    /// Splits an enum variant `Tag(…)` into the tag and the node of its body, `(…)`. The body of a
-    /// bare `Tag` is empty. Returns `None` if the text does not begin with a letter.
+    /// Splits the text of an enum variant `Tag(…)` into the tag and the node of its body, `(…)`; of
+    /// a bare `Tag` the body is empty. The body is not checked. Returns `None` if the text does not
+    /// begin with a letter.
     pub fn variant(&self) -> Option<(Located<String>, Node)> {
         let text = self.text();
         let end = text.find(|c: char| !c.is_alphanumeric() && c != '_');
@@ -381,9 +384,9 @@ pub fn from_fields<T: DeserializeOwned>(fields: &[Field], whole: &Span) -> Resul
     from_some_fields(fields, whole, &[])
 }
 
-/// Deserialises a struct as [`from_fields`] does, from fields of which the caller has removed some.
-/// `more` holds the names of the removed fields, so that the suggestion for a misspelt field knows
-/// them, too.
+/// Deserialises a struct as [`from_fields`] does, from fields of which the caller has removed some
+/// that the struct does not have. `more` holds the names of the removed fields, so that the
+/// suggestion for a misspelt field knows them, too.
 ///
 /// # Errors
 /// The first mistake as a diagnostic at its place: an unknown, missing or duplicate field, or a
@@ -403,8 +406,9 @@ pub fn from_some_fields<T: DeserializeOwned>(
 }
 
 /// Deserialises a struct as [`from_some_fields`] does, but appends a diagnostic to `told` for every
-/// unknown or duplicate field and every field that cannot be read, not only for the first. Returns
-/// `None` if a field is unknown, missing or cannot be read. Of a duplicate field the first is read.
+/// unknown or duplicate field and every field that cannot be read, not only for the first. If no
+/// other mistake is the cause, a missing field is told, too. Returns `None` if a field is unknown,
+/// missing or cannot be read. Of a duplicate field the first is read.
 pub fn from_all_fields<T: DeserializeOwned>(
     mut fields: Vec<Field>,
     whole: &Span,
@@ -531,7 +535,7 @@ impl<'de> MapAccess<'de> for Access<'de> {
 }
 
 /// Returns the error [`Code::UnknownField`] for a field whose name is not in `known`, at the place
-/// of the name, with a name in `known` as suggestion.
+/// of the name. Its help is the [suggestion](crate::diagnostics::suggestion) of a name in `known`.
 pub fn unknown_field<S: AsRef<str>>(
     name: &Located<String>,
     known: impl IntoIterator<Item = S>,
@@ -541,8 +545,9 @@ pub fn unknown_field<S: AsRef<str>>(
         .suggest(name, known)
 }
 
-/// Returns the error [`Code::UnknownVariant`] for a word that is not in `known`, at the place of
-/// the word, with a word in `known` as suggestion.
+/// Returns the error [`Code::UnknownVariant`] for a word, such as the name of an enum variant, that
+/// is not in `known`, at the place of the word. Its help is the
+/// [suggestion](crate::diagnostics::suggestion) of a word in `known`.
 pub fn unknown_word<S: AsRef<str>>(
     word: &Located<String>,
     known: impl IntoIterator<Item = S>,
@@ -553,14 +558,14 @@ pub fn unknown_word<S: AsRef<str>>(
 }
 
 /// Returns the error [`Code::MissingField`] for the required field `field` that is missing in the
-/// struct at `place`.
+/// struct at `place`; the error points at `place`.
 pub fn missing_field(place: impl Into<Span>, field: &str) -> Diagnostic {
     let what = format!("the field `{field}` is missing");
     Diagnostic::error(Code::MissingField, what).at(place, "it must be given here")
 }
 
-/// Returns the error [`Code::DuplicateName`] for a field that is given twice. `field` is the name
-/// where it is given the second time.
+/// Returns the error [`Code::DuplicateName`] for a field that is given twice in a struct. `field`
+/// is the name where it is given the second time, at which the error points.
 pub fn field_twice(field: &Located<String>) -> Diagnostic {
     let what = format!("the field `{field}` is given twice");
     Diagnostic::error(Code::DuplicateName, what).at(field, "the second one")

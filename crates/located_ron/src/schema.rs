@@ -18,8 +18,8 @@ impl<T: JsonSchema> JsonSchema for Located<T> {
     }
 }
 
-/// Simplifies a JSON Schema in place: removes the alternative `null` of optional fields, and
-/// replaces line breaks in descriptions by spaces.
+/// Simplifies a JSON Schema in place: removes the alternative `null`, which optional fields have,
+/// and replaces line breaks in descriptions by spaces.
 pub fn plain(schema: &mut Value) {
     match schema {
         Value::Object(fields) => {

@@ -14,9 +14,9 @@ pub struct SourceFile(Arc<SourceText>);
 /// Path and text of a [`SourceFile`].
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct SourceText {
-    /// Path of the file, as it was given to [`SourceFile::new`].
+    /// Path of the file, as it was given to [`SourceFile::new`]; it need not exist on disk.
     pub name: Arc<str>,
-    /// Whole text of the file.
+    /// Whole text of the source file.
     pub text: Arc<str>,
 }
 
@@ -29,7 +29,7 @@ impl SourceFile {
         }))
     }
 
-    /// Returns the place of the byte range `range` of this file's text.
+    /// Returns the place of the byte range `range` of this file's text. The range is not checked.
     pub fn span(&self, range: Range<usize>) -> Span {
         Span {
             file: self.clone(),
@@ -45,7 +45,8 @@ impl Deref for SourceFile {
     }
 }
 
-/// A place in a file: a range of bytes of its text.
+/// A place in a file: a range of bytes of its text. Printed it is `FILE:LINE:COLUMN`, line and
+/// column counted from 1.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Span {
     /// File that the place lies in.
@@ -62,7 +63,7 @@ impl Span {
     }
 
     /// Returns the line and column of the start of the place, both counted from 1; columns count
-    /// characters, not bytes.
+    /// characters, not bytes. A start outside of the text counts as its end.
     pub fn line_column(&self) -> (usize, usize) {
         let before = self
             .file
@@ -97,7 +98,7 @@ impl From<&Span> for Span {
 /// A value together with its place in a source file.
 #[derive(Clone, PartialEq)]
 pub struct Located<T> {
-    /// The value that was read.
+    /// The value that was read from the file.
     pub value: T,
     /// Place of the value in its file.
     pub span: Span,
@@ -111,7 +112,7 @@ impl<T> Located<T> {
 }
 
 impl<T: fmt::Display> Located<T> {
-    /// Returns the value formatted as text, with the same place.
+    /// Returns the value formatted as text by `Display`, with the same place.
     pub fn text(&self) -> Located<String> {
         Located::new(self.value.to_string(), self.span.clone())
     }

@@ -4,7 +4,8 @@ use crate::error::Error;
 use skiagraph_scene::{Surfaces, texture::SourceKey};
 use std::collections::HashMap;
 
-/// Material of a triangle as shaders read it: an item of the buffer `scene.materials`, 32 bytes.
+/// One material of the mesh as shaders read it: an item of the buffer `scene.materials`, 32 bytes.
+/// The items stand in the order of [`Surfaces::materials`].
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct MaterialRecord {
@@ -13,9 +14,9 @@ pub struct MaterialRecord {
     /// Index in the buffer `scene.texels` of the texture's first texel; the others follow row by
     /// row from the top left. 0 if the material has no texture.
     pub first_texel: u32,
-    /// Width and height of the texture in texels; 0 if the material has no texture.
+    /// Width and height of the texture in texels; both 0 if the material has no texture.
     pub size: [u32; 2],
-    /// Wrapping of u and v beyond the texture's edges: 0 repeats, 1 mirrors, 2 clamps.
+    /// Wrapping beyond the texture's edges, in u and in v: 0 repeats, 1 mirrors, 2 clamps.
     pub wrap: [u32; 2],
 }
 

@@ -1,8 +1,8 @@
 //! Why a scene cannot be brought to the GPU.
 
-/// Reason why a [`SceneProvider`](crate::SceneProvider) cannot take a change of its scene, or
-/// cannot build a resource. An executor passes the text of the latter on in
-/// [`ExecuteError::Provider`](skiagraph_gpu::ExecuteError::Provider).
+/// Reason why a [`SceneProvider`](crate::SceneProvider) refuses a change of its scene, or cannot
+/// build a resource. An executor reports a failed build as
+/// [`ExecuteError::Provider`](skiagraph_gpu::ExecuteError::Provider) with the text of this error.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -11,10 +11,12 @@ pub enum Error {
     Unknown {
         /// Name that was requested.
         name: String,
-        /// Names of the resources that the provider has.
+        /// Names of the resources that every provider has, without those of single lights and their
+        /// lists.
         known: Vec<String>,
     },
-    /// The mesh has more triangles than an acceleration structure of the device holds.
+    /// The mesh has more triangles than an acceleration structure of the device holds, so the
+    /// resource `scene.tlas` cannot be built.
     #[error(
         "`scene.tlas` needs {triangles} triangles, but the device takes {most} at most: trace with \
          `engine: Hierarchy`"
@@ -25,7 +27,7 @@ pub enum Error {
         /// Number of triangles that the device takes at most.
         most: u32,
     },
-    /// The mesh has more triangles than the hierarchy in light space
+    /// The mesh has more triangles than the bounding-volume hierarchy in light space
     /// ([`LightSpaceNode`](skiagraph_scene::LightSpaceNode)) can hold.
     #[error(
         "`scene.light_space_nodes` cannot hold {triangles} triangles on this device: trace with \
@@ -35,8 +37,8 @@ pub enum Error {
         /// Number of triangles of the mesh.
         triangles: usize,
     },
-    /// The hierarchy in light space needs a directional light, but the light is of this kind:
-    /// `spot` or `point`.
+    /// The bounding-volume hierarchy in light space needs a directional light, but the light is of
+    /// this kind: `spot` or `point`.
     #[error(
         "`scene.light_space_nodes` is made for a directional light, not for a {0} light: trace \
          with `engine: Hierarchy`"
@@ -87,14 +89,16 @@ pub enum Error {
     /// A position or normal of a deformed mesh is infinite or NaN.
     #[error("{what} {index} of a deformed mesh is {value}, which is not finite")]
     NotFinite {
-        /// `position` or `normal`.
+        /// List that holds the value: `position` or `normal`.
         what: &'static str,
-        /// Index in the given list of positions or normals.
+        /// Index of the value in the given list of positions or normals.
         index: usize,
         /// Position or normal that was given.
         value: glam::Vec3,
     },
-    /// Transforms were set, but the mesh was not given in parts.
+    /// Transforms were set with
+    /// [`SceneProvider::set_transforms`](crate::SceneProvider::set_transforms), but the mesh was
+    /// not given in parts.
     #[error(
         "the provider's mesh has no parts to be moved: make it with `SceneProvider::from_parts`, \
          or give it parts with `set_parts`"
@@ -107,7 +111,7 @@ pub enum Error {
     /// A resource needs a larger buffer than the device can bind.
     #[error("`{name}` needs a buffer of {bytes} bytes, but the device binds at most {limit}")]
     TooLarge {
-        /// Name of the resource.
+        /// Name of the resource, such as `scene.positions`.
         name: String,
         /// Number of bytes that the resource needs.
         bytes: u64,

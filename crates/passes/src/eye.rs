@@ -7,7 +7,7 @@ use crate::{
 use glam::{DMat4, DVec2, DVec3};
 use skiagraph_scene::{Camera, LEAST_DEPTH};
 
-/// Direction of a depth buffer: the end of 0 to 1 that belongs to the near plane.
+/// Convention of a depth buffer: the end of the range 0 to 1 that belongs to the near plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Depth {
     /// Depth 0 is near, depth 1 is far.
@@ -22,11 +22,11 @@ const FARTHEST: f64 = 65536.0;
 /// Camera of a host program, given by its matrices: perspective or orthographic, symmetric or not,
 /// jittered or not, with a far plane or without.
 ///
-/// Positions reconstructed from a depth buffer (`shared/from_depth.ron`) are right for any such
-/// camera. Fits to the eye's frustum (`fit: camera`, `pssm`) use a symmetric frustum that holds the
-/// camera's own. That frustum ends at 65,536 times the distance of its near plane if the camera has
-/// no far plane. `shared/gbuffer.ron` draws the symmetric frustum, too, in reversed depth whatever
-/// the host's depth is.
+/// Positions that the document `shared/from_depth.ron` reconstructs from a depth buffer are right
+/// for any such camera. Shadow maps fitted to the camera's frustum (`fit: camera`, preset `pssm`)
+/// use a symmetric frustum that holds the camera's own. That frustum ends at 65,536 times the
+/// distance of its near plane if the camera has no far plane. `shared/gbuffer.ron` draws the
+/// symmetric frustum, too, in reversed depth whatever the host's depth is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Eye {
     pub(crate) camera: CameraUniform,
@@ -49,17 +49,19 @@ pub enum EyeError {
         /// Name of the matrix: `view` or `projection`.
         &'static str,
     ),
-    /// The frustum of the projection is empty, or its numbers do not fit f32.
+    /// The frustum of the projection is empty, or its numbers do not fit f32. An orthographic
+    /// camera is represented by a pyramid that holds its box.
     #[error("the frustum of the projection is none that f32 can hold: near {near}, far {far}")]
     Frustum {
         /// Distance of the near plane, in scene units: from the eye, or for an orthographic camera
-        /// from the apex of a pyramid around its box.
+        /// from the apex of the pyramid.
         near: f64,
-        /// Distance of the far plane, in scene units, from the same point.
+        /// Distance of the far plane, in scene units, from the same point as `near`.
         far: f64,
     },
     /// The plane that this [`Depth`] takes for the near one is not the nearer one, or is not before
-    /// the eye.
+    /// the eye. It is returned for perspective cameras alone: the planes of an orthographic camera
+    /// may lie behind it, and with the wrong `Depth` it looks the other way without an error.
     #[error("the depth of the projection is not {0:?}: its near plane is not before the eye")]
     Depth(Depth),
 }
@@ -67,7 +69,7 @@ pub enum EyeError {
 impl Eye {
     /// Creates an eye from a camera's matrices, which multiply column vectors, as in glam and WGSL:
     /// `view` maps world space to eye space, `projection` (with its jitter) maps eye space to
-    /// wgpu's clip space (y up, depth 0 to 1). `depth` says which depth is near.
+    /// wgpu's clip space (y up, depth 0 to 1). `depth` tells which end of the depth range is near.
     ///
     /// # Errors
     /// [`EyeError`] for matrices that do not form a camera.

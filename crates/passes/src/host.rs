@@ -6,14 +6,14 @@ use std::sync::mpsc;
 /// Triangle mesh in the vertex and index buffers of a host program, which [`GpuMesh::read`] copies
 /// back to the CPU.
 ///
-/// Presets need the positions on the CPU, too: light space is laid around them, and hierarchies and
-/// adjacency are built from them.
+/// The presets need the positions on the CPU, too: light space (the space of a shadow map) is
+/// fitted to them, and hierarchies and adjacency are built from them.
 #[derive(Clone, Copy, Debug)]
 pub struct GpuMesh<'a> {
-    /// Vertices, each [`stride`](Self::stride) bytes behind the last, in a buffer with the usage
-    /// `COPY_SRC`.
+    /// Vertices, each [`stride`](Self::stride) bytes after the one before, in a buffer with the
+    /// usage `COPY_SRC`.
     pub vertices: wgpu::BufferSlice<'a>,
-    /// Distance from one vertex to the next, in bytes.
+    /// Distance from the start of one vertex to the start of the next, in bytes.
     pub stride: usize,
     /// Offset of the position within a vertex, in bytes; it is three f32.
     pub position: usize,
@@ -68,11 +68,12 @@ pub enum GpuMeshError {
 }
 
 impl GpuMesh<'_> {
-    /// Copies the buffers back from the GPU and makes a mesh of them, in which equal positions are
-    /// one. Waits for the GPU, so call it when a mesh is loaded, not in each frame.
+    /// Copies the buffers back from the GPU and makes a mesh of them, in which vertices of equal
+    /// position share one position. Waits for the GPU, so call it when a mesh is loaded, not in
+    /// each frame.
     ///
     /// # Errors
-    /// [`GpuMeshError`]: buffers that cannot be read, or numbers that do not form a mesh.
+    /// [`GpuMeshError`] if a buffer cannot be read, or its numbers do not form a mesh.
     pub fn read(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Mesh, GpuMeshError> {
         let stride = self.stride;
         let parts = [("position", Some(self.position)), ("normal", self.normal)];

@@ -1,4 +1,5 @@
-//! Scene resources for Skiagraph's graphs, the tracer, and the shadow presets.
+//! Scene resources for Skiagraph's graphs, the tracer, and the shadow presets (shadow methods that
+//! ship with Skiagraph).
 //!
 //! ```no_run
 //! use skiagraph_gpu::{Executor, Frame, device};
@@ -23,11 +24,12 @@
 //! # }
 //! ```
 //!
-//! - [`SceneProvider`] uploads a [`skiagraph_scene::Scene`] piece by piece, as live passes ask for
-//!   it.
-//! - [`registry`] knows the standard pass kinds and [`Trace`]: rays in, hits out, on compute
-//!   shaders.
-//! - [`EmbeddedSources`] holds the presets and their shaders, [`presets()`] lists them.
+//! - [`SceneProvider`] uploads a [`skiagraph_scene::Scene`] piece by piece, as the passes of a
+//!   graph need it.
+//! - [`registry`] knows the standard pass kinds and [`Trace`], which traces a buffer of rays on
+//!   compute shaders and writes a buffer of hits.
+//! - [`EmbeddedSources`] holds the documents and shaders of the presets, [`presets()`] lists the
+//!   presets.
 
 mod atlas;
 mod buffers;

@@ -1,4 +1,4 @@
-//! Names of the resources that a scene provides.
+//! Names of the resources that a [`SceneProvider`](crate::SceneProvider) offers to graphs.
 //!
 //! A plan lists the names that its passes ask for:
 //!
@@ -42,21 +42,29 @@ names! {
     pub(crate) LIGHT_SPACE_PRIMITIVES = "scene.light_space_primitives";
     pub(crate) TLAS = "scene.tlas";
     pub(crate) EMBREE = "scene.embree";
-    /// Name of the buffer that `shared/masks.wgsl` reads. It has no items if no triangle of the
-    /// scene is masked (cut out by the alpha of its texture) or double-sided.
+    /// Name of the storage buffer of the triangles' alpha masks
+    /// ([`mask_words`](skiagraph_scene::packed_masks::mask_words)), which `shared/masks.wgsl`
+    /// reads. It has no items if no triangle of the scene is masked (cut out by the alpha of its
+    /// texture) or double-sided.
     pub MASKS = "scene.masks";
     pub(crate) UVS = "scene.uvs";
     pub(crate) UV_INDICES = "scene.uv_indices";
     pub(crate) MATERIALS = "scene.materials";
     pub(crate) MATERIAL_INDICES = "scene.material_indices";
     pub(crate) TEXELS = "scene.texels";
-    /// Name of the uniform that `shared/camera.wgsl` reads.
+    /// Name of the uniform buffer of the camera
+    /// ([`CameraUniform`](crate::uniforms::CameraUniform)), which `shared/camera.wgsl` reads.
     pub CAMERA = "camera";
-    /// Name of the uniform that `shared/unprojection.wgsl` reads.
+    /// Name of the uniform buffer that holds the matrix from a depth buffer to positions
+    /// ([`UnprojectionUniform`](crate::uniforms::UnprojectionUniform)), which
+    /// `shared/unprojection.wgsl` reads.
     pub UNPROJECTION = "unprojection";
-    /// Name of the uniform that `shared/light.wgsl` reads.
+    /// Name of the uniform buffer of the light and its light space
+    /// ([`LightUniform`](crate::uniforms::LightUniform)), which `shared/light.wgsl` reads.
     pub LIGHT = "light";
-    /// Name of the uniform that `shared/light_area.wgsl` reads.
+    /// Name of the uniform buffer of the light's disk
+    /// ([`LightAreaUniform`](crate::uniforms::LightAreaUniform)), which `shared/light_area.wgsl`
+    /// reads.
     pub LIGHT_AREA = "light_area";
 }
 

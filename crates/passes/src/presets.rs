@@ -9,8 +9,9 @@ static PIPELINES: Dir = include_dir!("$CARGO_MANIFEST_DIR/pipelines");
 static SHADERS: Dir = include_dir!("$CARGO_MANIFEST_DIR/shaders");
 
 /// The presets' documents (`pipelines/…`) and shaders (`shaders/…`), embedded in the crate when it
-/// was compiled. In a `LayeredSources` behind a `FolderSources` it supplies the files that the
-/// folder lacks.
+/// was compiled. Behind a [`FolderSources`](skiagraph_graph::FolderSources) in a
+/// [`LayeredSources`](skiagraph_graph::LayeredSources), it supplies the files that the folder
+/// lacks.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct EmbeddedSources;
 
@@ -58,8 +59,9 @@ pub struct Preset {
     /// Name of the preset on the command line: the document's file name without `.ron`, such as
     /// `rt`.
     pub name: String,
-    /// Path of the document, such as `pipelines/rt.ron`. Pass it to `Graph::load` with
-    /// [`EmbeddedSources`] or a folder that holds the same files.
+    /// Path of the document, such as `pipelines/rt.ron`. Pass it to
+    /// [`Graph::load`](skiagraph_graph::Graph::load) with [`EmbeddedSources`] or a folder that
+    /// holds the same files.
     pub path: String,
 }
 
@@ -78,8 +80,8 @@ pub fn presets() -> Vec<Preset> {
     presets
 }
 
-/// Creates a registry of the standard pass kinds and [`Trace`], with which `Graph::load` reads the
-/// presets.
+/// Creates a registry of the standard pass kinds and [`Trace`], with which
+/// [`Graph::load`](skiagraph_graph::Graph::load) reads the presets.
 pub fn registry() -> Registry {
     let mut registry = Registry::standard();
     registry.register::<Trace>("Trace");

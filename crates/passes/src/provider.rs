@@ -25,7 +25,9 @@ use skiagraph_scene::{
 use std::{sync::Arc, time::Instant};
 
 /// Provider of a scene's resources to graphs: the buffers of one mesh, one camera and the lights,
-/// on one device. It builds each resource when a graph's pass first binds it.
+/// on one device. It builds each resource when a graph's pass first binds it. Primitives are
+/// triangles, with their index in [`Mesh::triangles`] as id. Positions are welded: corners of equal
+/// position share one.
 ///
 /// | resource | content |
 /// |---|---|
@@ -81,9 +83,10 @@ pub struct SceneProvider {
 }
 
 impl SceneProvider {
-    /// Creates a provider of `scene` without building any resource. Until a view or a camera is
-    /// set, the resource `camera` is all zeros. Until a view or a light is set, the resource
-    /// `light` is the scene's default light.
+    /// Creates a provider of `scene` without building any resource. Until
+    /// [`set_view`](Self::set_view), [`set_camera`](Self::set_camera) or [`set_eye`](Self::set_eye)
+    /// is called, the resource `camera` is all zeros. Until [`set_view`](Self::set_view) or
+    /// [`set_light`](Self::set_light) is called, the resource `light` is the scene's default light.
     pub fn new(scene: Arc<Scene>) -> Self {
         let lights = lights::from_scene(&scene);
         Self {
@@ -109,12 +112,13 @@ impl SceneProvider {
         self.clone()
     }
 
-    /// Builds the resources that a plan's live passes read and that are missing or out of date, so
-    /// that [`refresh`](skiagraph_gpu::Executor::refresh) has nothing left to build. Resources of a
-    /// mesh whose parts have no transforms yet are skipped.
+    /// Builds the resources that a plan's passes read and that are missing or out of date, so that
+    /// [`refresh`](skiagraph_gpu::Executor::refresh) has nothing left to build. Passes whose
+    /// results are not needed are left out, and so are resources of a mesh whose parts have no
+    /// transforms yet.
     ///
     /// # Errors
-    /// Those of [`Provider::build`].
+    /// Those of [`Provider::build`] and [`Provider::build_acceleration_structure`].
     pub fn prepare(
         &mut self,
         plan: &Plan,
@@ -276,7 +280,8 @@ impl SceneProvider {
     }
 
     /// Creates a provider of a mesh under a light. Both can be changed later. A camera must be set
-    /// before frames are encoded; until then it is all zeros.
+    /// before frames are encoded ([`set_camera`](Self::set_camera)); until then the resource
+    /// `camera` is all zeros.
     pub fn from_mesh(mesh: Mesh, light: impl Into<LightKind>) -> Self {
         Self::new(Arc::new(Scene {
             name: String::new(),
@@ -287,23 +292,24 @@ impl SceneProvider {
     }
 
     /// Creates a provider of a mesh under a light; the mesh is cut into parts that
-    /// [`set_transforms`](Self::set_transforms) moves. Mesh and light can be changed later, and a
-    /// camera must be set. Parts that were [joined](Movable::joined) from several meshes need
-    /// transforms before a frame is encoded.
+    /// [`set_transforms`](Self::set_transforms) moves. Mesh and light can be changed later. A
+    /// camera must be set before frames are encoded ([`set_camera`](Self::set_camera)). Parts that
+    /// were [joined](Movable::joined) from several meshes need transforms before that, too.
     pub fn from_parts(parts: impl Into<Arc<Movable>>, light: impl Into<LightKind>) -> Self {
         let mut provider = Self::from_mesh(Mesh::default(), light);
         provider.set_parts(parts);
         provider
     }
 
-    /// Returns the scene, with the mesh that was set last and in its current shape.
+    /// Returns the scene that the provider serves, with the mesh that was set last in its current
+    /// shape.
     pub fn scene(&self) -> &Arc<Scene> {
         &self.scene
     }
 
     /// Sets the camera of a view on a viewport of `[width, height]` pixels, and the view's light:
-    /// the one that the view names, or else the scene's default light. [`lights`](Self::lights)
-    /// becomes the list of the scene's lights, or the view's light alone if it is none of these.
+    /// its own, or else the scene's default light. [`lights`](Self::lights) becomes the list of the
+    /// scene's lights, or the view's light alone if it is none of these.
     pub fn set_view(&mut self, view: &View, viewport: [u32; 2]) {
         self.set_camera(&view.camera(viewport));
         let light = self.scene.light_of(view);
@@ -316,19 +322,19 @@ impl SceneProvider {
         self.set_light(light);
     }
 
-    /// Sets the camera, for depth buffers in which 1 is near and 0 is far, as `shared/gbuffer.ron`
-    /// draws them. For a host's own depth buffer use [`set_eye`](Self::set_eye): an [`Eye`] says
-    /// which depth is near.
+    /// Sets the camera, for a graph whose depth buffer has 1 at the near and 0 at the far plane, as
+    /// `shared/gbuffer.ron` draws it. For a host's own depth buffer use [`set_eye`](Self::set_eye):
+    /// an [`Eye`] tells which depth is near.
     pub fn set_camera(&mut self, camera: &Camera) {
         self.set_eye(&Eye::from(camera));
     }
 
-    /// Sets the camera to a host program's own, which is given by its matrices.
+    /// Sets the camera to a host program's own, which [`Eye::new`] makes from its matrices.
     pub fn set_eye(&mut self, eye: &Eye) {
         self.versions.eye.set(*eye);
     }
 
-    /// Returns the light that the resources `light` and `light_area` describe.
+    /// Returns the light that was set last: the resources `light` and `light_area` describe it.
     pub fn light(&self) -> LightKind {
         self.versions.light.now
     }
@@ -341,22 +347,23 @@ impl SceneProvider {
         number.unwrap_or_default()
     }
 
-    /// Returns the lights that the resources `lights` and `light_areas` describe: all lights of the
-    /// scene in its order (its default light if it has none), or the light of the view alone, as
-    /// [`set_view`](Self::set_view) chose.
+    /// Returns the lights that the resources `lights` and `light_areas` describe. These are all
+    /// lights of the scene in its order (its default light if it has none), or the light of a view
+    /// alone, if [`set_view`](Self::set_view) was given a view with a light of its own.
     pub fn lights(&self) -> &[LightKind] {
         &self.versions.lights.now
     }
 
-    /// Sets the light of the resources `light` and `light_area`; [`lights`](Self::lights) stay as
-    /// they are. A plan depends on the kind of its light: after a change of kind, graphs must be
-    /// planned anew. Until then [`refresh`](skiagraph_gpu::Executor::refresh) fails with
+    /// Sets the light that the resources `light` and `light_area` describe;
+    /// [`lights`](Self::lights) stay as they are. A plan depends on the kind of its light: after a
+    /// change of kind, graphs must be planned anew. Until then
+    /// [`refresh`](skiagraph_gpu::Executor::refresh) fails with
     /// [`ExecuteError::OtherThanPlanned`](skiagraph_gpu::ExecuteError::OtherThanPlanned).
     pub fn set_light(&mut self, light: LightKind) {
         self.versions.set_light(light);
     }
 
-    /// Sets another mesh, which has no parts to move. A plan depends on the numbers of positions,
+    /// Replaces the mesh by one without parts to move. A plan depends on the numbers of positions,
     /// triangles and other items: if they change, graphs must be planned anew
     /// ([`replace_graph`](skiagraph_gpu::Executor::replace_graph)).
     pub fn set_mesh(&mut self, mesh: Mesh) {
@@ -367,10 +374,11 @@ impl SceneProvider {
         self.versions.change_mesh();
     }
 
-    /// Sets another mesh, cut into parts that [`set_transforms`](Self::set_transforms) moves. Plans
-    /// depend on the mesh as described at [`set_mesh`](Self::set_mesh). Parts that were
-    /// [joined](Movable::joined) from several meshes need transforms; executors may be created
-    /// before these are set, but [`encode`](skiagraph_gpu::Executor::encode) then returns an error.
+    /// Replaces the mesh by one that is cut into parts, which
+    /// [`set_transforms`](Self::set_transforms) moves. Plans depend on the mesh as described at
+    /// [`set_mesh`](Self::set_mesh). Parts that were [joined](Movable::joined) from several meshes
+    /// need transforms; executors may be created before these are set, but
+    /// [`encode`](skiagraph_gpu::Executor::encode) then returns an error.
     pub fn set_parts(&mut self, parts: impl Into<Arc<Movable>>) {
         let parts = parts.into();
         self.set_mesh(parts.rest.clone());
@@ -389,11 +397,11 @@ impl SceneProvider {
     }
 
     /// Deforms the mesh: replaces its positions (scene units) and unit normals by as many others in
-    /// the same order. The next refresh of an executor refits the hierarchies, or rebuilds them if
-    /// refitting has made them bad; adjacency and all else is kept. Triangles keep their winding:
-    /// for a mirrored mesh use [`set_mesh`](Self::set_mesh) or
-    /// [`set_transforms`](Self::set_transforms). Nothing is rebuilt for equal positions and
-    /// normals.
+    /// the same order. The next [`refresh`](skiagraph_gpu::Executor::refresh) of an executor refits
+    /// the bounding-volume hierarchies, or rebuilds them if refitting has made them bad; adjacency
+    /// and all else is kept. Triangles keep their winding: for a mirrored mesh use
+    /// [`set_mesh`](Self::set_mesh) or [`set_transforms`](Self::set_transforms). Nothing is rebuilt
+    /// for equal positions and normals.
     ///
     /// # Errors
     /// [`Error::Deformed`] for another number of positions or normals, [`Error::NotFinite`] for a

@@ -10,27 +10,28 @@ use skiagraph_graph::{
     step::{CpuCall, CpuItems, Dispatch, Groups, Operand, Program, Step, Threads},
 };
 
-/// Which hit of a ray is recorded.
+/// Choice of the hit that a [`Trace`] pass records for a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Mode {
-    /// The first one found: enough to know that there is one.
+    /// The first hit found, in no particular order: enough to know that the ray is blocked.
     Any,
-    /// The nearest one.
+    /// The hit with the least t.
     Closest,
 }
 
-/// Structure that walks the rays through the scene.
+/// Acceleration structure with which a [`Trace`] pass finds hits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Engine {
-    /// Compute shaders on a binary hierarchy; watertight, on every device.
+    /// A bounding-volume hierarchy in buffers (`scene.bvh_nodes`), walked by compute shaders;
+    /// watertight, on every device.
     Hierarchy,
-    /// The device's own ray queries, where it has `EXPERIMENTAL_RAY_QUERY`: its hierarchy and its
-    /// test of triangles, whose rounding is its own.
+    /// The device's own ray queries, on devices with `EXPERIMENTAL_RAY_QUERY`; how they round is up
+    /// to the device.
     RayQuery,
-    /// Compute shaders on a hierarchy that is made for one direction, the light's; watertight, the
-    /// same hits as those of `Hierarchy`, on every device.
+    /// A hierarchy for rays that all go towards one directional light; watertight, the same hits as
+    /// `Hierarchy`, on every device. Needs `direction: Light`.
     LightSpace,
     /// Embree 3 on all cores of the CPU, for which the frame waits: its hierarchy and its test of
     /// triangles, whose rounding is its own. Where the host has it, and runs frames that wait.
@@ -41,8 +42,8 @@ pub enum Engine {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Direction {
-    /// The direction of each is `to_light_from` its origin, to the bit: under a directional light
-    /// `light.to_light`.
+    /// Every ray's direction is exactly `to_light_from(origin)` of `shared/light.wgsl`; under a
+    /// directional light that is `light.to_light`.
     Light,
 }
 

@@ -22,8 +22,8 @@
 use glam::{DMat4, DVec3, Mat3, Mat4, Vec2, Vec3};
 use skiagraph_scene::{Camera, DirectionalLight, LightKind, Mesh, SpotLight, light::across};
 
-/// The struct `Camera` of `shaders/shared/camera.wgsl`: a perspective camera, 96 bytes. Positions
-/// and vectors are in world space, distances in scene units.
+/// The struct `Camera` of `shaders/shared/camera.wgsl`: a perspective camera with reversed depth (1
+/// near, 0 far), 96 bytes. Positions and vectors are in world space, distances in scene units.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct CameraUniform {
@@ -38,19 +38,20 @@ pub struct CameraUniform {
     pub far: f32,
     /// Unit vector to the right of the image.
     pub right: Vec3,
-    /// Half the image's width at distance 1.
+    /// Half the image's width at distance 1 from the eye, in scene units.
     pub half_width: f32,
     /// Unit vector to the top of the image.
     pub up: Vec3,
-    /// Half the image's height at distance 1.
+    /// Half the image's height at distance 1 from the eye, in scene units.
     pub half_height: f32,
-    /// Unit viewing direction.
+    /// Unit viewing direction, from the eye into the image.
     pub forward: Vec3,
-    /// near / (far − near): clip z per unit of distance before the far plane, where clip z is 0.
+    /// near / (far − near): clip z (before the division by w) per unit of distance from the far
+    /// plane towards the eye. Clip z is 0 at the far plane.
     pub depth_scale: f32,
     /// Offset of each pixel's ray from the pixel's centre, in pixels, y down; 0 without jitter.
     pub jitter: Vec2,
-    /// The offset `jitter` in clip space, y up.
+    /// The offset `jitter` in clip space (−1 to 1 across the image), y up; 0 without jitter.
     pub jitter_clip: Vec2,
 }
 
@@ -79,12 +80,12 @@ impl From<&Camera> for CameraUniform {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct UnprojectionUniform {
-    /// Matrix from clip space to world space relative to the eye; the shader divides the result by
-    /// w.
+    /// Matrix from clip coordinates (x, y, depth, 1) to world space relative to the eye; the shader
+    /// divides the result by w.
     pub relative_from_clip: Mat4,
     /// Eye position, world space, rounded to f32.
     pub origin: Vec3,
-    /// 1 if depth 1 of the depth buffer is near, 0 if depth 0 is near.
+    /// 1 if the near plane has depth 1 in the depth buffer, 0 if it has depth 0.
     pub is_reversed: u32,
     /// Exact eye position minus `origin`.
     pub origin_low: Vec3,
@@ -92,8 +93,8 @@ pub struct UnprojectionUniform {
     pub padding: f32,
 }
 
-/// The struct `Light` of `shaders/shared/light.wgsl`: a light and its light space, the space of its
-/// shadow map, 144 bytes. The light space of a directional light is fitted to the corners of the
+/// The struct `Light` of `shaders/shared/light.wgsl`: a light and its light space (the space of its
+/// shadow map), 144 bytes. The light space of a directional light is fitted to the corners of the
 /// scene's triangles.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -101,44 +102,45 @@ pub struct LightUniform {
     /// Matrix to the light's clip space, in which z grows from 0 to 1 away from the light. For a
     /// directional light it maps positions relative to `centre`, and w stays 1. For a spot light it
     /// maps positions relative to the light: w is the distance along the axis, x and y reach from
-    /// −w to w across the map, and z is w as a share of `range`. For a point light the matrix is 0.
+    /// −w to w across the map, and z, which is not divided by w, is w / `range`. For a point light
+    /// the matrix is 0.
     pub clip_from_relative: Mat4,
     /// Unit vector towards a directional light; for a spot light, the reverse of its axis; for a
     /// point light, 0.
     pub to_light: Vec3,
-    /// Upper bound on the distance between two points of the scene, in scene units.
+    /// Upper bound on the distance between any two points of the scene's mesh, in scene units.
     pub max_distance: f32,
-    /// Centre of the scene's bounding box, world space. For a directional light the matrix takes
-    /// positions relative to it, because absolute ones would lose the detail of a far-off scene.
+    /// Centre of the scene's bounding box, world space. For a directional light
+    /// `clip_from_relative` takes positions relative to it, because absolute ones would lose the
+    /// detail of a far-off scene.
     pub centre: Vec3,
-    /// Largest sum of the magnitudes that are added up for clip x or y of a point in the scene's
-    /// box. The rounding error of clip x and y is a share of this sum. 0 for other lights than
-    /// directional ones.
+    /// Largest sum of |matrix entry · coordinate| in the computation of clip x or clip y, over all
+    /// points of the scene's bounding box. It bounds the rounding error of clip x and y, which is a
+    /// share of it. 0 for other lights than directional ones.
     pub corner_across: f32,
     /// World units per unit of the light's clip x, y and z; for a spot light, at the distance
     /// `range`. For a point light each is `range`.
     pub extent: Vec3,
-    /// Largest sum of the magnitudes that are added up for clip z of a point in the scene's box. 0
-    /// for other lights than directional ones.
+    /// The same sum as `corner_across`, for clip z. 0 for other lights than directional ones.
     pub corner_along: f32,
     /// Position of a spot or point light, world space, rounded to f32; 0 for a directional light.
     pub position: Vec3,
     /// Cosine of the angle between a spot light's axis and the edge of its cone; 0 for other
     /// lights.
     pub edge_cosine: f32,
-    /// Exact light position minus `position`.
+    /// Exact light position minus `position`; 0 for a directional light.
     pub position_low: Vec3,
     /// Upper bound on the distance from a spot or point light to any point of the scene, in scene
     /// units; 0 for a directional light.
     pub range: f32,
 }
 
-/// Words for the kinds of lights in documents and scene files. The index of a word in this list is
-/// the number that stands for the kind in shaders.
+/// Words for the kinds of lights in graph documents and scene files. The index of a word in this
+/// list is the number that stands for the kind in shaders.
 pub const LIGHT_KINDS: [&str; 3] = ["directional", "spot", "point"];
 
 impl LightUniform {
-    /// Creates the uniform of a light whose light space and bounds enclose a mesh. An empty mesh
+    /// Creates the uniform of a light whose light space and bounds enclose `mesh`. An empty mesh
     /// counts as a point at the origin.
     pub fn new(light: impl Into<LightKind>, mesh: &Mesh) -> Self {
         match light.into() {
@@ -220,18 +222,19 @@ impl LightUniform {
     }
 }
 
-/// The struct `LightArea` of `shaders/shared/light_area.wgsl`: the disk that an area light is,
-/// around its centre, 32 bytes.
+/// The struct `LightArea` of `shaders/shared/light_area.wgsl`: the disk of an area light, around
+/// its centre, 32 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct LightAreaUniform {
     /// Vector from the light's centre to its rim, in scene units; for a directional light, on a
-    /// disk at distance 1. 0 for a point light, whose disk faces each receiver.
+    /// disk at distance 1 from the receiver. 0 for a point light, whose disk faces each receiver.
     pub right: Vec3,
     /// Radius of the light's disk in scene units (for a directional light, at distance 1); 0 for a
     /// light without extent.
     pub radius: f32,
-    /// Second vector from the light's centre to its rim, at a right angle to `right`.
+    /// Second vector from the light's centre to its rim, at a right angle to `right` and of the
+    /// same length.
     pub up: Vec3,
     /// Unused filler at the end of the struct.
     pub padding: f32,

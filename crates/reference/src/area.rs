@@ -85,19 +85,21 @@ impl Emitter {
     }
 }
 
-/// Finds the ground truth of a view under a light: for each pixel, if its receiver is lit, and for
-/// a light with extent the share of the light that it sees.
+/// Finds the ground truth of a view under a light: for each pixel, if its receiver (the point that
+/// it shows) is lit, and for a light with extent the share of the light that it sees.
 ///
 /// For a light without extent the result is that of [`Oracle::shade`], and `samples` is ignored.
 /// For a light with extent each share comes from at least `samples` shadow rays per pixel (rounded
-/// up to an even number, at least four). `primitives` holds the primitive id that each pixel shows,
-/// as for [`Oracle::shade`]. In the mode [`OracleMode::Exact`] rays ignore the pixel's own
-/// primitive, in whichever direction they go. In the mode [`OracleMode::Offset`] they begin at the
-/// receiver moved towards the light's centre.
+/// up to an even number, at least four). `primitives` holds the primitive id (index of a triangle)
+/// that each pixel shows, as for [`Oracle::shade`]. In the mode [`OracleMode::Exact`] rays ignore
+/// the pixel's own primitive, in whichever direction they go. In the mode [`OracleMode::Offset`]
+/// they begin at the receiver moved towards the light's centre.
 ///
-/// The centre of the light decides which pixels face it: with dot(n, l) ≤ 0 a pixel faces away,
-/// though a part of the light may be above its horizon. A pixel that sees half of the light or more
-/// is *lit*. A pixel is indeterminate if the answer of a single ray to the light's centre is.
+/// The centre of the light decides which pixels face it: with dot(n, l) ≤ 0 (n is the interpolated
+/// normal, l the vector to the light's centre) a pixel faces away, though a part of the light may
+/// be above its horizon. A pixel that sees half of the light or more is *lit*. A pixel is
+/// indeterminate if the answer of a single ray to the light's centre is
+/// ([`GroundTruthPixels::indeterminate`]).
 ///
 /// # Errors
 /// Those of [`Oracle::shade`].

@@ -20,9 +20,9 @@ use std::ops::ControlFlow;
 /// parts are open): the result of [`blockers`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct BlockerCounts {
-    /// Pixels whose shadow ray meets open parts only.
+    /// Pixels whose shadow ray meets triangles of open parts only.
     pub open_part: u64,
-    /// Pixels whose shadow ray meets a closed part, whatever else it meets.
+    /// Pixels whose shadow ray meets a triangle of a closed part, whatever else it meets.
     pub closed_part: u64,
     /// Pixels whose shadow ray meets nothing, and pixels that face away from the light or show the
     /// background.

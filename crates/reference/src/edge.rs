@@ -18,8 +18,9 @@ use serde::{Deserialize, Serialize};
 const NEAR: f64 = 2.0;
 
 /// Distances of a method's wrong pixels from the nearest shadow edge of the reference.
-/// Indeterminate pixels are left out. A pixel is at a shadow edge if it and one of its four
-/// neighbours face the light, and one of the two is lit and the other in shadow.
+/// Indeterminate pixels ([`GroundTruthPixels::indeterminate`]) are left out. A pixel is at a shadow
+/// edge if it and one of its four neighbours face the light, and one of the two is lit and the
+/// other in shadow.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct EdgeDistances {
     /// Distances of the pixels that the method wrongly shows lit.
@@ -28,25 +29,26 @@ pub struct EdgeDistances {
     pub shadow: Distances,
 }
 
-/// Distances of a set of pixels from the nearest shadow edge.
+/// Distances of a set of pixels from the nearest shadow edge of the reference. Means and maxima are
+/// 0 if `count` is 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Distances {
     /// Number of pixels that have a distance.
     pub count: u64,
-    /// Number of pixels whose distance is at most two pixels.
+    /// Number of pixels whose distance on the screen is at most two pixels.
     pub near: u64,
     /// Mean distance on the screen in pixels, between pixel centres; a pixel at an edge has the
-    /// distance 0. 0 if `count` is 0.
+    /// distance 0.
     pub mean_pixels: f64,
-    /// Greatest distance on the screen in pixels.
+    /// Greatest distance on the screen in pixels, between pixel centres.
     pub max_pixels: f64,
     /// Mean distance in the scene, in scene units, from the point that a pixel shows to the nearest
     /// point that a pixel at an edge shows.
     pub mean_world: f64,
-    /// Greatest distance in the scene, in scene units.
+    /// Greatest distance in the scene, in scene units, measured as for `mean_world`.
     pub max_world: f64,
     /// Number of pixels that have no distance, because no shadow edge is in the picture or the
-    /// pixel's primitive is seen edge-on.
+    /// pixel's triangle is seen edge-on.
     pub without: u64,
 }
 
@@ -126,7 +128,8 @@ impl EdgeDistances {
         Ok(Self { lit, shadow })
     }
 
-    /// Returns the distances of the wrong pixels of two pictures, taken together.
+    /// Returns the distances of the wrong pixels of two pictures, taken together, as
+    /// [`Distances::with`] does.
     pub fn with(self, other: Self) -> Self {
         Self {
             lit: self.lit.with(other.lit),

@@ -26,7 +26,8 @@ pub enum Error {
         /// Number of values in the buffer.
         actual: u64,
     },
-    /// The G-buffer names a triangle that the mesh does not have: it was drawn from another mesh.
+    /// The G-buffer (primitive ids of the pixels) names a triangle that the mesh does not have: it
+    /// was drawn from another mesh.
     #[error(
         "pixel ({x}, {y}) shows primitive {primitive}, but the mesh has only {count} triangles"
     )]
@@ -40,7 +41,8 @@ pub enum Error {
         /// Number of triangles of the mesh.
         count: u64,
     },
-    /// A pixel has a `visibility` or `status` that a shadow preset must not write.
+    /// A pixel has a `visibility` or `status` that is none of the values that a shadow method may
+    /// write.
     #[error("{name} is {value} at pixel ({x}, {y}); {expected}")]
     Value {
         /// Name of the buffer: `visibility` or `status`.

@@ -4,7 +4,7 @@
 use glam::DVec3;
 use skiagraph_scene::Towards;
 
-/// Half an ulp of 1 in f32: the relative error of one rounding.
+/// Half an ulp of 1 in f32: the largest relative error of rounding a number to f32.
 pub const F32_ROUNDING: f64 = 1.0 / (1u32 << 24) as f64;
 
 /// Roundings that move a caster's corner across the ray, in units of its distance from the
@@ -24,9 +24,10 @@ const END_ROUNDINGS: f64 = 16.0;
 /// position, plus −1 to 1 times each segment, plus a vector in a ball.
 #[derive(Clone, Copy, Debug)]
 pub struct Uncertainty {
-    /// Displacements in the receiver's plane that errors of its barycentrics cause, in scene units.
+    /// Displacements in the receiver's plane, in scene units; each may act with a factor from −1 to
+    /// 1. Errors of the receiver's barycentrics cause them.
     pub segments: [DVec3; 3],
-    /// Radius of the ball, scene units.
+    /// Radius of the ball, in scene units: the bound on all further errors of the position.
     pub radius: f64,
 }
 

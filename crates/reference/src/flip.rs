@@ -42,8 +42,9 @@ const WIDEST: f64 = 0.04;
 
 type Colour = [f64; 3];
 
-/// Returns the FLIP error of the picture `test` against `reference`: the mean over all pixels, from
-/// 0 (alike) to 1, for an observer who sees 67 pixels per degree. 0 for pictures without pixels.
+/// Returns the FLIP error of the picture `test` against the picture `reference`: the mean over all
+/// pixels, from 0 (alike) to 1, for an observer who sees 67 pixels per degree. 0 for pictures
+/// without pixels.
 ///
 /// # Errors
 /// [`Error::PixelCount`] if the pictures differ in size.

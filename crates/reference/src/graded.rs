@@ -21,20 +21,21 @@ use std::ops::RangeInclusive;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Graded {
-    /// Root mean squared error over the PFL pixels, 0 to 1.
+    /// Root mean squared error over the PFL pixels (those that face the light), 0 to 1.
     pub rmse: f64,
-    /// Root mean squared error over the PFL pixels that are not indeterminate
-    /// ([`GroundTruthPixels::indeterminate`]). At an indeterminate pixel f32 may find another
-    /// answer than the reference does.
+    /// Root mean squared error over the PFL pixels (those that face the light) that are not
+    /// indeterminate ([`GroundTruthPixels::indeterminate`]). At an indeterminate pixel f32 may find
+    /// another answer than the reference does.
     pub rmse_outside_band: f64,
-    /// Mean absolute error over the PFL pixels, 0 to 1.
+    /// Mean absolute error over the PFL pixels (those that face the light), 0 to 1.
     pub mean_absolute_error: f64,
-    /// Number of PFL pixels whose error exceeds each of three bounds.
+    /// Number of PFL pixels (those that face the light) whose error exceeds each of three bounds.
     pub off: OffBy,
-    /// [FLIP](crate::flip) error of the shaded picture against the reference's shaded picture, 0 to
-    /// 1: the mean over all pixels.
+    /// [FLIP](crate::flip) error of the picture that [`Image::shaded`] draws with the method's
+    /// visibility, against the one with the reference's, 0 to 1: the mean over all pixels.
     pub flip: f64,
-    /// Number of PFL pixels whose visibility is not a share: NaN, infinite, or outside of 0 to 1.
+    /// Number of PFL pixels (those that face the light) whose visibility is not a share: NaN,
+    /// infinite, or outside of 0 to 1.
     pub invalid: Invalid,
     /// Errors in the umbra, in the penumbra and in the light of the reference.
     pub soft: SoftErrors,
@@ -42,8 +43,8 @@ pub struct Graded {
 
 /// Errors of a soft-shadow picture, separately for the reference's umbra, penumbra and light. Light
 /// in the umbra is seen as a leak, dark in the light as a stain, and an error in the penumbra
-/// hardly at all. Covers pixels that face the light (PFL) and are not indeterminate. A mean over no
-/// pixels is 0.
+/// hardly at all. Covers pixels that face the light (PFL) and are not indeterminate
+/// ([`GroundTruthPixels::indeterminate`]). A mean over no pixels is 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SoftErrors {
     /// Number of pixels in the umbra: by the reference they see less than a tenth of the light.
@@ -59,9 +60,10 @@ pub struct SoftErrors {
     /// Number of pixels in the penumbra: by the reference they see a tenth to nine tenths of the
     /// light.
     pub penumbra: u64,
-    /// Root mean squared error of the share, for pixels in the penumbra.
+    /// Root mean squared error of the share of light, over the pixels in the penumbra.
     pub penumbra_rmse: f64,
-    /// Mean signed error of the share, for pixels in the penumbra: positive if too light.
+    /// Mean signed error of the share of light, over the pixels in the penumbra: positive if the
+    /// picture is too light.
     pub penumbra_bias: f64,
 }
 
@@ -103,32 +105,32 @@ impl SoftErrors {
     }
 }
 
-/// Number of pixels that face the light (PFL) and whose error of the share has a size above a
-/// bound. Each count includes the counts for larger bounds.
+/// Number of pixels that face the light (PFL) and whose share of light differs from the reference's
+/// by more than a bound. Each count includes the counts for larger bounds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct OffBy {
-    /// Pixels with an error above 1/255, the smallest step that 8 bits can show.
+    /// Pixels with an error of size above 1/255, the smallest step that 8 bits can show.
     pub over_1_255: u64,
-    /// Pixels with an error above 1/16.
+    /// Pixels with an error of size above 1/16.
     pub over_1_16: u64,
-    /// Pixels with an error above 1/4.
+    /// Pixels with an error of size above 1/4.
     pub over_1_4: u64,
 }
 
-/// Number of pixels that face the light (PFL) and whose visibility is not a share of light, by kind
-/// of value.
+/// Number of pixels that face the light (PFL) and whose visibility in a method's picture is not a
+/// share of light from 0 to 1, by kind of value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Invalid {
-    /// Pixels with the value NaN.
+    /// Pixels with the visibility NaN.
     pub nan: u64,
-    /// Pixels with the value ∞ or −∞.
+    /// Pixels with the visibility ∞ or −∞.
     pub infinite: u64,
-    /// Pixels with a finite value below 0 or above 1.
+    /// Pixels with a finite visibility below 0 or above 1.
     pub outside: u64,
 }
 
 impl Invalid {
-    /// Returns the number of all pixels whose visibility is not a share.
+    /// Returns the number of all pixels that `self` counts.
     pub fn total(&self) -> u64 {
         self.nan + self.infinite + self.outside
     }
@@ -140,13 +142,14 @@ impl Invalid {
     }
 }
 
-/// Numbers of pixels over which the errors of a picture are averaged; [`Graded::together`] weights
-/// pictures by them.
+/// Numbers of pixels over which the errors of one picture are averaged; [`Graded::together`]
+/// weights pictures by them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct JudgedPixels {
     /// Number of pixels that face the light (PFL).
     pub facing_light: u64,
-    /// Number of PFL pixels that are indeterminate.
+    /// Number of PFL pixels (those that face the light) that are indeterminate
+    /// ([`GroundTruthPixels::indeterminate`]).
     pub in_band: u64,
 }
 

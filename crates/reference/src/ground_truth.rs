@@ -10,7 +10,8 @@ use rayon::prelude::*;
 use skiagraph_scene::{Camera, LightKind, Mesh};
 use std::borrow::Cow;
 
-/// The oracle's answer for a pixel: if light reaches its receiver, the point that the pixel shows.
+/// The oracle's answer for a pixel: tells if light reaches its receiver, the point that the pixel
+/// shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
     /// The pixel shows no geometry.
@@ -36,15 +37,16 @@ impl Class {
 /// left.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroundTruthPixels {
-    /// Width and height in pixels.
+    /// Width and height of the view in pixels.
     pub viewport: [u32; 2],
     /// Answer for each pixel.
     pub classes: Vec<Class>,
-    /// True where the answer flips when receiver or casters move within their f32 error bounds, so
-    /// that an error of an f32 method there is excused.
+    /// True where the answer flips when the receiver (the point that the pixel shows) or the
+    /// triangles that may block its light move within their f32 error bounds. An error of an f32
+    /// method there is excused.
     pub indeterminate: Vec<bool>,
-    /// dot(interpolated vertex normal, unit vector towards the light); 0 in the background, at most
-    /// 0 outside of a spot light's cone.
+    /// Per pixel: dot(interpolated vertex normal, unit vector towards the light's centre); 0 in the
+    /// background, at most 0 outside of a spot light's cone.
     pub n_dot_l: Vec<f32>,
     /// Linear red, green and blue of each pixel's base colour, for pictures; black in the
     /// background. Empty if the mesh has no materials.
@@ -81,15 +83,15 @@ impl GroundTruthPixels {
         Ok((pixels, more))
     }
 
-    /// Returns the share of a light without extent that each pixel sees: 1 where lit, 0 elsewhere.
-    /// For a light with extent see [`GroundTruth::shares`].
+    /// Returns the share of a light without extent that each pixel sees: 1 where lit, 0 elsewhere;
+    /// row by row from the top left. For a light with extent see [`GroundTruth::shares`].
     pub fn shares(&self) -> Vec<f32> {
         let share = |&class: &Class| f32::from(u8::from(class == Class::Lit));
         self.classes.iter().map(share).collect()
     }
 
-    /// Returns the reference's visibility of each pixel, as a method would output it: 1 where lit,
-    /// 0 elsewhere.
+    /// Returns the reference's visibility of each pixel, as a shadow method would output it: 1
+    /// where lit, 0 elsewhere; row by row from the top left.
     pub fn visibility(&self) -> Vec<u8> {
         self.classes
             .iter()
@@ -97,8 +99,8 @@ impl GroundTruthPixels {
             .collect()
     }
 
-    /// Returns the reference's status of each pixel, a value of [`status`], as a
-    /// method would output it; it is never uncertain.
+    /// Returns the reference's status of each pixel, a value of [`status`], as a shadow method
+    /// would output it, row by row from the top left. It is never uncertain.
     pub fn status(&self) -> Vec<u8> {
         let status = |class: &Class| match class {
             Class::Background => status::BACKGROUND,
@@ -151,7 +153,7 @@ pub struct AreaVisibility {
 
 impl AreaVisibility {
     /// Returns `[root mean square, maximum]` of the standard errors, over the pixels that face the
-    /// light; 0 if no pixel does. `truth` says which pixels those are.
+    /// light by `truth`; both 0 if no pixel does.
     pub fn standard_error(&self, truth: &GroundTruthPixels) -> [f64; 2] {
         let classes = truth.classes.iter().zip(&self.standard_errors);
         let facing = classes.filter(|(class, _)| class.faces_light());
@@ -164,8 +166,8 @@ impl AreaVisibility {
     }
 }
 
-/// Ground truth of one view: the answer at each pixel, and the visible share of a light with
-/// extent.
+/// Ground truth of one view under one light: the answer at each pixel, and the visible share of a
+/// light with extent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroundTruth {
     /// Answer for each pixel.

@@ -40,15 +40,15 @@ const TEXELS: [Colour; 7] = [
 const OUTSIDE_MAP: Colour = [64, 64, 64];
 
 const NO_NUMBER: Colour = [255, 0, 255];
-/// Size of the error of a share of light, 0 to 1, from which on [`Image::difference`] shows its
-/// colours at full strength.
+/// Size of the error of a share of light (which is 0 to 1) from which on [`Image::difference`]
+/// shows its colours at full strength.
 pub const FULL_COLOUR: f64 = 0.25;
 
 /// Ambient light of [`Image::shaded`], as a share of the light's own at normal incidence.
 const AMBIENT: f32 = 0.2;
 
-/// Visibility value of a pixel that can be read as a share of light: an `f32`, or a `u8` or `u32`
-/// of a method with hard shadows.
+/// Visibility value of a pixel that can be read as a share of light: an `f32` of a method with soft
+/// shadows, or a `u8` or `u32` of one with hard shadows.
 pub trait Shown: Copy {
     /// Returns the share of light, 0 in shadow to 1 in light. An `f32` is clamped, and NaN is
     /// shadow. An integer is light unless it is 0 or [`UNANSWERED`].
@@ -89,9 +89,9 @@ pub struct Image {
 
 impl Image {
     /// Draws where a method is wrong: blue = wrongly lit, red = wrongly in shadow, both paler where
-    /// indeterminate, over the reference's shadows in pale colours.
-    /// [`Statistics`](crate::Statistics) defines which pixels are wrong. The arguments are those of
-    /// [`Statistics::judged`](crate::Statistics::judged).
+    /// indeterminate ([`GroundTruthPixels::indeterminate`]), over the reference's shadows in pale
+    /// colours. [`Statistics`](crate::Statistics) defines which pixels are wrong. The arguments are
+    /// those of [`Statistics::judged`](crate::Statistics::judged).
     ///
     /// # Errors
     /// Those of [`Statistics::judged`](crate::Statistics::judged).
@@ -123,10 +123,11 @@ impl Image {
     /// Draws where a method's shares of light (`visibility`) differ from the reference's `shares`:
     /// blue = too light, red = too dark, over the reference's shares in pale grey; magenta = NaN.
     /// Colours are stronger for larger errors, up to [`FULL_COLOUR`]. Both lists have one value per
-    /// pixel, row by row from the top left.
+    /// pixel, row by row from the top left. `truth` tells which pixels face the light; others show
+    /// no error.
     ///
     /// # Errors
-    /// [`Error::PixelCount`] if a buffer does not fit the reference.
+    /// [`Error::PixelCount`] if a list does not have one value per pixel of `truth`.
     pub fn difference(
         visibility: &[f32],
         shares: &[f32],
@@ -180,11 +181,12 @@ impl Image {
     }
 
     /// Draws a method's output alone: white = lit, black = shadow, grey for shares in between,
-    /// green = facing away, grey-blue = background. `status` holds values of
-    /// [`status`], which say where a pixel faces away or shows the background.
+    /// green = facing away, grey-blue = background. `status` holds values of [`status`], which tell
+    /// where a pixel faces away or shows the background. Both lists have one value per pixel, row
+    /// by row from the top left.
     ///
     /// # Errors
-    /// [`Error::PixelCount`] if a buffer does not fit `viewport`.
+    /// [`Error::PixelCount`] if a list does not have one value per pixel of `viewport`.
     pub fn visibility(
         viewport: [u32; 2],
         visibility: &[impl Shown],
@@ -208,10 +210,11 @@ impl Image {
     }
 
     /// Draws the shaded scene, as [`shaded`](Self::shaded) does, with the pixels that the method
-    /// calls uncertain in purple.
+    /// calls uncertain ([`status::UNCERTAIN`]) in purple. Both lists have one value per pixel, row
+    /// by row from the top left.
     ///
     /// # Errors
-    /// [`Error::PixelCount`] if a buffer does not fit the reference.
+    /// [`Error::PixelCount`] if a list does not have one value per pixel of `truth`.
     pub fn uncertain(
         visibility: &[impl Shown],
         status: &[impl Copy + Into<u32>],
@@ -228,11 +231,11 @@ impl Image {
     }
 
     /// Draws the scene in its base colours, or in grey without materials, under Lambert's law:
-    /// max(n · l, 0) × visibility + ambient, with n · l of `truth` and the given visibility, one
-    /// value per pixel.
+    /// max(n · l, 0) × visibility + ambient, with n · l and base colours of `truth`. `visibility`
+    /// has one value per pixel, row by row from the top left.
     ///
     /// # Errors
-    /// [`Error::PixelCount`] if `visibility` does not fit the reference.
+    /// [`Error::PixelCount`] if `visibility` does not have one value per pixel of `truth`.
     pub fn shaded(visibility: &[impl Shown], truth: &GroundTruthPixels) -> Result<Self, Error> {
         check_pixel_count("visibility", truth.viewport, visibility.len())?;
         let mut rgb = Vec::with_capacity(truth.classes.len() * 3);

@@ -10,8 +10,8 @@ use crate::{
 };
 use serde::{Deserialize, Serialize};
 
-/// Differences in error between neighbouring pixels, where two layers of a shadow map meet and
-/// elsewhere. They show if a cascade or cube map has visible seams.
+/// Differences in error between neighbouring pixels, where two layers of a shadow map (cascades or
+/// cube faces) meet and elsewhere. They show if a cascade or cube map has visible seams.
 ///
 /// A *pair* is two pixels beside or below each other that face the light, are not indeterminate,
 /// and show one surface: the receiver of each lies within a pixel's width of the plane of the
@@ -22,22 +22,25 @@ use serde::{Deserialize, Serialize};
 /// it is 1 where one of the two pixels is wrong.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LayerJump {
-    /// Number of pairs across a border.
+    /// Number of pairs of neighbouring pixels that lie across a border between layers of the shadow
+    /// map.
     pub pairs: u64,
-    /// Mean difference of the pairs across a border, 0 to 2.
+    /// Mean difference in error of the pairs of neighbouring pixels across a border between layers,
+    /// 0 to 2.
     pub across: f64,
-    /// Number of pairs elsewhere, within one layer.
+    /// Number of pairs of neighbouring pixels that lie within one layer of the shadow map.
     pub pairs_elsewhere: u64,
-    /// Mean difference of the pairs elsewhere, 0 to 2; 0 if there are none.
+    /// Mean difference in error of the pairs of neighbouring pixels within one layer, 0 to 2; 0 if
+    /// there are none.
     pub elsewhere: f64,
 }
 
 impl LayerJump {
     /// Measures the jump in a picture. `seen` is the picture's mesh, camera and G-buffer. `shown`
     /// and `shares` are the shares of light that the method shows and those of the reference;
-    /// `layers` is the index of the map layer in which the method looks each pixel up. Each list
-    /// has one entry per pixel, row by row from the top left. Returns `None` if no pair lies across
-    /// a border.
+    /// `layers` is the index of the map layer in which the method looks each pixel up. `truth`
+    /// tells which pixels face the light and are not indeterminate. Each list has one entry per
+    /// pixel, row by row from the top left. Returns `None` if no pair lies across a border.
     ///
     /// # Errors
     /// [`Error::PixelCount`] if a list does not have one entry per pixel of `truth`.
@@ -91,7 +94,7 @@ impl LayerJump {
     }
 
     /// Returns by how much the mean difference across a border exceeds that elsewhere: `across −
-    /// elsewhere`. About 0 if the borders do not show.
+    /// elsewhere`. It is about 0 if the borders cannot be seen.
     pub fn jump(&self) -> f64 {
         self.across - self.elsewhere
     }

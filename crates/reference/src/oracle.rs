@@ -20,11 +20,12 @@ use std::{fmt, ops::ControlFlow, str::FromStr, sync::OnceLock};
 /// the receiver's own surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum OracleMode {
-    /// The ray begins at the receiver itself; the pixel's own primitive is not a caster.
+    /// The ray begins at the receiver itself; the pixel's own primitive cannot block it.
     #[default]
     Exact,
     /// The ray begins at the receiver moved by this length, in scene units, towards the light;
-    /// every primitive is a caster. 0.03 on Sponza is the dissertation's convention.
+    /// every primitive can block it. 0.03 on Sponza is the convention of the dissertation
+    /// (docs/methods.md).
     Offset(f64),
 }
 
@@ -89,7 +90,7 @@ pub struct Oracle<'a> {
 /// The oracle's answer for a ray: the result of [`Oracle::occlusion`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Occlusion {
-    /// True if a triangle stands in the ray's way.
+    /// True if a triangle stands in the ray's way, at any distance.
     pub blocked: bool,
     /// True if `blocked` changes when the triangles move by the f32 rounding of their corners, seen
     /// from the ray's origin.
@@ -118,7 +119,7 @@ impl<'a> Oracle<'a> {
     /// *less* keeps the first one drawn.
     ///
     /// # Errors
-    /// [`Error::Interrupted`].
+    /// [`Error::Interrupted`] if the caller stops the run.
     pub fn primary(&self, camera: &Camera, progress: Progress) -> Result<Vec<u32>, Error> {
         let max_distance = self.tree.max_distance(camera.eye);
         per_pixel(camera.viewport, progress, |x, y, stack| {
@@ -305,9 +306,9 @@ impl<'a> Oracle<'a> {
     }
 }
 
-/// Classifies each pixel of a G-buffer as if nothing cast shadows: every receiver that faces the
-/// light is lit. It is fast, because it traces no rays and builds no hierarchy. `primitives` is as
-/// for [`Oracle::shade`].
+/// Classifies each pixel of a G-buffer as if nothing cast shadows: every receiver (point that a
+/// pixel shows) that faces the light is lit. It is fast, because it traces no rays and builds no
+/// hierarchy. `primitives` is as for [`Oracle::shade`].
 ///
 /// # Errors
 /// [`Error::PixelCount`], [`Error::UnknownPrimitive`], [`Error::Light`], [`Error::Interrupted`].

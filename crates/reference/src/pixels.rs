@@ -8,8 +8,8 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 /// the mesh).
 pub const BACKGROUND: u32 = u32::MAX;
 
-/// Callback that reports how far a run over a viewport is, and flag that stops the run. The
-/// [`Default`] reports nothing and never stops.
+/// Callback that reports how far a run over the pixels of a viewport is, and flag that stops the
+/// run. The [`Default`] reports nothing and never stops.
 #[derive(Clone, Copy)]
 pub struct Progress<'a> {
     /// Function that is called from any thread whenever a row of pixels is done, with the number of
@@ -38,7 +38,7 @@ impl Default for Progress<'_> {
 /// the run.
 ///
 /// # Errors
-/// Those of `pixel`, and [`Error::Interrupted`].
+/// Those of `pixel`, and [`Error::Interrupted`] if the caller stops the run.
 pub fn per_pixel<T: Send>(
     viewport: [u32; 2],
     progress: Progress,
@@ -87,7 +87,7 @@ pub(crate) fn shown(
 /// Checks that the buffer `name`, which has `actual` values, holds one value per pixel.
 ///
 /// # Errors
-/// [`Error::PixelCount`].
+/// [`Error::PixelCount`] if it does not.
 pub fn check_pixel_count(
     name: &'static str,
     viewport: [u32; 2],

@@ -33,8 +33,8 @@ const POSITIONAL_FACING_ROUNDINGS: f64 = FACING_ROUNDINGS + 4.0;
 /// the cosine (5).
 const CONE_ROUNDINGS: f64 = 16.0;
 
-/// Least distance of a receiver from the edges of its primitive, in pixels. It is far more than f32
-/// may move the receiver, which therefore does not touch adjoining surfaces.
+/// Least distance of a [`Receiver`] from the edges of its triangle, in pixels. It is far more than
+/// f32 may move the receiver, which therefore does not touch adjoining surfaces.
 pub const INSET: f64 = 1.0 / 64.0;
 
 /// Share of the determinant beyond which the edge functions' error makes the hit meaningless.
@@ -50,10 +50,11 @@ pub struct Receiver {
     pub towards: Towards,
     /// True if the receiver lies outside of a spot light's cone; false for other lights.
     pub outside_cone: bool,
-    /// True if f32 arithmetic may find the opposite of `outside_cone`.
+    /// True if f32 arithmetic may find the opposite of `outside_cone`: the receiver lies on the
+    /// edge of a spot light's cone. False for other lights.
     pub on_cone_edge: bool,
     /// Dot product of the interpolated, unnormalised vertex normal and the unit vector towards the
-    /// light. The normal is turned round for the back of a double-sided primitive.
+    /// light's centre. The normal is turned round for the back of a double-sided primitive.
     pub n_dot_l: f64,
     /// Bound on the f32 error of `n_dot_l`; infinite for a primitive seen edge-on, and for a
     /// receiver at the position of a spot or point light.
@@ -69,7 +70,7 @@ impl Receiver {
     /// [`Oracle::shade`](crate::Oracle::shade).
     ///
     /// # Errors
-    /// [`Error::UnknownPrimitive`].
+    /// [`Error::UnknownPrimitive`] if the pixel names a triangle that the mesh does not have.
     pub fn from_pixel(
         mesh: &Mesh,
         primitives: &[u32],

@@ -17,15 +17,15 @@ const CHANGE: f32 = 1.0 / 16.0;
 const SAME: f32 = 1.0 / 255.0;
 
 /// Number of receivers (points of surfaces) that two successive frames both show, and number of
-/// those whose visibility the method changed without cause.
+/// those whose visibility a shadow method changed without cause.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Shimmer {
     /// Number of pixels of the later frame whose receiver faces the light and has the same ground
-    /// truth in both frames (shares of an area light may differ by 1/255), and is indeterminate in
-    /// neither.
+    /// truth in both frames (shares of an area light may differ by 1/255), and is indeterminate
+    /// ([`GroundTruthPixels::indeterminate`](crate::GroundTruthPixels::indeterminate)) in neither.
     pub compared: u64,
-    /// Number of compared pixels whose visibility, 0 to 1, the method changed by more than 1/16, or
-    /// to or from NaN.
+    /// Number of pixels of `compared` whose visibility, 0 to 1, the method changed by more than
+    /// 1/16, or to or from NaN.
     pub changed: u64,
 }
 
@@ -78,10 +78,10 @@ impl Seen<'_> {
 }
 
 /// Finds, for each pixel of the frame `now`, the pixel of the frame `before` that shows the same
-/// receiver. The result has an entry for each pixel of `now`: the index of a pixel of `before`, row
-/// by row from the top left, or [`BACKGROUND`] if no pixel shows the receiver. The receiver keeps
-/// its place on its primitive, which may have moved. The earlier pixel is the one in which that
-/// place was, if that pixel showed the same primitive.
+/// receiver (point of a surface). The result has an entry for each pixel of `now`: the index of a
+/// pixel of `before`, row by row from the top left, or [`BACKGROUND`] if no pixel shows the
+/// receiver. The receiver keeps its place on its primitive, which may have moved. The earlier pixel
+/// is the one in which that place was, if that pixel showed the same primitive.
 ///
 /// # Errors
 /// [`Error::PixelCount`], [`Error::UnknownPrimitive`], [`Error::Interrupted`].
@@ -136,10 +136,11 @@ fn earlier(place: DVec3, primitive: u32, before: &Mesh, now: &Mesh) -> DVec3 {
 
 /// Counts the receivers whose visibility changed between two frames. `same` is the result of
 /// [`same_receivers`]. The first pair holds the shares of light that the method shows at each pixel
-/// of the earlier and of the later frame, the second pair the ground truths of these frames.
+/// of the earlier and of the later frame, row by row from the top left; the second pair holds the
+/// ground truths of these frames.
 ///
 /// # Errors
-/// [`Error::PixelCount`] for buffers that are not as large as their frame.
+/// [`Error::PixelCount`] for a list that does not have one value per pixel of its frame.
 pub fn shimmer(
     same: &[u32],
     [before, now]: [&[f32]; 2],

@@ -6,7 +6,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::ControlFlow;
 
-/// First surface on a ray.
+/// First surface of a mesh on a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sight {
     /// Distance from the ray's origin, in multiples of the length of the ray's direction vector.
@@ -18,8 +18,9 @@ pub struct Sight {
     pub is_front: bool,
 }
 
-/// Finds the first surface on each ray, given by its origin and direction (any length but zero).
-/// The result has an entry for each ray, in their order: `None` for a ray that meets nothing.
+/// Finds the first surface of the oracle's mesh on each ray, given by its origin and direction (any
+/// length but zero). The result has an entry for each ray, in their order: `None` for a ray that
+/// meets nothing.
 pub fn sights(oracle: &Oracle<'_>, rays: &[(DVec3, DVec3)]) -> Vec<Option<Sight>> {
     let tree = &oracle.tree;
     let sight = |stack: &mut Vec<u32>, &(origin, direction): &(DVec3, DVec3)| {

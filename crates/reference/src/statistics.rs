@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 
 pub use crate::status;
 
-/// Value of the output `visibility` for a pixel without an answer, because the driver ended the
-/// shader before its shadow ray was traced. Pictures show the pixel in shadow;
+/// Value of a shadow method's output `visibility` for a pixel without an answer, because the driver
+/// ended the shader before its shadow ray was traced. Pictures show the pixel in shadow;
 /// [`Statistics::judged`] refuses frames with such pixels.
 pub const UNANSWERED: u32 = 2;
 
@@ -22,11 +22,12 @@ pub struct PixelCounts {
     pub background: u64,
     /// Pixels that face away from the light (PnFL: pixels not facing the light).
     pub facing_away: u64,
-    /// Pixels that face the light (PFL), the denominator of every share.
+    /// Pixels that face the light (PFL), lit or in shadow. All shares of error counts are relative
+    /// to this number.
     pub facing_light: u64,
-    /// Pixels of `facing_light` that see the light.
+    /// Pixels of `facing_light` that see the light; of a light with extent, at least half.
     pub lit: u64,
-    /// Pixels of `facing_light` that do not see the light.
+    /// Pixels of `facing_light` that do not see the light; of a light with extent, less than half.
     pub shadow: u64,
 }
 
@@ -34,9 +35,9 @@ pub struct PixelCounts {
 /// wrong: those with the [status] *certain light* or *certain shadow*.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CertainCounts {
-    /// Pixels with the status *certain light*.
+    /// PFL pixels with the status *certain light* ([`status::CERTAIN_LIGHT`]).
     pub lit: u64,
-    /// Pixels with the status *certain shadow*.
+    /// PFL pixels with the status *certain shadow* ([`status::CERTAIN_SHADOW`]).
     pub shadow: u64,
 }
 
@@ -50,7 +51,8 @@ pub struct WrongCounts {
     pub shadow: u64,
     /// `lit + shadow`, indeterminate pixels included.
     pub total: u64,
-    /// Pixels of `total` that the method called certain, and that are not indeterminate.
+    /// Pixels of `total` that the method called certain (by its [status]), and that are not
+    /// indeterminate.
     pub certain: u64,
     /// Pixels of `total` that are indeterminate: the reference's answer flips within the f32 error
     /// bounds.
@@ -58,19 +60,19 @@ pub struct WrongCounts {
 }
 
 /// Number of the pixels that the reference lights, or of those in its shadow, by the method's
-/// [status]. `certain_right + certain_wrong + uncertain` is their number less the
-/// pixels whose status is background or facing away. Indeterminate pixels are included.
+/// [status]. `certain_right + certain_wrong + uncertain` is their number less the pixels that the
+/// method calls background or facing away. Indeterminate pixels are included.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ClassSplit {
-    /// Pixels that the method calls certain and gets right.
+    /// Pixels that the method calls certain by its [status] and gets right.
     pub certain_right: u64,
-    /// Pixels that the method calls certain and gets wrong.
+    /// Pixels that the method calls certain by its [status] and gets wrong.
     pub certain_wrong: u64,
-    /// Pixels of `certain_wrong` that are not indeterminate.
+    /// Pixels of `certain_wrong` that are not indeterminate ([`GroundTruthPixels::indeterminate`]).
     pub certain_wrong_outside_band: u64,
-    /// Pixels that the method calls uncertain.
+    /// Pixels that the method calls uncertain by its [status].
     pub uncertain: u64,
-    /// Pixels of `uncertain` that are wrong in the final picture.
+    /// Pixels of `uncertain` that are wrong in the picture that the method finally shows.
     pub uncertain_wrong: u64,
 }
 
@@ -78,9 +80,9 @@ pub struct ClassSplit {
 /// the reference's lit and shadowed pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Split {
-    /// Pixels that the reference lights.
+    /// Counts of the pixels that the reference lights, by the method's status.
     pub lit: ClassSplit,
-    /// Pixels in the reference's shadow.
+    /// Counts of the pixels in the reference's shadow, by the method's status.
     pub shadow: ClassSplit,
 }
 
@@ -104,12 +106,14 @@ impl ClassSplit {
 }
 
 impl Split {
-    /// Returns the number of PFL pixels that the method calls certain and gets right.
+    /// Returns the number of PFL pixels (facing the light by the reference) that the method calls
+    /// certain and gets right.
     pub fn certain_right(&self) -> u64 {
         self.lit.certain_right + self.shadow.certain_right
     }
 
-    /// Returns the number of PFL pixels that the method calls certain and gets wrong.
+    /// Returns the number of PFL pixels (facing the light by the reference) that the method calls
+    /// certain and gets wrong.
     pub fn certain_wrong(&self) -> u64 {
         self.lit.certain_wrong + self.shadow.certain_wrong
     }
@@ -134,17 +138,21 @@ impl Split {
 /// facing away.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Statistics {
-    /// Number of pixels by the reference's answer.
+    /// Number of pixels by the reference's answer: background, facing away, lit or in shadow.
     pub pixels: PixelCounts,
-    /// Number of PFL pixels that the method calls certain.
+    /// Number of PFL pixels (facing the light by the reference) that the method calls certain by
+    /// its [status].
     pub certain: CertainCounts,
-    /// Number of PFL pixels that the method calls uncertain.
+    /// Number of PFL pixels (facing the light by the reference) that the method calls uncertain by
+    /// its [status].
     pub uncertain: u64,
-    /// Number of PFL pixels by the reference's answer (lit or shadow) and the method's status.
+    /// Number of PFL pixels (facing the light by the reference) by the reference's answer (lit or
+    /// shadow) and the method's status.
     pub split: Split,
-    /// Number of wrong pixels.
+    /// Number of judged pixels whose visibility differs from the reference's.
     pub wrong: WrongCounts,
-    /// Number of PFL pixels that are indeterminate, right or wrong.
+    /// Number of PFL pixels (facing the light by the reference) that are indeterminate
+    /// ([`GroundTruthPixels::indeterminate`]), right or wrong.
     pub band: u64,
     /// Number of pixels that face the light by the reference but not by the method's status, or the
     /// other way round.
@@ -206,8 +214,8 @@ impl Statistics {
         self.wrong.certain += u64::from(pixel.is_certain_wrong());
     }
 
-    /// Finds the pixels that [`WrongCounts::certain`] counts, as ascending indices into the
-    /// buffers. The arguments are those of [`judged`](Self::judged).
+    /// Finds the pixels that [`WrongCounts::certain`] counts, as ascending indices into
+    /// `visibility` and `status`. The arguments are those of [`judged`](Self::judged).
     ///
     /// # Errors
     /// Those of [`judged`](Self::judged).
@@ -240,13 +248,14 @@ impl Statistics {
         self.share(self.wrong.total)
     }
 
-    /// Returns the number of uncertain pixels as a share of PFL, the pixels that face the light.
+    /// Returns the number of pixels that the method calls uncertain as a share of PFL, the pixels
+    /// that face the light.
     pub fn uncertain_share(&self) -> f64 {
         self.share(self.uncertain)
     }
 
-    /// Returns the number of indeterminate pixels as a share of PFL, the pixels that face the
-    /// light.
+    /// Returns the number of indeterminate pixels ([`GroundTruthPixels::indeterminate`]) as a share
+    /// of PFL, the pixels that face the light.
     pub fn indeterminate_share(&self) -> f64 {
         self.share(self.band)
     }

@@ -1,9 +1,10 @@
 //! Number of shadow-map texels that a pixel covers at its receiver, the point that it shows.
 //!
 //! Fewer than one is *under-sampling*, which shows as steps. Zhang and others ("Parallel-Split
-//! Shadow Maps", VRCIA 2006, the dissertation's 3.2.1) write it as dp/ds = n · (dz / z ds) · (cos φ
-//! / cos θ), pixels per texel: a *perspective* part of distance and map, and a *projection* part of
-//! the surface's angles to eye and light. This is the reciprocal, of areas instead of lengths.
+//! Shadow Maps", VRCIA 2006; section 3.2.1 of the dissertation that docs/methods.md names) write it
+//! as dp/ds = n · (dz / z ds) · (cos φ / cos θ), pixels per texel: a *perspective* part of distance
+//! and map, and a *projection* part of the surface's angles to eye and light. This is the
+//! reciprocal, of areas instead of lengths.
 
 use crate::{
     error::Error, ground_truth::GroundTruthPixels, pixels::check_pixel_count, shimmer::Seen,
@@ -30,13 +31,14 @@ impl Footprint {
     }
 }
 
-/// Finds how many texels of a shadow map each pixel covers. `density` has an entry for each pixel:
-/// the map's texels per square scene unit at right angles to the light's ray, at the point that the
-/// pixel shows; 0 outside the map. The result has an entry for each pixel, row by row from the top
-/// left: `None` if the pixel does not face the light or its primitive is seen edge-on.
+/// Finds how many texels of a shadow map each pixel covers. `seen` is the mesh, camera and G-buffer
+/// of the picture. `density` has an entry for each pixel: the map's texels per square scene unit at
+/// right angles to the light's ray, at the point that the pixel shows; 0 outside the map. The
+/// result has an entry for each pixel, row by row from the top left: `None` if the pixel does not
+/// face the light by `truth` or its triangle is seen edge-on.
 ///
 /// # Errors
-/// [`Error::PixelCount`] if a buffer does not fit the reference.
+/// [`Error::PixelCount`] if a list does not have one entry per pixel of `truth`.
 pub fn footprints(
     seen: Seen,
     light: &LightKind,
@@ -75,13 +77,13 @@ pub fn footprints(
 /// lie in the map.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct TexelsPerPixel {
-    /// Number of pixels that face the light and lie in the map.
+    /// Number of pixels that face the light and lie in the map. The quantiles are over these.
     pub pixels: u64,
-    /// Number of pixels in the map that cover less than one texel: the map is too coarse there.
+    /// Number of pixels of `pixels` that cover less than one texel: the map is too coarse there.
     pub under_one: u64,
-    /// Number of pixels that face the light outside the map.
+    /// Number of pixels that face the light and lie outside the map.
     pub outside_map: u64,
-    /// Quantiles of the texels per pixel.
+    /// Quantiles of [`Footprint::texels`], the texels per pixel.
     pub texels: Quantiles,
     /// Quantiles of [`Footprint::perspective`]: the texels per pixel if all surfaces faced the eye
     /// and the light.
@@ -93,11 +95,11 @@ pub struct TexelsPerPixel {
 /// Values that 5, 50 and 95 % of the pixels do not exceed; all 0 if there are no pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Quantiles {
-    /// 5th percentile.
+    /// 5th percentile: the value that 5 % of the pixels do not exceed.
     pub p5: f64,
-    /// Median.
+    /// Median: the value that half of the pixels do not exceed.
     pub median: f64,
-    /// 95th percentile.
+    /// 95th percentile: the value that 95 % of the pixels do not exceed.
     pub p95: f64,
 }
 

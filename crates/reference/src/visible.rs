@@ -24,9 +24,9 @@ const CORNER_ROUNDINGS: f64 = 8.0;
 /// depth that it has in the picture.
 const DEPTH_ROUNDINGS: f64 = 8.0;
 
-/// Counts the pixels of a G-buffer that name a wrong primitive: another surface stands before it,
-/// it is elsewhere, or the pixel shows the background although there is a surface. `primitives`
-/// holds one primitive id per pixel, as for [`Oracle::shade`].
+/// Counts the pixels of a G-buffer that show a wrong primitive: one behind another surface or
+/// beside the pixel, or the background although there is a surface. `primitives` holds one
+/// primitive id (index of a triangle) per pixel, as for [`Oracle::shade`].
 ///
 /// Allows for the rounding of a rasteriser: corners may move by a sixteenth of a pixel, depths by a
 /// few ulps of the triangle's nearest depth. A pixel in which two surfaces meet may show either.

@@ -9,8 +9,9 @@ use skiagraph_compare::wording::{ms, plural, size, thousands};
 /// The most cells of which the table also shows those that are the same.
 const FEW: usize = 16;
 
-/// Returns the changes as text: how many cells are worse, better and the same, a table of figures,
-/// and remarks. Of many cells the table leaves out those that are the same.
+/// Returns the changes as text for a terminal: how many cells (a method on one view in one
+/// viewport) are worse, better and the same, a table of their figures, and remarks. If there are
+/// more than 16 cells, the table leaves out those that are the same.
 pub fn text(changes: &Changes) -> String {
     let count = |verdict| changes.with(verdict).len();
     let cells = &changes.cells;
@@ -46,7 +47,8 @@ pub fn text(changes: &Changes) -> String {
     lines.join("\n") + "\n"
 }
 
-/// Returns a line for each cell that is worse than in the baseline; empty if none is.
+/// Returns a line for each cell (a method on one view in one viewport) that is worse than in the
+/// baseline, or could not run this time; empty if there is none.
 pub fn failures(changes: &Changes) -> Vec<String> {
     let worse = changes.with(Change::Worse).into_iter();
     let line = |cell: &CellChange| {

@@ -15,10 +15,11 @@ use std::collections::BTreeSet;
 const TIME: &str = "GPU ms of a frame less its G-buffer";
 
 /// Builds the chart of time against error: a panel for each folder and viewport, and a mark for
-/// each method and map size. The error is the wrong pixels outside the band (the pixels whose
-/// answer rounding decides), in percent of all pixels. Marks of several views show the mean of the
-/// views. Runs whose answers are shares of light, or whose light has an extent, are not drawn.
-/// `viewport` (pixels) limits the chart to one viewport; `None` draws all.
+/// each method and map size. The time is the GPU time of a frame without its G-buffer, in
+/// milliseconds. The error is the wrong pixels outside the band (the pixels whose answer rounding
+/// decides), in percent of all pixels. Marks of several views show the mean of the views. Runs
+/// whose answers are shares of light, or whose light has an extent, are not drawn. `viewport`
+/// (pixels) limits the chart to one viewport; `None` draws all.
 ///
 /// # Errors
 /// If a drawn run has no GPU times.
@@ -121,7 +122,8 @@ fn front_panel(kept: &Kept, viewport: [u32; 2], maps: &[u32]) -> Result<Panel, C
 }
 
 /// Builds the chart of time and memory against the number of triangles: two panels for each scene,
-/// view and viewport, and a line for each method and map size. `viewport` (pixels) limits the chart
+/// view and viewport, and a line for each method and map size. The time is the GPU time of a frame
+/// without its G-buffer, in milliseconds; the memory is in MB. `viewport` (pixels) limits the chart
 /// to one viewport; `None` draws all.
 ///
 /// # Errors
@@ -199,8 +201,8 @@ pub fn growth(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, Compa
 }
 
 /// Builds the chart of errors over the frames of camera paths: a panel for each folder, path and
-/// viewport, and a line for each method and map size. `viewport` (pixels) limits the chart to one
-/// viewport; `None` draws all.
+/// viewport, and a line for each method and map size. The error is that of [`path_panels`].
+/// `viewport` (pixels) limits the chart to one viewport; `None` draws all.
 ///
 /// # Errors
 /// If none of the runs is of a camera path.
@@ -230,11 +232,12 @@ pub fn frames_of_paths(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figu
     })
 }
 
-/// Returns a panel for each camera path among `runs`: the error of each frame, a series for each
-/// run. The error is the percentage of wrong pixels outside the band among those that face the
-/// light. Under a light with an extent it is the root mean square error of the shares of light.
-/// Runs without frames of a path are skipped. All runs must have one viewport. A series is named
-/// after its method, and its marks have the size of the run's map: its place in `maps`.
+/// Returns a panel for each camera path among `runs`, with a series for each run and a mark for the
+/// error of each frame. The error is the percentage of the pixels facing the light that are wrong
+/// outside the band (the pixels whose answer rounding decides); under a light with an extent it is
+/// the root mean square error of the shares of light. Runs of still views are skipped. All runs
+/// must have one viewport. A series is named after its method. The size of its marks is the index
+/// of the run's map size in `maps` (texels), or 0.
 pub fn path_panels<'a>(
     runs: impl Iterator<Item = (&'a Run, &'a Measured)>,
     maps: &[u32],
@@ -294,7 +297,8 @@ pub fn svg(figure: &Figure) -> Result<String, CompareError> {
     svg.map_err(|error| CompareError::Input(error.to_string()))
 }
 
-/// Returns a line of text for each method that could not run, with the reason; equal lines once.
+/// Returns a line of text for each method that could not run, with its map size and the reason;
+/// equal lines once.
 pub fn unavailable(kept: &[Kept]) -> BTreeSet<String> {
     let runs = kept.iter().flat_map(|kept| &kept.results.runs);
     runs.filter_map(|run| {
@@ -304,7 +308,7 @@ pub fn unavailable(kept: &[Kept]) -> BTreeSet<String> {
     .collect()
 }
 
-/// Adds a mark to the series called `name`; a missing series is added at the end first.
+/// Adds a mark to the series named `name`; a missing series is added at the end first.
 pub fn push(series: &mut Vec<Series>, name: &str, mark: Mark) {
     match series.iter_mut().find(|series| series.name == name) {
         Some(series) => series.marks.push(mark),
@@ -344,8 +348,8 @@ fn time(kept: &Kept, measured: &Measured) -> Result<f64, CompareError> {
     })
 }
 
-/// Returns lines that state the conditions of the measurements: the adapters, and the number of
-/// frames of which medians were taken.
+/// Returns lines about the measurements: one for each adapter, then one with the number of timed
+/// frames per run.
 pub fn conditions(kept: &[Kept]) -> Vec<String> {
     let results = || kept.iter().map(|kept| &kept.results);
     let adapters = results().map(|results| results.adapter.to_string());

@@ -5,7 +5,7 @@ use crate::summary_table::summaries;
 use skiagraph_compare::records::results::Results;
 use skiagraph_compare::wording::{bytes, ms, size};
 
-/// Upper limit for one figure of a method.
+/// Upper limit for one figure of a method, beyond which `compare --fail-if` fails.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gate {
     /// Name of the method with its setting, for example `crsm@n=1`.
@@ -20,10 +20,10 @@ pub struct Gate {
 /// A figure of a method that a [`Gate`] can limit, taken over all views of a viewport.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Figure {
-    /// Wrong pixels, in percent of the pixels that face the light. Those in the band, where
-    /// rounding decides the answer, do not count.
+    /// Wrong pixels, in percent of the pixels that face the light, both summed over the views.
+    /// Pixels whose answer rounding decides (the band) do not count as wrong.
     Wrong,
-    /// Root mean square error of the shares of light, which are 0 to 1.
+    /// Root mean square error of the shares of light, which are 0 to 1, over all views.
     Rmse,
     /// FLIP error (perceptual difference) of the shaded pictures, 0 to 1, as the mean of the views.
     Flip,
@@ -77,9 +77,10 @@ impl Figure {
 }
 
 impl Gate {
-    /// Returns a line of text for each row that fails this condition. A row is the method in one
-    /// map size, viewport and light, over all views. A row that could not run fails as well. The
-    /// list is empty if all rows pass, or if the results have no row of the method.
+    /// Returns a line of text for each row that is beyond this limit. A row is the method with one
+    /// map size, in one viewport and under one light, over all views. A row that could not run
+    /// fails as well. The list is empty if all rows pass, or if the results have no row of the
+    /// method.
     pub fn failures(&self, results: &Results) -> Vec<String> {
         let mut lines = Vec::new();
         for summary in summaries(results) {

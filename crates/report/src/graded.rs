@@ -21,8 +21,9 @@ pub fn area_reference(area: &AreaReference, band: u64) -> String {
     )
 }
 
-/// Returns remarks on answers that are shares of light: the methods by error under a light with an
-/// extent, invalid shares, and the meaning of the colours of error pictures.
+/// Returns remarks on the runs whose answers are shares of light, 0 to 1, a line each: the methods
+/// by error under a light with an extent, invalid shares, and the meaning of the colours of error
+/// pictures. Empty if there are no such runs.
 pub fn graded(runs: &[Run]) -> Vec<String> {
     let mut notes: Vec<String> = ranks(runs).into_iter().collect();
     notes.extend(runs.iter().filter_map(no_shares));
@@ -42,8 +43,8 @@ fn errors(run: &Run) -> Option<Graded> {
     Some(run.measured.as_ref()?.graded)
 }
 
-/// Returns a warning with the number of pixels at which a method's visibility is NaN, infinite or
-/// outside 0 to 1. `None` if there are none.
+/// Returns a warning with the number of pixels at which a run's visibility is NaN, infinite or
+/// outside 0 to 1. `None` if there are none, or the method could not run.
 pub fn no_shares(run: &Run) -> Option<String> {
     let invalid = errors(run)?.invalid;
     let counts = [

@@ -12,9 +12,9 @@ use skiagraph_compare::wording::{command_line, frames, ms, share, thousands};
 use std::{collections::BTreeSet, env};
 
 /// Returns the document's header: a heading, the command line of this process, and the conditions
-/// that all tables share. `today` is the date for runs that are still to be measured; `None` if
-/// there are none. `published` are the files of published figures that tables show. `are_paths` is
-/// true if the runs are of camera paths, of which each frame is timed.
+/// that all tables share. `today` is the date (`2026-11-21`) for runs that are still to be
+/// measured; `None` if there are none. `published` are the files of published figures that tables
+/// show. `are_paths` is true if the runs are of camera paths, of which each frame is timed.
 pub fn header(
     results: &Results,
     today: Option<&str>,
@@ -70,13 +70,14 @@ pub fn header(
     )
 }
 
-/// Returns the heading of a view in Markdown.
+/// Returns the heading of the view named `name` in Markdown.
 pub fn view(name: &str) -> String {
     format!("\n### {name}\n")
 }
 
 /// Returns the section of one view and viewport in Markdown: the reference's pixel counts, a table
-/// of the runs with measurements, and notes. The text is empty without runs.
+/// of the runs with measurements, and notes. `runs` are those of this view and viewport; without
+/// runs the text is empty.
 pub fn viewport(results: &Results, runs: &[Run]) -> String {
     let Some(first) = runs.first() else {
         return String::new();

@@ -1,4 +1,5 @@
-//! Tables of methods and something else: lights or sizes. Nothing is averaged over lights.
+//! Builds tables with a row for each method or pass and a column for each light or size. Nothing is
+//! averaged over lights.
 
 use crate::summary::{Row, by_wall};
 use crate::summary_table::{Summary, summaries};
@@ -9,8 +10,9 @@ use skiagraph_compare::records::results::{Results, Run};
 use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::{bytes, ms, percent, size};
 
-/// Returns a table with a row for each method of the summaries and a column for each summary, under
-/// its head. `cell` writes the figures of a method that was measured.
+/// Returns a table with a row for each method (with its map size) of the summaries, and a column
+/// for each summary, under the head given with it. `cell` returns the text for a method that was
+/// measured; other cells are `–`.
 pub fn by_summary<'a>(
     columns: &[(&str, &Summary<'a>)],
     cell: impl Fn(&Summary<'a>, &Row<'a>) -> String,
@@ -31,8 +33,10 @@ pub fn by_summary<'a>(
 }
 
 /// Returns, for each viewport with several lights, its size in pixels and a table with a row for
-/// each method and a column for each light. Cells show the percentage of wrong pixels outside the
-/// band, the milliseconds of a frame, and the memory.
+/// each method and a column for each light. Cells show the percentage of the pixels facing the
+/// light that are wrong outside the band (the pixels whose answer rounding decides), over all
+/// views; the milliseconds of a frame, the mean of the views' medians; and the memory, the most on
+/// a view.
 pub fn by_light(results: &Results) -> Vec<([u32; 2], Table)> {
     let summaries = summaries(results);
     let mut tables = Vec::new();

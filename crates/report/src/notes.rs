@@ -1,4 +1,4 @@
-//! Notes below tables of results.
+//! Writes the notes below tables of results.
 
 use crate::graded::graded;
 use itertools::Itertools;
@@ -18,8 +18,8 @@ pub fn band_warning(run: &Run) -> Option<String> {
     is_large.then(|| text.to_owned())
 }
 
-/// Returns a warning if other programs used much of the machine when the comparison began; `None`
-/// otherwise.
+/// Returns a warning if the machine's load was half of its logical processors or more when the
+/// comparison began, so that other programs slowed down the times; `None` otherwise.
 pub fn load_warning(machine: &Machine) -> Option<String> {
     let load = machine.load.filter(|_| machine.is_loaded())?;
     let cores = plural(machine.cores as usize, "core");
@@ -29,8 +29,8 @@ pub fn load_warning(machine: &Machine) -> Option<String> {
     ))
 }
 
-/// Returns a warning if pixels of a run's view and viewport show a surface that another surface
-/// hides; `None` if no pixel does. Such pixels do not count against a method.
+/// Returns a warning if the GPU rasterised pixels of a run's view with a surface that another one
+/// hides; `None` if there are no such pixels. Methods are judged on the rasterised surface.
 pub fn surface_warning(run: &Run) -> Option<String> {
     let background = run.pixels.background + run.pixels.facing_away;
     let all = background + run.pixels.facing_light;
@@ -38,7 +38,8 @@ pub fn surface_warning(run: &Run) -> Option<String> {
     (run.wrong_surface > 0).then(text)
 }
 
-/// Returns a sentence that `count` of `all` pixels show a surface that another surface hides.
+/// Returns the sentence that the GPU rasterised `count` of `all` pixels with a surface that another
+/// one hides.
 pub fn wrong_surface(count: u64, all: u64) -> String {
     format!(
         "{} of {} pixels show a surface that another one hides, or none where there is one; every \
@@ -48,8 +49,8 @@ pub fn wrong_surface(count: u64, all: u64) -> String {
     )
 }
 
-/// Describes the texels of a run's shadow map per pixel, and how errors jump between the map's
-/// layers. Returns `None` if the run has no measurements of texels.
+/// Describes the texels of a run's shadow map per pixel, and how errors of neighbouring pixels
+/// differ between the map's layers. Returns `None` if the run has no measurements of texels.
 pub fn map_figures(run: &Run) -> Option<String> {
     let measured = run.measured.as_ref()?;
     let of = measured.texels.as_ref()?;
@@ -83,9 +84,9 @@ fn digits(number: f64) -> String {
     format!("{number:.*}", behind.max(0.0) as usize)
 }
 
-/// Returns a line for each method that was wrong on pixels that it called certain: the number of
-/// these pixels, and what blocks the light there. Runs of the same method must be consecutive; all
-/// its map sizes share one line.
+/// Returns a line for each method that was wrong on pixels that it called certain by its output
+/// `status`: the number of these pixels, and the kind of caster that blocks the light there. Runs
+/// of the same method must be consecutive; all its map sizes share one line.
 pub fn certain_wrong(runs: &[Run]) -> Vec<String> {
     let wrong = |run: &Run| {
         let certain = run.measured.as_ref().map_or(0, |of| of.wrong.certain);
@@ -105,7 +106,8 @@ pub fn certain_wrong(runs: &[Run]) -> Vec<String> {
         .collect()
 }
 
-/// Names a setting that makes most of a run's wrong pixels right; `None` if none was found.
+/// Names a setting of params that makes most of a run's wrong pixels right; `None` if none was
+/// found.
 pub fn hint(run: &Run) -> Option<String> {
     let of = run.measured.as_ref()?.hint.as_ref()?;
     Some(format!(
@@ -138,9 +140,9 @@ const KINDS: [Kind; 3] = [
     ("no blocker", |by| by.none),
 ];
 
-/// Describes how many pixels were certain and wrong, and what blocks the light there. `counts` has
-/// an entry for each run: the number of these pixels, and the split of this number by kind of
-/// blocker. Kinds that no run has are left out.
+/// Describes how many pixels methods called certain but got wrong, and the kinds of casters that
+/// block the light there. `counts` has an entry for each run: the number of these pixels, and the
+/// split of this number by kind of caster. Kinds that no run has are left out.
 pub fn blocked_by(counts: &[(u64, BlockerCounts)]) -> String {
     let said = |name: &str, count: &dyn Fn(&(u64, BlockerCounts)) -> u64| {
         let counts: Vec<u64> = counts.iter().map(count).collect();
@@ -154,7 +156,7 @@ pub fn blocked_by(counts: &[(u64, BlockerCounts)]) -> String {
     parts.join(", ")
 }
 
-/// Returns the notes of a group of runs, one per line: certain but wrong pixels, shares of light,
+/// Returns the notes on runs of `results`, a line each: certain but wrong pixels, shares of light,
 /// steady states, costs of camera paths, and missing GPU times if the adapter measures them.
 pub fn of_runs(results: &Results, runs: &[Run]) -> Vec<String> {
     let mut notes = certain_wrong(runs);
@@ -167,8 +169,8 @@ pub fn of_runs(results: &Results, runs: &[Run]) -> Vec<String> {
     notes
 }
 
-/// Describes the steady state in which a method that reuses earlier frames was judged; `None` for
-/// other methods.
+/// Describes the steady state in which a method that reuses results of earlier frames was judged:
+/// after how many frames its picture repeats, and its errors then. `None` for other methods.
 pub fn remembering(run: &Run) -> Option<String> {
     let measured = run.measured.as_ref()?;
     let steady = measured.steady.as_ref()?;
@@ -198,9 +200,9 @@ pub fn remembering(run: &Run) -> Option<String> {
     })
 }
 
-/// Describes the slowest frame of a camera path, both with the passes that ran and with every pass
-/// run, and the CPU costs of scene changes. Each entry is a line. The list is empty for a still
-/// view.
+/// Describes the slowest frame of a camera path, once with passes skipped whose inputs had not
+/// changed and once with every pass run, and the CPU times of building scene resources again. Each
+/// entry is a line. The list is empty for a still view.
 pub fn path_costs(run: &Run) -> Vec<String> {
     let sequence = run.measured.as_ref().and_then(|of| of.sequence.as_ref());
     let lines = sequence.map(|sequence| {

@@ -13,7 +13,7 @@ use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::{ms, percent, size};
 use std::path::Path;
 
-/// Summaries of several scenes beside each other.
+/// Summaries of the results of several scenes, one column each.
 pub struct Overview<'a> {
     columns: Vec<Column<'a>>,
     /// Number of scenes.
@@ -28,21 +28,23 @@ struct Column<'a> {
     verdict: Verdict,
 }
 
-/// The table of one viewport.
+/// The table of an [`Overview`] in one viewport.
 pub struct Matrix {
     /// Width and height of the viewport in pixels.
     pub viewport: [u32; 2],
     /// A row for each method and a column for each scene and light. Cells show the percentage of
-    /// wrong pixels outside the band with a star for none, or under a light with an extent the
-    /// root mean square error, and in a second line the milliseconds of a frame.
+    /// the pixels facing the light that are wrong outside the band (the pixels whose answer
+    /// rounding decides), with a star if there are none, or under a light with an extent the root
+    /// mean square error, and in a second line the milliseconds of a frame.
     pub table: Table,
-    /// For each column behind the methods, the index of its summary in the list that the overview
-    /// was created from.
+    /// For each column behind the methods, the index of its summary in the list given to
+    /// [`Overview::new`].
     pub summaries: Vec<usize>,
 }
 
-/// Returns a name for each scene, given with the folder of its results: the scene's own, or where
-/// several have that, the folder's.
+/// Returns a name for each scene, in order; each scene is given with the folder of its results. The
+/// name is the scene's own. Scenes of one name get the last component of their folder, or the whole
+/// path if these components are not distinct either.
 pub fn scene_names<'a>(scenes: &[(&'a Path, &'a Results)]) -> Vec<String> {
     let scene = |results: &'a Results| results.scene.name.as_str();
     let last = |folder: &'a Path| folder.file_name().map(|name| name.to_string_lossy());
@@ -61,8 +63,8 @@ pub fn scene_names<'a>(scenes: &[(&'a Path, &'a Results)]) -> Vec<String> {
 }
 
 impl<'a> Overview<'a> {
-    /// Creates the overview of summaries, each with the name of its scene; `None` if all are of one
-    /// scene.
+    /// Creates the overview of summaries, each behind the name of its scene; `None` if all are of
+    /// one scene.
     pub fn new(summaries: &[(&str, &'a Summary<'a>)]) -> Option<Self> {
         let scenes = summaries.iter().map(|(scene, _)| *scene).unique().count();
         let column = |(scene, summary): &(&str, &'a Summary<'a>)| Column {
@@ -79,7 +81,7 @@ impl<'a> Overview<'a> {
         })
     }
 
-    /// Returns the table of each viewport.
+    /// Returns the tables of methods and scenes, one for each viewport.
     pub fn matrices(&self) -> Vec<Matrix> {
         let matrix = |viewport: [u32; 2]| {
             let columns = self.columns.iter().enumerate();
@@ -96,8 +98,8 @@ impl<'a> Overview<'a> {
         self.viewports().into_iter().map(matrix).collect()
     }
 
-    /// Returns the verdict on each scene, then which methods are exact on all scenes, and which
-    /// method the verdict takes on each.
+    /// Returns sentences: the verdict on each scene, the methods that are exact on all scenes, and
+    /// the methods that the verdicts recommend.
     pub fn sentences(&self) -> Vec<String> {
         let verdict = |column: &Column| {
             let name = self.name(column);
@@ -198,7 +200,7 @@ impl<'a> Overview<'a> {
     }
 }
 
-/// Says what the cells of an overview show.
+/// Legend of the cells of an overview's tables.
 pub const LEGEND: &str = "wrong pixels outside the band (* none) or RMSE, and a frame";
 
 fn cell(summary: &Summary, row: &Row) -> String {

@@ -19,8 +19,8 @@ use std::{
 /// Name of the page's file in a folder of results.
 pub const FILE: &str = "report.html";
 
-/// Writes the page of one folder of results into that folder, as [`FILE`]. The sink gets a note
-/// about pictures that did not fit into the page.
+/// Writes the HTML page of one folder of results into that folder, as [`FILE`]. The sink gets a
+/// note about pictures that did not fit into the page.
 ///
 /// # Errors
 /// The errors of [`write`](write()).
@@ -28,10 +28,10 @@ pub fn write_beside(folder: &Path, sink: &dyn Sink) -> Result<(), CompareError> 
     write(&[folder.to_path_buf()], &folder.join(FILE), sink)
 }
 
-/// Writes the page of several folders or files of results to `file`. A folder without results
-/// stands for the folders of results in it. The sink gets a note about pictures that did not fit
-/// into the page. If `file` lies in one of the folders, that folder's lock is held, so the page is
-/// never older than the results beside it.
+/// Writes the HTML page of the results in `places` to `file`. Each place is a folder that `compare`
+/// or `stress` wrote, a results.json, or a folder of such folders. The sink gets a note about
+/// pictures that did not fit into the page. If `file` lies in one of the folders, that folder's
+/// lock is held, so the page is never older than the results beside it.
 ///
 /// # Errors
 /// If a folder has no results, results cannot be read, or the file cannot be written.
@@ -46,13 +46,13 @@ pub fn write(places: &[PathBuf], file: &Path, sink: &dyn Sink) -> Result<(), Com
     write_page(&sources, &matrices, file, sink)
 }
 
-/// Joins the results of several folders or files, and writes results.json, results.csv and the page
-/// into the folder `out`, which is made if it is missing. Results that it holds already stay in it.
-/// Pictures stay where they are; the page shows them. The sink is told which results are joined and
-/// which are kept apart.
+/// Joins the results in `places` (folders or results.json files that `compare` wrote), and writes
+/// results.json, results.csv and the HTML page into the folder `out`, which is made if it is
+/// missing. Results that it holds already stay in it. Pictures are embedded in the page, but not
+/// copied into `out`. The sink is told which results are joined and which are kept apart.
 ///
 /// # Errors
-/// If nothing of a place is results, results cannot be read, or a file cannot be written.
+/// If a place has no results, results cannot be read, or a file cannot be written.
 pub fn merge(places: &[PathBuf], out: &Path, sink: &dyn Sink) -> Result<(), CompareError> {
     // All is read before anything is written.
     read(places)?;
@@ -76,8 +76,8 @@ pub fn merge(places: &[PathBuf], out: &Path, sink: &dyn Sink) -> Result<(), Comp
     if sources.len() > 1 {
         let count = plural(sources.len(), "group");
         sink.note(&format!(
-            "{count} of results, which differ in scene, adapter, machine, program or protocol, are \
-             kept apart"
+            "{count} of results, which differ in scene, adapter, machine, program or protocol, or \
+             give one label to several settings, are kept apart"
         ));
     }
     results_csv::save(&results, out)?;
@@ -167,6 +167,8 @@ mod tests {
         let on = |host: &str| {
             let mut results = sample();
             results.machine.host = Some(host.into());
+            let runs = results.runs.iter_mut();
+            runs.for_each(|run| run.machine = Some(results.machine.clone()));
             results
         };
         let far = folder(&place("far"), &on("far"));

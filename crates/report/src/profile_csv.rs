@@ -88,8 +88,8 @@ fn six_digits(number: f64) -> String {
     format!("{number:.6}")
 }
 
-/// Returns the profiles as CSV, with a line for each pass and one for the whole frame. The cell
-/// `pass` is empty in the lines of whole frames.
+/// Returns the profiles as CSV: for each profile a line for each pass and one for the whole frame.
+/// The cell `pass` is empty in the lines of whole frames.
 ///
 /// # Errors
 /// The errors of [`Table::csv`].

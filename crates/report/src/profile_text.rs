@@ -10,7 +10,8 @@ use skiagraph_compare::records::statistics::Series;
 use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::{bytes, frames, ms, size};
 
-/// Returns a profile as text for a terminal, with the comparison to its baseline if it has one.
+/// Returns a profile as text for a terminal, with the comparison with an older profile if it has
+/// one.
 pub fn report(profile: &Profile) -> String {
     let mut text = conditions(profile);
     text += &format!("\nTimes, ms\n{}\n", times(profile));

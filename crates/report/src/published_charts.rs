@@ -1,5 +1,5 @@
 //! Charts published figures beside measured ones: published left, measured right, on the same axes.
-//! There is a chart for each quantity that both sides have, by map size and by viewport.
+//! There is a chart for each quantity that both have, by map size and by viewport.
 
 use crate::charts::conditions;
 use crate::looks::looks;
@@ -12,11 +12,12 @@ use skiagraph_compare::records::published_row::Row;
 use skiagraph_compare::records::results::Run;
 use skiagraph_compare::records::sources::Kept;
 
-/// Charts of published and measured figures, and the list of figures that only one side has.
+/// Charts of published and measured figures, and the list of figures that are only published or
+/// only measured.
 pub struct Charts {
-    /// Name of the chart's file without extension, and the chart.
+    /// The charts, each behind the name of its file without extension.
     pub charts: Vec<(String, Figure)>,
-    /// Lines of text, each about figures that are not drawn, and the reason.
+    /// Lines of text, each about figures that are not drawn, with the reason.
     pub left_out: Vec<String>,
 }
 
@@ -27,9 +28,10 @@ const SUM: &str = "ms.steps";
 /// The chart of methods without a map, whose times have nothing to be a share of.
 const GROWTH: &str = "time-by-viewport";
 
-/// Draws a chart for each quantity that is both published and measured. The published figures must
-/// be attached to the runs of `kept`. `published_rows` are all rows of the publication; `label` is
-/// its name in the charts. `viewport` (pixels) limits the charts to one viewport; `None` draws all.
+/// Draws charts for each quantity that is both published and measured, by map size and by viewport.
+/// The published figures must be in [`Run::published`] of the runs of `kept`. `published_rows` are
+/// all figures of the publication; `label` is its name in the charts. `viewport` (pixels) limits
+/// the charts to one viewport; `None` draws all.
 pub fn draw(
     kept: &[Kept],
     published_rows: &[Row],

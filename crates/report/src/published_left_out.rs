@@ -1,4 +1,4 @@
-//! Names the gaps in charts of published and measured figures, where only one side has a figure.
+//! Names the figures that are missing in charts, as they are only published or only measured.
 
 use crate::published_panels::{Cell, Groups, PanelRow};
 use itertools::Itertools;
@@ -7,9 +7,9 @@ use skiagraph_compare::records::published_row::Row;
 use skiagraph_compare::wording::size;
 use std::collections::BTreeSet;
 
-/// Returns a line that names the views of `cells` that a drawn chart does not show; `None` if it
-/// shows all. `cells` are all measured runs, `chart` is the chart's name, `drawn` are its pairs of
-/// panels, and `groups` is the grouping of its bars.
+/// Returns a line that names the scenes and views of `cells` that a drawn chart does not show;
+/// `None` if it shows all. `cells` are all measured runs, `chart` is the chart's name, `drawn` are
+/// its pairs of panels, and `groups` is the grouping of its bars.
 pub fn views_left_out(
     cells: &[Cell],
     chart: &str,
@@ -34,9 +34,9 @@ pub fn views_left_out(
     ))
 }
 
-/// Returns a line for each scene of which only one side (published or measured) has figures, and
-/// for each scene in which only one side has a view, viewport, map size or preset. `cells` are the
-/// measured runs, `rows` the published figures, and `label` names the publication.
+/// Returns a line for each scene that is only published or only measured, and a line for each other
+/// scene with the views, viewports, map sizes and presets that are. `cells` are the measured runs,
+/// `rows` the published figures, and `label` names the publication.
 pub fn without_counterpart<'a>(
     cells: &[Cell],
     rows: impl Iterator<Item = &'a Row>,

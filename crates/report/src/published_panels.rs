@@ -1,5 +1,5 @@
-//! Pairs of chart panels (coordinate systems): published figures on the left, measured ones on the
-//! right.
+//! Builds pairs of chart panels (coordinate systems): published figures on the left, measured ones
+//! on the right.
 
 use crate::charts::push;
 use skiagraph_chart::{Kind, Mark, Panel, Series};
@@ -8,7 +8,7 @@ use skiagraph_compare::records::results::{Published, Results, Run};
 use skiagraph_compare::wording::size;
 use std::collections::BTreeSet;
 
-/// A measured run, to which published figures may be attached.
+/// A measured run, which may have published figures ([`Run::published`]).
 pub struct Cell<'a> {
     /// Results that contain the run.
     pub results: &'a Results,
@@ -28,9 +28,10 @@ impl<'a> Cell<'a> {
         &self.results.scene.name
     }
 
-    /// Returns the run whose figure of this quantity is the whole, of which this run's figures are
-    /// shares: the same view and viewport, with a method that draws no shadow map, and with a
-    /// published figure of the quantity. Returns `None` if there is no such run.
+    /// Returns the run by whose figure of `quantity` this run's figure is divided, as times of
+    /// different machines are only comparable as ratios. It is the first of the same view and
+    /// viewport, of a method without a shadow map, that has a published figure of the quantity.
+    /// Returns `None` if there is no such run.
     pub fn whole(&self, quantity: &str) -> Option<&'a Run> {
         let Run { view, viewport, .. } = self.run;
         let mut runs = self.results.runs.iter();
@@ -48,8 +49,8 @@ pub fn published<'a>(run: &'a Run, quantity: &str) -> Option<&'a Published> {
     figures.find(|figure| figure.quantity == quantity)
 }
 
-/// Grouping of the bars in a panel, by viewport or by map size. Each value of the other one gets a
-/// pair of panels of its own.
+/// Grouping of the bars in a panel: by viewport, with a pair of panels for each map size, or the
+/// other way round.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Groups {
     /// A group of bars for each viewport, a pair of panels for each map size.
@@ -83,20 +84,20 @@ impl Groups {
     }
 }
 
-/// A published and a measured figure of the same quantity, each drawn as a bar.
+/// A published and a measured figure of the same quantity and run, each drawn as a bar.
 pub struct Bar<'a> {
     /// Name of the bar's series, which is the preset.
     pub series: String,
     /// The published figure as printed.
     pub figure: &'a Published,
-    /// Value of the published bar: the published figure divided by its whole.
+    /// Height of the published bar: the published figure divided by `their_whole` of [`Bar::new`].
     pub theirs: f64,
-    /// Value of the measured bar: the measured figure divided by its whole.
+    /// Height of the measured bar: the measured figure divided by `our_whole` of [`Bar::new`].
     pub ours: f64,
 }
 
 impl<'a> Bar<'a> {
-    /// Returns the bar of a quantity for a cell. The published figure is divided by `their_whole`,
+    /// Returns the bars of a quantity for a run. The published figure is divided by `their_whole`,
     /// the measured one by `our_whole`; 1 leaves a figure as it is. Returns `None` if the figure is
     /// not both published and measured, or a quotient is not finite.
     pub fn new(
@@ -116,8 +117,8 @@ impl<'a> Bar<'a> {
     }
 }
 
-/// Content of one pair of panels: the bars of one scene and view, and of one map size or viewport
-/// (the one by which bars are not grouped).
+/// Content of one pair of panels: the bars of one scene and view, and of one map size if bars are
+/// grouped by viewport, or one viewport if they are grouped by map size.
 pub struct PanelRow<'a> {
     /// Name of the scene.
     pub scene: &'a str,
@@ -128,8 +129,8 @@ pub struct PanelRow<'a> {
     bars: Vec<([u32; 2], Bar<'a>)>,
 }
 
-/// Returns the pairs of panels that have at least two groups of bars. `bar` returns the bar of a
-/// cell; `None` leaves the cell out.
+/// Returns the contents of the pairs of panels that have at least two groups of bars. `bar` returns
+/// the bars of a run; `None` leaves the run out.
 pub fn rows<'a>(
     cells: &'a [Cell<'a>],
     groups: Groups,
@@ -171,8 +172,8 @@ impl PanelRow<'_> {
         self.bars.iter().map(|(_, bar)| bar.figure)
     }
 
-    /// Returns two panels of bars: the published figures, titled with `label`, and the measured
-    /// ones. `y` is the label of the vertical axis.
+    /// Returns two panels of bars, grouped by `groups`: the published figures, titled with `label`,
+    /// and the measured ones. `y` is the label of the vertical axis.
     pub fn bars(&self, label: &str, groups: Groups, y: &str) -> [Panel; 2] {
         let known = self.groups();
         let names: Vec<String> = known.iter().map(|group| groups.name(*group)).collect();

@@ -11,8 +11,9 @@ use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::{frames, ms, percent, size, thousands};
 use std::collections::BTreeSet;
 
-/// Returns the heading, both tables and the notes for the runs of one view and viewport, as text.
-/// `runs` must be a contiguous part of `results.runs`; without runs the text is empty.
+/// Returns the heading, a table of times and errors, a table of the times of passes, and notes for
+/// the runs of one view and viewport, as text. `runs` must be a contiguous part of `results.runs`;
+/// without runs the text is empty.
 pub fn group(results: &Results, runs: &[Run]) -> String {
     let Some(first) = runs.first() else {
         return String::new();

@@ -1,5 +1,5 @@
-//! The matrix of `stress` for a terminal: a row for each case, a column for each method, and below
-//! it the failures.
+//! Writes the matrix of `stress` for a terminal: a row for each case, a column for each method, and
+//! below it the failures.
 
 use crate::notes::wrong_surface;
 use crate::table::terminal;
@@ -11,11 +11,12 @@ use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::{percent, size, thousands};
 
 /// Function that returns the command line that draws a method's pictures of a case. Its arguments
-/// are the method's column, the case's name, and the additional assignment of the cell, such as
-/// `cull=none`, if any.
+/// are the method's column, the case's name, and [`Cell::set`], the additional assignment of a
+/// param such as `cull=none`.
 pub type CommandFor<'a> = &'a dyn Fn(&Column, &str, Option<&str>) -> String;
 
-/// Returns the heading, the matrix, the remarks and the failures as text for a terminal.
+/// Returns the heading, the matrix, the remarks and, with the command lines of `command_for`, the
+/// failures as text for a terminal.
 pub fn render(report: &Report, command_for: CommandFor) -> String {
     let table = terminal(&matrix(report).0);
     let (heading, remarks) = (heading(report), remarks(report));
@@ -38,7 +39,8 @@ pub fn heading(report: &Report) -> String {
     )
 }
 
-/// Returns the methods that could not run, warnings, and the outcome of all cells, a line each.
+/// Returns remarks below the matrix, a line each: the methods that could not run, warnings, and the
+/// numbers of cells with each outcome.
 pub fn remarks(report: &Report) -> String {
     let mut text = String::new();
     for column in &report.methods {
@@ -74,13 +76,14 @@ fn named(report: &Report, column: &Column) -> String {
     }
 }
 
-/// A row of the matrix: its case, and one entry for each method that can run, in the order of the
-/// columns. An entry is `None` if the method has no result in this row.
+/// A row of the matrix: its case, and one entry for each method that can run, in the order of
+/// [`Report::methods`]. An entry is `None` if the method has no result in this row.
 pub type MatrixRow<'a> = (&'a Case, Vec<Option<&'a Cell>>);
 
 /// Returns the matrix as a table for display, and its rows as data, in the same order. The table's
-/// first three columns describe the case; the others belong to the methods in the order of the
-/// cells. A case has a second row if methods also ran it with `cull=none`.
+/// first three columns describe the case: its name, and the numbers of its pixels that face the
+/// light and whose answer rounding decides. The others belong to the methods in the order of the
+/// rows' entries. A case has a second row if methods also ran it with `cull=none`.
 pub fn matrix(report: &Report) -> (Table, Vec<MatrixRow<'_>>) {
     let can_run = report.methods.iter();
     let columns: Vec<&Column> = can_run
@@ -187,8 +190,8 @@ fn summary(report: &Report) -> String {
     text
 }
 
-/// Lists the failures case by case, with the commands that draw their pictures. The text is empty
-/// if nothing failed.
+/// Lists the failures case by case, with the command lines of `command_for` that draw their
+/// pictures. The text is empty if nothing failed.
 pub fn failures(report: &Report, command_for: CommandFor) -> String {
     let mut text = String::new();
     for case in &report.cases {

@@ -10,12 +10,13 @@ use skiagraph_compare::records::tuned::Tuned;
 use skiagraph_compare::records::turns::{PairedRatio, Turns};
 use skiagraph_reference::Shimmer;
 
-/// Figures of one method in one setting, combined over the views of one viewport.
+/// Figures of one method in one setting of its params and with one map size, combined over the
+/// views of one viewport and light.
 #[derive(Debug)]
 pub struct Row<'a> {
-    /// Name of the method with its variant and map size.
+    /// Name of the method with its setting and map size in texels: `crsm@n=1 1024`.
     pub label: String,
-    /// Name of the method with its variant.
+    /// Name of the method with its setting, such as `crsm@n=1`.
     pub method: String,
     /// The method's runs with measurements, one for each view.
     runs: Vec<Measurement<'a>>,
@@ -31,19 +32,21 @@ type Measurement<'a> = (&'a Run, &'a Measured);
 /// Number of wrong pixels of a method over all views.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Wrong {
-    /// Wrong pixels outside the band. These count against the method.
+    /// Wrong pixels outside the band (the pixels whose answer rounding decides). These count
+    /// against the method.
     pub outside_band: u64,
-    /// Wrong pixels in the band, where rounding decides which answer is right.
+    /// Wrong pixels in the band, the pixels whose answer rounding decides. These do not count
+    /// against the method.
     pub in_band: u64,
     /// All pixels that face the light, wrong or not.
     pub facing_light: u64,
-    /// All pixels in the band, wrong or not.
+    /// All pixels in the band (those whose answer rounding decides), wrong or not.
     pub band: u64,
 }
 
 impl Wrong {
-    /// Returns the wrong pixels outside the band as a share of the pixels that face the light, from
-    /// 0 to 1.
+    /// Returns the wrong pixels outside the band (the pixels whose answer rounding decides) as a
+    /// share of the pixels that face the light, from 0 to 1; 0 if there are none.
     pub fn share(self) -> f64 {
         self.outside_band as f64 / self.facing_light.max(1) as f64
     }
@@ -73,7 +76,7 @@ impl<'a> Row<'a> {
         self.runs.iter().copied()
     }
 
-    /// Returns the search for good settings that ended in this row; `None` if the method was not
+    /// Returns the record of the search that chose this row's params; `None` if the method was not
     /// tuned, or could not run.
     pub fn tuned(&self) -> Option<&'a Tuned> {
         self.runs.first().and_then(|(run, _)| run.tuned.as_ref())
@@ -84,8 +87,9 @@ impl<'a> Row<'a> {
         self.runs.len()
     }
 
-    /// Returns the wrong pixels of all views; shares of light count as lit from one half on. For a
-    /// method that reuses earlier frames it is the mean of the steady state, rounded up.
+    /// Returns the numbers of wrong pixels, summed over the views; a share of light of one half or
+    /// more counts as lit. For a method that reuses results of earlier frames they are means over
+    /// its steady state (the pictures that it repeats), rounded up.
     pub fn wrong(&self) -> Wrong {
         self.runs.iter().fold(Wrong::default(), |sum, (run, of)| {
             let (outside, in_band) = match cycle(of) {
@@ -107,8 +111,8 @@ impl<'a> Row<'a> {
         })
     }
 
-    /// Returns the begin of the newest comparison among the runs, as text that sorts by time. It is
-    /// empty without runs.
+    /// Returns the start of the newest comparison among those that measured the runs, in UTC:
+    /// `2026-11-21T04:30:12Z`. It is empty without runs.
     pub fn session(&self) -> &'a str {
         let sessions = self.runs.iter().map(|(run, _)| run.session.as_str());
         sessions.max().unwrap_or_default()
@@ -119,7 +123,8 @@ impl<'a> Row<'a> {
         self.runs.iter().all(|(run, _)| run.is_whole())
     }
 
-    /// True if no answer outside the band differs from the reference, in any share of light.
+    /// True if the visibility of every pixel outside the band (the pixels whose answer rounding
+    /// decides) equals the reference's, also as a share of light.
     pub fn is_exact(&self) -> bool {
         let is_exact = |(_, of): &(&Run, &Measured)| {
             of.wrong_outside_band() == 0 && of.graded.rmse_outside_band == 0.0
@@ -127,13 +132,15 @@ impl<'a> Row<'a> {
         self.runs.iter().all(is_exact)
     }
 
-    /// Returns the edge of the shadow map in texels; `None` if the method has none.
+    /// Returns the width and height of the shadow map in texels; `None` if the method has none, or
+    /// could not run.
     pub fn map_size(&self) -> Option<u32> {
         self.runs.first().and_then(|(run, _)| run.map_size)
     }
 
-    /// Returns the method's steps in order, each with its GPU milliseconds: the sum of the medians
-    /// of its passes, as the mean of the views. Passes without GPU times are left out.
+    /// Returns the method's steps (passes with the same name up to the first dot) in order, each
+    /// with its GPU milliseconds: the sum of the medians of its passes, as the mean of the views.
+    /// Passes without GPU times are left out.
     pub fn steps(&self) -> Vec<(&'a str, f64)> {
         let mut steps: Vec<(&str, f64)> = Vec::new();
         let passes = self.runs.iter().flat_map(|(_, of)| &of.passes);
@@ -144,14 +151,16 @@ impl<'a> Row<'a> {
         steps
     }
 
-    /// Returns the root mean square error of the shares of light over all views; `None` without
-    /// runs. For a method that reuses earlier frames it is the mean of the steady state.
+    /// Returns the root mean square error of the shares of light, 0 to 1, over all views; `None`
+    /// without runs. For a method that reuses results of earlier frames the error of a view is the
+    /// mean over its steady state, the pictures that it repeats.
     pub fn rmse(&self) -> Option<f64> {
         let rmse = |of: &Measured| cycle(of).map_or(of.graded.rmse, |cycle| cycle.rmse_mean);
         self.mean(|_, of| Some(rmse(of).powi(2))).map(f64::sqrt)
     }
 
-    /// Returns the FLIP error of the shaded pictures, the mean of the views; `None` without runs.
+    /// Returns the FLIP error (perceptual difference, 0 to 1) of the shaded pictures, as the mean
+    /// of the views; `None` without runs.
     pub fn flip(&self) -> Option<f64> {
         self.mean(|_, of| Some(cycle(of).map_or(of.graded.flip, |cycle| cycle.flip_mean)))
     }
@@ -168,26 +177,26 @@ impl<'a> Row<'a> {
         self.mean(|_, of| median(full(of), by_wall))
     }
 
-    /// Returns the milliseconds of a frame in which only the camera has moved, so that passes keep
-    /// results: the mean of the views' medians. `None` if the method keeps nothing. `by_wall`
-    /// selects wall time instead of GPU time.
+    /// Returns the milliseconds of a frame in which only the camera has moved, so that passes with
+    /// unchanged inputs are skipped: the mean of the views' medians. `None` if no pass is skipped.
+    /// `by_wall` selects wall time instead of GPU time.
     pub fn kept_ms(&self, by_wall: bool) -> Option<f64> {
         let keeps = |(_, of): &(&Run, &Measured)| kept(of) != full(of);
         let any = self.runs.iter().any(keeps);
         self.mean(|_, of| median(kept(of), by_wall)).filter(|_| any)
     }
 
-    /// Returns the first and third quartile of the times of [`frame_ms`](Self::frame_ms), or of
-    /// [`kept_ms`](Self::kept_ms) if `is_kept`, in milliseconds: the means of the views. `None` if
-    /// a view has no such times.
+    /// Returns the first and third quartile of the times of [`frame_ms`](Self::frame_ms), or if
+    /// `is_kept` is true of [`kept_ms`](Self::kept_ms), in milliseconds: the means of the views.
+    /// `None` if a view has no such times.
     pub fn quartiles(&self, by_wall: bool, is_kept: bool) -> Option<[f64; 2]> {
         let times = if is_kept { kept } else { full };
         let q1 = self.mean(|_, of| Some(times(of).spread(by_wall)?.q1))?;
         Some([q1, self.mean(|_, of| Some(times(of).spread(by_wall)?.q3))?])
     }
 
-    /// Returns the GPU milliseconds of a frame without its G-buffer, which all methods share: the
-    /// mean of the views. `None` if a view has no GPU times.
+    /// Returns the GPU milliseconds of a frame without its G-buffer, which all methods draw alike:
+    /// the mean of the views' medians. `None` if a view has no GPU times.
     pub fn own_ms(&self) -> Option<f64> {
         self.mean(|_, of| of.ms_without_gbuffer())
     }
@@ -198,13 +207,13 @@ impl<'a> Row<'a> {
         frames.min().unwrap_or_default()
     }
 
-    /// True if the frame times of two rows differ by more than chance. Both rows have the same
-    /// views in the same order. `is_kept` compares frames in which only the camera moved (all
-    /// frames of a row that keeps nothing), otherwise frames in which every pass ran; `by_wall`
-    /// selects wall time. Frames in which every pass ran are compared one by one ([`PairedRatio`])
-    /// if the methods took turns in one session, or followed the same camera path in one; all other
-    /// times differ if their quartiles do not overlap. False also where times are missing, or fewer
-    /// than eight pairs of frames.
+    /// True if the frame times of two rows differ by more than chance. Both rows must have the same
+    /// views in the same order. If `is_kept` is true, frames in which only the camera moved are
+    /// compared (of a row that skips no pass, all frames), otherwise frames in which every pass
+    /// ran; `by_wall` selects wall time instead of GPU time. Frames in which every pass ran are
+    /// compared one by one ([`PairedRatio`]) if the methods took turns in one session, or followed
+    /// the same camera path in one; all other times differ if their quartiles do not overlap. False
+    /// also where times are missing, or fewer than eight pairs of frames.
     pub fn is_told_apart(&self, other: &Self, by_wall: bool, is_kept: bool) -> bool {
         let pair = || self.runs.iter().zip(&other.runs);
         let is_pair = |((one, of), (other, of_other)): (&Measurement, &Measurement)| {
@@ -251,8 +260,9 @@ impl<'a> Row<'a> {
         self.mean(|_, of| of.rays.map(|rays| rays as f64 / frames(of)))
     }
 
-    /// Returns the answers on camera paths that changed although the right answers did not, as a
-    /// part of those compared. `None` if a run is not of a path.
+    /// Returns the number of pixels on camera paths whose visibility changed from one frame to the
+    /// next although the right one did not, of those that were compared. `None` if a run is not of
+    /// a path.
     pub fn shimmer(&self) -> Option<Part> {
         let mut all = Shimmer::default();
         for (_, of) in &self.runs {
@@ -272,16 +282,17 @@ impl<'a> Row<'a> {
         worst.max_by(|one, other| one.error().total_cmp(&other.error()))
     }
 
-    /// Returns the bytes of the method's own materials and of the scene buffers that it reads: the
-    /// most on any view.
+    /// Returns the bytes of the textures and buffers that the graph makes, and of the scene buffers
+    /// that it reads: the most on any view.
     pub fn bytes(&self) -> u64 {
         let bytes = self.runs.iter();
         let bytes = bytes.map(|(_, of)| of.memory_bytes + of.scene_bytes);
         bytes.max().unwrap_or_default()
     }
 
-    /// Returns the standard error of the reference under a light with an extent: the greatest of
-    /// the views. `None` under other lights.
+    /// Returns the estimated standard error of the reference's shares of light under a light with
+    /// an extent, as the root mean square over the pixels: the greatest of the views. `None` under
+    /// other lights.
     pub fn reference_error(&self) -> Option<f64> {
         let errors = self.runs.iter().filter_map(|(run, _)| run.area);
         errors.map(|area| area.standard_error_rms).reduce(f64::max)
@@ -339,8 +350,9 @@ fn median(times: &FrameTimes, by_wall: bool) -> Option<f64> {
     Some(times.spread(by_wall)?.median)
 }
 
-/// Combines the runs of one viewport (pixels) into rows, the fastest first. Rows that could not run
-/// come last. A tuned method stands behind the one that it is a setting of.
+/// Combines those of `runs` in one viewport (pixels) into rows by method, setting and map size, the
+/// fastest first. Rows that could not run come last. A tuned method stands behind the one that it
+/// is a setting of.
 pub fn rows<'a>(runs: impl IntoIterator<Item = &'a Run>, viewport: [u32; 2]) -> Vec<Row<'a>> {
     let mut cells: Vec<(String, Vec<&Run>)> = Vec::new();
     for run in runs.into_iter().filter(|run| run.viewport == viewport) {

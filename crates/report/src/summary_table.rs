@@ -22,19 +22,20 @@ use skiagraph_compare::wording::{bytes, ms, percent, plural, size, thousands};
 use skiagraph_reference::BlockerCounts;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Results of one viewport under one light.
+/// Results in one viewport under one light, combined over the views.
 pub struct Summary<'a> {
     results: &'a Results,
     /// Width and height of the viewport in pixels.
     pub viewport: [u32; 2],
-    /// The light, if the comparison has several; results of different lights are never averaged.
+    /// Name of the light; `None` if the views are not compared under several. Results of different
+    /// lights are never averaged.
     pub light: Option<&'a str>,
     runs: Vec<&'a Run>,
-    /// A row for each method and setting, the fastest first.
+    /// A row for each method, setting and map size, the fastest first.
     pub rows: Vec<Row<'a>>,
 }
 
-/// Returns a summary for each viewport and light, in the order of the results.
+/// Returns a summary for each viewport and light of `results`, in the order of its runs.
 pub fn summaries(results: &Results) -> Vec<Summary<'_>> {
     let place = |run: &'_ Run| (run.viewport, run.light.clone());
     let all = unique(results.runs.iter().map(place)).into_iter();
@@ -49,8 +50,8 @@ pub fn summaries(results: &Results) -> Vec<Summary<'_>> {
 /// Beginning of lines that warn; the page makes them stand out by it.
 const WARNING: &str = "warning: ";
 
-/// Head of the column of wrong pixels outside the band. Shares of light count as lit from one half
-/// on.
+/// Head of the column with the number of wrong pixels outside the band, the pixels whose answer
+/// rounding decides.
 pub const WRONG: &str = "wrong outside band";
 
 /// Text in the cell of a row that could not run.
@@ -80,19 +81,20 @@ impl<'a> Summary<'a> {
         }
     }
 
-    /// Returns the verdict on the rows: which method to take.
+    /// Returns the verdict on the rows: the method to take, within the budgets of the results.
     pub fn verdict(&self) -> Verdict {
         verdict(&self.rows, &self.results.budgets)
     }
 
-    /// True if a row was measured in another hour than the newest one. Such a row takes no part in
-    /// the verdict.
+    /// True if a row was measured an hour or more before the newest one. Such a row takes no part
+    /// in the verdict.
     pub fn is_old(&self, row: &Row) -> bool {
         let sessions = self.rows.iter().map(Row::session);
         is_another_hour(row.session(), sessions.max().unwrap_or_default())
     }
 
-    /// True if the light has an extent, so that methods are judged by their shares of light.
+    /// True if the light of a measured run has an extent, so that methods are judged by their
+    /// shares of light.
     pub fn is_soft(&self) -> bool {
         self.rows.iter().any(Row::is_soft)
     }
@@ -149,7 +151,7 @@ impl<'a> Summary<'a> {
         lines.join("\n") + "\n"
     }
 
-    /// Returns the summary as a section in Markdown: table and verdict.
+    /// Returns the summary as a section in Markdown: heading, table and verdict.
     pub fn markdown(&self) -> String {
         let mut text = format!("\n## In short: {}, {}\n", self.what(), size(self.viewport));
         text += &format!("\n{}", self.table().markdown());
@@ -160,7 +162,7 @@ impl<'a> Summary<'a> {
         text
     }
 
-    /// Returns the conditions of the measurements, a line each.
+    /// Returns lines about the measurements: adapter, machine, protocol, pixel counts and warnings.
     pub fn conditions(&self) -> Vec<String> {
         let views = self.views();
         let each = self.of_each_view();
@@ -197,7 +199,9 @@ impl<'a> Summary<'a> {
         lines
     }
 
-    /// Returns the table: a row for each method and setting. A star marks the fastest exact method.
+    /// Returns the table: a row for each method, setting and map size, in the order of
+    /// [`rows`](Self::rows). A star marks the fastest method without wrong pixels outside the band
+    /// (the pixels whose answer rounding decides).
     pub fn table(&self) -> Table {
         let are_paths = self.are_paths();
         let by_wall = by_wall(&self.rows);

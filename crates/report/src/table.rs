@@ -5,7 +5,7 @@ use itertools::Itertools;
 use skiagraph_chart::xml;
 use skiagraph_compare::records::table::Table;
 
-/// Width of a terminal that every table of numbers fits into, characters.
+/// Width of the terminal, in characters, for which tables and texts are broken into lines.
 pub const TERMINAL: usize = 80;
 /// Free between two columns.
 const GAP: usize = 2;
@@ -14,9 +14,9 @@ const WORDS: usize = 40;
 /// Text of a cell without a figure.
 const NONE: &str = "–";
 
-/// Returns a table drawn for a terminal; numbers are aligned right. Numbers that do not fit into 80
-/// characters stand in further blocks below, each with the columns of words. Columns in which no
-/// row has a figure are named in a last line instead.
+/// Returns a table as text for a terminal; numbers are aligned right. Columns that do not fit into
+/// 80 characters stand in further blocks below, each with the columns of words. Number columns in
+/// which every cell is `–` are named in a last line instead.
 pub fn terminal(table: &Table) -> String {
     let is_empty = |column: &usize| {
         let mut cells = table.rows.iter().map(|row| &row[*column]);
@@ -124,14 +124,14 @@ pub(crate) fn wrapped(text: &str, room: usize) -> String {
     lines.iter().map(|line| line.trim_end()).join("\n")
 }
 
-/// Returns a value as text, or a dash without one.
+/// Returns a value as the text that `text` makes of it; `–` for `None`.
 pub fn or_dash<T>(value: Option<T>, text: impl Fn(T) -> String) -> String {
     value.map_or(NONE.into(), text)
 }
 
-/// Returns a table as HTML. Cells in the word columns become row headers. `row` returns the HTML
-/// attributes of the row with this index, `sign` the HTML ahead of its first text, `cell` the
-/// attributes of the number cell with this index of row and column.
+/// Returns a table as HTML. Cells in the word columns become row headers. For the index of a row,
+/// `row` returns its HTML attributes, and `sign` the HTML before its first text. For the indices of
+/// row and column, `cell` returns the HTML attributes of a number cell.
 pub fn html(
     table: &Table,
     row: impl Fn(usize) -> String,
@@ -141,8 +141,8 @@ pub fn html(
     html_with(table, row, sign, cell, |_, text| text)
 }
 
-/// Returns a table as [`html`] does; `content` returns the content of a number cell, given its
-/// column and its text as HTML.
+/// Returns a table as [`html`] does; `content` returns the HTML in a number cell, given the index
+/// of its column and its text, which is escaped.
 pub fn html_with(
     table: &Table,
     row: impl Fn(usize) -> String,

@@ -1,4 +1,4 @@
-//! Sentences on what the search for good settings (`compare --tune`) brought.
+//! Writes sentences on the outcome of the search for good settings (`compare --tune`).
 
 use crate::summary::Row;
 use itertools::Itertools;
@@ -79,7 +79,7 @@ pub fn sentences(rows: &[Row]) -> Vec<String> {
     said
 }
 
-/// True if `other` is the method of `row` before it was tuned.
+/// True if `other` is the method of `row` with its params as they were before it was tuned.
 pub fn is_default_of(other: &Row, row: &Row) -> bool {
     let Some(of) = row.tuned() else {
         return false;
@@ -90,11 +90,10 @@ pub fn is_default_of(other: &Row, row: &Row) -> bool {
 
 /// True if a method is exact whatever its params are.
 fn is_exact_anyway(row: &Row) -> bool {
-    let is_exact = |promise: &Promise| promise.of == "exact" && !promise.closed_only;
     row.tuned().is_none()
         && row
             .runs()
-            .all(|(run, _)| run.promise.as_ref().is_some_and(is_exact))
+            .all(|(run, _)| run.promise.as_ref().is_some_and(Promise::is_exact_for_all))
         && row.views() > 0
 }
 

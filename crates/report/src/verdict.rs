@@ -7,33 +7,35 @@ use skiagraph_compare::records::budgets::Budgets;
 use skiagraph_compare::records::turns::LEAST_TURNS;
 use skiagraph_compare::wording::{bytes, ms, percent, plural};
 
-/// The share of pixels in the band beyond which a verdict holds of the others alone: the right
-/// answer of more than one pixel in a hundred hangs on rounding.
+/// Share of the pixels facing the light in the band (the pixels whose answer rounding decides)
+/// beyond which a verdict holds for the other pixels only.
 pub(crate) const MAX_BAND: f64 = 0.01;
 
-/// Verdict on the rows of a summary.
+/// Verdict on the rows of a summary: the methods that it recommends, in figures and in words.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Verdict {
-    /// Index of the fastest row without errors where the right answer is certain, for frames in
-    /// which light or meshes move. `None` if no row qualifies, or shares of light are compared.
+    /// Index of the row that is fastest in frames in which every pass runs, among those without a
+    /// wrong pixel outside the band (the pixels whose answer rounding decides). `None` if there is
+    /// no such row, or shares of light are compared.
     pub fastest_exact: Option<usize>,
-    /// Indices of the rows that are taken, or else of the least wrong ones: the fastest, then those
-    /// whose times cannot be told apart from it. Of frames in which light or meshes move. It is
-    /// empty if no row keeps to the budgets or nothing can be judged.
+    /// Indices of the recommended rows, or if none is right enough of the least wrong ones: the
+    /// fastest, then those whose times cannot be told apart from it. Times are of frames in which
+    /// every pass runs. It is empty if no row keeps to the budgets or no row can be judged.
     pub first: Vec<usize>,
-    /// True if the rows in `first` are taken: they are exact, or right enough by the budgets.
+    /// True if the rows in `first` are recommended: they have no wrong pixel outside the band (the
+    /// pixels whose answer rounding decides), or keep to the budget of wrong pixels.
     pub is_taken: bool,
-    /// Index of the row to set beside the first one: the alternative that the sentences name, a
-    /// faster method before one that is as right. `None` without an alternative.
+    /// Index of the row to show beside the first one: the alternative that the sentences name,
+    /// preferably a faster method, otherwise one that is as right. `None` without an alternative.
     pub runner_up: Option<usize>,
-    /// The verdict in words, a sentence for each entry. It is empty if nothing can be judged.
+    /// The verdict in words, a sentence for each entry. It is empty if no row can be judged.
     pub sentences: Vec<String>,
 }
 
-/// Judges rows that were measured on the same views. A row takes no part if it has fewer views than
-/// others, is of another hour (the machine may have been loaded differently), was cut short, or
-/// could not run. Rows beyond a budget are not recommended, nor is the more wrong one of a method
-/// and what it was tuned to.
+/// Judges rows that were measured on the same views: recommends a method. A row takes no part if it
+/// has fewer views than others, was measured an hour or more before the newest one (the machine may
+/// have been loaded differently), was cut short, or could not run. Rows beyond a budget are not
+/// recommended. Of a method and its tuned setting only the one with less error is.
 pub fn verdict(rows: &[Row], budgets: &Budgets) -> Verdict {
     let most = rows.iter().map(Row::views).max().unwrap_or_default();
     let by_wall = by_wall(rows);
@@ -79,8 +81,8 @@ pub fn verdict(rows: &[Row], budgets: &Budgets) -> Verdict {
     verdict
 }
 
-/// True if the right answer of more than 1 % of the pixels hangs on rounding, so that a verdict
-/// holds of the others alone.
+/// True if rounding decides the right answer of more than 1 % of the pixels facing the light, so
+/// that a verdict holds for the others only.
 pub fn is_conditioned(wrong: Wrong) -> bool {
     Condition::new(wrong).is_some()
 }

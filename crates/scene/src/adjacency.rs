@@ -3,19 +3,20 @@
 use crate::mesh::Mesh;
 use std::collections::HashMap;
 
-/// Entry of [`Adjacency::opposite`] for an edge without exactly one neighbouring triangle.
+/// Entry of [`Adjacency::opposite`] for an edge without exactly one neighbouring triangle, or
+/// beside a masked one.
 pub const NO_NEIGHBOUR: u32 = u32::MAX;
 
-/// Edge adjacency of a mesh over its welded positions: the *corner table* of Rossignac, Safonova
-/// and Szymczak ("3D Compression Made Simple", SMI 2001).
+/// Edge adjacency of a mesh, in which equal positions are one (welded): the *corner table* of
+/// Rossignac, Safonova and Szymczak ("3D Compression Made Simple", SMI 2001).
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Adjacency {
     /// Corner opposite each triangle edge, three entries per triangle. Entry `3 * p + i` belongs to
     /// the edge of triangle `p` from corner `i` to its next corner. Its value is `3 * q + k`: `q`
     /// is the triangle on the other side of the edge, and `k` (0 to 2) is the corner of `q` that is
     /// not on the edge. The value is [`NO_NEIGHBOUR`] for an edge of one triangle or of more than
-    /// two, and for an edge beside a masked triangle, whose surface may end anywhere. Winding plays
-    /// no part.
+    /// two. It is the same for an edge beside a masked triangle (one cut out by an alpha mask),
+    /// whose surface may end anywhere. Winding plays no part.
     pub opposite: Vec<u32>,
 }
 

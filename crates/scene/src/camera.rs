@@ -8,12 +8,13 @@ use crate::{
 use glam::{DMat4, DVec2, DVec3};
 use serde::Deserialize;
 
-/// A named view of a scene: a perspective camera without the size of a viewport.
+/// A named view of a scene: a perspective camera without the size of a viewport. A scene file lists
+/// views.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct View {
-    /// Name on the command line and in results.
+    /// Name of the view on the command line and in results.
     pub name: String,
     /// Position of the camera, world space.
     #[serde(with = "Vector")]
@@ -26,12 +27,13 @@ pub struct View {
     pub up: DVec3,
     /// Vertical field of view in degrees: more than 0, less than 180.
     pub fov_y_degrees: f64,
-    /// Distance of the near plane from the eye in scene units, more than 0.
+    /// Distance of the near plane from the eye along `direction`, in scene units, more than 0.
     pub near: f64,
-    /// Distance of the far plane from the eye in scene units, more than `near`.
+    /// Distance of the far plane from the eye along `direction`, in scene units, more than `near`
+    /// and at most 1e30 times `near`.
     pub far: f64,
     /// The view's own light, which replaces all lights of the scene for this view; `None` for the
-    /// lights of the scene. A scene file gives a directional light.
+    /// lights of the scene. In a scene file it is a directional light.
     #[serde(default, deserialize_with = "own_light")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<crate::DirectionalLight>"))]
     pub light: Option<Light>,
@@ -54,11 +56,12 @@ pub struct Camera {
     pub right: DVec3,
     /// Unit vector to the top of the image.
     pub up: DVec3,
-    /// Unit viewing direction.
+    /// Unit viewing direction, from the eye into the image.
     pub forward: DVec3,
-    /// Half the image width at distance 1: tan(fov/2) · width / height.
+    /// Half the image width at distance 1 from the eye: tan(fov/2) · width / height, where fov is
+    /// the vertical field of view.
     pub half_width: f64,
-    /// Half the image height at distance 1: tan(fov/2).
+    /// Half the image height at distance 1 from the eye: tan(fov/2).
     pub half_height: f64,
     /// Distance of the near plane from the eye along `forward`, in scene units.
     pub near: f64,
@@ -161,9 +164,9 @@ impl View {
 
 impl Camera {
     /// Returns this camera with the [`jitter`](Self::jitter) of frame number `frame`, from 0, out
-    /// of `count` frames to be blended; further frames begin again. Offsets are points of the
-    /// Halton sequence of bases 2 and 3 (Halton 1964), in 256ths of a pixel, so that f32 holds them
-    /// exactly.
+    /// of `count` frames to be blended (0 counts as 1); further frames begin again. Offsets are
+    /// points of the Halton sequence of bases 2 and 3 (Halton 1964), in 256ths of a pixel, so that
+    /// f32 holds them exactly.
     pub fn jittered(self, frame: u32, count: u32) -> Self {
         let point = frame % count.max(1) + 1;
         let place = |base| ((radical_inverse(point, base) - 0.5) * 256.0).round() / 256.0;
@@ -204,9 +207,9 @@ impl Camera {
         inside.then_some([x as u32, y as u32])
     }
 
-    /// Returns the matrix from world space to wgpu clip space: x right, y up, z from 1 at the near
-    /// plane to 0 at the far plane. Depth is reversed so that f32 tells far surfaces apart however
-    /// near the near plane is.
+    /// Returns the matrix from world space to wgpu clip space, jitter included: x right, y up, z
+    /// from 1 at the near plane to 0 at the far plane. Depth is reversed so that f32 tells far
+    /// surfaces apart however near the near plane is.
     pub fn view_projection(&self) -> DMat4 {
         let rotation = onto_axes([self.right, self.up, -self.forward]);
         let range = self.near / (self.far - self.near);

@@ -3,7 +3,7 @@
 use std::{borrow::Cow, io, path::PathBuf};
 use thiserror::Error;
 
-/// Number of faces that an error or a warning lists; further faces are only counted.
+/// Most faces that an error or a warning about a mesh file lists; further faces are only counted.
 pub const FACES_SHOWN: usize = 5;
 
 /// Extents and coordinates of a mesh, in scene units, of which all products that shaders take stay
@@ -11,14 +11,14 @@ pub const FACES_SHOWN: usize = 5;
 pub(crate) const EXTENTS: std::ops::RangeInclusive<f64> = 1e-12..=1e12;
 
 /// Reason why a scene could not be loaded. Its message names the file or scene, and a way to mend
-/// it.
+/// the mistake.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum SceneError {
     /// A file could not be read.
     #[error("cannot read {}: {reason}", path.display())]
     Read {
-        /// Path of the file.
+        /// Path of the file that could not be read.
         path: PathBuf,
         /// Error of the operating system, or the size limit that the file exceeds.
         reason: io::Error,
@@ -26,39 +26,40 @@ pub enum SceneError {
     /// A line of an OBJ file could not be understood.
     #[error("{}:{line}: {reason}", path.display())]
     ObjLine {
-        /// The OBJ file.
+        /// Path of the OBJ file.
         path: PathBuf,
         /// Number of the line, from 1.
         line: u32,
         /// Text that was found, and text that was expected.
         reason: String,
     },
-    /// Faces of an OBJ file name vertices that do not exist or are not finite.
+    /// Faces of an OBJ file cannot be used, for one of the reasons of [`FaceProblem`].
     #[error("{}: {}", path.display(), list_faults(faults, *total))]
     ObjFaces {
-        /// The OBJ file.
+        /// Path of the OBJ file.
         path: PathBuf,
         /// First faulty faces, in file order: at most [`FACES_SHOWN`].
         faults: Vec<FaceFault>,
-        /// Number of faulty faces.
+        /// Number of faulty faces in the file.
         total: usize,
     },
-    /// A part of a mesh file, or a file that the mesh file names, cannot be used.
+    /// A part of a mesh file (for example a material, buffer or node), or a file that the mesh file
+    /// names, cannot be used.
     #[error("{}: {place}: {reason}", path.display())]
     Part {
-        /// The mesh file.
+        /// Path of the mesh file.
         path: PathBuf,
-        /// Place in the mesh file, or the file that the mesh file names.
+        /// Place in the mesh file, such as `node 3`, or path of the file that the mesh file names.
         place: String,
         /// Reason why the part cannot be used, and a way to mend it.
         reason: String,
     },
-    /// A group to be left out is not in the OBJ file.
+    /// A group that the caller asked to leave out is not in the OBJ file.
     #[error("{}: there is no group {name:?} to leave out; {}", path.display(), list_groups(groups))]
     NoSuchGroup {
-        /// The OBJ file.
+        /// Path of the OBJ file.
         path: PathBuf,
-        /// Name of the group to be left out.
+        /// Name of the group that was to be left out.
         name: String,
         /// Names of the groups in the file, in file order.
         groups: Vec<String>,
@@ -72,19 +73,20 @@ pub enum SceneError {
         plural(*points, "point", "points")
     )]
     NoTriangles {
-        /// The mesh file.
+        /// Path of the mesh file.
         path: PathBuf,
-        /// Number of faces read, without faces of groups that were left out.
+        /// Number of faces (triangles and polygons) read, without faces of groups that were left
+        /// out.
         faces: usize,
-        /// Number of `l` records (lines).
+        /// Number of lines in the file (`l` records of an OBJ file).
         lines: usize,
-        /// Number of `p` records (points).
+        /// Number of points in the file (`p` records of an OBJ file).
         points: usize,
     },
     /// A mesh is too large for 32-bit indices.
     #[error("{}: more than {} triangles or vertices", path.display(), u32::MAX)]
     TooLarge {
-        /// The OBJ file.
+        /// Path of the OBJ file.
         path: PathBuf,
     },
     /// A mesh is so small, so large or so far from the origin that products of its lengths do not
@@ -95,9 +97,9 @@ pub enum SceneError {
         path.display(), EXTENTS.start(), EXTENTS.end()
     )]
     Extent {
-        /// The mesh file.
+        /// Path of the mesh file.
         path: PathBuf,
-        /// Diagonal of the mesh's box, in scene units.
+        /// Diagonal of the mesh's bounding box, in scene units.
         across: f64,
         /// Largest absolute coordinate of the mesh, in scene units.
         farthest: f64,
@@ -115,25 +117,25 @@ pub enum SceneError {
         download(source_text.as_deref())
     )]
     MeshNotFound {
-        /// The scene's name.
+        /// Name of the scene, as its scene file gives it.
         scene: String,
         /// Path of the mesh file as the scene file gives it.
         file: String,
         /// Every path that was tried, in order.
         searched: Vec<PathBuf>,
-        /// Text of the scene file that says where the mesh can be downloaded; `None` if the scene
-        /// file does not say it.
+        /// Sentence of the scene file that tells where the mesh can be downloaded; `None` if the
+        /// scene file does not have one.
         source_text: Option<String>,
     },
     /// The path of a scene's mesh leads to a folder.
     #[error("the mesh of scene {scene:?}: {} is a folder, expected an .obj file", path.display())]
     MeshIsFolder {
-        /// The scene's name.
+        /// Name of the scene, as its scene file gives it.
         scene: String,
-        /// The folder.
+        /// Path of the folder that was found instead of a mesh file.
         path: PathBuf,
     },
-    /// The given text is neither the name of a scene nor the path of a file.
+    /// The text that should name a scene is neither the name of a scene nor the path of a file.
     #[error(
         "no scene {argument:?}: it is neither the path of a .ron, .obj, .gltf or .glb file, nor \
          the name of a .ron file in {}, nor one of the built-in scenes {}",
@@ -142,7 +144,7 @@ pub enum SceneError {
     UnknownScene {
         /// Name or path that was given.
         argument: String,
-        /// The folder of scene files that was searched.
+        /// Path of the folder of scene files that was searched.
         folder: PathBuf,
         /// Names of the built-in scenes.
         builtin: Vec<&'static str>,
@@ -155,16 +157,16 @@ pub enum SceneError {
         /// Reason why the scene cannot have that number.
         reason: String,
     },
-    /// A mesh file lacks a camera or a light, and `SceneRequest::obj` does not give
-    /// a view and a light instead.
+    /// A mesh file lacks a camera or a light, and the caller gave no view and light instead
+    /// (`SceneRequest::obj`).
     #[error("{}: it holds no camera or no light: give --eye x,y,z --look x,y,z \
         (direction) and --light x,y,z (the direction in which the light travels); --fov DEGREES, \
         --near and --far if the defaults do not suit it", path.display())]
     ObjNeedsView {
-        /// The mesh file.
+        /// Path of the mesh file.
         path: PathBuf,
     },
-    /// A view was given for a scene that has its own views.
+    /// The caller gave a view and light (`SceneRequest::obj`) for a scene that has its own.
     #[error(
         "scene {argument:?} has its own views and light: a view and a light (--eye, --look, \
          --light …) can only be given with a mesh file"
@@ -173,10 +175,11 @@ pub enum SceneError {
         /// Name or path that was given.
         argument: String,
     },
-    /// A given view does not form a camera, or a given light is not valid.
+    /// A view that the caller gave does not form a camera, or a light that the caller gave is not
+    /// valid.
     #[error("{}: {reason}", path.display())]
     BadView {
-        /// The mesh file that the view or light was given for.
+        /// Path of the mesh file that the view or light was given for.
         path: PathBuf,
         /// Reason why the view or light cannot be used.
         reason: String,
@@ -187,7 +190,7 @@ pub enum SceneError {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("face {number} of group {:?}{}", beginning(group), in_line(*line))]
 pub struct FaceRef {
-    /// Name of the face's group.
+    /// Name of the group that the face is in.
     pub group: String,
     /// Number of the face within its group, from 1. A group that begins anew further down in the
     /// file counts from 1 again.
@@ -204,10 +207,10 @@ fn in_line(line: u32) -> String {
     }
 }
 
-/// Face that cannot be used, with the reason.
+/// Face of a mesh file that cannot be used, with the reason.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FaceFault {
-    /// The face.
+    /// Place of the face in the mesh file.
     pub face: FaceRef,
     /// Reason why the face cannot be used.
     pub problem: FaceProblem,
@@ -223,7 +226,7 @@ pub enum FaceProblem {
         beginning(written), counted(written, *available, ["vertex", "vertices"])
     )]
     NoSuchVertex {
-        /// Number of the vertex as written.
+        /// Number of the vertex as written in the face; negative numbers count back from it.
         written: String,
         /// Number of vertices in the file; for a number that counts back, of vertices above the
         /// face.
@@ -235,13 +238,14 @@ pub enum FaceProblem {
         beginning(written), counted(written, *available, ["pair", "pairs"])
     )]
     NoSuchUv {
-        /// Number of the texture coordinates as written.
+        /// Number of the texture coordinates as written in the face; negative numbers count back
+        /// from it.
         written: String,
         /// Number of texture coordinate pairs in the file; for a number that counts back, of pairs
         /// above the face.
         available: usize,
     },
-    /// The polygon intersects itself, or is concave and has too many corners.
+    /// The polygon intersects itself, or is concave and has more than 10,000 corners.
     #[error(
         "cannot be cut into triangles, for its outline crosses itself or has more than 10,000 \
          corners: triangulate it where it was made, give --concave fan, or have a scene file say \

@@ -21,7 +21,7 @@ const LOWEST: f64 = 0.05;
 /// Share of the mesh's outline from above that such a floor covers.
 const COVERED: f64 = 0.5;
 
-/// Height and size of a ground that [`add_ground`] added.
+/// Height and size of a ground that [`add_ground`] added below a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ground {
     /// Height of the ground's upper side: the dot product of its points with the unit vector up, in
@@ -58,8 +58,8 @@ impl Extent {
 }
 
 /// Returns true if a mesh has a floor of its own: triangles that face `up`, lie in the lowest
-/// twentieth of the mesh's height, and cover half of its box as seen from above. Returns false for
-/// an empty mesh or an `up` without a direction.
+/// twentieth of the mesh's height, and cover at least half of the area of its box as seen from
+/// above. Returns false for an empty mesh or an `up` without a direction.
 pub fn has_ground(mesh: &Mesh, up: DVec3) -> bool {
     let Some(Extent { axes, min, max }) = Extent::new(mesh, up) else {
         return false;

@@ -9,10 +9,11 @@ use glam::{DVec3, Vec3};
 /// Triangle mesh as a program holds it in memory: not welded, with one normal for each position.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Indexed<'a> {
-    /// Positions in world space, or in the model space of an instance.
+    /// Positions in world space, or, for [`Movable::joined`](crate::Movable::joined), in the model
+    /// space of an instance. All must be finite.
     pub positions: &'a [[f32; 3]],
-    /// Normals of any length but 0, parallel to `positions`. An empty list gives each triangle its
-    /// geometric normal.
+    /// Normals, one for each position, finite and of any length; a normal of length 0 counts as
+    /// missing. An empty list gives each triangle its geometric normal.
     pub normals: &'a [[f32; 3]],
     /// Indices into `positions`, three for each triangle, counter-clockwise seen from outside.
     pub indices: &'a [u32],
@@ -31,25 +32,25 @@ pub enum IndexedError {
     /// The number of normals is neither 0 nor the number of positions.
     #[error("there are {normals} normals for {positions} positions: give one each, or none")]
     Normals {
-        /// Number of normals.
+        /// Number of normals that were given.
         normals: usize,
-        /// Number of positions.
+        /// Number of positions that were given.
         positions: usize,
     },
-    /// An index is beyond the list of positions.
+    /// An index is not below the number of positions.
     #[error("index {at} is {index}, but there are only {positions} positions")]
     Index {
-        /// Place of the index in `indices`, from 0.
+        /// Place of the index in [`Indexed::indices`], from 0.
         at: usize,
         /// Index that was found there.
         index: u32,
-        /// Number of positions.
+        /// Number of positions that were given.
         positions: usize,
     },
     /// A coordinate is infinite or NaN.
     #[error("{what} {at} is not finite: {value:?}")]
     NotFinite {
-        /// `position` or `normal`.
+        /// List that holds the coordinate: `position` or `normal`.
         what: &'static str,
         /// Place of the position or normal in its list, from 0.
         at: usize,
@@ -59,12 +60,13 @@ pub enum IndexedError {
 }
 
 impl Indexed<'_> {
-    /// Returns the mesh with equal positions welded. Triangles keep their order. A triangle with
-    /// the same position at two corners is left out. A normal without length is replaced by the
-    /// geometric normal of its triangle.
+    /// Returns the mesh, in which equal positions are one (welded). Triangles keep their order. A
+    /// triangle with the same position at two corners is left out. A missing normal is replaced by
+    /// the geometric normal of its triangle.
     ///
     /// # Errors
-    /// An index or a coordinate that cannot be used.
+    /// [`IndexedError`] for lists of the wrong length, an index without a position, or a number
+    /// that is not finite.
     pub fn mesh(&self) -> Result<Mesh, IndexedError> {
         check(self)?;
         let (mut positions, mut normals) = <(Welder, Welder)>::default();

@@ -21,7 +21,7 @@ use crate::{
 use skiagraph_located_ron::diagnostics::Diagnostic;
 use std::path::{Path, PathBuf};
 
-/// The environment variable that lists folders of meshes, separated as in `PATH`.
+/// Name of the environment variable that lists folders of meshes, separated as in `PATH`.
 pub const ASSETS_VARIABLE: &str = "SKIAGRAPH_ASSETS";
 
 /// Room for thousands of views.
@@ -47,16 +47,18 @@ const BUILT_IN: [(&str, &str); 9] = [
 /// Scene to be loaded, as a user names it.
 #[derive(Clone, Debug, Default)]
 pub struct SceneRequest {
-    /// Name or path of the scene: the name of a built-in scene, the name of a file in the library's
-    /// folder of scenes without `.ron`, or the path of a `.ron`, `.obj`, `.gltf` or `.glb` file. If
-    /// the scene's mesh is generated in any size, a number of triangles may follow: `city:1000000`.
+    /// Name or path of the scene: the name of a built-in scene, the name of a file in
+    /// [`SceneLibrary::scenes`] without `.ron`, or the path of a `.ron`, `.obj`, `.gltf` or `.glb`
+    /// file. If the scene's mesh is generated in any size, a number of triangles may follow:
+    /// `city:1000000`.
     pub argument: String,
-    /// View and light for a bare mesh file, in the place of its own cameras and lights. Required if
-    /// the file lacks either. Must be `None` for any other scene, which brings its own.
+    /// View and light for a bare mesh file (one loaded without a scene file), in the place of its
+    /// own cameras and lights. Required if the file lacks either. Must be `None` for any other
+    /// scene, which brings its own.
     pub obj: Option<ObjSetup>,
 }
 
-/// Settings that turn a bare mesh file into a scene.
+/// Settings that turn a mesh file without a scene file into a scene.
 #[derive(Clone, Debug)]
 pub struct ObjSetup {
     /// The only view of the scene.
@@ -76,7 +78,8 @@ pub struct ObjSetup {
 pub struct SceneListing {
     /// Name of the scene on the command line.
     pub name: String,
-    /// Description in one line, or the reason why the scene file cannot be read.
+    /// Description in one line, or the reason why the scene file cannot be read, which may have
+    /// several lines.
     pub description: String,
     /// Names of the scene's views; empty if the scene file cannot be read.
     pub views: Vec<String>,
@@ -115,7 +118,8 @@ impl SceneLibrary {
         }
     }
 
-    /// Loads a scene with its mesh. The report lists changes that the import made to the mesh.
+    /// Loads a scene with its mesh. The report lists changes that the import made to the mesh, and
+    /// parts of the file that it left out.
     ///
     /// # Errors
     /// [`SceneError`]: an unknown scene, a broken scene file or mesh, a mesh that was not found
@@ -135,8 +139,9 @@ impl SceneLibrary {
     }
 
     /// Reads the scene file of the scene `argument` (a name or path as in
-    /// [`SceneRequest::argument`]), to be changed and written. The path of a mesh file in it is
-    /// replaced by the path at which the file was found.
+    /// [`SceneRequest::argument`]), for a caller that changes it and writes it again
+    /// ([`scene_text`](crate::scene_text)). The path of a mesh file in it is replaced by the path
+    /// at which the file was found.
     ///
     /// # Errors
     /// The errors of [`load`](Self::load), except for errors in the content of the mesh.
@@ -172,8 +177,9 @@ impl SceneLibrary {
         Ok((file, scene))
     }
 
-    /// Reads the camera paths of the scene `argument` without loading its mesh. Returns an empty
-    /// list for a mesh file, whose animations come with its mesh ([`MeshFile::clips`]).
+    /// Reads the camera paths of the scene `argument` (a name or path as in
+    /// [`SceneRequest::argument`]) without loading its mesh. Returns an empty list for a mesh file,
+    /// whose animations come with its mesh ([`MeshFile::clips`]).
     ///
     /// # Errors
     /// [`SceneError`]: an unknown scene, a scene file that is not valid.
@@ -250,8 +256,8 @@ impl SceneLibrary {
         listing
     }
 
-    /// Finds a scene file by its name or path. Returns its path (`None` for a built-in scene) and
-    /// its text.
+    /// Finds a scene file by its name or by its path, which ends in `.ron`. Returns its path
+    /// (`None` for a built-in scene) and its text.
     ///
     /// # Errors
     /// [`SceneError`]: an unknown scene, a file that cannot be read.
@@ -293,8 +299,8 @@ impl SceneLibrary {
     }
 
     /// Finds the file in the scenes folder that is read in the place of the built-in scene
-    /// `argument`. Returns `None` for another name, if there is no such file, or if its text equals
-    /// that of the built-in scene.
+    /// `argument` (a name, which a number of triangles may follow). Returns `None` for another
+    /// name, if there is no such file, or if its text equals that of the built-in scene.
     pub fn stand_in(&self, argument: &str) -> Option<PathBuf> {
         let name = sized(argument).0;
         let (_, text) = BUILT_IN.iter().find(|(built_in, _)| *built_in == name)?;

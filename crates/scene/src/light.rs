@@ -4,7 +4,7 @@ use crate::vector::Vector;
 use glam::{DMat4, DVec2, DVec3, Vec3};
 use serde::Deserialize;
 
-/// A light infinitely far away.
+/// A light infinitely far away, such as the sun.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, rename = "Light")]
@@ -18,14 +18,14 @@ pub struct DirectionalLight {
     pub angle_degrees: f64,
 }
 
-/// Light space of a directional light: an orthographic box that maps to wgpu clip space. Depth z in
-/// 0..1 grows away from the light.
+/// Light space of a directional light (the space of its shadow map): an orthographic box that maps
+/// to wgpu clip space. Depth z in 0..1 grows away from the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightFit {
     /// Matrix from world space to the light's clip space (affine: w stays 1).
     pub view_projection: DMat4,
-    /// World units per unit of light-space clip x, y and z (half the box's width, half its height,
-    /// its whole depth).
+    /// World units per unit of light-space clip x, y and z: half the box's width, half its height,
+    /// its whole depth.
     pub extent: DVec3,
 }
 
@@ -44,9 +44,9 @@ impl DirectionalLight {
         self.angle_degrees > 0.0
     }
 
-    /// Returns two vectors from the light's centre to its rim, for a light disk at distance 1. The
-    /// directions to the disk's points are `to_light() + across()[0] · x + across()[1] · y`, with
-    /// (x, y) in the unit disk.
+    /// Returns two vectors from the light's centre to its rim, for a light disk at distance 1 from
+    /// the receiver. The directions to the disk's points are `to_light() + across()[0] · x +
+    /// across()[1] · y`, with (x, y) in the unit disk. Both are 0 for a light without extent.
     pub fn across(&self) -> [DVec3; 2] {
         let (right, up) = self.to_light().any_orthonormal_pair();
         let radius = (self.angle_degrees.to_radians() * 0.5).tan();
@@ -80,7 +80,7 @@ impl DirectionalLight {
         Ok(())
     }
 
-    /// Returns the smallest light-space box around points in world space, enlarged by 0.2 %, with
+    /// Returns the smallest [`LightFit`] box around points in world space, enlarged by 0.2 %, with
     /// the light's direction as its third axis. One side of the rectangle of least area around a
     /// convex polygon lies on an edge of it (Freeman and Shapira, CACM 18(7), 1975). An empty list
     /// counts as one point at the origin.
@@ -123,7 +123,7 @@ impl DirectionalLight {
 }
 
 /// Returns two unit vectors at right angles to the unit vector `forward` and to each other: right
-/// and up.
+/// and up. Up is as near to +y as it can be, or to +z if |y| of `forward` is 0.9 or more.
 pub fn across(forward: DVec3) -> (DVec3, DVec3) {
     let helper = if forward.y.abs() < 0.9 {
         DVec3::Y

@@ -12,7 +12,7 @@ pub struct Light {
     /// Name of small letters, digits and `_`, unique within its scene. It begins with a letter and
     /// is not `all`.
     pub name: String,
-    /// Kind of the light.
+    /// Kind of the light, with its direction or position.
     pub kind: LightKind,
 }
 
@@ -36,7 +36,8 @@ pub struct SpotLight {
     pub direction: DVec3,
     /// Whole angle of the cone at its apex, in degrees: more than 0 and less than 180.
     pub cone_degrees: f64,
-    /// Radius of the emitting disk, which faces along the axis, in scene units; 0 for hard shadows.
+    /// Radius of the emitting disk, which faces along the axis, in scene units; 0 for a light
+    /// without extent, whose shadows are hard.
     pub radius: f64,
 }
 
@@ -45,7 +46,8 @@ pub struct SpotLight {
 pub struct PointLight {
     /// Position of the light, world space.
     pub position: DVec3,
-    /// Radius of the emitting sphere, in scene units; 0 for hard shadows.
+    /// Radius of the emitting sphere, in scene units; 0 for a light without extent, whose shadows
+    /// are hard.
     pub radius: f64,
 }
 
@@ -66,9 +68,9 @@ pub const ONLY_LIGHT: &str = "light";
 /// distance.
 const FARTHEST: f64 = 1e18;
 
-/// Fraction of the distance from a receiver to a spot or point light by which a shadow ray ends
-/// before the light. A surface that contains the light's position thus casts no shadow, instead of
-/// being decided by rounding.
+/// Fraction of the distance from a receiver (a shaded point) to a spot or point light by which a
+/// shadow ray ends before the light. A surface that contains the light's position thus casts no
+/// shadow, instead of being decided by rounding.
 pub const LIGHT_GAP: f64 = 1.0 / 65536.0;
 
 /// The light of a view, which checks it and says whose it is.
@@ -85,7 +87,8 @@ impl Light {
         }
     }
 
-    /// Checks that the light's name and parameters can be used.
+    /// Checks that the light's name and parameters can be used: the name has the form that
+    /// [`name`](Self::name) describes, and [`LightKind::check`] passes.
     ///
     /// # Errors
     /// Sentence with the first mistake.
@@ -110,8 +113,8 @@ impl Light {
 }
 
 impl LightKind {
-    /// Returns the word for this kind in documents, messages and results: `directional`, `spot` or
-    /// `point`.
+    /// Returns the word for this kind in graph documents, messages and results: `directional`,
+    /// `spot` or `point`.
     pub fn word(&self) -> &'static str {
         match self {
             Self::Directional(_) => "directional",
@@ -165,7 +168,9 @@ impl LightKind {
         }
     }
 
-    /// Checks that the light's parameters are within their ranges.
+    /// Checks that the light's parameters are within their ranges: a position of at most 1e18 in
+    /// each coordinate, a direction other than 0, an angle of less than 180 degrees, a radius of at
+    /// least 0.
     ///
     /// # Errors
     /// Sentence with the first mistake.

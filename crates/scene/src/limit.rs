@@ -9,19 +9,19 @@ use std::{
 
 const MIB: u64 = 1 << 20;
 
-/// Size limit for reading a kind of file.
+/// Size limit for reading a kind of file, with the words for its error message.
 #[derive(Clone, Copy, Debug)]
 pub struct Limit {
     /// Kind of file with its article, for the message: "an .obj file".
     pub of: &'static str,
     /// Largest size of a file that is read, in MiB.
     pub mib: u64,
-    /// Advice to the user for a larger file, for the message.
+    /// Advice to the user whose file is larger, for the message: "scale it down".
     pub way_out: &'static str,
 }
 
 impl Limit {
-    /// Reads all bytes of the file at `path`.
+    /// Reads all bytes of the file at `path`, if they are at most [`mib`](Self::mib) MiB.
     ///
     /// # Errors
     /// An error of the operating system; a folder, a device or a pipe, which is not opened because

@@ -14,15 +14,15 @@ use glam::DVec2;
 pub struct Mask {
     /// Width and height in texels, neither 0.
     pub size: [u32; 2],
-    /// Treatment of u and v outside 0…1.
+    /// Treatment of u and of v outside 0…1.
     pub wrap: [Wrap; 2],
-    /// Bits of all texels, 1 for opaque: row by row from the top left, 32 to a word, lowest bit
-    /// first.
+    /// Bits of all texels, 1 for opaque: row by row from the top left without gaps between rows, 32
+    /// to a word, lowest bit first. Unused bits of the last word are 0.
     pub opaque: Vec<u32>,
 }
 
-/// Result of [`Mask::ask`]: the texel at texture coordinates, and whether any texel within their
-/// error differs.
+/// Result of [`Mask::ask`]: the texel at texture coordinates, and a flag for other texels within
+/// their error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Asked {
     /// True if the texel at the texture coordinates is opaque.
@@ -80,8 +80,8 @@ impl Mask {
         self.opaque[texel / 32] >> (texel % 32) & 1 == 1
     }
 
-    /// Looks up the mask at the texture coordinates `uv`, whose components may be wrong by up to
-    /// those of `error`, in the same units.
+    /// Looks up the mask at the texture coordinates `uv` (1 is the mask's whole width or height),
+    /// whose components may be wrong by up to those of `error`.
     pub fn ask(&self, uv: DVec2, error: DVec2) -> Asked {
         let (uv, error) = (uv.to_array(), error.to_array());
         // Texels of each axis from low to high, before they are wrapped.

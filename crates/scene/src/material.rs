@@ -4,12 +4,12 @@ use crate::{mask::Mask, texture::Texture};
 use glam::{DVec2, Vec2};
 use std::sync::Arc;
 
-/// Material of a surface.
+/// Material of triangles of a mesh.
 #[derive(Clone, Debug)]
 pub struct Material {
-    /// Name of the material in its file.
+    /// Name of the material in the mesh file. A glTF material without a name is called `unnamed`.
     pub name: String,
-    /// Linear red, green and blue, multiplied by the texture if there is one.
+    /// Base colour: linear red, green and blue, multiplied by the texture if there is one.
     pub base_color: [f32; 3],
     /// Texture of the base colour; `None` for a surface of one colour.
     pub texture: Option<Texture>,
@@ -41,7 +41,7 @@ pub struct Surfaces {
     /// Three indices into `uvs` per triangle, in the order of the mesh's triangles; empty for a
     /// mesh without texture coordinates.
     pub uv_indices: Vec<[u32; 3]>,
-    /// Materials of the mesh, indexed by `of`.
+    /// Materials of the mesh; `of` holds indices into this list.
     pub materials: Vec<Material>,
     /// Index into `materials` for each triangle, in the order of the mesh's triangles; empty for a
     /// mesh without materials.
@@ -102,9 +102,9 @@ impl Surfaces {
             && used.any(|of| self.materials.get(*of as usize).is_some_and(cared))
     }
 
-    /// Returns the linear base colour of triangle `primitive`, texture included, at the point with
-    /// these barycentric weights (in the order of the triangle's corners). A triangle without a
-    /// material counts as white, and so does a texture that cannot be read.
+    /// Returns the linear base colour of triangle `primitive`, times its texture's nearest texel,
+    /// at the point with these barycentric weights (in the order of the triangle's corners). A
+    /// triangle without a material counts as white, and so does a texture that cannot be read.
     pub fn base_color(&self, primitive: u32, weights: [f64; 3]) -> [f32; 3] {
         let Some(material) = self.material(primitive) else {
             return [1.0; 3];

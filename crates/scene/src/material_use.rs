@@ -8,10 +8,10 @@ use serde::Deserialize;
 pub enum MaterialUse {
     /// Nothing is read: files of materials and textures may be missing.
     Ignore,
-    /// Only colours are read, for pictures. Every surface is opaque. A colour that cannot be read
-    /// is a warning in the import report.
+    /// Only colours and their textures are read, no masks: every surface is opaque. A colour that
+    /// cannot be read is a warning in the import report.
     Color,
-    /// Colours and masks are read. A mask that cannot be read is an error.
+    /// Colours, their textures and masks are read. A mask that cannot be read is an error.
     #[default]
     All,
 }

@@ -18,7 +18,8 @@ pub struct Mesh {
     pub normals: Vec<Vec3>,
     /// Three indices into `normals` per triangle, parallel to `triangles`.
     pub normal_indices: Vec<[u32; 3]>,
-    /// Named runs of consecutive triangles, in the order of `triangles`.
+    /// Named runs of consecutive triangles, in the order of `triangles`, such as the groups of an
+    /// OBJ file or the nodes of a glTF file.
     pub groups: Vec<Group>,
     /// Materials of the triangles, and texture coordinates of their corners.
     pub surfaces: Surfaces,

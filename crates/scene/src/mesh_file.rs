@@ -27,7 +27,8 @@ pub struct MeshFile {
     pub views: Vec<View>,
     /// Lights of the file; empty for an OBJ file.
     pub lights: Vec<Light>,
-    /// Animations of the file, which move its `views`, `lights` and parts; empty for an OBJ file.
+    /// Animations of the file, which move its `views`, `lights` and parts of `mesh`; empty for an
+    /// OBJ file.
     pub clips: Vec<Clip>,
     /// Changes that the import made, and parts of the file that it left out.
     pub report: ImportReport,
@@ -45,7 +46,8 @@ pub struct MeshFileOptions {
 }
 
 impl MeshFileOptions {
-    /// Returns the mesh of a scene file that has `file`, a path, read in this way.
+    /// Returns the field `mesh` of a scene file that reads the mesh file at the path `file` with
+    /// these options. Any extension but `.obj` stands for glTF.
     pub fn source(&self, file: &str) -> MeshSource {
         let file = file.to_owned();
         if has_extension(Path::new(&file), "obj") {
@@ -67,10 +69,10 @@ impl MeshFileOptions {
 }
 
 impl MeshFile {
-    /// Reads an `.obj`, `.gltf` or `.glb` file.
+    /// Reads an `.obj`, `.gltf` or `.glb` file. Any extension but `.obj` stands for glTF.
     ///
     /// # Errors
-    /// [`SceneError`]: a file that cannot be read or holds no triangles.
+    /// [`SceneError`]: a file that cannot be read, is damaged or holds no triangles.
     pub fn load(path: &Path, options: &MeshFileOptions) -> Result<Self, SceneError> {
         let stem = path.file_stem();
         let name = stem.map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());

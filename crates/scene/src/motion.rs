@@ -13,17 +13,18 @@ use std::f64::consts::TAU;
 /// Motion of one part of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PartMotion {
-    /// Name of the moving part: an OBJ group or object, a glTF node, a group of a generated mesh.
+    /// Name of the moving part: an OBJ group or object, a glTF node, or a group of a generated
+    /// mesh.
     pub part: String,
-    /// Motion of the part along the path.
+    /// Motion of the part along the camera path.
     pub motion: Motion,
 }
 
 /// Motion of a part of a mesh over the time of a [`CameraPath`](crate::CameraPath), in seconds.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Motion {
-    /// The part is turned about an axis and shifted. Between keys it follows Catmull-Rom splines,
-    /// like the camera.
+    /// The part is turned about an axis, then shifted. Between keys both follow Catmull-Rom
+    /// splines, like the camera.
     Rigid {
         /// Point on the axis, which stays where it is while the part turns; world space.
         pivot: DVec3,
@@ -41,21 +42,23 @@ pub enum Motion {
         keys: Vec<PoseKey>,
     },
     /// The part is bent as by wind: a point at height h above the foot (the lowest point along
-    /// `up`) of a part of height H is shifted by `H (h / H)² tan(a)` along `axis`, where the angle
-    /// a swings as a sine. The foot stands still.
+    /// `up`) of a part of height H is shifted by `H (h / H)² tan(a)` along `axis`. The angle a is
+    /// `degrees · sin(2π t / seconds)` at the time t on the clock of the path's keyframes. The foot
+    /// stands still.
     Sway {
-        /// Direction in which the part leans, of any length but zero and not along `up`.
+        /// Direction in which the part leans while a is positive, of any length but zero and not
+        /// along `up`.
         axis: DVec3,
         /// Direction in which the part grows: the path's own `up`.
         up: DVec3,
-        /// Greatest angle of the swing in degrees, between −90 and 90.
+        /// Greatest angle of the swing in degrees, more than −90 and less than 90.
         degrees: f64,
-        /// Period of the swing in seconds.
+        /// Period of the swing in seconds, more than 0.
         seconds: f64,
     },
 }
 
-/// Keyframe of a rigid motion: turn and shift of a part at a time.
+/// Keyframe of a `Rigid` motion: turn and shift of a part at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -65,19 +68,20 @@ pub struct RigidKey {
     /// Shift of the part from its place at rest, in scene units, after the turn.
     #[serde(default, with = "Vector")]
     pub translation: DVec3,
-    /// Angle in degrees by which the part is turned about the motion's axis.
+    /// Angle in degrees by which the part is turned about the motion's axis, counter-clockwise seen
+    /// from the axis's tip.
     #[serde(default)]
     pub degrees: f64,
 }
 
-/// Keyframe of a posed motion: the part is turned about the world's origin, then shifted.
+/// Keyframe of a `Posed` motion: the part is turned about the world's origin, then shifted.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct PoseKey {
     /// Time in seconds, on the clock of the path's keyframes.
     pub at: f64,
-    /// Shift after the turn, in scene units.
+    /// Shift of the part after the turn, in scene units.
     #[serde(default, with = "Vector")]
     pub translation: DVec3,
     /// Unit quaternion (x, y, z, w) that turns the part from its pose at rest.
@@ -232,8 +236,8 @@ fn folds(axis: DVec3, up: DVec3, degrees: f64) -> bool {
 }
 
 /// Returns the mesh of `movable` with its parts moved to their places at the time `at`, in seconds
-/// on the clock of the path's keyframes. Part number n follows `motions[n]`; the part's name in
-/// that motion is ignored.
+/// on the clock of the keyframes of the [`CameraPath`](crate::CameraPath). Part number n follows
+/// `motions[n]`; the part's name in that motion is ignored.
 ///
 /// # Errors
 /// [`MoveError::Count`] if there is not one motion for each part; other errors for a part that its

@@ -26,7 +26,8 @@ struct Part {
     normals: Vec<(u32, u32)>,
 }
 
-/// Part of a [`Movable`] after it was moved, to be written into a mesh by [`Movable::put`].
+/// Part of a [`Movable`] after it was moved, as [`Movable::moved_part`] returns it, to be written
+/// into a mesh by [`Movable::put`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct MovedPart {
     positions: Vec<Vec3>,
@@ -44,17 +45,17 @@ pub struct PartChange {
     pub is_turned: bool,
 }
 
-/// Reason why parts cannot be moved. Parts are numbered from 0.
+/// Reason why parts of a [`Movable`] cannot be moved. Parts are numbered from 0.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MoveError {
-    /// The number of maps is not the number of parts.
+    /// The number of maps that were given is not the number of parts.
     #[error(
         "each part needs one map, in the order of the parts; there are {parts} parts, but {maps} \
          maps"
     )]
     Count {
-        /// Number of parts.
+        /// Number of parts of the [`Movable`].
         parts: usize,
         /// Number of maps that were given.
         maps: usize,
@@ -64,10 +65,10 @@ pub enum MoveError {
     NotFinite {
         /// Number of the part, from 0.
         part: usize,
-        /// Map of the part: three columns and the translation.
+        /// Map of the part: the columns of its matrix and its translation.
         map: DAffine3,
     },
-    /// A map cannot be inverted.
+    /// A map cannot be inverted (it flattens the part).
     #[error(
         "the map of part {part} is singular: it flattens the part, which has no normals then; give \
          it a scale other than 0, or move a part that is to vanish to where no light and no camera \
@@ -82,12 +83,13 @@ pub enum MoveError {
     OutOfRange {
         /// Number of the part, from 0.
         part: usize,
-        /// Position at rest.
+        /// Position at rest, before the map.
         from: Vec3,
         /// Position to which the map moves it.
         to: DVec3,
     },
-    /// A bend mirrors one place of a part and not another.
+    /// A map that need not be affine ([`Movable::bent`]) mirrors one place of a part and not
+    /// another.
     #[error(
         "part {part} is bent so far that it is turned inside out at {at} (at rest) and not \
          elsewhere: bend it less"
@@ -138,7 +140,7 @@ impl Movable {
         }
     }
 
-    /// Returns the number of parts.
+    /// Returns the number of parts that can be moved.
     pub fn parts(&self) -> usize {
         self.parts.len()
     }
@@ -149,8 +151,8 @@ impl Movable {
         self.is_joined
     }
 
-    /// Returns the mesh with part number n moved by `maps[n]`. Triangles of a part that its map
-    /// mirrors are wound the other way.
+    /// Returns the mesh with part number n moved by `maps[n]`, from its place at rest. Triangles of
+    /// a part that its map mirrors are wound the other way.
     ///
     /// # Errors
     /// [`MoveError::Count`] if there is not one map for each part; other errors for a part that
@@ -193,10 +195,12 @@ impl Movable {
         }
     }
 
-    /// Returns part number `part` moved by an affine map. The mesh itself stays at rest.
+    /// Returns part number `part`, from 0, moved by an affine map from its place at rest. The mesh
+    /// itself stays at rest.
     ///
     /// # Errors
-    /// A map that is not finite, singular, or that moves a corner beyond what f32 holds.
+    /// [`MoveError`] for a map that is not finite or is singular, or that moves a corner beyond
+    /// what f32 holds.
     ///
     /// # Panics
     /// If there is no part of that number.
@@ -254,10 +258,10 @@ impl Movable {
         })
     }
 
-    /// Writes a moved part into `mesh`, which is a copy of [`rest`](Self::rest) in which parts may
-    /// be moved already, and returns the changes. `was_mirrored` says whether the part is mirrored
-    /// in `mesh` so far. If `moved` is mirrored and the part so far is not, or the reverse, the
-    /// part's triangles are wound the other way.
+    /// Writes `moved`, the moved part number `part`, into `mesh`, which is a copy of
+    /// [`rest`](Self::rest) in which parts may be moved already, and returns the changes.
+    /// `was_mirrored` is true if the part is mirrored in `mesh` so far. If `moved` is mirrored and
+    /// the part so far is not, or the reverse, the part's triangles are wound the other way.
     ///
     /// # Panics
     /// If there is no part of that number, or if `mesh` is another mesh.

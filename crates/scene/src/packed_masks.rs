@@ -6,15 +6,17 @@ use std::collections::HashMap;
 /// Words of a triangle's record in [`mask_words`]: six texture coordinates and the mask's place.
 const RECORD: usize = 7;
 
-/// Flag in a triangle's word of [`mask_words`]: the triangle's back face is visible as well.
+/// Flag in a triangle's word of [`mask_words`]: the triangle's back face is visible as well as its
+/// front face.
 pub const DOUBLE_SIDED: u32 = 0x8000_0000;
 
 /// Packs the masks of a mesh's triangles into one list of words, the layout of `shared/masks.wgsl`.
 /// The list begins with one word per triangle: the flag [`DOUBLE_SIDED`], and the index of the
 /// triangle's record in the list, or 0 for a triangle without a mask. Records of seven words
 /// follow: three pairs of texture coordinates as f32 bits, and the index of the mask in the list.
-/// Masks come last: width, height, the wrapping of u and v (two bits each, in one word), and one
-/// bit per texel, 1 for opaque. The list is empty if no triangle is masked or double-sided.
+/// Masks come last: width and height in texels, a word with the wrapping of u (bits 0 and 1) and v
+/// (bits 2 and 3; 0 repeats, 1 mirrors, 2 clamps), and one bit per texel as in [`Mask::opaque`].
+/// The list is empty if no triangle is masked or double-sided.
 pub fn mask_words(mesh: &Mesh) -> Vec<u32> {
     let surfaces = &mesh.surfaces;
     if !surfaces.need_care() {

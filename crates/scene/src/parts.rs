@@ -4,7 +4,7 @@ use crate::mesh::{Mesh, names_one_twice};
 use petgraph::unionfind::UnionFind;
 use std::collections::HashMap;
 
-/// Connected parts of a mesh: triangles that share edges over its welded positions.
+/// Connected parts of a mesh: triangles that share edges, where equal positions are one (welded).
 ///
 /// A part is *closed* if its triangles pass each edge as often in one direction as in the other:
 /// between two points outside the part a ray then meets as many of its back faces as of its front

@@ -44,7 +44,8 @@ pub struct CameraPath {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, rename = "Key")]
 pub struct CameraKey {
-    /// Time in seconds.
+    /// Time in seconds, on the clock of the whole path (light and moving parts included). Frame 0
+    /// is at the first keyframe.
     pub at: f64,
     /// Position of the camera, world space.
     #[serde(with = "Vector")]
@@ -54,7 +55,7 @@ pub struct CameraKey {
     pub direction: DVec3,
 }
 
-/// Keyframe of a light: its position and direction at a time.
+/// Keyframe of the light of a camera path: its position and direction at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -73,7 +74,7 @@ pub struct LightKey {
 
 impl CameraPath {
     /// Returns the number of frames. Frame 0 is at the first keyframe, the last frame at the last
-    /// keyframe or just before.
+    /// keyframe or less than a frame before it.
     pub fn frames(&self) -> u32 {
         // A time that is a whole number of frames but for its rounding has its last frame.
         (self.seconds() * self.frames_per_second + 1e-6) as u32 + 1
@@ -95,7 +96,8 @@ impl CameraPath {
     /// Returns `None` if no part moves.
     ///
     /// # Errors
-    /// A part that the mesh does not have, or that is welded to others. The message names the path.
+    /// A sentence that names the path, if a part is not in the mesh or shares positions with other
+    /// triangles.
     pub fn movable(&self, mesh: &Mesh) -> Result<Option<Movable>, String> {
         if self.moves.is_empty() {
             return Ok(None);
@@ -112,7 +114,7 @@ impl CameraPath {
     /// mirrors a part.
     ///
     /// # Errors
-    /// A part that f32 cannot hold at its place in that frame. The message names path, part and
+    /// A sentence that names path, part and frame, if f32 cannot hold a part at its place in that
     /// frame.
     pub fn shape(&self, movable: &Movable, frame: u32) -> Result<Mesh, String> {
         moved(movable, &self.moves, self.at(frame))
@@ -120,7 +122,7 @@ impl CameraPath {
     }
 
     /// Returns the view of frame number `frame`, from 0, under the path's name. Its direction need
-    /// not be a unit vector.
+    /// not be a unit vector. Frames after the last show the last keyframe.
     pub fn view(&self, frame: u32) -> View {
         let at = self.at(frame);
         let times = |key: &CameraKey| key.at;

@@ -3,7 +3,8 @@
 use crate::{mask::Mask, texture::Wrap};
 use serde::Deserialize;
 
-/// Pattern of a generated mask of 128 × 128 texels, which repeats without a seam.
+/// Pattern of a generated mask of 128 × 128 texels, which repeats without a seam. It replaces a
+/// texture that is not available.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Pattern {

@@ -3,20 +3,24 @@
 use crate::error::{FACES_SHOWN, FaceRef, plural};
 use std::{fmt, path::PathBuf};
 
-/// Counts and warnings of the import of a mesh file. A generated mesh has an empty report.
+/// Counts and warnings of the import of a mesh file. The report of a generated mesh is empty.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ImportReport {
     /// Path of the mesh file; `None` for a mesh that is not from a file.
     pub file: Option<PathBuf>,
-    /// Number of faces (triangles and larger polygons) read, without those of groups left out.
+    /// Number of faces (triangles and larger polygons) read, without those of groups that were left
+    /// out.
     pub faces: usize,
     /// Number of faces in groups that were left out by name.
     pub faces_left_out: usize,
-    /// Number of `p` records and faces of one corner. They are not part of the mesh.
+    /// Number of points, which are not part of the mesh: of an OBJ file, `p` records and faces of
+    /// one corner.
     pub points: usize,
-    /// Number of `l` records and faces of two corners. They are not part of the mesh.
+    /// Number of lines, which are not part of the mesh: of an OBJ file, `l` records and faces of
+    /// two corners.
     pub lines: usize,
-    /// Number of vertices that welding merged with another one.
+    /// Number of vertices of an OBJ file that were merged with another one at the same position.
+    /// Not counted for glTF: 0.
     pub vertices_welded: usize,
     /// Number of faces without a normal at every corner. Each of their triangles got its geometric
     /// normal at all three corners.
@@ -28,19 +32,21 @@ pub struct ImportReport {
     pub dropped: Degenerate,
     /// Triangles kept although their area is zero (three different points on a line).
     pub zero_area: Degenerate,
-    /// One message for each colour or texture that could not be read.
+    /// One message for each colour or texture that could not be read; surfaces are then shown
+    /// without it.
     pub colours_missing: Vec<String>,
     /// One sentence for each part of the file that was left out or read in an unexpected way; no
-    /// two are equal.
+    /// two are equal. Further ones are dropped after 1,000.
     pub remarks: Vec<String>,
 }
 
 /// Degenerate triangles of an import: their number, and the faces that they come from.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Degenerate {
-    /// Number of triangles.
+    /// Number of degenerate triangles, those of the faces in `first` included.
     pub triangles: usize,
-    /// First faces with such a triangle, in file order: at most [`FACES_SHOWN`].
+    /// First faces with such a triangle, in file order: at most
+    /// [`FACES_SHOWN`](crate::error::FACES_SHOWN).
     pub first: Vec<FaceRef>,
 }
 

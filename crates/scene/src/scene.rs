@@ -15,9 +15,10 @@ pub struct Scene {
     pub name: String,
     /// Mesh whose triangles cast and receive shadows.
     pub mesh: Mesh,
-    /// Views, at least one; the first is the default.
+    /// Views of the scene; the first is the default. A scene that was loaded has at least one.
     pub views: Vec<View>,
-    /// Lights for views without a light of their own, at least one; the first is the default.
+    /// Lights for views without a light of their own; the first is the default. A scene that was
+    /// loaded has at least one.
     pub lights: Vec<Light>,
 }
 

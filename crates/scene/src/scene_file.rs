@@ -43,7 +43,7 @@ use skiagraph_located_ron::{
 };
 use std::collections::HashMap;
 
-/// Content of a scene file. Everything in it is checked, but no mesh is loaded yet.
+/// Content of a scene file. `SceneFile::parse` checks everything in it, but loads no mesh.
 #[derive(Clone, Debug, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, rename = "scene")]
@@ -58,7 +58,8 @@ pub struct SceneFile {
     pub description: String,
     /// Source of the scene's triangles.
     pub mesh: MeshSource,
-    /// Direction up of a ground that is added just below the mesh; `None` adds no ground.
+    /// Direction up, of any length above 0, of a ground that is added just below the mesh; `None`
+    /// adds no ground.
     #[serde(default, deserialize_with = "ground")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<Vector>"))]
     pub ground: Option<DVec3>,
@@ -97,7 +98,7 @@ pub enum MeshSource {
         /// in order: the folder of the scene file, the folders of `SKIAGRAPH_ASSETS`, the user's
         /// cache folder.
         file: String,
-        /// Names of the groups that are left out.
+        /// Names of the groups or objects that are left out: the whole text after `g` or `o`.
         #[serde(default)]
         leave_out: Vec<String>,
         /// Diagonal that splits a quad into triangles.
@@ -109,8 +110,8 @@ pub enum MeshSource {
         /// Parts of the file's materials that are read.
         #[serde(default)]
         materials: ObjMaterials,
-        /// Text that says where the file can be downloaded, for the message that it is missing;
-        /// `None` for a file that is not public.
+        /// Sentence that tells where the file can be downloaded, for the message that it is
+        /// missing; `None` for a file that is not public.
         #[serde(default)]
         source: Option<String>,
     },
@@ -122,8 +123,8 @@ pub enum MeshSource {
         /// Parts of the file's materials that are read.
         #[serde(default)]
         materials: MaterialUse,
-        /// Text that says where the file can be downloaded, for the message that it is missing;
-        /// `None` for a file that is not public.
+        /// Sentence that tells where the file can be downloaded, for the message that it is
+        /// missing; `None` for a file that is not public.
         #[serde(default)]
         source: Option<String>,
     },

@@ -11,10 +11,12 @@ use crate::{
 };
 use glam::DVec3;
 
-/// Writes a scene as the text of a scene file, with one view or key in a line.
+/// Writes a scene as the text of a scene file, which [`SceneFile::parse`] reads again, with one
+/// view or key in a line.
 ///
 /// # Errors
-/// A view or path has a spot or point light of its own, which scene files cannot express.
+/// A sentence, if a view has a spot or point light of its own, which scene files cannot express. A
+/// path may have one that is among the scene's lights: a comment then names it.
 pub fn scene_text(scene: &SceneFile) -> Result<String, String> {
     let mut text = format!("(\n    format: 1,\n    name: {:?},\n", scene.name);
     if !scene.description.is_empty() {

@@ -8,8 +8,9 @@ use schemars::{JsonSchema, SchemaGenerator};
 use serde_json::{Value, json};
 use skiagraph_located_ron::schema::plain;
 
-/// Returns the JSON Schema (draft 2020-12) of scene files. It describes RON as JSON: `Kind(field:
-/// value)` is `{"Kind": {"field": value}}`, a bare word is a string, a tuple is an array.
+/// Returns the JSON Schema (draft 2020-12) of scene files. It describes their RON as JSON:
+/// `Kind(field: value)` is `{"Kind": {"field": value}}`, a bare word is a string, a tuple is an
+/// array.
 pub fn schema() -> Value {
     let mut generator = SchemaGenerator::default();
     let head = SceneFile::json_schema(&mut generator).to_value();

@@ -5,7 +5,7 @@ use std::sync::Arc;
 /// Decoded texels of a texture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Texels {
-    /// Width and height in texels.
+    /// Width and height of the texture in texels.
     pub size: [u32; 2],
     /// One entry per texel, row by row from the top left: sRGB red, green and blue, then alpha.
     pub rgba: Vec<[u8; 4]>,

@@ -5,7 +5,7 @@ use crate::texels::Texels;
 use crate::texture_file::{decode, read};
 use std::sync::{Arc, OnceLock};
 
-/// Treatment of texture coordinates outside 0…1.
+/// Treatment of a texture coordinate outside 0…1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Wrap {
     /// The texture repeats.
@@ -50,8 +50,8 @@ pub enum Source {
     Bytes(Arc<[u8]>),
 }
 
-/// Key that tells whether two textures have the same source, without decoding them: equal keys mean
-/// the same source.
+/// Key that tells if two textures have the same source, without decoding them: equal keys mean the
+/// same source.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum SourceKey {
     /// Address of the texels or bytes in memory.
@@ -78,11 +78,11 @@ impl Source {
 /// Colour texture, whose texels are decoded at the first call of [`texels`](Self::texels).
 #[derive(Clone, Debug)]
 pub struct Texture {
-    /// Name of the texture in messages.
+    /// Name of the texture for error messages.
     pub name: String,
     /// Source of the texels.
     pub source: Source,
-    /// Treatment of u and v outside 0…1.
+    /// Treatment of u and of v outside 0…1.
     pub wrap: [Wrap; 2],
     texels: Arc<OnceLock<Result<Arc<Texels>, String>>>,
 }

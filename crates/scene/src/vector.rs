@@ -40,7 +40,8 @@ impl Vector {
 pub(crate) enum Turn {}
 
 impl Turn {
-    /// Brings it to length 1, unless it has that already or has none.
+    /// Reads a quaternion and scales it to length 1; one of length 1 keeps its bits. (0, 0, 0, 0)
+    /// is returned as it is, and `PartMotion::check` refuses it.
     pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<DQuat, D::Error> {
         let (x, y, z, w) = <(f64, f64, f64, f64)>::deserialize(deserializer)?;
         let rotation = DQuat::from_xyzw(x, y, z, w);

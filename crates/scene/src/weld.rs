@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3};
 use std::collections::HashMap;
 
-/// Assigns indices to vectors of `N` components: bit-equal vectors get the same index, a new vector
+/// Assigns indices to vectors of `N` components. Bit-equal vectors get the same index, a new vector
 /// gets the next index.
 #[derive(Clone, Debug, Default)]
 pub struct Welder<V = Vec3, const N: usize = 3> {

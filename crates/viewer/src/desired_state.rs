@@ -11,18 +11,19 @@ use skiagraph_reference::GroundTruthPixels;
 use skiagraph_scene::{Scene, View};
 use std::{collections::BTreeMap, sync::Arc};
 
-/// State that the window requests of the thread that runs the graphs: scene, view and methods.
+/// Request of the window to the thread that runs the graphs: scene, view and methods to show.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DesiredState {
     /// Name of the scene, as on the command line.
     pub scene: String,
-    /// Camera and light to show the scene with; `None` for the scene's first view.
+    /// Camera and light to show the scene with; `None` for the scene's first view. The light is the
+    /// scene's if the view has none.
     pub view: Option<View>,
     /// Width and height of each method's picture in pixels.
     pub size: [u32; 2],
     /// Methods to run, from left to right: one or two.
     pub methods: Vec<DesiredMethod>,
-    /// Run every pass, even if its inputs have not changed.
+    /// True to run every pass, even if its inputs have not changed.
     pub all_passes: bool,
     /// Counter that the window increases to get another frame of the same state.
     pub frame: u64,
@@ -35,17 +36,19 @@ pub struct DesiredMethod {
     pub name: String,
     /// Values of the params that were set; all others have their defaults.
     pub params: ParamValues,
-    /// A material to read back besides the outputs; `None` for outputs only.
+    /// A material to read back, at the end of the frame or after a pass, besides the outputs;
+    /// `None` for outputs only.
     pub material: Option<Capture>,
 }
 
 /// Messages from the thread that runs the graphs to the window.
 pub enum Event {
-    /// The scene of this name was loaded, or could not be; the error is text for the user.
+    /// The scene of this name was loaded, or could not be loaded; the error is text for the user.
     Scene(String, Result<Loaded, String>),
-    /// A frame of each method.
+    /// A frame of each method of the desired state.
     Frame(Box<FrameSnapshot>),
-    /// The thread can draw nothing more; the text says why.
+    /// The desired state cannot be drawn, for example since the GPU cannot be opened again; the
+    /// text for the user is the reason.
     Broken(String),
 }
 
@@ -62,11 +65,12 @@ pub struct Loaded {
 pub struct FrameSnapshot {
     /// The desired state that the frame shows.
     pub desired: DesiredState,
-    /// Question to the oracle about this frame: its scene, camera, light and visible primitives.
+    /// Question to the reference ray tracer about this frame: its scene, camera, light and visible
+    /// primitives.
     pub question: Question,
     /// Index of the frame's light among the lights of the view.
     pub light_number: usize,
-    /// Classes of the pixels without shadows: lit wherever the surface faces the light.
+    /// Classes of the pixels as if nothing cast shadows: lit wherever the surface faces the light.
     pub facing: Arc<GroundTruthPixels>,
     /// A frame of each method, in the order of the desired state.
     pub methods: Vec<MethodSnapshot>,
@@ -83,12 +87,13 @@ pub struct MethodSnapshot {
     pub params: Vec<Param>,
     /// Value of each param, by name.
     pub values: BTreeMap<String, ParamValue>,
-    /// The live passes in schedule order.
+    /// The passes of the plan in the order in which they run, without those whose results are not
+    /// needed.
     pub passes: Vec<PassSnapshot>,
-    /// Bytes of the graph's own textures and buffers, and bytes that sharing memory among them
-    /// saved.
+    /// Bytes of the textures and buffers that the graph makes, then bytes that sharing memory among
+    /// them saves.
     pub memory: [u64; 2],
-    /// GPU time of the frame in milliseconds; `None` without timestamps.
+    /// GPU time of the frame in milliseconds; `None` without timestamps that can be trusted.
     pub gpu_ms: Option<f64>,
     /// Time from the begin of encoding to the end of the frame in milliseconds.
     pub wall_ms: f64,
@@ -96,8 +101,9 @@ pub struct MethodSnapshot {
     pub contents: Arc<Contents>,
     /// Decoding of each content, by name: how depths and buffer items become numbers.
     pub readings: BTreeMap<String, Decoding>,
-    /// Reason why the desired state could not be reached; the frame then shows the last one that
-    /// ran. `None` if the frame is as desired.
+    /// Errors for the user: the reason why the desired state could not be planned or run (the frame
+    /// then shows the last state that could), or mistakes in the method's files. `None` without
+    /// errors.
     pub error: Option<String>,
     /// Number of times that the method has been read from its files so far.
     pub reads: u64,
@@ -112,10 +118,11 @@ pub struct PassSnapshot {
     pub kind: String,
     /// Names of the materials that the pass writes.
     pub writes: Vec<String>,
-    /// True if the pass did not run because its inputs had not changed.
+    /// True if the pass did not run in this frame because its inputs had not changed.
     pub skipped: bool,
-    /// GPU time of the pass in milliseconds; `None` if it was not timed.
+    /// GPU time of the pass in milliseconds; `None` if it did not run or was not timed.
     pub gpu_ms: Option<f64>,
-    /// Number of shader runs of the pass; `None` if the adapter does not count them.
+    /// Numbers of shader invocations of the pass; `None` if it did not run or the adapter does not
+    /// count them.
     pub statistics: Option<PassStatistics>,
 }

@@ -22,32 +22,36 @@ pub enum Show {
     Shaded,
     /// The output `visibility`, with colours for the background and for surfaces that face away.
     Visibility,
-    /// The shaded scene with the pixels marked uncertain in purple.
+    /// The shaded scene, with those pixels in purple that the method's output `status` calls
+    /// uncertain.
     Uncertain,
-    /// The errors of the method against the reference.
+    /// The errors of the method against the reference: blue where too light, red where too dark.
     Difference,
-    /// Content of a material after a pass.
+    /// Content of a material, after a pass or at the end of the frame.
     Material(Capture),
 }
 
-/// How a pane shows a material.
+/// Mip or layer, channel and colours with which a pane, one of the window's two pictures, shows a
+/// material.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reading {
     /// Index of the shown part in [`Drawn::parts`]: the layers of the first mip, then those of the
     /// next.
     pub part: usize,
-    /// Index of the channel to show as a heat map; `None` for the colours that saved pictures have.
+    /// Index of the channel to show as a heat map; `None` for the colours of the pictures that `run
+    /// --save` writes.
     pub heat: Option<usize>,
-    /// Index of the channel in the histogram.
+    /// Index of the channel whose values the histogram counts.
     pub channel: usize,
 }
 
 /// Content of a pane: picture, legend and numbers.
 #[derive(Default)]
 pub struct Drawn {
-    /// The picture; `None` if there is none, and the legend says why.
+    /// The picture; `None` for a buffer, or if there is none.
     pub image: Option<Image>,
-    /// Meaning of the colours, or the reason why the picture is missing.
+    /// Meaning of the picture's colours; for a buffer, which of its items the table shows; or the
+    /// reason why there is neither. Empty for a method that the snapshot lacks.
     pub legend: String,
     /// The numbers of the picture's pixels; `None` if the picture has none.
     pub texels: Option<Texels>,
@@ -73,8 +77,9 @@ impl Drawn {
     }
 }
 
-/// Draws the content of a pane for the method with this index in the snapshot. `answer` is the
-/// reference's answer to this frame, if there is one.
+/// Draws the content of a pane for the method with the index `index` in the snapshot. `reading`
+/// applies to materials only. `answer` is the reference's answer to this frame; `None` if there is
+/// none yet.
 pub fn draw(
     snapshot: &FrameSnapshot,
     index: usize,
@@ -171,7 +176,8 @@ fn difference(
     })
 }
 
-/// Says for a legend which pixels have a reference when every `stride`-th of a row and column has.
+/// Returns the words of a legend for the pixels that have a reference: every `stride`-th (1, 3 or
+/// 9) of each row and column.
 pub fn of_pixels(stride: u32) -> &'static str {
     match stride {
         1 => "of all pixels",

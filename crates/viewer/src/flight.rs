@@ -28,13 +28,15 @@ fn turned(direction: DVec3, up: DVec3, yaw: f64, pitch: f64) -> DVec3 {
     DQuat::from_axis_angle(right, pitch) * direction
 }
 
-/// Turns the camera in place: by `yaw` about the view's up direction, and up by `pitch`. Angles are
-/// radians.
+/// Turns the camera in place: to the left by `yaw` about the view's up direction, and up by
+/// `pitch`. Angles are radians.
 pub fn look(view: &mut View, yaw: f64, pitch: f64) {
     view.direction = turned(view.direction, view.up, yaw, pitch);
 }
 
-/// Moves the camera around the point that lies `distance` before the eye. Angles are radians.
+/// Moves the camera around the point that lies `distance` (scene units) in front of the eye, and
+/// turns it by `yaw` and `pitch` as [`look`] does, so that the point keeps its place in the
+/// picture.
 pub fn orbit(view: &mut View, yaw: f64, pitch: f64, distance: f64) {
     let [_, _, forward] = frame(view);
     let centre = view.eye + forward * distance;
@@ -49,8 +51,8 @@ pub fn fly(view: &mut View, by: DVec3) {
     view.eye += right * by.x + up * by.y + forward * by.z;
 }
 
-/// Turns the direction of a directional or spot light, or moves a point light around `centre`.
-/// Angles are radians.
+/// Turns the direction of a directional or spot light, or moves a point light around `centre`: by
+/// `yaw` about the view's up direction, and towards it by `pitch`. Angles are radians.
 pub fn turn_light(light: &mut LightKind, view: &View, yaw: f64, pitch: f64, centre: DVec3) {
     let turn = |direction| turned(direction, view.up, yaw, pitch);
     match light {

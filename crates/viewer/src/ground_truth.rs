@@ -13,14 +13,16 @@ use std::{
     thread,
 };
 
-/// Distances between traced pixels in rows and columns, for one answer after another. They are odd,
-/// so that the centre of a large pixel is the centre of a small one.
+/// Distances in pixels, along rows and columns, between traced pixels of the first, second and
+/// third answer to a question. They are odd, so that the centre of a block of so many pixels is
+/// that of a pixel.
 pub const STRIDES: [u32; 3] = [9, 3, 1];
 
-/// Shadow rays per pixel for a light with an extent; more would be too slow for a live picture.
+/// Number of shadow rays per pixel to a light with an extent; more would be too slow for a live
+/// picture.
 pub const SAMPLES: u32 = 64;
 
-/// Question to the ray tracer of the reference: which pixels of this picture see the light?
+/// Question to the reference ray tracer: the picture whose pixels it judges, lit or in shadow.
 #[derive(Clone)]
 pub struct Question {
     /// The scene that the picture shows.
@@ -29,9 +31,11 @@ pub struct Question {
     pub camera: Camera,
     /// The light to judge.
     pub light: LightKind,
-    /// Index of the visible primitive of each pixel, row by row from the top left.
+    /// Index of the visible triangle of each pixel, row by row from the top left;
+    /// [`BACKGROUND`](skiagraph_reference::BACKGROUND) for pixels without one.
     pub primitives: Arc<Vec<u32>>,
-    /// Flag that is set once the answer is not needed any more.
+    /// Flag that [`GroundTruthThread::ask`] and [`forget`](GroundTruthThread::forget) set once the
+    /// answer is not needed any more.
     pub outdated: Arc<AtomicBool>,
 }
 
@@ -48,10 +52,11 @@ impl Question {
 pub struct Answer {
     /// The question that this answers.
     pub question: Question,
-    /// Distance in pixels from each answered pixel to the next in rows and columns; 1 if all pixels
-    /// are answered.
+    /// Distance in pixels, along rows and columns, from each judged pixel to the next, one of
+    /// [`STRIDES`]; 1 if all pixels are judged.
     pub stride: u32,
-    /// Ground truth of the answered pixels, or the reason why there is none.
+    /// Ground truth of the judged pixels only, as a picture of [`thinned_size`], or the reason why
+    /// there is none.
     pub ground_truth: Result<GroundTruth, String>,
 }
 
@@ -62,7 +67,8 @@ pub struct GroundTruthThread {
 }
 
 impl GroundTruthThread {
-    /// Starts the thread, which calls `tell` with each answer. It ends when the handle is dropped.
+    /// Starts the thread, which calls `tell` with each answer: to each question at most one for
+    /// each of [`STRIDES`]. It ends when the handle is dropped.
     ///
     /// # Errors
     /// If the system cannot create a thread.
@@ -77,8 +83,8 @@ impl GroundTruthThread {
         })
     }
 
-    /// Asks about a frame and cancels the question before. Does nothing if the last question was
-    /// alike.
+    /// Asks a question and cancels the one before. Does nothing if the last question [was
+    /// alike](Question::is_like).
     pub fn ask(&mut self, question: &Question) {
         let mut last = self.last.iter();
         if last.any(|last| last.is_like(question)) {
@@ -149,14 +155,14 @@ fn answer(oracle: &Oracle, question: &Question, tell: &impl Fn(Answer)) {
     }
 }
 
-/// Returns the width and height of a picture of `size` if only the middle pixel of every `stride`
-/// in rows and columns is kept.
+/// Returns the width and height of a picture of `size` pixels if only the middle one of every
+/// `stride` pixels in rows and columns is kept.
 pub fn thinned_size(size: [u32; 2], stride: u32) -> [u32; 2] {
     size.map(|edge| edge / stride)
 }
 
-/// Keeps the middle one of every `stride` values in each row and column. `values` are row by row,
-/// of a picture of `size`; so is the result.
+/// Returns the middle one of every `stride` values in each row and column. `values` are those of a
+/// picture of `size` pixels, row by row; the result is one of [`thinned_size`].
 pub fn thin<T: Copy>(values: &[T], size: [u32; 2], stride: u32) -> Vec<T> {
     let [width, height] = thinned_size(size, stride).map(|edge| edge as usize);
     let place = |at: usize| at * stride as usize + stride as usize / 2;

@@ -1,4 +1,4 @@
-//! Colours of a heat map: from dark blue over green to yellow, in even steps of perceived
+//! Colours of a heat map: from dark purple over green to yellow, in even steps of perceived
 //! brightness.
 
 /// Nine colours of viridis (Smith, van der Walt 2015), evenly spaced.
@@ -14,7 +14,8 @@ const VIRIDIS: [[u8; 3]; 9] = [
     [253, 231, 37],
 ];
 
-/// Returns the RGB colour of a value from 0 to 1; values outside are clamped.
+/// Returns the sRGB colour of a value from 0 (dark purple) to 1 (yellow); values outside are
+/// clamped.
 pub fn colour(share: f64) -> [u8; 3] {
     let place = share.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
     let from = (place as usize).min(VIRIDIS.len() - 2);

@@ -9,8 +9,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Returns the view as an entry of a scene file's `views`. A light of its own is written only if it
-/// is directional; views cannot have others.
+/// Returns the view as an entry of a scene file's `views`, in RON. A light of its own is written
+/// only if it is directional; views in scene files cannot have others.
 pub fn entry(view: &View) -> String {
     let three = |v: DVec3| format!("({}, {}, {})", v.x, v.y, v.z);
     let mut text = format!(
@@ -34,9 +34,9 @@ pub fn entry(view: &View) -> String {
     text + ")"
 }
 
-/// Writes a copy of the scene's file with the view added. It stands beside the original, or in the
-/// working directory for a built-in scene; existing files are kept. Returns the new file and the
-/// view's name in it.
+/// Writes a copy of the file of the scene named `scene`, with the view added. The copy is beside
+/// the original, or in the working directory for a built-in scene, under a name that is free.
+/// Returns the path of the copy and the view's name in it.
 ///
 /// # Errors
 /// If the scene has no file, its file has no list of views, or the copy cannot be written.

@@ -1,4 +1,5 @@
-//! Runs one method, with the last good graph of its files, and keeps the errors of newer ones.
+//! Runs one method with the last graph of its files that had no errors, and keeps the errors of
+//! newer ones.
 
 use crate::desired_state::{DesiredMethod, MethodSnapshot, PassSnapshot};
 use skiagraph_compare::error::{explain, is_fatal};
@@ -25,7 +26,7 @@ struct PlannedFor {
     reads: u64,
 }
 
-/// A method that runs, with its graph, its executor and its errors.
+/// A method of the window, with its graph, its executor and its errors.
 #[derive(Default)]
 pub struct Slot {
     /// Name of a preset, or path of a graph.
@@ -54,7 +55,7 @@ impl Slot {
         }
     }
 
-    /// Returns the last good graph; `None` if none was read.
+    /// Returns the last graph that was read without errors; `None` if there is none.
     pub fn graph(&self) -> Option<&Graph> {
         self.preset.as_ref().map(|preset| &preset.graph)
     }
@@ -82,14 +83,14 @@ impl Slot {
         true
     }
 
-    /// Drops the executor and plan, after a change of the device or the scene.
+    /// Drops the executor and plan. Must be called after a change of the device or the scene.
     pub fn forget_device(&mut self) {
         self.executor = None;
         self.planned = None;
     }
 
-    /// Runs a frame in the desired state. If that is not possible, runs the last plan that did; the
-    /// snapshot then carries the error.
+    /// Runs a frame of the method with the desired params. If they cannot be planned or run, runs
+    /// the last plan that could; the snapshot then carries the error.
     ///
     /// # Errors
     /// If the device is lost.
@@ -207,11 +208,11 @@ impl Slot {
 pub struct How {
     /// Width and height of the picture in pixels.
     pub size: [u32; 2],
-    /// Take GPU timestamps.
+    /// True to take GPU timestamps.
     pub timing: bool,
-    /// Run every pass, even if its inputs have not changed.
+    /// True to run every pass, even if its inputs have not changed.
     pub all_passes: bool,
-    /// Time of the shown moment in seconds.
+    /// Time in seconds that shaders read as `frame.seconds`.
     pub seconds: f32,
     /// Near and far plane of the camera, to turn depths into distances.
     pub planes: ClipPlanes,

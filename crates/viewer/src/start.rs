@@ -3,7 +3,7 @@
 use crate::desired_state::{DesiredMethod, DesiredState};
 use crate::ground_truth::GroundTruthThread;
 use crate::state::{Channels, Choices, Viewer};
-use crate::worker::{Command, LoadScene, Worker};
+use crate::worker::{Command, LoadScene, Worker, WorkerThread};
 use skiagraph_compare::error::CompareError;
 use skiagraph_compare::files::watch::{self, Watch};
 use skiagraph_compare::graphs::argument::{Assignment, MethodArgument};
@@ -15,10 +15,10 @@ use skiagraph_scene::SceneLibrary;
 use std::{
     collections::BTreeSet,
     sync::{Arc, mpsc},
-    thread,
 };
 
-/// Callback that makes the window update after news from a thread.
+/// Callback that makes the window call [`Viewer::update`]; the threads call it after each event or
+/// answer.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
 /// Methods, scene and settings with which [`open`](crate::open) opens the window.
@@ -35,14 +35,16 @@ pub struct Opening {
     pub size: [u32; 2],
     /// Name of the scene to show first, for [`load_scene`](Self::load_scene).
     pub scene: String,
-    /// Function that loads the first scene, and scenes that the user chooses in the window.
+    /// Function that loads the first scene, and scenes that the user chooses in the window, by
+    /// name.
     pub load_scene: LoadScene,
     /// Choice of the GPU that runs the methods.
     pub gpu: GpuRequest,
 }
 
 /// Starts the threads and creates the state that shows their results. Methods may contain errors;
-/// the window shows them. The watcher of the methods' files is `None` if it could not be started.
+/// the window shows them. Returns the state, and the watch on the methods' files; `None` if it
+/// could not be started, so that changed files are not read again.
 ///
 /// # Errors
 /// If no GPU can be opened, a method is unknown, or a method lacks a given param.
@@ -54,7 +56,6 @@ pub fn start(
     let methods = desired_methods(&opening, sink)?;
     let opened = device::open(&opening.gpu, [])?;
     let choices = choices(&opening, &opened, sink);
-    let (commands, command_receiver) = mpsc::channel();
     let (tell, events) = mpsc::channel();
     let woken = Arc::clone(&wake);
     // A failed send is passed over: the window that no longer listens is about to end.
@@ -69,16 +70,13 @@ pub fn start(
         Box::new(tell),
     );
     let failed = |error: std::io::Error| CompareError::Input(format!("no thread: {error}"));
-    thread::Builder::new()
-        .name("methods".into())
-        .spawn(move || worker.work(&command_receiver))
-        .map_err(failed)?;
+    let worker = WorkerThread::start(worker).map_err(failed)?;
     let (tell, answers) = mpsc::channel();
     let ground_truth = GroundTruthThread::start(move |answer| {
         let _ = tell.send(answer);
         wake();
     });
-    let again = commands.clone();
+    let again = worker.commands().clone();
     let folders = watch::folders(
         opening
             .methods
@@ -97,7 +95,7 @@ pub fn start(
         frame: 0,
     };
     let channels = Channels {
-        commands,
+        worker,
         events,
         ground_truth: ground_truth.map_err(failed)?,
         answers,

@@ -7,13 +7,13 @@ use crate::desired_state::{
 use crate::drawn::{Drawn, Reading, Show, draw};
 use crate::flight;
 use crate::ground_truth::{Answer, GroundTruthThread};
-use crate::worker::Command;
+use crate::worker::{Command, WorkerThread};
 use glam::DVec3;
 use skiagraph_graph::{Capture, ParamValue};
 use skiagraph_scene::{Light, LightKind, View};
 use std::{collections::VecDeque, sync::mpsc};
 
-/// Number of last frames whose times a pane shows.
+/// Number of the last frames whose times a pane shows.
 pub const HISTORY: usize = 120;
 
 /// Effect of dragging the pointer in a picture.
@@ -34,11 +34,11 @@ pub enum Drag {
 pub struct Pane {
     /// Kind of picture to show.
     pub show: Show,
-    /// How a material is shown.
+    /// Mip or layer, channel and colours with which a material is shown.
     pub reading: Reading,
     /// Picture, legend and numbers as drawn last.
     pub drawn: Drawn,
-    /// Counter that increases with each new picture.
+    /// Counter that increases whenever `drawn` changes.
     pub version: u64,
     /// GPU times of the last frames in milliseconds, the newest last; wall times of frames without
     /// GPU times.
@@ -48,8 +48,8 @@ pub struct Pane {
 
 /// Channels between the window and the threads that run the graphs and trace the reference.
 pub struct Channels {
-    /// Commands to the thread that runs the graphs.
-    pub commands: mpsc::Sender<Command>,
+    /// Handle of the thread that runs the graphs.
+    pub worker: WorkerThread,
     /// Events of the thread that runs the graphs.
     pub events: mpsc::Receiver<Event>,
     /// Handle of the thread that traces the reference.
@@ -69,29 +69,30 @@ pub struct Choices {
     pub adapter: String,
 }
 
-/// State of the window.
+/// State of the viewer's window: the desired state, the newest frame, its pictures, and the user's
+/// choices.
 pub struct Viewer {
     channels: Channels,
     /// Scenes and methods that the user can choose.
     pub choices: Choices,
-    /// State that the window asks the thread to show.
+    /// State that the window asks the thread that runs the graphs to show.
     pub desired: DesiredState,
     sent: Option<DesiredState>,
     /// The loaded scene; `None` until it is loaded.
     pub loaded: Option<Loaded>,
     /// The newest frame; `None` before the first.
     pub snapshot: Option<FrameSnapshot>,
-    /// The newest answer of the reference; `None` if there is none for the newest frame.
+    /// The newest answer of the reference to the newest frame; `None` if there is none.
     pub answer: Option<Answer>,
-    /// The two pictures. As many are shown as there are methods.
+    /// The two pictures. The first is shown with one method, both with two.
     pub panes: [Pane; 2],
     /// Effect of dragging the pointer in a picture.
     pub drag: Drag,
-    /// Run frame after frame, even if nothing changes.
+    /// True to run frame after frame, even if nothing changes.
     pub keep_running: bool,
-    /// Trace the reference for every shown frame.
+    /// True to trace the reference for every shown frame.
     pub is_judged: bool,
-    /// The last message to the user, with true if it is an error; `None` if there is none.
+    /// The last message to the user, and true if it is an error; `None` if there is none.
     pub notice: Option<(String, bool)>,
 }
 
@@ -136,7 +137,7 @@ impl Viewer {
         if self.sent.as_ref() != Some(&self.desired) {
             self.sent = Some(self.desired.clone());
             let command = Command::Show(Box::new(self.desired.clone()));
-            if self.channels.commands.send(command).is_err() {
+            if self.channels.worker.commands().send(command).is_err() {
                 self.notify_error("the thread that runs the methods has ended: start anew");
             }
         }
@@ -187,7 +188,7 @@ impl Viewer {
         self.notice = Some((what.to_owned(), true));
     }
 
-    /// Asks for the reference while it is shown.
+    /// Asks for the reference while a pane shows it.
     fn request_ground_truth(&mut self) {
         let shown = self.panes.iter().take(self.desired.methods.len());
         let is_shown = shown.into_iter().any(|pane| pane.show == Show::Difference);
@@ -199,7 +200,7 @@ impl Viewer {
         }
     }
 
-    /// True if the newest frame shows the desired state.
+    /// True if the newest frame is of the desired state.
     pub fn is_current(&self) -> bool {
         let shown = self.snapshot.as_ref().map(|snapshot| &snapshot.desired);
         shown == Some(&self.desired) && self.sent.as_ref() == Some(&self.desired)
@@ -245,15 +246,16 @@ impl Viewer {
         }
     }
 
-    /// Returns the newest frame of the method with this index; `None` if that frame is of another
-    /// method.
+    /// Returns the newest frame of the method with this index; `None` if there is no frame, or its
+    /// method with this index is another one.
     pub fn method(&self, index: usize) -> Option<&MethodSnapshot> {
         let method = self.snapshot.as_ref()?.methods.get(index)?;
         let desired = self.desired.methods.get(index)?;
         (method.name == desired.name).then_some(method)
     }
 
-    /// Replaces the method in the pane with this index, with default params.
+    /// Replaces the method in the pane with this index by the one named `name`, with default
+    /// params.
     pub fn choose_method(&mut self, index: usize, name: &str) {
         let name = name.to_owned();
         let method = DesiredMethod {
@@ -271,15 +273,15 @@ impl Viewer {
         self.panes[index].history.clear();
     }
 
-    /// Sets a param of the method with this index. A value equal to the default stays listed, so
-    /// that the method need not be planned again.
+    /// Sets a param of the method with this index. A value equal to the default is kept as a set
+    /// value, since dropping it would need a new plan.
     pub fn set_param(&mut self, index: usize, name: &str, value: ParamValue) {
         if let Some(method) = self.desired.methods.get_mut(index) {
             method.params.insert(name.to_owned(), value);
         }
     }
 
-    /// Changes the scene and starts from its first view.
+    /// Changes to the scene of this name, and to its first view.
     pub fn choose_scene(&mut self, name: &str) {
         if self.desired.scene != name {
             self.desired.scene = name.to_owned();
@@ -296,7 +298,8 @@ impl Viewer {
         }
     }
 
-    /// Lists the materials that each pass of a method writes, in the order of the passes.
+    /// Lists the materials that each pass of the method with this index writes, each after its
+    /// pass, in the order of the passes.
     pub fn steps(&self, index: usize) -> Vec<Capture> {
         let passes = self.method(index).into_iter().flat_map(|it| &it.passes);
         let captures = passes.flat_map(|pass| {
@@ -308,8 +311,8 @@ impl Viewer {
         captures.collect()
     }
 
-    /// Shows the next material in the order of [`steps`](Self::steps), or the previous one if
-    /// `forward` is false.
+    /// Shows the next material in the order of [`steps`](Self::steps) in the pane with this index,
+    /// or the previous one if `forward` is false.
     pub fn step(&mut self, index: usize, forward: bool) {
         let steps = self.steps(index);
         let at = match &self.panes[index].show {
@@ -328,7 +331,8 @@ impl Viewer {
         }
     }
 
-    /// Returns the centre and the radius of the scene, in scene units.
+    /// Returns the centre of the scene's bounding box and half its diagonal, the scene's radius, in
+    /// scene units; the origin and 1 without a scene.
     pub fn extent(&self) -> (DVec3, f64) {
         let bounds = self
             .loaded
@@ -343,8 +347,9 @@ impl Viewer {
         })
     }
 
-    /// Applies a drag by `by`, right and down. Camera and light turn by these angles in radians;
-    /// the eye moves by these multiples of half the scene's radius.
+    /// Applies a drag of the pointer by `by`, to the right and down. Camera and light turn by so
+    /// many radians; the eye of [`Drag::Pan`] moves by so many halves of the [scene's
+    /// radius](Self::extent).
     pub fn dragged(&mut self, drag: Drag, by: [f64; 2]) {
         let (centre, radius) = self.extent();
         let Some(view) = &mut self.desired.view else {
@@ -372,8 +377,8 @@ impl Viewer {
         self.look_from(moved);
     }
 
-    /// Moves the eye along its right, up and forward directions, in multiples of the scene's
-    /// radius.
+    /// Moves the eye by `by` along its right, up and forward directions, in multiples of the
+    /// [scene's radius](Self::extent).
     pub fn fly(&mut self, by: DVec3) {
         let (_, radius) = self.extent();
         if let Some(mut view) = self.desired.view.clone() {

@@ -1,4 +1,4 @@
-//! Numbers of a material: the value under the pointer, a histogram, a heat map.
+//! Reads the numbers of a material: the value under the pointer, a histogram, a heat map.
 
 use crate::heat;
 use skiagraph_compare::pictures::colours::{ClipPlanes, EMPTY, INVALID, cleared};
@@ -38,8 +38,9 @@ pub struct Histogram {
 }
 
 impl Texels {
-    /// Reads one part of a texture. `planes` turn a camera's depths into distances. `None` for a
-    /// buffer and for formats that are not read as numbers.
+    /// Reads one mip of one layer of a texture. `planes` are the camera's clip planes, by which a
+    /// camera's depths become distances; `None` for other content. Returns `None` for a buffer and
+    /// for formats that are not read as numbers.
     pub fn new(part: &Content, planes: Option<ClipPlanes>) -> Option<Self> {
         let Content::Texture { format, parts, .. } = part else {
             return None;
@@ -60,8 +61,8 @@ impl Texels {
         })
     }
 
-    /// Returns the stored value of a texel as text; a depth is followed by its distance. `None`
-    /// outside the picture.
+    /// Returns the stored values of the texel at x and y, from the top left, as text; a camera's
+    /// depth is followed by its distance. `None` outside the picture.
     pub fn text(&self, [x, y]: [u32; 2]) -> Option<String> {
         if x >= self.size[0] || y >= self.size[1] {
             return None;
@@ -101,8 +102,8 @@ impl Texels {
         })
     }
 
-    /// Returns the histogram of a channel. Depths of a camera count as distances; depths that
-    /// nothing has written are left out.
+    /// Returns the histogram of the channel with this index. Depths of a camera count as distances
+    /// in scene units; depths that still have the cleared value are left out.
     pub fn histogram(&self, channel: usize) -> Histogram {
         let finite = |number: &f64| number.is_finite();
         let numbers = || self.numbers(channel).flatten();
@@ -128,8 +129,9 @@ impl Texels {
         histogram
     }
 
-    /// Draws a channel as a heat map between two values. Magenta marks values that are not finite,
-    /// grey marks depths that nothing has written.
+    /// Draws the channel with this index as a heat map from the first to the second value of
+    /// `range`. Magenta marks values that are not finite, grey marks depths that still have the
+    /// cleared value.
     pub fn heat(&self, channel: usize, range: [f64; 2]) -> Image {
         let colour = |number: Option<f64>| match number {
             None => EMPTY,

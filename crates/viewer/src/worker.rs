@@ -19,16 +19,59 @@ use skiagraph_reference::{Progress, unshadowed};
 use skiagraph_scene::{Scene, View};
 use std::{
     error::Error,
+    io,
     sync::{Arc, mpsc},
-    time::Instant,
+    thread,
+    time::{Duration, Instant},
 };
 
 /// Commands of the window to the thread that runs the graphs.
 pub enum Command {
-    /// Show this state.
+    /// Run a frame of this state, and send it to the window.
     Show(Box<DesiredState>),
     /// Read the methods' files again; they may have changed.
     Reload,
+    /// End the thread behind the frame that runs.
+    End,
+}
+
+/// Handle of the thread that runs the graphs. The thread ends when the handle is dropped, which
+/// waits for a frame that runs: a process that ends while a driver works may crash.
+pub struct WorkerThread {
+    commands: mpsc::Sender<Command>,
+    thread: thread::JoinHandle<()>,
+}
+
+/// Longest time that a dropped handle waits for a frame.
+const LAST_FRAME: Duration = Duration::from_secs(20);
+
+impl WorkerThread {
+    /// Starts the thread.
+    ///
+    /// # Errors
+    /// If the system cannot create a thread.
+    pub fn start(worker: Worker) -> io::Result<Self> {
+        let (commands, received) = mpsc::channel();
+        let named = thread::Builder::new().name("methods".into());
+        let thread = named.spawn(move || worker.work(&received))?;
+        Ok(Self { commands, thread })
+    }
+
+    /// Returns the sender of commands to the thread.
+    pub fn commands(&self) -> &mpsc::Sender<Command> {
+        &self.commands
+    }
+}
+
+impl Drop for WorkerThread {
+    fn drop(&mut self) {
+        let began = Instant::now();
+        // A failed send means that it has ended.
+        let _ = self.commands.send(Command::End);
+        while !self.thread.is_finished() && began.elapsed() < LAST_FRAME {
+            thread::sleep(Duration::from_millis(2));
+        }
+    }
 }
 
 /// Function that loads a scene by name. It returns the scene, and further views that the window
@@ -37,7 +80,7 @@ pub enum Command {
 pub type LoadScene =
     Box<dyn Fn(&str) -> Result<(Scene, Vec<View>), Box<dyn Error + Send + Sync>> + Send>;
 
-/// Function that sends an event to the window.
+/// Function that sends an event to the window; its thread calls it.
 pub type Tell = Box<dyn Fn(Event) + Send>;
 
 /// The scene that is there, and what stands on it.
@@ -49,7 +92,7 @@ struct Stage {
     primitives: Option<(Executor, [u32; 2])>,
 }
 
-/// State of the thread that runs the graphs.
+/// State of the thread that runs the graphs: the GPU, the scene and the methods.
 pub struct Worker {
     request: GpuRequest,
     load_scene: LoadScene,
@@ -65,7 +108,8 @@ pub struct Worker {
 }
 
 impl Worker {
-    /// Creates the worker for a GPU, which was opened as `request` says.
+    /// Creates the worker for a GPU that was opened by `request`, by which it is opened again after
+    /// it is lost. `sources` has the methods' files, and `tell` gets the events.
     pub fn new(
         gpu: Gpu,
         (request, load_scene): (GpuRequest, LoadScene),
@@ -86,7 +130,7 @@ impl Worker {
         }
     }
 
-    /// Runs commands until their channel closes.
+    /// Runs commands until the other end of their channel is dropped.
     pub fn work(mut self, commands: &mpsc::Receiver<Command>) {
         let mut desired: Option<DesiredState> = None;
         while let Ok(first) = commands.recv() {
@@ -97,6 +141,7 @@ impl Worker {
                 match command {
                     Command::Show(next) => (desired, is_changed) = (Some(*next), true),
                     Command::Reload => reload = true,
+                    Command::End => return,
                 }
             }
             if reload {

@@ -1,6 +1,6 @@
-//! The program, its commands and their examples. Exit codes: 0 fine, 1 the input is wrong, 2 usage,
+//! The program, its commands and their examples. Exit codes: 0 fine, 1 wrong input, 2 wrong usage,
 //! 3 no usable GPU, or it was lost or hangs, 4 a condition of `--fail-if` does not hold, 5 worse
-//! than `--baseline`.
+//! than `--baseline`, 130 stopped by Ctrl-C.
 
 use crate::args::{
     commands::{
@@ -28,12 +28,12 @@ pub struct Cli {
     /// Command to run.
     #[command(subcommand)]
     pub command: Command,
-    /// Where it is done.
+    /// GPU on which the command runs, with limits on memory and time.
     #[command(flatten)]
     pub gpu: GpuArgs,
 }
 
-/// The commands.
+/// Commands of the program, each with its arguments.
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Render a scene with several shadow methods: GPU time per pass and wrong pixels, side by
@@ -47,16 +47,16 @@ pub enum Command {
             # after Ctrl-C: only what is missing\n  \
         skiagraph compare nsm --baseline before/results.json")]
     Compare(CompareArgs),
-    /// Draw what compare kept as SVG: time against error with its Pareto front, or growth with the
-    /// number of triangles. Needs no GPU.
+    /// Draw a chart of results of compare: time against error with its Pareto front, growth with
+    /// the number of triangles, or errors along camera paths. Needs no GPU.
     #[command(after_help = "Examples:\n  \
         skiagraph compare --scene park --map-size 512,1024,2048 --frames 11 --out park\n  \
         skiagraph chart park --out front.svg\n  \
         skiagraph chart sponza park --size 1024x1024 --out fronts.svg\n  \
         skiagraph chart city-1e4 city-1e5 city-1e6 --kind growth --out growth.svg")]
     Chart(ChartArgs),
-    /// Write one page, report.html, of what compare and stress kept in some folders: verdict,
-    /// charts, table, pictures. Needs no GPU, and the page no network.
+    /// Write one HTML page of the results of compare and stress in some folders: verdict, charts,
+    /// table, pictures. Needs no GPU, and the page no network.
     #[command(after_help = "Examples:\n  skiagraph report compare\n  \
         skiagraph report desk/park laptop/park --out park.html   \
             # two machines in one page\n\n\
@@ -71,9 +71,9 @@ pub enum Command {
             Pictures stay where they are; the page shows them."
     )]
     Merge(MergeArgs),
-    /// Render one frame with one graph and save any of its materials. Buffers and textures that
-    /// grow have room for all that the frame needs: frames before it, which it counts, find out how
-    /// much that is.
+    /// Render one frame with one graph and save any of its materials (textures and buffers). Those
+    /// whose size depends on the frame's content get room for all of it: frames that are rendered
+    /// before, and counted in the output, find out how much that is.
     #[command(
         after_help = "Examples:\n  skiagraph run nsm --save visibility=shadow.png\n  \
         skiagraph run nsm --save shadow_map@create_shadow_map.draw[0]=map.png --map-size 512\n  \
@@ -81,8 +81,8 @@ pub enum Command {
         skiagraph run my_method.ron --poison"
     )]
     Run(RunArgs),
-    /// Time every pass of a graph over many frames, and list what its materials take; of several
-    /// graphs, views or sizes, a table of passes and sizes per graph.
+    /// Time every pass of a graph over many frames, and list the memory of its textures and
+    /// buffers; of several graphs, views or sizes, print a table of passes and sizes per graph.
     #[command(
         after_help = "Examples:\n  skiagraph profile nsm --scene park --frames 100\n  \
         skiagraph profile nsm --json before.json\n  \
@@ -93,8 +93,8 @@ pub enum Command {
         docs/profiling.md says how to read the tables and the trace."
     )]
     Profile(ProfileArgs),
-    /// Run the hard cases with every method: which pixels does each get wrong, and are the exact
-    /// ones wrong nowhere?
+    /// Run every method on a catalogue of hard scenes, count the pixels that it gets wrong, and
+    /// fail if it breaks the guarantee of its document.
     #[command(
         after_help = "Examples:\n  skiagraph stress\n  skiagraph stress --list\n  \
         skiagraph stress rt crsm --case box_on_floor --save pictures\n  \
@@ -107,9 +107,9 @@ pub enum Command {
         judged on open casters with cull=none."
     )]
     Stress(StressArgs),
-    /// Check graphs and their shaders. Needs no GPU: what is beyond the limits that every GPU has
-    /// is a warning. With --adapter or --backend it is asked of that GPU, and an error where it
-    /// cannot run them.
+    /// Check graphs and their shaders. Needs no GPU: needs beyond WebGPU's default limits and
+    /// features are warnings. With --adapter or --backend the graphs must run on that GPU, and
+    /// needs that it does not meet are errors.
     #[command(
         after_help = "Examples:\n  skiagraph check my_method.ron pipelines/*.ron\n  \
         skiagraph check my_method.ron --adapter llvmpipe\n  \
@@ -125,8 +125,8 @@ pub enum Command {
         place. Exit codes are those of --format text."
     )]
     Check(CheckArgs),
-    /// Draw a graph: passes in order, materials and their lifetimes, what depends on what, what is
-    /// culled and why. Needs no GPU.
+    /// Draw a graph: passes in order, materials with their lifetimes, dependences, and culled
+    /// passes with the reasons. Needs no GPU.
     #[command(after_help = "Examples:\n  skiagraph graph nsm --out nsm.svg\n  \
         skiagraph graph my_method.ron --outputs visibility --size 1920x1080 --out my_method.svg\n  \
         skiagraph graph rt --format dot | dot -Tpng -o rt.png\n  \
@@ -141,14 +141,14 @@ pub enum Command {
     #[command(after_help = "Examples:\n  skiagraph new my_method\n  \
         skiagraph new my_crsm --from crsm")]
     New(NewArgs),
-    /// Print a document, shader or scene file, of the working directory or built in; behind a
-    /// document what its passes read and write.
+    /// Print a graph document, shader or scene file, of the working directory or built in; behind a
+    /// document the materials that its passes read and write.
     #[command(after_help = "Examples:\n  skiagraph show nsm\n  \
         skiagraph show shared/light.wgsl\n  skiagraph show crsma_full --flat\n  \
         skiagraph show lamps")]
     Show(ShowArgs),
-    /// Print what documents or scene files may be: a JSON Schema for editors and programs that
-    /// write them, or the reference of the language.
+    /// Print the format of graph documents or scene files: a JSON Schema for editors and programs
+    /// that write them, or the reference of the language.
     #[command(
         after_help = "Examples:\n  skiagraph schema > skiagraph.schema.json\n  \
         skiagraph schema --format markdown\n  skiagraph schema scenes\n\n\
@@ -164,7 +164,7 @@ pub enum Command {
     /// List the scenes and their views.
     #[command(after_help = "Example:\n  skiagraph scenes")]
     Scenes,
-    /// Show the GPUs, what they can do, and where meshes are searched.
+    /// Show the GPUs with their limits and features, and the folders that are searched for meshes.
     #[command(after_help = "Example:\n  skiagraph doctor --adapter llvmpipe")]
     Doctor,
     /// Show methods in a window: fly through the scene, turn the light, move params, look at any

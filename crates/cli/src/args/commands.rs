@@ -14,7 +14,7 @@ use skiagraph_reference::OracleMode;
 use skiagraph_report::gate::Gate;
 use std::path::PathBuf;
 
-/// `skiagraph compare`.
+/// Arguments of `skiagraph compare`.
 #[derive(Args, Debug)]
 #[command(mut_arg("scenes", |scenes| scenes.action(ArgAction::Append).help(
     "Built-in scene, scene file (.ron), name in scenes/, or a mesh (.obj, .gltf, .glb). Given \
@@ -22,9 +22,9 @@ use std::path::PathBuf;
 )))]
 pub struct CompareArgs {
     /// Presets by name, or graphs (.ron) with the output `visibility`, and perhaps `status`.
-    /// With settings of its own a method stands beside itself: `crsm@n=1,depth=plane`. Without any:
-    /// the eight that one would ship (rt, light_buffer, nsm, pcf, pssm, vsm, hybrid_pcf, crsm) and
-    /// one's own in ./pipelines.
+    /// `crsm@n=1,depth=plane` is a method with params of its own. Without any: the eight that are
+    /// fit for use (rt, light_buffer, nsm, pcf, pssm, vsm, hybrid_pcf, crsm) and your own in
+    /// ./pipelines.
     #[arg(value_name = "PRESET|FILE.ron[@NAME=VALUE,…]")]
     pub presets: Vec<String>,
     /// Compare all presets, those in ./pipelines and the built-in ones.
@@ -33,13 +33,13 @@ pub struct CompareArgs {
     /// The scene and the place that it is seen from.
     #[command(flatten)]
     pub scene: SceneArgs,
-    /// A camera path of the scene, or `all`: every frame is judged, and shimmer is counted, with
-    /// what a method keeps from frame to frame, and timed, also with every pass run (but with
-    /// --cached-frames 0). --frames is of still views.
+    /// A camera path of the scene, or `all`. Every frame is judged and timed, and shimmer counted.
+    /// Unchanged passes are skipped; unless --cached-frames is 0, a second walk times every pass.
+    /// --frames has no effect.
     #[arg(long, value_name = "NAME", conflicts_with = "view")]
     pub path: Option<String>,
-    /// Move the camera by a part of a pixel in each frame, in turns of so many places (Halton's
-    /// sequence), as for temporal antialiasing: `camera.jitter` of the shaders.
+    /// Move the camera by a part of a pixel in each frame, through N places in turn (Halton's
+    /// sequence), as for temporal antialiasing. Shaders read it as `camera.jitter`.
     #[arg(long, value_name = "N", requires = "path",
           value_parser = clap::value_parser!(u32).range(1..=1024))]
     pub jitter: Option<u32>,
@@ -51,86 +51,87 @@ pub struct CompareArgs {
         default_value = "1024x1024"
     )]
     pub size: Vec<Size>,
-    /// Shadow map sizes in texels, separated by commas: the param `map_size` of the graphs that
-    /// have it.
+    /// Widths of square shadow maps in texels, separated by commas: the param `map_size` of the
+    /// graphs that have it.
     #[arg(long, value_name = "N,…", value_delimiter = ',',
           value_parser = texels(), allow_negative_numbers = true)]
     pub map_size: Vec<u32>,
-    /// A param of the graphs that have it. Of a list (radius=1,2,4; vectors between semicolons) or
-    /// a range (bias=0..0.01/5: five values) every value is a row. May be repeated.
+    /// A param of the graphs that have it. Each value of a list (radius=1,2,4; vectors between
+    /// semicolons) or a range (bias=0..0.01/5: five values) is compared. May be repeated.
     #[arg(long = "set", value_name = "NAME=VALUE,…", allow_hyphen_values = true)]
     pub params: Vec<Assignment>,
-    /// Timed frames per run. The frame that is judged and pictured is one more behind them, as its
-    /// readback would be timed, too.
+    /// Timed frames of each method on each view. The frame that is judged and pictured is another
+    /// one, so that its readback is not timed.
     #[arg(long, default_value_t = 10, value_name = "N",
           value_parser = frames(1), allow_negative_numbers = true)]
     pub frames: u32,
-    /// Frames before the timed ones.
+    /// Untimed frames before the timed ones.
     #[arg(long, default_value_t = 2, value_name = "N",
           value_parser = frames(0), allow_negative_numbers = true)]
     pub warmup: u32,
-    /// Timed frames in which only the camera moves, so that passes may be skipped: as many as
-    /// --frames, 0 for none.
+    /// Timed frames in which only the camera moves, so that passes may be skipped; 0 for none.
+    /// Without it: as many as --frames.
     #[arg(long, value_name = "N",
           value_parser = frames(0), allow_negative_numbers = true)]
     pub cached_frames: Option<u32>,
-    /// The answer that counts as right: `exact` (own primitive excluded, no offset) or
-    /// `offset:LENGTH` (ray origin moved towards the light).
+    /// Shadow rays of the reference: `exact` (no offset, the own triangle excluded) or
+    /// `offset:LENGTH` (origin moved towards the light by so many scene units).
     #[arg(long, default_value = "exact", value_name = "MODE")]
     pub oracle: OracleMode,
-    /// Shadow rays per pixel to a light that has an extent, of which the reference is made.
+    /// Shadow rays per pixel that the reference traces to a light with an extent.
     #[arg(long, value_name = "N", default_value_t = REFERENCE_SAMPLES,
           value_parser = clap::value_parser!(u32).range(4..=1_048_576))]
     pub reference_samples: u32,
-    /// Take no method whose frame takes longer with every pass run: `3ms`, `800us`.
+    /// Recommend no method whose frame takes longer with every pass run: `3ms`, `800us`.
     #[arg(long, value_name = "TIME", value_parser = milliseconds)]
     pub under: Option<f64>,
-    /// Take no method that is wrong on so many of the pixels that face the light, or more: `1%`.
-    /// The fastest one that is right enough is taken, not the fastest exact one.
+    /// Recommend no method that is wrong on so large a share of the pixels that face the light, or
+    /// more: `1%`. The fastest below it is recommended, not the fastest exact one.
     #[arg(long, value_name = "SHARE", value_parser = percent)]
     pub below: Option<f64>,
-    /// Take no method that needs more memory, with what it reads of the scene: `64MiB`.
+    /// Recommend no method that needs more memory, with the scene data it reads: `64MiB`.
     #[arg(long, value_name = "SIZE", value_parser = bytes)]
     pub memory: Option<u64>,
-    /// Search the params that documents mark with `tune`, and measure each method with its best
-    /// setting, too. Settings are chosen on every second view and judged on the others.
+    /// Search the values of params that documents mark with `tune`, and measure each method with
+    /// the best ones, too. They are chosen on every second view and judged on the others.
     #[arg(long, conflicts_with = "path")]
     pub tune: bool,
     /// End with exit code 4 if a figure of a method is greater: `nsm: wrong > 0.1%`, `rmse > 0.05`,
     /// `flip > 0.02`, `frame > 3ms`, `memory > 64MiB`. May be repeated.
     #[arg(long, value_name = "METHOD: FIGURE > VALUE", value_parser = gate)]
     pub fail_if: Vec<Gate>,
-    /// Compare with older results, cell by cell: a results.json or its folder. End with exit code 5
-    /// if a method has become more wrong or slower.
+    /// Compare each method on each view with older results: a results.json or its folder. End with
+    /// exit code 5 if a method has become more wrong or slower.
     #[arg(long, value_name = "RESULTS.json|DIR")]
     pub baseline: Option<PathBuf>,
-    /// Folder for report.html, results.json, results.csv and the pictures; of several scenes for
-    /// report.html and a folder for each.
+    /// Folder for report.html, results.json, results.csv and the pictures; with several scenes, for
+    /// report.html and a folder for each scene.
     #[arg(long, default_value = "compare", value_name = "DIR")]
     pub out: PathBuf,
-    /// Keep the runs in DIR/results.json whose graph, shaders, params, scene and view are still the
-    /// same, and go on with the others.
+    /// Keep the runs in the results.json of --out whose graph, shaders, params, scene and view are
+    /// still the same, and measure only the others.
     #[arg(long)]
     pub resume: bool,
-    /// Forget what DIR/results.json holds. Without it, runs of other methods, views and sizes stay
-    /// in it.
+    /// Drop all runs in the results.json of --out. Without it, runs of other methods, views and
+    /// sizes stay there.
     #[arg(long, conflicts_with = "resume")]
     pub replace: bool,
-    /// Published figures to stand beside ours in results.json and in --format markdown, there as
-    /// (LABEL VALUE): a CSV with the columns scene, view, viewport, map_size, preset, quantity,
-    /// value, source, note. May be repeated.
+    /// Published figures to show beside the measured ones in results.json and --format markdown,
+    /// there as (LABEL VALUE): a CSV with the columns scene, view, viewport, map_size, preset,
+    /// quantity, value, source, note. May be repeated.
     #[arg(long = "beside", value_name = "LABEL:FILE.csv")]
     pub published: Vec<PublishedFile>,
-    /// Which pictures are written.
+    /// Pictures to write.
     #[arg(long, value_enum, default_value_t = Images::All)]
     pub images: Images,
-    /// Write the answers and the reference as arrays, too: NumPy's or OpenEXR's.
+    /// Write visibility and status of each pixel, too: as NumPy arrays or OpenEXR pictures.
     #[arg(long, value_name = "npy|exr")]
     pub data: Option<DataFormat>,
     /// Format of the results on standard output.
     #[arg(long, value_enum, default_value_t = Format::Table)]
     pub format: Format,
-    /// Print the time of each pass, too: a table per method, a column per viewport and map.
+    /// Print the GPU time of each pass, too: a table per method, a column per viewport and map
+    /// size.
     #[arg(long)]
     pub passes: bool,
     /// Print all figures of each view and viewport by itself, too.
@@ -138,28 +139,28 @@ pub struct CompareArgs {
     pub details: bool,
 }
 
-/// Which pictures are written.
+/// Choice of the pictures that are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Images {
-    /// Those of every run, and of the reference of every view and viewport.
+    /// Pictures of every run, and of the reference of every view and viewport.
     All,
-    /// None.
+    /// No pictures.
     None,
 }
 
-/// How results are printed.
+/// Formats of the results on standard output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Format {
-    /// For a terminal.
+    /// Tables as text for a terminal.
     Table,
-    /// For a document: the command, the conditions, and a table per view and viewport with the
-    /// times of steps.
+    /// Markdown: the command, the conditions, and a table per view and viewport with the times of
+    /// groups of passes.
     Markdown,
-    /// The contents of results.json; of several scenes a list of them.
+    /// The contents of results.json; with several scenes, a list of them.
     Json,
 }
 
-/// `skiagraph chart`.
+/// Arguments of `skiagraph chart`.
 #[derive(Args, Debug)]
 pub struct ChartArgs {
     /// Folders that `compare --out` wrote, each with its results.json.
@@ -168,12 +169,12 @@ pub struct ChartArgs {
     /// Kind of chart to draw.
     #[arg(long, value_enum, default_value_t = ChartKind::Front)]
     pub kind: ChartKind,
-    /// Only runs of this viewport size. Without it: all, each in a panel of its own.
+    /// Draw only runs of this viewport size. Without it: all sizes, each in a panel of its own.
     #[arg(long, value_name = "WxH")]
     pub size: Option<Size>,
-    /// Draws published figures beside ours instead, theirs left and ours right on the same axes: by
-    /// map size and by viewport a chart for each quantity that both have, times as shares of those
-    /// of the method that draws no map. --out is a folder for them.
+    /// Draw published figures (left) beside the measured ones (right) instead: a chart by map size
+    /// and one by viewport for each quantity that both have, times as shares of those of the method
+    /// that draws no shadow map. --out is a folder for them.
     #[arg(
         long,
         value_name = "LABEL:FILE.csv",
@@ -189,32 +190,31 @@ pub struct ChartArgs {
 /// Kinds of charts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ChartKind {
-    /// GPU time of a frame less its G-buffer against the share of wrong pixels outside the band:
-    /// a panel per folder and viewport, a mark per method and map size, the mean where there are
-    /// several views.
+    /// GPU time of a frame less its G-buffer against the share of wrong pixels, without those that
+    /// rounding decides: a panel per folder and viewport, a mark per method and map size, the mean
+    /// of the views.
     Front,
     /// Time and memory against the number of triangles: two panels per scene, view and viewport, a
-    /// line per method and map size; give a folder for each size of a scene.
+    /// line per method and map size. Give a folder for each number of triangles.
     Growth,
-    /// Errors over the frames of camera paths: a panel per folder, path and viewport, a line per
-    /// method and map size.
+    /// Errors (wrong pixels, or RMSE of shares) over the frames of camera paths: a panel per
+    /// folder, path and viewport, a line per method and map size.
     Frames,
 }
 
-/// `skiagraph report`.
+/// Arguments of `skiagraph report`.
 #[derive(Args, Debug)]
 pub struct ReportArgs {
-    /// Folders that `compare --out` wrote, each with its results.json, and those that `stress
-    /// --out` wrote. What was measured alike becomes one; of a run that is there twice the newer
-    /// one counts.
+    /// Folders that `compare --out` or `stress --out` wrote. Results of one scene, machine, GPU and
+    /// protocol are joined; of a run that is there twice the newer one counts.
     #[arg(value_name = "DIR", required = true)]
     pub folders: Vec<PathBuf>,
-    /// The page. Without it: report.html in the first folder.
+    /// File of the page. Without it: report.html in the first folder.
     #[arg(long, value_name = "FILE.html")]
     pub out: Option<PathBuf>,
 }
 
-/// `skiagraph merge`.
+/// Arguments of `skiagraph merge`.
 #[derive(Args, Debug)]
 pub struct MergeArgs {
     /// Folders that `compare --out` or `merge --out` wrote, or their results.json.
@@ -225,39 +225,39 @@ pub struct MergeArgs {
     pub out: PathBuf,
 }
 
-/// `skiagraph completions`.
+/// Arguments of `skiagraph completions`.
 #[derive(Args, Debug)]
 pub struct CompletionsArgs {
-    /// The shell.
+    /// Shell for which the script is printed.
     pub shell: clap_complete::Shell,
 }
 
-/// `skiagraph new`.
+/// Arguments of `skiagraph new`.
 #[derive(Args, Debug)]
 pub struct NewArgs {
-    /// Name of the method: NAME.ron and NAME.wgsl are written.
+    /// Name of the new method: NAME.ron and NAME.wgsl are written into the current folder.
     pub name: String,
-    /// Write a variant of this preset instead, with its params to choose from.
+    /// Write a variant of this preset instead, a document that lists its params to change.
     #[arg(long, value_name = "PRESET")]
     pub from: Option<String>,
 }
 
-/// `skiagraph show`.
+/// Arguments of `skiagraph show`.
 #[derive(Args, Debug)]
 pub struct ShowArgs {
-    /// A preset, or a document or shader by its path, also below pipelines/ or shaders/; or a
-    /// scene.
+    /// Name of a preset or scene, or path of a document or shader, also relative to pipelines/ or
+    /// shaders/.
     #[arg(value_name = "NAME|FILE")]
     pub file: String,
-    /// Write out what a document extends, each line with the file and line that it comes from.
+    /// Print a document together with those that it extends, each line with its file and line.
     #[arg(long)]
     pub flat: bool,
 }
 
-/// `skiagraph schema`.
+/// Arguments of `skiagraph schema`.
 #[derive(Args, Debug)]
 pub struct SchemaArgs {
-    /// Files that are described.
+    /// Kind of files whose format is described.
     #[arg(value_enum, default_value_t = SchemaOf::Documents)]
     pub of: SchemaOf,
     /// Format of the description.
@@ -265,25 +265,25 @@ pub struct SchemaArgs {
     pub format: SchemaFormat,
 }
 
-/// Files that have a schema.
+/// Kinds of files that have a schema.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum SchemaOf {
-    /// Graphs, `(format: 3, passes: …)`.
+    /// Graph documents, `(format: 3, passes: …)`.
     Documents,
     /// Scene files, `(format: 1, mesh: …)`.
     Scenes,
 }
 
-/// How the language is described.
+/// Formats of the description.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum SchemaFormat {
     /// A JSON Schema (draft 2020-12).
     Json,
-    /// Tables for a reader.
+    /// Tables in Markdown, for a reader.
     Markdown,
 }
 
-/// `skiagraph run`.
+/// Arguments of `skiagraph run`.
 #[derive(Args, Debug)]
 pub struct RunArgs {
     /// The method to run.
@@ -292,36 +292,36 @@ pub struct RunArgs {
     /// The scene to run it on.
     #[command(flatten)]
     pub scene: SceneArgs,
-    /// Save an output, a material or a view of one, after a pass or at the end: .png a picture,
-    /// .npy or .exr values, .bin raw bytes, .csv the words of a buffer. After a pass it is as much
-    /// as has been written by then. May be repeated.
+    /// Save an output, a material or a part of one, as it is after a pass or at the end of the
+    /// frame: .png a picture, .npy or .exr values, .bin raw bytes, .csv the items of a buffer. May
+    /// be repeated.
     #[arg(long, value_name = "MATERIAL[@PASS]=FILE")]
     pub save: Vec<Save>,
-    /// Render so many frames one after the other and save each: `--save visibility=v.png` writes
-    /// v.0000.png, v.0001.png … Along a path: not all of it, but so many frames.
+    /// Render N frames one after the other and save each: `--save visibility=v.png` writes
+    /// v.0000.png, v.0001.png … With --path: only the first N frames of the path.
     #[arg(long, value_name = "N", requires = "save",
           value_parser = frames(1), allow_negative_numbers = true)]
     pub frames: Option<u32>,
     /// A camera path of the scene, each frame of which is saved.
     #[arg(long, value_name = "NAME", conflicts_with = "view", requires = "save")]
     pub path: Option<String>,
-    /// Move the camera by a part of a pixel in each frame, in turns of so many places (Halton's
-    /// sequence), as for temporal antialiasing: `camera.jitter` of the shaders.
+    /// Move the camera by a part of a pixel in each frame, through N places in turn (Halton's
+    /// sequence), as for temporal antialiasing. Shaders read it as `camera.jitter`.
     #[arg(long, value_name = "N", requires = "save",
           value_parser = clap::value_parser!(u32).range(1..=1024))]
     pub jitter: Option<u32>,
-    /// Fill all memory that a frame has not written with two patterns, one after the other, and
-    /// fail if an output differs: the graph then reads what no pass has written. An output that
-    /// differs in the same memory, too, depends on the order of threads and is not judged.
+    /// Render frames with two byte patterns in all memory that no pass has written, and fail if an
+    /// output differs: the graph then reads such memory. An output that also differs between frames
+    /// of one pattern depends on the order of threads and is not judged.
     #[arg(long)]
     pub poison: bool,
 }
 
-/// `skiagraph profile`.
+/// Arguments of `skiagraph profile`.
 #[derive(Args, Debug)]
 pub struct ProfileArgs {
-    /// Presets by name, or graphs (.ron). With settings of its own a method stands beside itself:
-    /// `crsm@n=1,depth=plane`.
+    /// Presets by name, or graphs (.ron). `crsm@n=1,depth=plane` is a method with params of its
+    /// own.
     #[arg(value_name = "PRESET|FILE.ron[@NAME=VALUE,…]", required = true)]
     pub presets: Vec<String>,
     /// Viewport sizes in pixels, separated by commas.
@@ -332,72 +332,72 @@ pub struct ProfileArgs {
         default_value = "1024x1024"
     )]
     pub size: Vec<Size>,
-    /// Shadow map sizes in texels, separated by commas: the param `map_size` of the graphs that
-    /// have it.
+    /// Widths of square shadow maps in texels, separated by commas: the param `map_size` of the
+    /// graphs that have it.
     #[arg(long, value_name = "N,…", value_delimiter = ',',
           value_parser = texels(), allow_negative_numbers = true)]
     pub map_size: Vec<u32>,
-    /// A param of the graphs that have it. Of a list (radius=1,2,4; vectors between semicolons) or
-    /// a range (bias=0..0.01/5: five values) every value is timed. May be repeated.
+    /// A param of the graphs that have it. Each value of a list (radius=1,2,4; vectors between
+    /// semicolons) or a range (bias=0..0.01/5: five values) is timed. May be repeated.
     #[arg(long = "set", value_name = "NAME=VALUE,…", allow_hyphen_values = true)]
     pub params: Vec<Assignment>,
     /// The scene to run the methods on.
     #[command(flatten)]
     pub scene: SceneArgs,
-    /// Timed frames.
+    /// Number of timed frames.
     #[arg(long, default_value_t = 30, value_name = "N",
           value_parser = frames(1), allow_negative_numbers = true)]
     pub frames: u32,
-    /// Frames before the timed ones.
+    /// Untimed frames before the timed ones.
     #[arg(long, default_value_t = 3, value_name = "N",
           value_parser = frames(0), allow_negative_numbers = true)]
     pub warmup: u32,
-    /// Write a line per pass and one for the frame.
+    /// CSV file to write: a line per pass and one for the frame.
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
-    /// Write every timed frame in the Trace Event Format, for ui.perfetto.dev or chrome://tracing;
-    /// of one profile.
+    /// File to write every timed frame to, in the Trace Event Format for ui.perfetto.dev or
+    /// chrome://tracing. Needs one graph, view and size.
     #[arg(long, value_name = "FILE")]
     pub trace: Option<PathBuf>,
-    /// Write everything, samples included: what --baseline reads; of one profile.
+    /// JSON file to write, with all samples, for --baseline. Needs one graph, view and size.
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
-    /// Compare with what an earlier --json wrote; one profile.
+    /// Compare with a file that an earlier --json wrote. Needs one graph, view and size.
     #[arg(long, value_name = "OLD.json")]
     pub baseline: Option<PathBuf>,
 }
 
-/// `skiagraph stress`.
+/// Arguments of `skiagraph stress`.
 #[derive(Args, Debug)]
 pub struct StressArgs {
     /// Presets by name, or graphs (.ron) with the output `visibility`, and perhaps `status`.
-    /// With settings of its own a method stands beside itself: `crsm@n=1,depth=plane`. Without any:
-    /// all presets, those in ./pipelines and the built-in ones.
+    /// `crsm@n=1,depth=plane` is a method with params of its own. Without any: all presets, those
+    /// in ./pipelines and the built-in ones.
     #[arg(value_name = "PRESET|FILE.ron[@NAME=VALUE,…]")]
     pub presets: Vec<String>,
-    /// List the cases instead: names, casters, reasons. Needs no GPU.
+    /// List the cases instead: names, casters (closed or open), reasons. Needs no GPU.
     #[arg(long, exclusive = true)]
     pub list: bool,
-    /// A case by name. May be repeated. Without any: all cases.
+    /// Case to run, by name. May be repeated. Without any: all cases.
     #[arg(long = "case", value_name = "NAME")]
     pub cases: Vec<String>,
     /// Viewport size in pixels.
     #[arg(long, value_name = "WxH", default_value = "128x128")]
     pub size: Size,
-    /// Shadow map sizes in texels, separated by commas: the param `map_size` of the graphs that
-    /// have it.
+    /// Widths of square shadow maps in texels, separated by commas: the param `map_size` of the
+    /// graphs that have it.
     #[arg(long, value_name = "N,…", value_delimiter = ',', default_value = "128",
           value_parser = texels(), allow_negative_numbers = true)]
     pub map_size: Vec<u32>,
-    /// A param of the graphs that have it. Of a list (radius=1,2,4; vectors between semicolons) or
-    /// a range (bias=0..0.01/5: five values) every value is a row. May be repeated.
+    /// A param of the graphs that have it. Each value of a list (radius=1,2,4; vectors between
+    /// semicolons) or a range (bias=0..0.01/5: five values) is a column. May be repeated.
     #[arg(long = "set", value_name = "NAME=VALUE,…", allow_hyphen_values = true)]
     pub params: Vec<Assignment>,
-    /// Judge this method as an exact one, too: no pixel outside the band may be wrong. May be
-    /// repeated.
+    /// Judge this method as an exact one: no pixel may be wrong but those that rounding decides.
+    /// May be repeated.
     #[arg(long, value_name = "PRESET|FILE.ron")]
     pub exact: Vec<String>,
-    /// Folder for the pictures of every cell: shaded, visibility, error, uncertain.
+    /// Folder for the pictures of every method on every case: shaded, visibility, error, uncertain.
     #[arg(long, value_name = "DIR")]
     pub save: Option<PathBuf>,
     /// Folder for stress.json, written anew after every case.
@@ -408,22 +408,22 @@ pub struct StressArgs {
     pub format: StressFormat,
 }
 
-/// How the matrix is printed.
+/// Formats of the matrix on standard output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum StressFormat {
-    /// For a terminal.
+    /// Text for a terminal.
     Table,
-    /// The contents of stress.json.
+    /// The content of stress.json.
     Json,
 }
 
-/// `skiagraph check`.
+/// Arguments of `skiagraph check`.
 #[derive(Args, Debug)]
 pub struct CheckArgs {
     /// Graphs (.ron), or presets by name.
     #[arg(value_name = "FILE.ron", required = true)]
     pub graphs: Vec<String>,
-    /// How diagnostics are printed: text on standard error, or json on standard output.
+    /// Format of the diagnostics: text on standard error, or json on standard output.
     #[arg(long, value_enum, default_value_t = CheckFormat::Text)]
     pub format: CheckFormat,
     /// Check again whenever a document, shader or picture beside the graphs or in ./pipelines or
@@ -432,7 +432,7 @@ pub struct CheckArgs {
     pub watch: bool,
 }
 
-/// How diagnostics are printed.
+/// Formats of diagnostics.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum CheckFormat {
     /// For people: source lines with the mistakes underlined, on standard error.
@@ -441,42 +441,42 @@ pub enum CheckFormat {
     Json,
 }
 
-/// `skiagraph presets`.
+/// Arguments of `skiagraph presets`.
 #[derive(Args, Debug)]
 pub struct PresetsArgs {
-    /// How they are listed.
+    /// Format of the list.
     #[arg(long, value_enum, default_value_t = PresetsFormat::Text)]
     pub format: PresetsFormat,
 }
 
-/// How presets are listed.
+/// Formats of the list of presets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum PresetsFormat {
-    /// Each with its params.
+    /// Text with the params of each preset.
     Text,
-    /// As the table of docs/presets.md.
+    /// The Markdown table of docs/presets.md.
     Markdown,
 }
 
-/// `skiagraph graph`.
+/// Arguments of `skiagraph graph`.
 #[derive(Args, Debug)]
 pub struct GraphArgs {
     /// The method to plan.
     #[command(flatten)]
     pub method: MethodArgs,
-    /// Format of the drawing. Without it: what the ending of --out names, else svg.
+    /// Format of the drawing. Without it: that of the ending of --out, else svg.
     #[arg(long, value_enum, value_name = "FORMAT")]
     pub format: Option<DrawingFormat>,
     /// File to write. Without it: standard output.
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
-    /// Outputs that are wanted, separated by commas; what only others need is culled. Without it:
-    /// all.
+    /// Outputs to plan for, separated by commas; passes that only others need are culled. Without
+    /// it: all.
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub outputs: Vec<String>,
 }
 
-/// How a graph is drawn.
+/// Formats of the drawing of a graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum DrawingFormat {
     /// A chart of lifetimes, for a browser.
@@ -487,19 +487,19 @@ pub enum DrawingFormat {
     Json,
 }
 
-/// `skiagraph view`.
+/// Arguments of `skiagraph view`.
 #[derive(Args, Debug)]
 pub struct ViewArgs {
-    /// One or two presets by name, or graphs (.ron), each perhaps in a setting of its own.
+    /// One or two presets by name, or graphs (.ron), each perhaps with params of its own.
     #[arg(value_name = "PRESET|FILE.ron[@NAME=VALUE,…]", num_args = 0..=2, default_value = "nsm")]
     pub methods: Vec<String>,
     /// The scene and the place that it is seen from.
     #[command(flatten)]
     pub scene: SceneArgs,
-    /// Pixels that the methods run in; the window shows them larger or smaller.
+    /// Viewport of the methods in pixels; the window scales their pictures.
     #[arg(long, value_name = "WxH", default_value = "512x512")]
     pub size: Size,
-    /// Shadow map size in texels: the param `map_size`.
+    /// Width of the square shadow map in texels: the param `map_size`.
     #[arg(long, value_name = "N", value_parser = texels(), allow_negative_numbers = true)]
     pub map_size: Option<u32>,
     /// A param of the graphs that have it. May be repeated.

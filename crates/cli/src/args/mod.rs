@@ -1,4 +1,4 @@
-//! The command line as clap reads it: every flag with its help.
+//! Defines the command line for clap: every flag with its help.
 
 pub mod cli;
 pub mod commands;

@@ -28,20 +28,20 @@ pub struct GpuArgs {
     /// Vulkan, Metal or Direct3D 12. On GL a method that is not proven there is refused.
     #[arg(long, global = true, value_name = "BACKEND")]
     pub backend: Option<BackendWord>,
-    /// Memory for the textures and buffers of a graph: 512MiB, 2GiB, or bytes. A graph that needs
-    /// more is refused with a table of what takes the most. Without it: on a software adapter what
-    /// the machine has free, else what the driver gives.
+    /// Most memory for the textures and buffers of a graph: 512MiB, 2GiB, or bytes. A graph that
+    /// needs more is refused, with a table of the largest. Without it: on a software adapter the
+    /// machine's free memory, else no limit.
     #[arg(long, global = true, value_name = "SIZE", value_parser = values::bytes)]
     pub memory_limit: Option<u64>,
-    /// Give a frame up that takes longer than this, and with it the device: its shader may never
-    /// end. 0 waits for ever.
+    /// Seconds after which an unfinished frame is given up, and the device with it: a shader may
+    /// never end. 0 waits for ever.
     #[arg(long, global = true, value_name = "SECONDS", default_value_t = 300,
           value_parser = clap::value_parser!(u64).range(..=MAX_SECONDS))]
     pub timeout: u64,
 }
 
 impl GpuArgs {
-    /// The GPU that they ask for.
+    /// Returns the request for the GPU that these arguments choose.
     pub fn request(&self) -> GpuRequest {
         GpuRequest {
             adapter: self.adapter.clone(),
@@ -52,7 +52,7 @@ impl GpuArgs {
     }
 }
 
-/// An interface to GPUs that this program knows.
+/// Interfaces to GPUs that this program knows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum BackendWord {
     /// Vulkan.
@@ -83,24 +83,24 @@ const MAX_SECONDS: u64 = 86_400;
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Scene")]
 pub struct SceneArgs {
-    /// Built-in scene, scene file (.ron), name in scenes/, or a mesh (.obj, .gltf, .glb).
+    /// Built-in scene, scene file (.ron), name of one in scenes/, or mesh file (.obj, .gltf, .glb).
     #[arg(long = "scene", default_value = "park", value_name = "SCENE", action = ArgAction::Set)]
     pub scenes: Vec<String>,
     /// A view of the scene, or `all`. Without it: the scene's first view. Cameras of a glTF file
     /// are views.
     #[arg(long, value_name = "NAME")]
     pub view: Option<String>,
-    /// Eye position, instead of the view's. Without it, for a mesh without cameras: inside, if it
-    /// surrounds the camera, else where all of it is seen.
+    /// Eye position, instead of the view's. Without it, for a mesh without cameras: inside the mesh
+    /// if its surfaces surround the camera, else where all of it is seen.
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
     pub eye: Option<DVec3>,
     /// Direction in which the eye looks, instead of the view's. Without it, for a mesh without
-    /// cameras: at its middle.
+    /// cameras: to the mesh's middle.
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
     pub look: Option<DVec3>,
     /// A light of the scene, or `all`: each view under each. Without it: the scene's first light,
-    /// or all of them where `compare` has a graph with a layer for each. Three numbers are
-    /// the direction in which a sun of your own shines.
+    /// or all if `compare` has a graph with a layer of `visibility` for each. Three numbers are the
+    /// direction in which the light of a sun of your own travels.
     #[arg(long, value_name = "NAME|X,Y,Z", value_parser = values::light,
           allow_hyphen_values = true)]
     pub light: Option<LightArgument>,
@@ -110,34 +110,35 @@ pub struct SceneArgs {
     /// Vertical field of view in degrees, instead of the view's. Without it, for a mesh: 60.
     #[arg(long, value_name = "DEGREES", value_parser = values::degrees)]
     pub fov: Option<f64>,
-    /// Near plane distance. Without it, with --eye or for a mesh: a ten-thousandth of --far.
+    /// Near plane distance in scene units. Without it, with --eye or for a mesh: 1/10,000 of --far.
     #[arg(long, value_name = "LENGTH", value_parser = values::positive)]
     pub near: Option<f64>,
-    /// Far plane distance. Without it, with --eye or for a mesh: just behind the whole mesh.
+    /// Far plane distance in scene units. Without it, with --eye or for a mesh: just behind the
+    /// mesh.
     #[arg(long, value_name = "LENGTH", value_parser = values::positive)]
     pub far: Option<f64>,
-    /// Add a ground below a mesh that stands on nothing: a square slab just below its lowest point.
+    /// Add a ground below a mesh that has no floor: a square slab just below its lowest point.
     #[arg(long)]
     pub ground: bool,
-    /// Write the scene as it was chosen to a scene file, to be edited: mesh, lights, views, paths.
+    /// Scene file to write, to be edited: mesh, and lights, views and paths as they were chosen.
     #[arg(long, value_name = "FILE.ron")]
     pub write_scene: Option<PathBuf>,
-    /// Materials of a mesh that are read; without it all.
+    /// Materials of a mesh file to read. Without it: all.
     #[arg(long, value_name = "WHAT")]
     pub materials: Option<Materials>,
-    /// How polygons of a mesh that are not convex become triangles; without it they are cut.
+    /// Way in which concave polygons of an OBJ file become triangles. Without it: cut.
     #[arg(long, value_name = "HOW")]
     pub concave: Option<ConcavePolygons>,
 }
 
-/// Materials of a mesh file that are read.
+/// Choice of the materials of a mesh file that are read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Materials {
-    /// Colours and masks; a mask that is missing is an error.
+    /// Colours and alpha masks; a missing mask file is an error.
     All,
-    /// Colours; every surface is opaque, and what is missing is a warning.
+    /// Colours; every surface is opaque, and missing files are warnings.
     Color,
-    /// Nothing; files of materials and textures need not be there.
+    /// None; files of materials and textures may be missing.
     Ignore,
 }
 
@@ -151,12 +152,12 @@ impl From<Materials> for MaterialUse {
     }
 }
 
-/// How polygons of an OBJ file that are not convex become triangles.
+/// Ways in which concave polygons of an OBJ file become triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ConcavePolygons {
-    /// They are cut as their outline is; one that crosses itself is an error.
+    /// They are cut so that their outline stays; one that crosses itself is an error.
     Cut,
-    /// They are fanned from their first corner, and gain area.
+    /// They become fans around their first corner, which may cover more than the polygon.
     Fan,
 }
 
@@ -170,12 +171,12 @@ impl From<ConcavePolygons> for Concave {
 }
 
 impl SceneArgs {
-    /// The scene; of several the first.
+    /// Returns the scene's argument; of several scenes the first.
     pub fn scene(&self) -> &str {
         self.scenes.first().map_or("park", String::as_str)
     }
 
-    /// Returns the same arguments for another scene alone.
+    /// Returns the same arguments for one scene, `scene`.
     pub fn of(&self, scene: &str) -> Self {
         Self {
             scenes: vec![scene.to_owned()],
@@ -183,10 +184,10 @@ impl SceneArgs {
         }
     }
 
-    /// Each scene with the arguments, which must not be of one scene only.
+    /// Returns the arguments for each scene by itself.
     ///
     /// # Errors
-    /// If there are several scenes, and an argument that is of one.
+    /// If there are several scenes, and `--eye`, `--look` or `--write-scene`.
     pub fn each(&self) -> Result<Vec<Self>, CliError> {
         let single = [
             ("--eye", self.eye.is_some()),
@@ -205,7 +206,7 @@ impl SceneArgs {
         Ok(self.scenes.iter().map(|scene| self.of(scene)).collect())
     }
 
-    /// How a mesh file becomes a scene.
+    /// Returns the settings that turn a mesh file into a scene.
     pub fn mesh_scene(&self) -> MeshSceneOptions {
         MeshSceneOptions {
             file: MeshFileOptions {
@@ -219,7 +220,7 @@ impl SceneArgs {
         }
     }
 
-    /// The parts of a view's camera that they replace.
+    /// Returns the parts of a view's camera that the arguments replace.
     pub fn camera(&self) -> OwnCamera {
         OwnCamera {
             eye: self.eye,
@@ -231,7 +232,7 @@ impl SceneArgs {
         }
     }
 
-    /// The direction in which a sun of one's own shines.
+    /// Returns the direction in which the user's own sun shines; `None` without one.
     pub fn own_light(&self) -> Option<DVec3> {
         match &self.light {
             Some(LightArgument::Direction(direction)) => Some(*direction),
@@ -239,7 +240,7 @@ impl SceneArgs {
         }
     }
 
-    /// The name of the light that they ask for, if it is one of the scene's.
+    /// Returns the name in `--light`, or `all`; `None` without it or for three numbers.
     pub fn light_name(&self) -> Option<&str> {
         match &self.light {
             Some(LightArgument::Name(name)) => Some(name),
@@ -248,7 +249,7 @@ impl SceneArgs {
     }
 }
 
-/// One graph, its viewport and its params.
+/// Arguments that name one graph, its viewport and its params.
 #[derive(Args, Debug)]
 pub struct MethodArgs {
     /// Preset by name, or a graph (.ron).
@@ -257,7 +258,7 @@ pub struct MethodArgs {
     /// Viewport size in pixels.
     #[arg(long, value_name = "WxH", default_value = "1024x1024")]
     pub size: Size,
-    /// Shadow map size in texels: the param `map_size`.
+    /// Width of the square shadow map in texels: the param `map_size`.
     #[arg(long, value_name = "N", value_parser = texels(), allow_negative_numbers = true)]
     pub map_size: Option<u32>,
     /// A param of the graph. May be repeated.
@@ -266,7 +267,7 @@ pub struct MethodArgs {
 }
 
 impl MethodArgs {
-    /// Loads the graph that they name, with the params that they set.
+    /// Loads the graph that the arguments name, and the values of the params that they set.
     ///
     /// # Errors
     /// Those of [`method::load_one`].

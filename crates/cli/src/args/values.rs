@@ -1,24 +1,23 @@
-//! The small languages of single arguments: `1024x768`, `0.1,-1,0`, `K=V`,
-//! `visibility@shade=a.png`.
+//! Parses the values of single arguments: `1024x768`, `0.1,-1,0`, `K=V`, `visibility@shade=a.png`.
 //!
-//! Every parser returns a sentence that says what it expected; clap puts the argument's name before
-//! it.
+//! The error of a parser is a sentence with the value that was expected; clap puts the argument's
+//! name before it.
 
 use clap::{builder::RangedI64ValueParser, value_parser};
 use glam::DVec3;
 use skiagraph_report::gate::{Figure, Gate};
 
-/// A number of texels along an edge: at least one.
+/// Returns the parser of a number of texels along an edge: at least one.
 pub fn texels() -> RangedI64ValueParser<u32> {
     value_parser!(u32).range(1..)
 }
 
-/// Parses a number of frames: the samples of all are kept for the percentiles, hence the limit.
+/// Returns the parser of a number of frames from `least` to 100,000: all samples are kept.
 pub fn frames(least: i64) -> RangedI64ValueParser<u32> {
     value_parser!(u32).range(least..=100_000)
 }
 
-/// A position or direction, `x,y,z`, finite.
+/// Parses a position or direction, `x,y,z`, of finite numbers.
 pub fn vector(text: &str) -> Result<DVec3, String> {
     let expected = "expected three numbers x,y,z, for example 0.3,-1,0.2";
     let numbers = text
@@ -41,7 +40,7 @@ pub fn vector(text: &str) -> Result<DVec3, String> {
     }
 }
 
-/// A direction: like [`vector`], but not zero.
+/// Parses a direction as [`vector`] does; it must not be zero.
 pub fn direction(text: &str) -> Result<DVec3, String> {
     match vector(text)? {
         DVec3::ZERO => Err("a direction must not be 0,0,0".into()),
@@ -49,16 +48,16 @@ pub fn direction(text: &str) -> Result<DVec3, String> {
     }
 }
 
-/// Which light, or one of one's own.
+/// Value of `--light`: a light of the scene, or a sun of the user's own.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LightArgument {
     /// A light of the scene by its name, or `all`.
     Name(String),
-    /// The direction in which a light travels.
+    /// The direction in which the light of a sun travels.
     Direction(DVec3),
 }
 
-/// A [`LightArgument`]: three numbers are a direction.
+/// Parses a [`LightArgument`]: text with a comma and numbers are directions.
 pub fn light(text: &str) -> Result<LightArgument, String> {
     if text.contains(',') || text.trim().parse::<f64>().is_ok() {
         direction(text).map(LightArgument::Direction)
@@ -67,7 +66,7 @@ pub fn light(text: &str) -> Result<LightArgument, String> {
     }
 }
 
-/// A number of bytes, `1536`, `512MiB`, `2.5 GiB`; MB and GB are powers of ten.
+/// Parses a number of bytes, `1536`, `512MiB`, `2.5 GiB`; MB and GB are powers of ten.
 pub fn bytes(text: &str) -> Result<u64, String> {
     let text = text.trim();
     let split = text.find(|c: char| c.is_ascii_alphabetic());
@@ -94,7 +93,7 @@ pub fn bytes(text: &str) -> Result<u64, String> {
     }
 }
 
-/// A time in milliseconds above zero: `3ms`, `0.8 ms`, `800us`.
+/// Parses a time above zero, `3ms`, `0.8 ms` or `800us`, into milliseconds.
 pub fn milliseconds(text: &str) -> Result<f64, String> {
     let expected = "expected a time, for example 3ms or 800us";
     let text = text.trim();
@@ -108,7 +107,7 @@ pub fn milliseconds(text: &str) -> Result<f64, String> {
         .map_err(|why| format!("{why}; {expected}"))
 }
 
-/// A share in percent above zero and at most 100: `1%`, `0.05 %`.
+/// Parses a share above 0 and at most 100 percent, `1%` or `0.05 %`, into percent.
 pub fn percent(text: &str) -> Result<f64, String> {
     let expected = "expected a share above 0 % and at most 100 %, for example 1%";
     let number = text.trim().strip_suffix('%');
@@ -119,7 +118,7 @@ pub fn percent(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A figure that must not be greater: `nsm: wrong > 0.1%`.
+/// Parses a condition of `--fail-if`, such as `nsm: wrong > 0.1%`, into its limit.
 pub fn gate(text: &str) -> Result<Gate, String> {
     let expected = "expected METHOD: FIGURE > VALUE, for example `nsm: wrong > 0.1%`";
     let parts = || {
@@ -146,7 +145,7 @@ pub fn gate(text: &str) -> Result<Gate, String> {
     })
 }
 
-/// A finite number above zero.
+/// Parses a finite number above zero.
 pub fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(number) if number.is_finite() && number > 0.0 => Ok(number),
@@ -155,7 +154,7 @@ pub fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A vertical field of view in degrees, between 0 and 180.
+/// Parses a vertical field of view in degrees, above 0 and below 180.
 pub fn degrees(text: &str) -> Result<f64, String> {
     match positive(text)? {
         angle if angle < 180.0 => Ok(angle),

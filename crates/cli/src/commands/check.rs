@@ -21,8 +21,8 @@ use std::{sync::mpsc, time::Duration};
 /// Time until Ctrl-C is noticed at the latest.
 const LISTENING: Duration = Duration::from_millis(100);
 
-/// Loads and plans each graph and prints its diagnostics. Graphs must run on the adapter that the
-/// arguments name; without one, needs beyond the baseline are only warnings. With `--watch` it
+/// Loads and plans each graph and prints its diagnostics. Graphs must run on the adapter that `gpu`
+/// names; without one, needs beyond wgpu's default limits are only warnings. With `--watch` it
 /// checks again after every change, until Ctrl-C.
 ///
 /// # Errors

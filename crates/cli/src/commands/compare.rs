@@ -22,7 +22,7 @@ use skiagraph_compare::measuring::{
     date, device,
     ground_truth::PrimaryVisibility,
     resume::Kept,
-    scene_folders::scene_folders,
+    scene_folders::{check_kind, scene_folders},
     series::Series,
     tune::tune,
     view_or_path::{ViewOrPath, under_lights},
@@ -175,17 +175,10 @@ struct Target {
 impl Target {
     /// The folder of each scene.
     fn all(args: &CompareArgs) -> Result<Vec<Self>, CliError> {
+        check_kind(&args.out, args.scene.scenes.len() > 1).map_err(CliError::Input)?;
         if args.scene.scenes.len() == 1 {
             let folder = args.out.clone();
             return Ok(vec![Self { folder, name: None }]);
-        }
-        let single = args.out.join("results.json");
-        if single.exists() {
-            return Err(CliError::Input(format!(
-                "{} holds results of a single scene, which would hide those of several: name \
-                 another folder (--out), or delete it",
-                single.display()
-            )));
         }
         let names = scene_folders(&args.scene.scenes).into_iter();
         let target = |name: String| Self {
@@ -292,7 +285,7 @@ fn check_gates(gates: &[Gate], methods: &[Method]) -> Result<(), CliError> {
     )))
 }
 
-/// Prints the methods on which `--map-size` has no effect.
+/// Prints a note on the methods without a param `map_size`, unless `map_sizes` is empty.
 pub fn note_without_map(methods: &[Method], map_sizes: &[u32]) {
     let without = methods.iter().filter(|method| method.map_size.is_none());
     let without: Vec<&str> = without.map(|method| method.name.as_str()).collect();

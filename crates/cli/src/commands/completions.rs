@@ -5,7 +5,7 @@ use crate::error::CliError;
 use crate::terminal::console::print;
 use clap::CommandFactory;
 
-/// Prints the script.
+/// Prints the completion script for the shell of the arguments.
 ///
 /// # Errors
 /// If standard output cannot be written.

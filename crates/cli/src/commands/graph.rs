@@ -9,7 +9,7 @@ use skiagraph_compare::graphs::preset;
 use skiagraph_draw::{Drawing, from_plan, to_dot, to_svg};
 use std::{ffi::OsStr, path::Path};
 
-/// Plans a graph for the most capable adapter and draws the plan.
+/// Plans a graph for the limits and features of the most capable adapters, and draws the plan.
 ///
 /// # Errors
 /// If the graph has errors, lacks a named param or output, or the file cannot be written.

@@ -5,7 +5,7 @@ use crate::error::CliError;
 use crate::terminal::{Terminal, console::note};
 use skiagraph_report::page;
 
-/// Reads kept results, and writes them together into one folder.
+/// Reads results of earlier commands, and writes them together into one folder.
 ///
 /// # Errors
 /// If there are no results, results cannot be read, or a file cannot be written.

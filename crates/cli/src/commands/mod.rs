@@ -1,4 +1,4 @@
-//! The commands, one in each file. Each takes its arguments and returns an error or nothing.
+//! Runs the commands, one in each file. Each takes its arguments and may return an error.
 
 pub mod chart;
 pub mod check;

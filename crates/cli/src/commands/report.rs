@@ -7,7 +7,7 @@ use crate::terminal::console::note;
 use skiagraph_compare::files::write::check_writable;
 use skiagraph_report::page::{self, FILE};
 
-/// Reads kept results and writes the page.
+/// Reads results of `compare` and `stress`, and writes the HTML page.
 ///
 /// # Errors
 /// If a folder has no results, results cannot be read, or the file cannot be written.

@@ -19,7 +19,7 @@ use skiagraph_graph::Plan;
 use skiagraph_passes::SceneProvider;
 use skiagraph_scene::{CameraPath, Scene, View};
 
-/// Returns the save request with the file name of the frame with this index.
+/// Returns `save` with the numbered file of a frame: `v.0003.png` for `v.png` and index 3.
 pub fn of_frame(save: &Save, index: usize) -> Save {
     Save {
         file: numbered(&save.file, index),
@@ -28,7 +28,7 @@ pub fn of_frame(save: &Save, index: usize) -> Save {
 }
 
 /// Returns the frames of the path that the arguments name, or of the only view. `None` without
-/// `--frames` and `--path`. `own` holds the paths of a mesh file.
+/// `--frames` and `--path`. `own` holds a mesh file's paths; other scenes list theirs in a file.
 ///
 /// # Errors
 /// If the path does not exist or has too few frames, or the arguments select several views or

@@ -14,7 +14,7 @@ use skiagraph_scene::SceneLibrary;
 use std::collections::BTreeSet;
 
 /// Prints a file of the working directory, or a built-in one. Behind a document it prints, as
-/// comments, what each pass reads and writes.
+/// comments, the materials that each pass reads and writes.
 ///
 /// # Errors
 /// If the file does not exist, a document cannot be read, or standard output cannot be written.

@@ -35,7 +35,7 @@ use std::{path::Path, sync::Arc};
 ///
 /// # Errors
 /// If a graph has errors, a case is unknown, no GPU can be opened, Ctrl-C stops the command, a file
-/// cannot be written, a guarantee is broken, or a case has too many pixels in the band.
+/// cannot be written, a guarantee is broken, or rounding decides too many pixels of a case.
 pub fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     if args.list {
         return list();

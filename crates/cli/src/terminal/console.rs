@@ -25,12 +25,12 @@ fn style(text: &str, code: &str) -> String {
     }
 }
 
-/// Prints a message that is not an error on standard error.
+/// Prints a message on standard error, without marking it as an error.
 pub fn note(text: &str) {
     let _ = writeln!(io::stderr(), "{text}");
 }
 
-/// Prints text on standard output.
+/// Prints text on standard output, without adding a newline.
 pub fn print(text: &str) -> Result<(), CliError> {
     let mut stdout = io::stdout().lock();
     stdout

@@ -1,4 +1,4 @@
-//! Communication with the user: standard output and error, progress, Ctrl-C.
+//! Communicates with the user: standard output and error, progress, Ctrl-C.
 
 pub mod console;
 pub mod interrupt;

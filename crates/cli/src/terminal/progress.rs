@@ -193,7 +193,7 @@ impl Sink for Terminal {
     }
 }
 
-/// Begins a step, without the line that `SKIAGRAPH_PROGRESS=lines` would print.
+/// Begins a step of `total` parts, without the line that `SKIAGRAPH_PROGRESS=lines` prints.
 pub fn begin_quietly(name: &str, total: u64, unit: &'static str) {
     let mut now = now();
     let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr());
@@ -221,7 +221,7 @@ pub fn begin_quietly(name: &str, total: u64, unit: &'static str) {
     }
 }
 
-/// Sets the name of the part of the step that is being worked on.
+/// Sets the name of the current part of the step, which the progress shows.
 pub fn set_part(part: &str) {
     if let Some(step) = &mut now().step {
         step.bar.set_message(part.to_owned());

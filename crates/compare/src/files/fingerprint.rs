@@ -88,8 +88,9 @@ impl fmt::Display for Fingerprint {
     }
 }
 
-/// Sources that read from other sources and record a hash of every text and picture that is read.
-/// Load a graph through them to record it with its includes and shaders.
+/// [`Sources`] (documents, shaders and pictures by path) that read from other sources and record a
+/// hash of each file that is read. Load a graph through them to hash it with its includes and
+/// shaders.
 pub struct RecordedSources<'a> {
     sources: &'a dyn Sources,
     /// Texts and pictures by path.

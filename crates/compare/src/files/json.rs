@@ -48,15 +48,16 @@ impl Mistake {
         }
     }
 
-    /// Creates a mistake with the message `what` at the first occurrence of `field` in `text`, or
-    /// at the beginning of `text` if it does not occur.
+    /// Creates a mistake with the message `what` at the first occurrence of the string `field` in
+    /// `text`, or at the beginning of `text` if it does not occur.
     pub fn at_field(text: &str, field: &str, what: String) -> Self {
         let at = text.find(field).unwrap_or(0);
         Self { at, what }
     }
 
     /// Returns the error that shows the mistake in its line of `file`. The message begins with
-    /// "`FILE` is not a `what_for`", `help` is advice to the user, and `summary` is the last line.
+    /// "`FILE` is not a WHAT_FOR: ", with the kind of file `what_for`; `help` is advice to the
+    /// user, and `summary` is the last line.
     pub fn in_file(
         self,
         file: &SourceFile,

@@ -27,8 +27,8 @@ use std::{
 /// lock file is never deleted, as that would let two processes lock two files of this name.
 pub const RESULTS: &str = ".skiagraph-results.lock";
 
-/// Name of the lock file for stress.json, which holds one command's matrix. The lock is held to the
-/// end of the command.
+/// Name of the lock file for stress.json, the results of one `skiagraph stress` command. The lock
+/// is held to the end of the command.
 pub const STRESS: &str = ".skiagraph-stress.lock";
 
 /// A lock that this process holds until the value is dropped or the process ends. It locks nothing
@@ -44,8 +44,8 @@ const RETRY: Duration = Duration::from_millis(20);
 /// After so long it is said that something is waited for.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// Locks the lock file `files` in `folder`, and waits while another process holds it. Tells the
-/// sink after two seconds of waiting.
+/// Locks the lock file named `files` ([`RESULTS`] or [`STRESS`]) in `folder`, and waits while
+/// another process holds it. Tells the sink after two seconds of waiting.
 ///
 /// # Errors
 /// [`CompareError::Interrupted`] if the sink asks for an early end and the wait takes more than two
@@ -72,8 +72,8 @@ pub fn wait_for(folder: &Path, files: &str, sink: &dyn Sink) -> Result<Locked, C
     }
 }
 
-/// Locks the lock file `files` in `folder` without waiting; `None` if another process holds it.
-/// Tells the sink if the file system has no locks.
+/// Locks the lock file named `files` ([`RESULTS`] or [`STRESS`]) in `folder` without waiting;
+/// `None` if another process holds it. Tells the sink if the file system has no locks.
 ///
 /// # Errors
 /// The lock file cannot be created or locked.

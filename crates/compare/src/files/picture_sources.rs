@@ -1,9 +1,10 @@
-//! Files below a folder, pictures decoded.
+//! Reads documents, shaders and pictures below a folder.
 
 use skiagraph_graph::{FolderSources, Picture, Sources};
 use std::{io, sync::Arc};
 
-/// [`FolderSources`] whose `.png` files are pictures for textures.
+/// [`FolderSources`] that also read `.png` files, as pictures of 16-bit RGBA texels from the top
+/// left, for a graph's textures.
 pub struct PictureSources(pub FolderSources);
 
 impl Sources for PictureSources {

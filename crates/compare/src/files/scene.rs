@@ -22,9 +22,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Writes a scene file whole or not at all, with the views `first` before its other ones. The path
-/// of its mesh is written relative to the file's folder if the mesh is below that folder, else from
-/// the root. Returns false if the file was there already and says the same.
+/// Writes a scene file whole or not at all, with the views `first` before its own ones, of which
+/// those with the same names are left out. The path of its mesh is written relative to the file's
+/// folder if the mesh is below that folder, otherwise as an absolute path. Returns false, and
+/// writes nothing, if the file exists already with this content.
 ///
 /// # Errors
 /// The path does not end with `.ron`, a file of other content exists there (the user may have

@@ -38,9 +38,9 @@ impl FromStr for Assignment {
 /// A method as the command line names it: `PRESET[@PARAM=VALUE,…]`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MethodArgument {
-    /// Name of the preset, or path of the graph.
+    /// Name of a built-in method, or path of a graph document.
     pub preset: String,
-    /// Assignments of params for this method alone.
+    /// Assignments of params behind the `@`, for this method alone.
     pub own: Vec<Assignment>,
 }
 

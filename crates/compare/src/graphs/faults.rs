@@ -31,8 +31,8 @@ pub struct GraphFaults {
 }
 
 impl GraphFaults {
-    /// Adds the faults of the graph named `graph`. Faults that were added before, for example under
-    /// another viewport, are not repeated.
+    /// Adds the faults of the graph named `graph`. Faults equal to ones that were added before, for
+    /// example by planning for another viewport, are not repeated.
     pub fn add(&mut self, graph: &str, diagnostics: &Diagnostics) {
         let rendered = diagnostics.render(false);
         self.graphs.insert(graph.into());
@@ -50,10 +50,10 @@ impl GraphFaults {
         faults.into_error()
     }
 
-    /// Returns an error with all faults that were added; `Ok` if no graph was added.
+    /// Returns `Ok` if no faults were added.
     ///
     /// # Errors
-    /// [`CompareError::Diagnostics`].
+    /// [`CompareError::Diagnostics`] with all faults that were added.
     pub fn none_or_error(self) -> Result<(), CompareError> {
         if self.graphs.is_empty() {
             Ok(())
@@ -80,8 +80,8 @@ fn errors(diagnostics: &Diagnostics) -> impl Iterator<Item = &Diagnostic> {
     diagnostics.iter().filter(is_error)
 }
 
-/// Returns the errors, without warnings, in one line for a table's footnote. Only the first line of
-/// each help text is included.
+/// Returns the errors among `diagnostics`, without warnings, as one line for a table's footnote.
+/// Only the first line of each help text is included.
 pub fn reasons(diagnostics: &Diagnostics) -> String {
     let line = |Diagnostic { message, help, .. }: &Diagnostic| match help {
         Some(help) => format!("{message} ({})", help.lines().next().unwrap_or_default()),

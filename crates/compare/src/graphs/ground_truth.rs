@@ -24,9 +24,10 @@ use skiagraph_reference::{Graded, GroundTruth, Statistics};
 
 /// Result of comparing one frame of a method with the ground truth (the exact reference).
 pub struct Judgement {
-    /// Counts of right and wrong pixels of the frame. A share of light counts as lit from 0.5 on.
+    /// Counts of right and wrong pixels of the frame. If the method answers in shares of light (0
+    /// in shadow to 1 in full light), a share of 0.5 or more counts as lit.
     pub counts: Statistics,
-    /// Errors of the shares of light, 0 to 1, that the frame shows.
+    /// Errors of the shares of light, 0 to 1, that the frame shows, against those of the reference.
     pub graded: Graded,
     /// True if the method answers only 0 or 1 and the light has no extent: each pixel is then lit
     /// or in shadow, and right or wrong.
@@ -51,8 +52,8 @@ impl Judgement {
         })
     }
 
-    /// True if this frame is worse than another frame of the same view: by the number of wrong
-    /// pixels if the answers are hard, otherwise by the root mean square error.
+    /// True if this frame is worse than another frame of the same view: by the number of all wrong
+    /// pixels if [`is_hard`](Self::is_hard), otherwise by the root mean square error of the shares.
     pub fn is_worse_than(&self, other: &Self) -> bool {
         if self.is_hard {
             self.counts.wrong.total > other.counts.wrong.total
@@ -62,12 +63,12 @@ impl Judgement {
     }
 }
 
-/// Compares a preset's decoded outputs with the ground truth, and returns both outputs and
-/// judgement.
+/// Compares a preset's decoded outputs with the ground truth of the same view and viewport, and
+/// returns both outputs and judgement.
 ///
 /// # Errors
-/// [`CompareError::InvalidOutputs`] if the outputs could not be decoded, or break the contract of a
-/// shadow method's outputs.
+/// [`CompareError::InvalidOutputs`] if `outputs` is an error, or their size or values are not those
+/// that a shadow method must have.
 pub fn judged(
     preset: &Preset,
     outputs: Result<Outputs, String>,
@@ -88,8 +89,9 @@ pub fn judged(
     Ok((outputs, judgement))
 }
 
-/// Returns how wrong a preset's decoded outputs are, in pixels: the number of wrong pixels outside
-/// the band, or under a light with an extent the sum of the squared errors of the shares of light.
+/// Returns how wrong a preset's decoded outputs are, in pixels. Under a light without an extent it
+/// is the number of wrong pixels, without those whose right answer rounding to f32 may flip; under
+/// a light with an extent it is the sum of the squared errors of the pixels' shares of light.
 ///
 /// # Errors
 /// Those of [`judged`].

@@ -18,14 +18,14 @@ use skiagraph_passes::SceneProvider;
 use skiagraph_scene::LightKind;
 use std::collections::BTreeSet;
 
-/// Tells a sink about params that are set but have no effect, about each only once.
+/// Tells a sink about params that the user set but that have no effect, about each only once.
 #[derive(Default)]
 pub struct IdleParams {
     told: BTreeSet<String>,
 }
 
 impl IdleParams {
-    /// Tells the sink which params are set but change nothing in `plan`, the plan of the method
+    /// Tells the sink which params the user set without an effect on `plan`, the plan of the method
     /// `name` under `light`. A note that was given before is not repeated.
     pub fn note_of(&mut self, sink: &dyn Sink, name: &str, plan: &Plan, light: LightKind) {
         for param in plan.idle_params() {
@@ -38,8 +38,9 @@ impl IdleParams {
         }
     }
 
-    /// Plans methods for an adapter, and tells the sink which params are set but change nothing.
-    /// Methods that the adapter cannot run are skipped.
+    /// Plans each method for the adapter `on` and the scene and light of `provider`, and tells the
+    /// sink which params the user set without an effect. Methods that the adapter cannot run are
+    /// skipped.
     pub fn note(
         &mut self,
         sink: &dyn Sink,
@@ -55,9 +56,10 @@ impl IdleParams {
     }
 }
 
-/// Returns text on those params with a choice of words as values that have an effect under the
-/// first kind of light that a graph takes, but not under another kind: `; under a spot light fit
-/// has no effect`. The text is empty if there are no such params.
+/// Names the params, among those whose values are words, that have an effect under the first kind
+/// of light that a graph takes (directional, spot, point) but none under a later one. The text is
+/// the end of a sentence, `; under a spot light fit has no effect`, and empty if there are no such
+/// params.
 pub fn under_other_lights(graph: &Graph) -> String {
     let viewport = [64, 64];
     let mut provider = placeholder(viewport, graph);

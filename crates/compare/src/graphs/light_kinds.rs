@@ -16,8 +16,9 @@ use crate::wording::did_you_mean;
 use skiagraph_graph::Graph;
 use skiagraph_passes::uniforms::LIGHT_KINDS;
 
-/// Returns two lists of words for kinds of light, such as `directional`: those that a graph takes,
-/// and those that it does not. A document that lists no kinds takes directional lights alone.
+/// Splits the words `directional`, `spot` and `point` into two lists in this order: the kinds of
+/// light that a graph takes, and those that it does not. A document that lists no kinds takes
+/// directional lights alone.
 pub fn split(graph: &Graph) -> [Vec<&'static str>; 2] {
     let says: Vec<&str> = graph.lights().map(|word| word.as_str()).collect();
     let takes = |word: &&'static str| match says[..] {
@@ -33,8 +34,8 @@ pub fn takes(graph: &Graph, kind: &str) -> bool {
     split(graph)[0].contains(&kind)
 }
 
-/// Checks that all kinds of light that a graph lists exist. `name` is the graph's name for the
-/// message.
+/// Checks that each kind of light that a graph's document lists is `directional`, `spot` or
+/// `point`. `name` is the graph's name for the message.
 ///
 /// # Errors
 /// Names the first unknown kind.

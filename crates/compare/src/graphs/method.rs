@@ -26,14 +26,15 @@ use skiagraph_gpu::Provider;
 use skiagraph_graph::{Diagnostics, ParamValue, Plan, Sources};
 use std::{collections::BTreeMap, slice, sync::Arc};
 
-/// Values of params, by the names of the params.
+/// Values of a graph's params, by the names of the params.
 pub type ParamValues = BTreeMap<String, ParamValue>;
 
-/// A method: a preset with the params, viewport and adapter features that it runs with.
+/// A method: a [`Preset`] (a loaded graph) with the params, viewport and adapter features that it
+/// runs with.
 #[derive(Clone)]
 pub struct Method {
-    /// Name of the preset, with the assignments that tell this setting from other settings of the
-    /// preset: `crsm@n=1`.
+    /// Name in results: that of the preset, with the assignments that tell this setting of its
+    /// params from others in the same comparison, such as `crsm@n=1`.
     pub name: String,
     /// The preset, with its graph.
     pub preset: Arc<Preset>,
@@ -41,11 +42,13 @@ pub struct Method {
     pub params: ParamValues,
     /// Width and height of the viewport in pixels.
     pub viewport: [u32; 2],
-    /// Features of the adapter. The default values of params may depend on them.
+    /// Features of the adapter that the method runs on. The default values of params may depend on
+    /// them.
     pub features: wgpu::Features,
     /// All params; a default may depend on the viewport, and on what the adapter can do.
     values: ParamValues,
-    /// Size of the shadow map, the param `map_size`; `None` if the graph has no such param.
+    /// Width and height of the shadow map in texels (the param `map_size`); `None` if the graph has
+    /// no such param.
     pub map_size: Option<u32>,
 }
 
@@ -84,7 +87,7 @@ impl Method {
         }
     }
 
-    /// Returns the method under another name.
+    /// Returns the method with another name in results.
     pub fn named(self, name: &str) -> Self {
         Self {
             name: name.to_owned(),
@@ -92,21 +95,22 @@ impl Method {
         }
     }
 
-    /// Returns the method for an adapter with these features: the defaults of its params may depend
-    /// on them.
+    /// Returns the method for an adapter with these features. Params that are not set get their
+    /// defaults on it.
     pub fn settled(self, features: wgpu::Features) -> Self {
         Self::on(self.preset, self.params, self.viewport, features).named(&self.name)
     }
 
-    /// Returns the method for another viewport, in pixels: the defaults of its params may depend on
-    /// it.
+    /// Returns the method for another viewport, in pixels. Params that are not set get their
+    /// defaults in it.
     pub fn at(&self, viewport: [u32; 2]) -> Self {
         let params = self.params.clone();
         Self::on(self.preset.clone(), params, viewport, self.features).named(&self.name)
     }
 
-    /// Plans the method for a viewport in pixels, an adapter and a scene, with only the outputs by
-    /// which methods are judged. Other outputs would only cost time.
+    /// Plans the method for a viewport in pixels, an adapter and the scene of `provider`, with only
+    /// the outputs by which methods are judged ([`Preset::judged`]). Other outputs would only cost
+    /// time.
     ///
     /// # Errors
     /// All faults of the graph and its params under these conditions.
@@ -119,8 +123,10 @@ impl Method {
         self.plan_of(&self.preset.judged(), viewport, capabilities, provider)
     }
 
-    /// Plans the method for a viewport in pixels, an adapter and a scene, with only the named
-    /// outputs.
+    /// Plans the method for a viewport in pixels, an adapter and the scene of `provider`, with only
+    /// the outputs named in `outputs`. Params that are not set have their defaults under these
+    /// conditions: call [`at`](Self::at) and [`settled`](Self::settled) first, and
+    /// [`value`](Self::value) and [`map_size`](Self::map_size) agree with the plan.
     ///
     /// # Errors
     /// All faults of the graph and its params under these conditions.
@@ -137,8 +143,8 @@ impl Method {
         self.preset.graph.plan(&request)
     }
 
-    /// Returns a hash, as text, of everything that a run depends on, except for the params:
-    /// `scene`, which is the hash of scene and view, and the files of the preset.
+    /// Returns a hash, as 16 hexadecimal digits, of everything that a run of the method depends on,
+    /// except for the params: of `scene`, the hash of scene and view, and of the preset's files.
     pub fn fingerprint(&self, scene: Fingerprint) -> String {
         scene.with_all(self.preset.fingerprint).to_string()
     }
@@ -148,11 +154,34 @@ impl Method {
         self.values.get(name)
     }
 
-    /// Returns all params with the values that the method runs with, as JSON values.
-    pub fn all_params(&self) -> BTreeMap<String, serde_json::Value> {
-        let entry = |(name, value): (&String, &ParamValue)| (name.clone(), json(value));
-        self.values.iter().map(entry).collect()
+    /// Returns the values that were set for all methods of a comparison (`--set`): those of
+    /// [`params`](Self::params) without the params in the method's name (`bias` in `nsm@bias=0`)
+    /// and without `map_size`.
+    pub fn given(&self) -> ParamValues {
+        let words = self.name.split_once('@').map_or("", |(_, words)| words);
+        let is_named = |name: &str| {
+            words
+                .split(',')
+                .any(|word| word.split('=').next() == Some(name))
+        };
+        let given = self.params.iter();
+        let given = given.filter(|(name, _)| *name != MAP_SIZE && !is_named(name));
+        given
+            .map(|(name, value)| (name.clone(), value.clone()))
+            .collect()
     }
+
+    /// Returns all params, defaults included, with the values that the method runs with, as JSON
+    /// values.
+    pub fn all_params(&self) -> BTreeMap<String, serde_json::Value> {
+        as_json(&self.values)
+    }
+}
+
+/// Converts values of params, by name, into JSON values as results.json holds them.
+pub fn as_json(values: &ParamValues) -> BTreeMap<String, serde_json::Value> {
+    let entry = |(name, value): (&String, &ParamValue)| (name.clone(), json(value));
+    values.iter().map(entry).collect()
 }
 
 /// A param's value for `results.json`. An f32 is written as the short decimal that it was read
@@ -173,8 +202,9 @@ fn json(value: &ParamValue) -> serde_json::Value {
 pub type Load = fn(&[String], &dyn Sources) -> Result<Vec<Arc<Preset>>, CompareError>;
 
 /// Loads the methods that `words` name (`crsm@n=1,depth=plane`, `my.ron@over=pcf`) with the
-/// function `load`. Returns each method in each setting that `params` list and with each map size;
-/// a preset without the param `map_size` appears once per setting.
+/// function `load`. Returns each method in each setting that its word and `params` list, and with
+/// each of `map_sizes` (texels along an edge). If `map_sizes` is empty, the preset has no param
+/// `map_size` or the word sets it, there is one method for each setting.
 ///
 /// # Errors
 /// Graphs with faults or that do not exist; a value that a param cannot take, a param that no graph
@@ -234,12 +264,13 @@ fn is_over_another(name: &str) -> bool {
     !MethodArgument::new(name).own.is_empty()
 }
 
-/// Loads the one graph that `word` names. Returns the preset, and the values of the params that
-/// `word`, `params` and `map_size` set.
+/// Loads the one graph that `word` names, such as `crsm@n=1`. Returns the preset, and the values of
+/// the params that `word`, `params` and `map_size` (texels along an edge) set; a value in `word`
+/// wins over one in `params`, and `map_size` over both.
 ///
 /// # Errors
-/// Faults of the graph; a param that it does not have; a value that a param cannot take; several
-/// documents for an open include.
+/// Faults of the graph; a param that it does not have; a value that a param cannot take; a list of
+/// documents for an include whose document can be exchanged, as each would be a graph of its own.
 pub fn load_one(
     word: &str,
     params: &[Assignment],
@@ -263,8 +294,9 @@ pub fn load_one(
     Ok((preset, params))
 }
 
-/// Returns the values that `assignments` and `map_size` set for the params of a preset. Assignments
-/// to params that the preset does not have are ignored.
+/// Returns the values that `assignments` and `map_size` (texels along an edge) set for the params
+/// of a preset; the last value of a param wins. Assignments to params that the preset does not have
+/// are ignored.
 ///
 /// # Errors
 /// A value that a param cannot take; a map size for a preset without the param `map_size`.

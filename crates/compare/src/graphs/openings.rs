@@ -1,5 +1,5 @@
-//! Resolves open includes. A graph with another document in an open include is a method of its own:
-//! `contact.ron@over=msm`.
+//! Resolves open includes: includes whose document a run may exchange. A graph with another
+//! document in an open include is a method of its own: `contact.ron@over=msm`.
 //!
 //! ```
 //! use skiagraph_compare::graphs::openings::arguments;
@@ -31,9 +31,9 @@ use std::collections::BTreeSet;
 /// Parses methods of a command line, and chooses documents for their *open includes*: includes
 /// whose document a run may exchange (`Include(open: "over")`). An assignment whose name is that of
 /// an open include chooses the include's document, and becomes part of the graph's name:
-/// `step@over=pcf`. A method's own assignment wins over one of `params`. A list of documents gives
-/// one method for each. Returns the methods, and those of `params` that name no open include of any
-/// method: these set params, and are left to the caller.
+/// `step@over=pcf`. A method's own assignment wins over one of `params`. A list of documents,
+/// `over=pcf,nsm`, gives one method for each. Returns the methods, and those of `params` that name
+/// no open include of any method: they set params, and are left to the caller.
 ///
 /// # Errors
 /// A graph file that does not exist or cannot be read, if its method has assignments or `params` is

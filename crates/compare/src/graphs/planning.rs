@@ -32,14 +32,14 @@ pub struct Capabilities {
     pub limits: wgpu::Limits,
     /// Features of the device.
     pub features: wgpu::Features,
-    /// The backend, if it offers less than WebGPU; `None` otherwise.
+    /// The graphics backend, if it lacks part of WebGPU, as OpenGL does; `None` otherwise.
     pub partial_backend: Option<PartialBackend>,
-    /// Bytes of memory that the graph may take; `None` if unknown.
+    /// Bytes that the textures and buffers of a graph may take; `None` for no limit.
     pub memory: Option<u64>,
 }
 
 impl Capabilities {
-    /// Returns the capabilities of an opened device.
+    /// Returns the capabilities of an opened device, and its limit on a graph's memory.
     pub fn new(gpu: &Gpu) -> Self {
         Self {
             limits: gpu.device.limits(),
@@ -80,9 +80,9 @@ impl Capabilities {
 
 const VIEWPORT: [u32; 2] = [64, 64];
 
-/// Checks a graph without a scene, under each kind of light that it takes. Returns the graph, and
-/// its plan under the first of them. With `None` as `adapter`, needs beyond the baseline are
-/// warnings; otherwise the graph must run on `adapter`.
+/// Checks the graph at `path` without a scene, under each kind of light that it takes. Returns the
+/// graph, and its plan under the first of them. With an `adapter` the graph must run on it. With
+/// `None`, needs beyond wgpu's default limits and features are only warnings.
 ///
 /// # Errors
 /// All faults that were found.
@@ -153,8 +153,8 @@ fn of_each_kind() -> [LightKind; 3] {
     ]
 }
 
-/// Returns one example light of each kind (directional, spot, point) that a graph takes; one of
-/// every kind if it takes no known kind.
+/// Returns one example light of each kind that a graph takes, in the order directional, spot,
+/// point; one of every kind if it takes none of these.
 pub fn stand_ins(graph: &Graph) -> Vec<LightKind> {
     let all = of_each_kind();
     let taken = all.iter().filter(|it| light_kinds::takes(graph, it.word()));
@@ -167,8 +167,8 @@ pub fn stand_ins(graph: &Graph) -> Vec<LightKind> {
 }
 
 /// Returns a provider of scene resources for planning without a scene, for a viewport in pixels. It
-/// describes every resource that a scene can have, under the first kind of light that the graph
-/// takes.
+/// describes every resource that a scene can have, under the first kind of light (directional,
+/// spot, point) that the graph takes.
 pub fn placeholder(viewport: [u32; 2], graph: &Graph) -> SceneProvider {
     let mut provider = described(viewport);
     if let Some(light) = stand_ins(graph).first() {

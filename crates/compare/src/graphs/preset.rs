@@ -34,8 +34,9 @@ use std::{
 /// Name of the output with the share of light that reaches each pixel, from 0 in shadow to 1 in
 /// full light.
 pub const VISIBILITY: &str = "visibility";
-/// Name of the optional output with the status of each pixel: 0 background, 1 facing away, 2
-/// certain light, 3 certain shadow, 4 uncertain.
+/// Name of the optional output with the status of each pixel: 0 background, 1 facing away from the
+/// light, 2 certainly lit, 3 certainly in shadow, 4 uncertain (the shadow map does not decide it,
+/// so that the method traces a ray or guesses).
 pub const STATUS: &str = "status";
 /// Name of the optional output with the number of rays traced in the frame.
 pub const RAY_COUNT: &str = "ray_count";
@@ -43,7 +44,7 @@ pub const RAY_COUNT: &str = "ray_count";
 /// visible surface): texels per square unit of the scene, measured across the ray to the light; 0
 /// outside the map.
 pub const TEXEL_DENSITY: &str = "texel_density";
-/// Name of the optional output with the layer of the shadow map that each pixel reads.
+/// Name of the optional output with the index of the layer of the shadow map that each pixel reads.
 pub const MAP_LAYER: &str = "map_layer";
 
 /// Returns the sources of graphs and shaders: first the working directory, then the built-in files.
@@ -63,8 +64,15 @@ pub fn sources(sink: &dyn Sink) -> LayeredSources {
     ])
 }
 
-/// Folders of presets, shaders and the parts that they share.
-pub const FOLDERS: [&str; 4] = ["pipelines", "pipelines/shared", "shaders", "shaders/shared"];
+/// Folders of presets, shaders and the files that they share, as paths in the working directory and
+/// among the built-in files.
+pub const FOLDERS: [&str; 5] = [
+    "pipelines",
+    "pipelines/shared",
+    "pipelines/shared/splits",
+    "shaders",
+    "shaders/shared",
+];
 
 /// Which files of a folder stand in for built-in ones that differ: a line for the presets, one for
 /// each folder of what they are made of.
@@ -94,7 +102,8 @@ fn stand_ins(folder: &dyn Sources) -> Option<String> {
         .reduce(|text, line| text + "\n" + &line)
 }
 
-/// Returns the names of all presets, `pipelines/*.ron` on disk and built in, sorted.
+/// Returns the names of all presets of `sources`, their files `pipelines/NAME.ron`, sorted and each
+/// once.
 pub fn names(sources: &dyn Sources) -> Vec<String> {
     let files = sources.list("pipelines");
     let names = files.iter().filter_map(|file| file.strip_suffix(".ron"));
@@ -106,8 +115,8 @@ pub fn built_in() -> Vec<String> {
     names(&EmbeddedSources)
 }
 
-/// Names of the built-in presets that are fit to ship as shadow methods; a comparison takes these
-/// by default.
+/// Names of the built-in presets that are fit for use in an engine; a comparison takes these by
+/// default.
 pub const SHIPPED: [&str; 8] = [
     "rt",
     "light_buffer",
@@ -119,8 +128,8 @@ pub const SHIPPED: [&str; 8] = [
     "crsm",
 ];
 
-/// Returns the names of the presets that a comparison takes by default: [`SHIPPED`], then the
-/// user's own in `./pipelines`.
+/// Returns the names of the presets that a comparison takes by default: [`SHIPPED`], then those of
+/// `sources` that are not built in, the user's own in `./pipelines`.
 pub fn shipped_and_own(sources: &dyn Sources) -> Vec<String> {
     let built_in = built_in();
     let own = names(sources).into_iter();
@@ -128,7 +137,8 @@ pub fn shipped_and_own(sources: &dyn Sources) -> Vec<String> {
     SHIPPED.map(str::to_owned).into_iter().chain(own).collect()
 }
 
-/// Returns the names of the presets that `arguments` name; of all presets if `arguments` is empty.
+/// Returns `arguments`, the names of presets; if it is empty, the names of all presets of
+/// `sources`.
 pub fn named_or_all(arguments: &[String], sources: &dyn Sources) -> Vec<String> {
     match arguments {
         [] => names(sources),
@@ -136,9 +146,10 @@ pub fn named_or_all(arguments: &[String], sources: &dyn Sources) -> Vec<String> 
     }
 }
 
-/// A graph with the name that tables and file names show.
+/// A loaded graph with its name, for example a built-in shadow method.
 pub struct Preset {
-    /// The preset's name, or the graph's path as given.
+    /// Name that tables and file names show: the built-in method's name, or the graph's path as
+    /// given.
     pub name: String,
     /// Graph of the preset's document, loaded and not yet planned.
     pub graph: Graph,
@@ -154,7 +165,7 @@ impl Preset {
     }
 
     /// Returns those of the names `texel_density` and `map_layer` that the graph has as outputs:
-    /// the outputs that describe the shadow map. They are not drawn in timed frames.
+    /// the outputs that describe the shadow map. They are left out of timed frames.
     pub fn diagnostics(&self) -> Vec<&'static str> {
         self.outputs_of(&[TEXEL_DENSITY, MAP_LAYER])
     }
@@ -180,7 +191,7 @@ impl Preset {
         params.chain(self.graph.openings().map(|(name, _)| name))
     }
 
-    /// Plans the graph, and tells the sink the warnings of graph and plan.
+    /// Plans the graph, and passes the warnings of graph and plan to the sink.
     ///
     /// # Errors
     /// The faults of the graph under this request.
@@ -197,10 +208,10 @@ pub fn graphs(presets: &[Arc<Preset>]) -> impl Iterator<Item = &Graph> {
     presets.iter().map(|preset| &preset.graph)
 }
 
-/// Loads the graphs that `arguments` name, each once.
+/// Loads the graphs that `arguments` name (a preset's name or a path), in their order, each once.
 ///
 /// # Errors
-/// Every fault of every graph together.
+/// The faults of all graphs together.
 pub fn load_all(
     arguments: &[String],
     sources: &dyn Sources,
@@ -228,9 +239,9 @@ pub fn load_all(
     faults.none_or_error().map(|()| presets)
 }
 
-/// Loads the graph that an argument names. Returns the graph or its faults, and the path of the
-/// graph. The argument `contact.ron@over=msm` puts the document `msm` in the place of the open
-/// include `over`.
+/// Loads the graph that an argument names: a preset's name or a path. Returns the graph or its
+/// faults, and the path of the graph. The argument `contact.ron@over=msm` puts the document `msm`
+/// in the place of the open include `over`.
 ///
 /// # Errors
 /// A file that does not exist or cannot be read.

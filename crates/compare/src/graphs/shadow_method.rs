@@ -35,7 +35,7 @@ use std::{
 /// `visibility` is missing, or a kind of light is unknown.
 ///
 /// # Errors
-/// Every fault of every graph together.
+/// The faults of all graphs together.
 pub fn load_all(names: &[String], sources: &dyn Sources) -> Result<Vec<Arc<Preset>>, CompareError> {
     let presets = preset::load_all(names, sources)?;
     let known = |preset: &Arc<Preset>| light_kinds::check(&preset.name, &preset.graph);
@@ -70,12 +70,12 @@ fn none_or_error(errors: Vec<String>) -> Result<(), CompareError> {
 
 /// Checks that methods can be planned in all viewports on [`Capabilities::greatest`], with the
 /// outputs of a shadow method. With `device`, at least one method must be able to run on it; a
-/// method that `device` cannot run, or that does not take the light, is an error only if all fail.
-/// With `None` that check is skipped.
+/// method that `device` cannot run, or that does not take the light of `provider`, is an error only
+/// if all fail. With `None` that check is skipped.
 ///
 /// # Errors
-/// Every fault of every graph together; outputs whose size or format is not that of a shadow
-/// method's; the reasons why `device` can run none of the methods.
+/// The faults of all graphs together; outputs whose size or format a shadow method must not have;
+/// the reasons why `device` can run none of the methods.
 pub fn check_plans(
     methods: &[Method],
     viewports: &[[u32; 2]],
@@ -196,22 +196,22 @@ fn mismatch(preset: &Preset, plan: &Plan, viewport: [u32; 2], lights: usize) -> 
 /// Decoded outputs of one frame under one light. Each list has one entry per pixel, row by row from
 /// the top left.
 pub struct Outputs {
-    /// Hard visibility of each pixel: 0 in shadow, 1 lit. A share of light counts as lit from 0.5
-    /// on.
+    /// Visibility of each pixel: 0 in shadow, 1 lit. A share of light of 0.5 or more counts as lit.
     pub visibility: Vec<u32>,
     /// Share of the light that reaches each pixel, 0 to 1 unless the method is faulty; `None` if
     /// the method answers only 0 or 1.
     pub shares: Option<Vec<f32>>,
-    /// Status of each pixel: 0 background, 1 facing away, 2 certain light, 3 certain shadow, 4
-    /// uncertain.
+    /// Status of each pixel: 0 background, 1 facing away from the light, 2 certainly lit, 3
+    /// certainly in shadow, 4 uncertain (the shadow map does not decide it).
     pub status: Vec<u32>,
     /// Number of rays traced in the frame; `None` if the graph does not count them.
     pub rays: Option<u64>,
 }
 
 impl Outputs {
-    /// Decodes the outputs that were read back from a frame, for the light with the index `light`.
-    /// An output without a layer for each light holds for every light. `truth` is the reference of
+    /// Decodes the outputs that were read back from a frame, for the light with the index `light`
+    /// among the view's lights. It is the index of the layer that is read of outputs with a layer
+    /// for each light; an output of one layer holds for every light. `truth` is the reference of
     /// the same view, for methods without the output `status`.
     ///
     /// # Errors
@@ -225,9 +225,9 @@ impl Outputs {
         Self::decode(&contents.into_iter().map(of).collect(), truth)
     }
 
-    /// Decodes the outputs that were read back from a frame of one light. If the graph has no
-    /// output `status`, the reference `truth` says which pixels face the light, and the method
-    /// counts as certain of its answers there.
+    /// Decodes the outputs that were read back from a frame of one light, by name. If the graph has
+    /// no output `status`, the reference `truth` says which pixels face the light, and these count
+    /// as certainly lit or certainly in shadow.
     ///
     /// # Errors
     /// An output that is not there or not in one of the allowed formats.
@@ -270,7 +270,8 @@ impl Outputs {
     }
 }
 
-/// The part of an output that is of one light, where it has a layer for each.
+/// Returns the layer of an output for the light with the index `light`; the whole output if it has
+/// one layer.
 pub(crate) fn of_light(content: Content, light: usize) -> Content {
     let mut layers = content.split();
     match layers.len() {

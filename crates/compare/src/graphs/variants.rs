@@ -21,13 +21,14 @@ use crate::wording::unknown;
 use itertools::Itertools;
 use skiagraph_graph::ParamType;
 
-/// Name of the param with the size of the shadow map, which `--map-size` sets.
+/// Name of the param with the width and height of the shadow map in texels, which `--map-size`
+/// sets.
 pub const MAP_SIZE: &str = "map_size";
 
 /// Most values of one param; who asks for more has written something else than was meant.
 const MOST: usize = 1000;
 
-/// Returns the names of the presets that arguments name, each once, in the order of the arguments.
+/// Returns the names in [`MethodArgument::preset`], each once, in the order of the arguments.
 pub fn presets(arguments: &[MethodArgument]) -> Vec<String> {
     unique(arguments.iter().map(|argument| argument.preset.clone()))
 }
@@ -35,8 +36,8 @@ pub fn presets(arguments: &[MethodArgument]) -> Vec<String> {
 /// One setting of a preset: the assignments to its params, and a label.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Setting {
-    /// Assignments that tell this setting from other settings of the preset, as text:
-    /// `n=1,depth=plane`. Empty if the preset has only this setting.
+    /// Assignments that tell this setting from other settings of the preset, as text without the
+    /// map size: `n=1,depth=plane`. Empty if there are none.
     pub label: String,
     /// All assignments of the setting, each with a single value.
     pub set: Vec<Assignment>,

@@ -17,8 +17,8 @@
 use skiagraph_passes::SceneProvider;
 use skiagraph_scene::{Camera, View};
 
-/// Camera of one frame without a viewport: its view, and the jitter of its sample position within
-/// the pixels.
+/// Camera of one frame without a viewport: its view, and the jitter (the place within a pixel at
+/// which the frame samples).
 #[derive(Clone, Debug)]
 pub struct CameraPose {
     /// The view of the frame.
@@ -28,8 +28,9 @@ pub struct CameraPose {
 }
 
 impl CameraPose {
-    /// Creates a pose for each view, in the order of the frames. `jitter` is the number of sample
-    /// positions within a pixel through which the frames cycle; `None` to sample pixel centres.
+    /// Creates a pose for each view; item `i` of `views` is the view of frame `i`. `jitter` is the
+    /// number of sample positions within a pixel through which the frames cycle; `None` to sample
+    /// pixel centres.
     pub fn numbered(views: Vec<View>, jitter: Option<u32>) -> Vec<Self> {
         let pose = |(view, frame)| Self {
             view,
@@ -38,7 +39,7 @@ impl CameraPose {
         views.into_iter().zip(0..).map(pose).collect()
     }
 
-    /// Returns the frame's camera for a viewport in pixels.
+    /// Returns the frame's camera for a viewport in pixels, with its jitter.
     pub fn camera(&self, viewport: [u32; 2]) -> Camera {
         let camera = self.view.camera(viewport);
         match self.jitter {

@@ -14,8 +14,8 @@ pub fn now() -> String {
     format!("{:.0}", Timestamp::now())
 }
 
-/// True if two times in the form of [`now`] are an hour or more apart; false if one of them cannot
-/// be parsed.
+/// True if two times in the form of [`now`], in either order, are an hour or more apart; false if
+/// one of them cannot be parsed.
 pub fn is_another_hour(one: &str, other: &str) -> bool {
     let seconds = |text: &str| Some(text.parse::<Timestamp>().ok()?.as_second());
     match (seconds(one), seconds(other)) {

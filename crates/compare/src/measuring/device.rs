@@ -32,9 +32,11 @@ use sysinfo::{CpuRefreshKind, System};
 /// Request for a GPU, with limits on the memory and time that a graph may take on it.
 #[derive(Clone, Debug, Default)]
 pub struct GpuRequest {
-    /// Part of the adapter's name, ignoring case; `None` for the best adapter.
+    /// Part of the adapter's name, in any case. `None` takes it from the environment variable
+    /// `WGPU_ADAPTER_NAME`, or the best adapter if that is not set.
     pub adapter: Option<String>,
-    /// Graphics APIs through which the GPU may be used; `None` for all of the platform.
+    /// Graphics APIs through which the GPU may be used. `None` takes them from the environment
+    /// variable `WGPU_BACKEND`, or Vulkan, Metal and Direct3D 12 if that is not set.
     pub backends: Option<wgpu::Backends>,
     /// Most bytes that textures and buffers of a graph may take. `None` means the machine's free
     /// memory on a software adapter, and no limit on others.
@@ -44,7 +46,7 @@ pub struct GpuRequest {
     pub timeout: Option<Duration>,
 }
 
-/// Opens the requested adapter, or the best one, with those features of `graphs` that it has.
+/// Opens the requested adapter, with those features that `graphs` need or can use and that it has.
 ///
 /// # Errors
 /// [`CompareError::NoGpu`] if no adapter can be used; the message says what to do.
@@ -85,7 +87,7 @@ fn free_memory() -> Option<u64> {
     Some(system.available_memory().min(of_group))
 }
 
-/// Describes this machine for results: host, processor and current load.
+/// Describes this machine for results: host name, processor, and the load of the last minute.
 pub fn machine() -> Machine {
     let mut system = System::new();
     system.refresh_cpu_list(CpuRefreshKind::nothing());
@@ -102,8 +104,8 @@ pub fn machine() -> Machine {
     }
 }
 
-/// Describes a GPU's adapter for results. If `trust` says that its timestamps cannot be trusted,
-/// the description holds the reason.
+/// Describes a GPU's adapter for results. `trust` comes from [`timestamp_trust`]; if the timestamps
+/// cannot be trusted, the description holds the reason.
 pub fn describe(gpu: &Gpu, trust: Trust) -> Adapter {
     let info = gpu.adapter.get_info();
     Adapter {

@@ -14,23 +14,26 @@ use skiagraph_gpu::{Content, ExecuteError, Provider};
 use skiagraph_graph::Plan;
 use skiagraph_reference::{Footprint, LayerJump, TexelsPerPixel};
 
-/// Findings about a method's shadow map; each is `None` if the graph lacks the output for it.
+/// Findings about a method's shadow map on one view. Each is `None` if the graph lacks the output
+/// for it (`texel_density`, for `layer_jump` `map_layer`) or it could not be drawn.
 #[derive(Default)]
 pub struct Diagnostics {
-    /// Footprint of each pixel in the shadow map; `None` for pixels without one.
+    /// Footprint of each pixel (its size in texels of the shadow map), row by row from the top
+    /// left; the inner `None` for a pixel outside the map.
     pub footprints: Option<Vec<Option<Footprint>>>,
     /// Statistics of the shadow map's texels per pixel.
     pub texels: Option<TexelsPerPixel>,
-    /// Jumps of the errors between layers of the shadow map.
+    /// Differences of the errors of neighbouring pixels that read different layers of the shadow
+    /// map; also `None` if there are no such pixels.
     pub layer_jump: Option<LayerJump>,
 }
 
-/// Draws a method's diagnostic outputs of a view, and evaluates them. `outputs` are its judged
-/// outputs, under the light with the index `light`. Findings that this adapter cannot draw are
-/// `None`.
+/// Draws a method's outputs `texel_density` and `map_layer` of a view, and evaluates them.
+/// `outputs` are the outputs by which it was judged, under the light with the index `light` among
+/// the view's lights. Findings that this adapter cannot draw are `None`.
 ///
 /// # Errors
-/// An early end, a lost device, outputs that do not fit the reference.
+/// An early end, a lost device, outputs of another size than the reference.
 pub fn diagnose(
     session: Session,
     method: &Method,

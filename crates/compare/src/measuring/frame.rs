@@ -27,7 +27,8 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Contents that were read back from a frame, by the names of the outputs and captures.
+/// Contents that were read back from a frame, by the names of the outputs and of the captures
+/// (materials that the plan copies for the host after a pass).
 pub type Contents = BTreeMap<String, Content>;
 
 /// Creates the executor of a plan on the session's GPU.
@@ -43,9 +44,9 @@ pub fn executor(
 }
 
 /// Creates the executor of a plan, with growing buffers (those whose size depends on the frame's
-/// content) as large as a frame needs. In smaller buffers, chance decides which items find room.
-/// Runs frames to find the sizes, and returns a report of them. If the method reuses results of
-/// earlier frames, none are left from these frames.
+/// content) as large as a frame needs: in smaller ones the items that do not fit are lost. Runs
+/// frames to find the sizes, and returns a report of them. A method that reuses results of earlier
+/// frames then starts without any.
 ///
 /// # Errors
 /// The errors of the executor.
@@ -65,8 +66,8 @@ pub fn settled(
 }
 
 /// Runs one frame of a plan with an executor from [`settled`]. Returns the contents of the outputs
-/// and captures `names`, by name, and the report of the frames that were run to find buffer sizes.
-/// `graph` is the graph's name for messages.
+/// and captures that `names` lists, and the report of the frames that were run to find buffer
+/// sizes. `graph` is the graph's name for messages.
 ///
 /// # Errors
 /// [`CompareError::Gpu`] if the graph cannot run; an early end.
@@ -87,7 +88,8 @@ pub fn render(
 /// encoding until the GPU was done.
 ///
 /// # Errors
-/// The errors of the executor; a frame that was abandoned after the GPU's timeout or an early end.
+/// The errors of the executor; a frame that was abandoned after the GPU's timeout, or because the
+/// session's sink asked for an early end.
 pub fn run(
     session: Session,
     executor: &mut Executor,
@@ -107,20 +109,22 @@ pub fn run(
 /// Frames after which buffers are as large as they get: each brings the count of the one before.
 const GROWING: u32 = 8;
 
-/// Report of the frames that were run until growing buffers had room for everything that a frame
-/// writes.
+/// Report of the frames that were run until growing buffers (those whose size depends on the
+/// frame's content) had room for everything that a frame writes.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Growth {
-    /// Number of frames that were run; 0 if the graph has no growing buffers.
+    /// Number of frames that were run; 0 if the graph has no buffers whose size depends on the
+    /// frame's content.
     pub frames: u32,
-    /// Full names of the growing buffers and textures.
+    /// Full names of the graph's buffers and textures whose size depends on the frame's content.
     pub buffers: Vec<String>,
-    /// True if the last of these frames needed no larger buffers.
+    /// True if the last of these frames needed no larger buffers. False if eight frames were not
+    /// enough.
     pub is_settled: bool,
 }
 
 impl Growth {
-    /// Returns a line of text on the report for the command `run`; empty if no frame was run.
+    /// Returns the report as a line of text for a terminal; empty if no frame was run.
     pub fn text(&self) -> String {
         let (frames, buffers) = (frames(self.frames), self.buffers.join(", "));
         match (self.frames, self.is_settled) {
@@ -137,8 +141,8 @@ impl Growth {
     }
 }
 
-/// Runs up to eight frames, until the executor's growing buffers have room for everything that a
-/// frame writes.
+/// Runs up to eight frames, until the executor's growing buffers (those whose size depends on the
+/// frame's content) have room for everything that a frame writes.
 ///
 /// # Errors
 /// The errors of the executor.
@@ -207,7 +211,7 @@ pub fn failed(session: Session, graph: &str, error: ExecuteError) -> CompareErro
     }
 }
 
-/// Runs one frame, and returns the contents of the outputs and captures `names`.
+/// Runs one frame, and returns the contents of the outputs and captures that `names` lists.
 ///
 /// # Errors
 /// The errors of the executor.

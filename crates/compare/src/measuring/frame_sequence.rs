@@ -28,8 +28,8 @@ use skiagraph_scene::{CameraPath, Mesh, Scene};
 pub struct FrameSequence {
     /// Camera pose of each frame.
     pub poses: Vec<CameraPose>,
-    /// Mesh of each frame, parallel to `poses`, all with the same triangles; `None` if nothing
-    /// moves.
+    /// Mesh of each frame, parallel to `poses`, all with the same triangles; `None` if no part of
+    /// the mesh moves.
     pub meshes: Option<Vec<Mesh>>,
     /// Frames per second of the path's clock, which says when each is; not how fast they are drawn.
     frames_per_second: f64,
@@ -41,8 +41,8 @@ impl FrameSequence {
     /// the frames cycle; `None` to sample pixel centres.
     ///
     /// # Errors
-    /// A moving part that the mesh does not have, that is welded to others, or whose positions f32
-    /// cannot hold.
+    /// A moving part that the mesh does not have, that shares vertices with other parts, or whose
+    /// positions f32 cannot hold.
     pub fn new(
         of: &ViewOrPath,
         scene: &Scene,
@@ -68,7 +68,7 @@ impl FrameSequence {
     }
 
     /// Sets the mesh of the first frame in a provider of scene resources, triangles and normals
-    /// included, before [`show`](Self::show). Does nothing if nothing moves.
+    /// included, before [`show`](Self::show). Does nothing if no part of the mesh moves.
     pub fn begin(&self, provider: &mut SceneProvider) {
         if let Some(first) = self.meshes.iter().flatten().next() {
             provider.set_mesh(first.clone());
@@ -102,8 +102,8 @@ impl FrameSequence {
         deformed.map_err(|error| CompareError::Input(format!("frame {frame}: {error}")))
     }
 
-    /// Returns the time of the frame with the index `frame` since the first frame of the path, in
-    /// seconds.
+    /// Returns the time of the frame with the index `frame` since the first frame, in seconds, at
+    /// the frame rate that the path states.
     pub fn seconds(&self, frame: usize) -> f32 {
         (frame as f64 / self.frames_per_second) as f32
     }

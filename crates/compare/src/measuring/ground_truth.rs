@@ -103,15 +103,15 @@ impl PrimaryVisibility {
     }
 }
 
-/// Counts the pixels of the reference itself in the way in which [`Statistics::judged`] counts
-/// those of a method, as if a method had given the right answers.
+/// Counts the reference's pixels in the way in which [`Statistics::judged`] counts those of a
+/// method, as if a method had given exactly the reference's answers.
 pub fn own_counts(truth: &GroundTruthPixels) -> Statistics {
     let (visibility, status) = (truth.visibility(), truth.status());
     // Its own buffers are as large as it is and hold values that are allowed.
     Statistics::judged(&visibility, &status, truth).unwrap_or_default()
 }
 
-/// Default number of reference rays from a pixel to a light with an extent.
+/// Default number of shadow rays that the reference traces from a pixel to a light with an extent.
 pub const REFERENCE_SAMPLES: u32 = 512;
 
 /// Ground truth of one view in one viewport, with the scene data from which it was traced.
@@ -121,10 +121,10 @@ pub struct GroundTruthView<'a> {
     light: LightKind,
     primitives: Vec<u32>,
     mode: OracleMode,
-    /// The oracle's answer for each pixel.
+    /// The reference's answer for each pixel: lit, in shadow, or a share of light.
     pub ground_truth: GroundTruth,
-    /// Number of pixels whose rasterised surface is hidden behind another surface by more than
-    /// rounding. Methods are judged on the rasterised surface nevertheless.
+    /// Number of pixels that the GPU rasterised with a surface that is hidden behind another one by
+    /// more than rounding. Methods are judged on the rasterised surface nevertheless.
     pub wrong_surfaces: u64,
 }
 
@@ -175,7 +175,8 @@ impl<'a> GroundTruthView<'a> {
         })
     }
 
-    /// Returns the mesh, camera and visible primitives of the view, for functions of the reference.
+    /// Returns the mesh, camera and visible primitives (triangles) of the view, as functions of the
+    /// reference take them.
     pub fn seen(&self) -> Seen<'_> {
         Seen {
             mesh: self.oracle.mesh(),
@@ -184,11 +185,11 @@ impl<'a> GroundTruthView<'a> {
         }
     }
 
-    /// Counts the pixels that a method is certain of but gets wrong, by the kind of caster that
-    /// blocks the light there. The light must have no extent.
+    /// Counts the pixels that a method calls certain (by its output `status`) but gets wrong, by
+    /// the kind of caster that blocks the light there. The light must have no extent.
     ///
     /// # Errors
-    /// Outputs that do not fit the reference.
+    /// Outputs of another size than the reference.
     pub fn blockers(&self, outputs: &Outputs) -> Result<BlockerCounts, CompareError> {
         let (visibility, status) = (&outputs.visibility, &outputs.status);
         let pixels =
@@ -204,7 +205,7 @@ impl<'a> GroundTruthView<'a> {
     /// Measures how far a method's wrong pixels lie from the edges of the reference's shadows.
     ///
     /// # Errors
-    /// Outputs that do not fit the reference.
+    /// Outputs of another size than the reference.
     pub fn edges(&self, outputs: &Outputs) -> Result<EdgeDistances, CompareError> {
         let (visibility, status) = (&outputs.visibility, &outputs.status);
         let truth = &self.ground_truth.pixels;
@@ -212,24 +213,24 @@ impl<'a> GroundTruthView<'a> {
         edges.map_err(|error| CompareError::Input(format!("no distances from edges: {error}")))
     }
 
-    /// Returns each pixel's footprint (the area of the shadow map that it covers, in texels), in
-    /// the order of the pixels; `None` for a pixel without one. `density` is the map's texels per
-    /// unit of area at each pixel.
+    /// Returns each pixel's footprint (the area of the shadow map that it covers, in texels), row
+    /// by row from the top left; `None` for a pixel that the map does not cover. `density` is the
+    /// output `texel_density`, the map's texels per square unit of the scene at each pixel.
     ///
     /// # Errors
-    /// A density that does not fit the reference.
+    /// A density of another length than the reference's pixels.
     pub fn footprints(&self, density: &[f32]) -> Result<Vec<Option<Footprint>>, CompareError> {
         let truth = &self.ground_truth.pixels;
         let footprints = texels::footprints(self.seen(), &self.light, density, truth);
         footprints.map_err(|error| CompareError::Input(format!("no texels per pixel: {error}")))
     }
 
-    /// Measures how a method's errors jump between neighbouring pixels that read different layers
-    /// of its shadow map. `layers` is the index of the layer that each pixel reads. Returns `None`
-    /// if no neighbouring pixels read different layers.
+    /// Measures how a method's errors differ between neighbouring pixels that read different layers
+    /// of its shadow map. `layers` is the index of the layer that each pixel reads, row by row from
+    /// the top left. Returns `None` if no neighbouring pixels read different layers.
     ///
     /// # Errors
-    /// Outputs or layers that do not fit the reference.
+    /// Outputs or layers of another size than the reference.
     pub fn layer_jump(
         &self,
         outputs: &Outputs,
@@ -242,7 +243,7 @@ impl<'a> GroundTruthView<'a> {
     }
 }
 
-/// Frames of a view or path with their ground truth.
+/// Frames of a still view or camera path with their ground truth.
 pub struct GroundTruthFrames<'a> {
     /// Camera pose and mesh of each frame.
     pub frames: &'a FrameSequence,
@@ -277,8 +278,8 @@ impl<'a> GroundTruthFrames<'a> {
         })
     }
 
-    /// Returns the number of pixels, over all frames, whose rasterised surface is hidden behind
-    /// another one by more than rounding.
+    /// Returns the number of pixels, over all frames, that the GPU rasterised with a surface that
+    /// is hidden behind another one by more than rounding.
     pub fn wrong_surfaces(&self) -> u64 {
         self.truth_views
             .iter()
@@ -297,7 +298,7 @@ impl<'a> GroundTruthFrames<'a> {
 }
 
 /// Creates the progress callback of an oracle. It calls `rows_done` with the number of finished
-/// rows, and stops the oracle when the sink asks for an early end.
+/// rows of pixels, and stops the oracle when the sink asks for an early end.
 pub fn heard<'a>(sink: &'a dyn Sink, rows_done: &'a (dyn Fn(u64) + Sync)) -> Progress<'a> {
     Progress {
         rows_done,

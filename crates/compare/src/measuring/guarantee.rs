@@ -27,12 +27,12 @@ use crate::wording::did_you_mean;
 /// the meaning of the words is said here, and judged by `stress`.
 const CLAIMS: [Guarantee; 2] = [Guarantee::Exact, Guarantee::Certain];
 
-/// Finds the guarantee that a method's document claims under the method's params, and the reason
-/// for it; `None` if nothing is guaranteed. Methods and presets named in `exact` are judged as
-/// exact instead.
+/// Finds the strongest guarantee that a method's document claims under the method's params, and the
+/// reason that it gives; `None` if it claims none. A method that `exact` names, by its own name or
+/// its preset's, counts as guaranteed to be exact.
 ///
 /// # Errors
-/// An unknown claim, or a condition without a value.
+/// A claim that is not a [`Guarantee`], or whose condition cannot be evaluated.
 pub fn find(
     method: &Method,
     exact: &[String],
@@ -70,12 +70,12 @@ pub fn find(
 const CULL: &str = "cull";
 /// Its value with which all do.
 const NONE: &str = "none";
-/// Assignment of the param `cull` with which all faces cast shadows.
+/// Assignment of the param `cull` with which front and back faces cast shadows.
 pub const WITHOUT_CULLING: &str = "cull=none";
 
-/// Returns the method with `cull=none`, so that all faces cast shadows; `None` if they do so
-/// already, or if it has no param `cull`. A method that culls guarantees nothing for open casters:
-/// a sheet whose culled side faces the light would cast no shadow.
+/// Returns the method with `cull=none`, so that front and back faces cast shadows; `None` if they
+/// do so already, or if it has no param `cull`. A method that culls guarantees nothing for open
+/// casters: a sheet whose culled side faces the light would cast no shadow.
 pub fn without_culling(method: &Method) -> Option<Method> {
     let none = method.preset.graph.parse_param(CULL, NONE).ok()?;
     if method.all_params().get(CULL)? == NONE {
@@ -86,8 +86,8 @@ pub fn without_culling(method: &Method) -> Option<Method> {
     Some(Method::new(method.preset.clone(), params).named(&method.name))
 }
 
-/// Returns the guarantee that a method's document claims, in the form for results; `None` if the
-/// document claims none, or one that is unknown.
+/// Returns the guarantee that a method's document claims under the method's params, in the form for
+/// results; `None` if the document claims none, or one that is not a [`Guarantee`].
 pub fn promise(method: &Method) -> Option<Promise> {
     let (guarantee, _) = find(method, &[]).ok()??;
     Some(Promise {

@@ -59,16 +59,16 @@ use std::{
 pub struct MethodRun {
     /// The method with its params as the user gave them.
     pub method: Method,
-    /// The method with all faces as casters; `None` if all are casters already, or if it has no
-    /// param `cull`.
+    /// The method with `cull=none`, so that front and back faces cast shadows; `None` if they do so
+    /// already, or if it has no param `cull`.
     pub without_culling: Option<Method>,
-    /// The method's column of the report, with its guarantee, or the reason why it cannot run here.
+    /// The method's column of the report of `stress`, with its guarantee.
     pub column: Column,
 }
 
 impl MethodRun {
-    /// Creates the run of a method that this adapter can run. Methods and presets named in `exact`
-    /// are judged as exact.
+    /// Prepares a method that this adapter can run. A method that `exact` names, by its own name or
+    /// its preset's, is judged as guaranteed to be exact.
     ///
     /// # Errors
     /// The errors of [`guarantee::find`].
@@ -105,9 +105,9 @@ impl MethodRun {
         [as_it_is].into_iter().chain(judged).collect()
     }
 
-    /// Returns the beginning of the file names of the method's pictures of a case, each with the
-    /// owner of the pictures as messages name it. There are two pairs if the case is also run with
-    /// `cull=none`, otherwise one.
+    /// Returns pairs of the beginning of the file names of the method's pictures of a case, and the
+    /// text by which messages name the method and case. There are two pairs if the case is also run
+    /// with `cull=none`, otherwise one.
     pub fn stems(&self, case: &HardCase, viewport: [u32; 2]) -> Vec<(String, String)> {
         let variants = self.variants(case.casters).into_iter();
         let owner = format!("`{}` on `{}`", self.method.name, case.name);
@@ -163,7 +163,8 @@ pub struct HardCaseContext<'a> {
 }
 
 impl HardCaseContext<'_> {
-    /// Runs every method on a case. Returns the case with the counts and verdict of each method.
+    /// Runs every method on a case. Returns the case with the pixel counts and verdict of each
+    /// method.
     ///
     /// # Errors
     /// An early end, a lost device, a picture that cannot be written. All other errors are part of

@@ -38,8 +38,8 @@ const AGAIN: usize = 4;
 
 /// Checks that no output of a plan depends on memory that no pass has written, and returns a report
 /// for the terminal. Renders frames with two byte patterns in all unwritten memory, and compares
-/// their outputs. An output that differs between frames of the same pattern depends on the order of
-/// threads and is not judged.
+/// their outputs. An output that also differs between frames of the same pattern depends on the
+/// order of threads, and is not judged.
 ///
 /// # Errors
 /// Names the outputs that depend on unwritten memory; a graph that cannot run.

@@ -15,7 +15,8 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Default)]
 pub struct ResultsFolder {
     folder: PathBuf,
-    /// Runs that were in the folder at the beginning, and are not kept.
+    /// Runs that were in the folder when it was opened, and that the next [`save`](Self::save)
+    /// removes.
     pub dropped: Vec<Run>,
     /// The file as this process has read or written it last; none if there was none, or one that
     /// cannot be read.
@@ -24,13 +25,13 @@ pub struct ResultsFolder {
     is_unreadable: bool,
     /// Runs in the folder that are kept and were not measured by this process.
     pub others: Vec<Run>,
-    /// Commands that measured `others`.
+    /// Command lines that measured `others`.
     pub commands: Vec<String>,
 }
 
 impl ResultsFolder {
-    /// Opens a folder without keeping any of its runs yet. A `results.json` that cannot be read
-    /// will be overwritten; a caller that must not do so refuses it first.
+    /// Opens a folder; its lists of runs are empty. A `results.json` that cannot be read will be
+    /// overwritten by [`save`](Self::save); a caller that must not do so refuses it first.
     pub fn new(folder: &Path) -> Self {
         let file = read_back::results_file(&folder.join("results.json"));
         Self {
@@ -41,7 +42,8 @@ impl ResultsFolder {
         }
     }
 
-    /// Returns the runs of `own` together with the kept runs of others.
+    /// Returns `own`, the results that this process measured, with [`others`](Self::others) behind
+    /// its runs.
     pub fn whole(&self, own: &Results) -> Results {
         let commands = [&self.commands[..], &own.commands].concat();
         Results {
@@ -51,12 +53,12 @@ impl ResultsFolder {
         }
     }
 
-    /// Writes the runs of `own`, the kept runs of others, those that other processes have written
-    /// meanwhile, and `pictures`, all under one lock.
+    /// Writes the runs of `own` (measured by this process), [`others`](Self::others), those that
+    /// other processes have written meanwhile, and `pictures`, all under one lock.
     ///
     /// # Errors
-    /// An early end; a file that cannot be written, or that another process has written under other
-    /// conditions.
+    /// An early end; a file that cannot be written; a results.json that another process has
+    /// meanwhile written of another adapter, scene or protocol ([`check_alike`]).
     pub fn save(
         &mut self,
         own: &Results,
@@ -95,7 +97,8 @@ impl ResultsFolder {
     }
 }
 
-/// Refuses earlier results that were measured under other conditions.
+/// Refuses the earlier results in the file `path` if program, adapter, scene or protocol differ
+/// from those of `now`.
 ///
 /// # Errors
 /// Lists how they differ.

@@ -31,21 +31,22 @@ use std::path::Path;
 pub enum Kept {
     /// No runs are kept.
     Nothing,
-    /// Runs that this comparison does not measure are kept: other methods, views and sizes.
+    /// Runs of other methods, views, viewports and map sizes than this comparison measures are
+    /// kept.
     Others,
-    /// All runs are kept that this comparison does not measure, and those of its own runs whose
-    /// inputs have not changed.
+    /// Those of [`Others`](Self::Others) are kept, and those of this comparison's runs whose
+    /// params, graph, shaders, scene and view have not changed.
     All,
 }
 
 /// Opens a folder of results, and finds the earlier runs that need not be measured again. The
 /// returned list is parallel to `planned`: the earlier run, or `None` if the run must be measured.
-/// Only [`Kept::All`] reuses any. Tells the sink which runs are kept. `now` holds the conditions of
-/// this comparison.
+/// Only [`Kept::All`] reuses any. Tells the sink how many runs are kept. `now` holds the adapter,
+/// scene and protocol of this comparison.
 ///
 /// # Errors
-/// A file that cannot be read, is not a results.json, or was measured under other conditions than
-/// `now`. With [`Kept::Nothing`], such a file is not an error.
+/// A file that cannot be read, is not a results.json, or was measured with another adapter, scene
+/// or protocol than `now`. With [`Kept::Nothing`], such a file is not an error.
 pub fn earlier(
     folder: &Path,
     keep: Kept,

@@ -1,4 +1,4 @@
-//! One run: a method on one view, executed, timed, judged and pictured.
+//! Measures one run: executes a method on one view or camera path, judges, times and pictures it.
 
 use crate::comparison::Protocol;
 use crate::error::CompareError;
@@ -42,15 +42,16 @@ pub struct MeasureContext<'a> {
     pub path: &'a GroundTruthFrames<'a>,
     /// The ground truth of the first frame.
     pub truth_view: &'a GroundTruthView<'a>,
-    /// Index of the light under which the view is judged.
+    /// Index, among the view's lights, of the light under which methods are judged.
     pub light: usize,
-    /// Counts of the reference's own pixels, over all frames.
+    /// Counts of the reference's pixels over all frames, as if a method had given its answers.
     pub own: Statistics,
     /// Settings of how methods are run and timed.
     pub protocol: Protocol,
-    /// True if settings that would make most wrong pixels right are looked for.
+    /// True to look for a setting that makes most of a method's wrong pixels right ([`Hint`]).
     pub hints: bool,
-    /// Pictures and data files of the last run; `None` to make none.
+    /// Pictures and data files of the run that was judged last, not written yet; `None` to make
+    /// none.
     pub pictures: Option<RefCell<Vec<PictureFile>>>,
 }
 
@@ -74,31 +75,32 @@ pub struct Judged {
 }
 
 impl Judged {
-    /// Returns the bytes of the graph's own materials.
+    /// Returns the bytes of the textures and buffers that the graph makes, without those of the
+    /// scene.
     pub fn bytes(&self) -> u64 {
         self.prepared.memory[0]
     }
 }
 
-/// A method that is ready to run: its buffers have grown, and it is in its steady state if it
-/// remembers earlier frames.
+/// A method that is ready to run. Buffers whose size depends on the frame's content have grown; a
+/// method that reuses results of earlier frames has run until its picture repeats.
 pub struct Prepared {
     /// Executor of the method's plan.
     pub executor: Executor,
-    /// Steady state of a method that remembers earlier frames; `None` for others.
+    /// Steady state of a method that reuses results of earlier frames; `None` for others.
     pub steady: Option<Steady>,
     memory: [u64; 2],
     scene_bytes: u64,
 }
 
 impl MeasureContext<'_> {
-    /// Runs and judges a method on one view; [`times`](Self::times) times it together with others.
-    /// A method that remembers is judged in its steady state: what is timed behind that does not
-    /// change what it shows.
+    /// Runs and judges a method on one still view by `plan`, its plan there; [`times`](Self::times)
+    /// times it together with others. `planned` is its run with nothing measured. A method that
+    /// reuses results of earlier frames is judged once its picture repeats.
     ///
     /// # Errors
-    /// A method that the device refuses, outputs that are not a shadow method's
-    /// ([`CompareError::InvalidOutputs`]).
+    /// A method that the device refuses; outputs whose size, format or values a shadow method must
+    /// not have ([`CompareError::InvalidOutputs`]); an early end, a lost device.
     pub fn judge(
         &self,
         (method, planned): (&Method, &Run),
@@ -158,11 +160,11 @@ impl MeasureContext<'_> {
         })
     }
 
-    /// Times a single frame of a judged method and returns its run, which is kept if the work ends
-    /// early.
+    /// Times a single frame of a judged method and returns its run, which stays in the results if
+    /// the work ends before [`times`](Self::times).
     ///
     /// # Errors
-    /// Ctrl-C, a lost device.
+    /// An early end, a lost device.
     pub fn first_frame(&self, of: &mut Judged) -> Result<Run, CompareError> {
         let executors = &mut [&mut of.prepared.executor];
         let timed = timing::in_turns(
@@ -183,13 +185,14 @@ impl MeasureContext<'_> {
         })
     }
 
-    /// Times judged methods in turns, and returns the run of each. `group` is the index of this
-    /// group among those into which the methods of the view and viewport are split to fit the
-    /// memory. The first method is the anchor: it is in every group, so that groups can be compared
-    /// ([`Turns`]). `done` hears how many turns are over.
+    /// Times judged methods in turns, frame by frame, and returns the run of each, in order.
+    /// `group` is the index of this group, from 0, among those into which the methods of the view
+    /// and viewport are split to fit the memory. The first method is the anchor: it is in every
+    /// group, so that groups can be compared ([`Turns`]). `done` is called with the number of
+    /// finished turns.
     ///
     /// # Errors
-    /// Ctrl-C, a lost device.
+    /// An early end, a lost device.
     pub fn times(
         &self,
         methods: &mut [Judged],
@@ -249,11 +252,11 @@ impl MeasureContext<'_> {
         }
     }
 
-    /// Makes a method's executor, and lets it run until it is in its steady state where it
-    /// remembers.
+    /// Makes the executor of a method's plan, and runs frames until its buffers have grown and, if
+    /// it reuses results of earlier frames, its picture repeats.
     ///
     /// # Errors
-    /// A method that the device refuses, Ctrl-C, a lost device.
+    /// A method that the device refuses, An early end, a lost device.
     pub fn prepare(&self, plan: Plan, provider: &mut dyn Provider) -> Result<Prepared, Stop> {
         let mut executor = frame::executor(self.session, plan, provider)?;
         frame::grow(self.session, &mut executor, provider)?;
@@ -271,7 +274,9 @@ impl MeasureContext<'_> {
         })
     }
 
-    /// Creates the measurements that still views and paths have in common.
+    /// Creates the measurements that still views and paths have in common; all others are absent or
+    /// 0. `counts` compares the method's pixels with the reference, `answers_in_shares` is true if
+    /// its visibility is a share of light.
     pub fn measured(
         &self,
         prepared: &Prepared,
@@ -315,14 +320,15 @@ impl MeasureContext<'_> {
         }
     }
 
-    /// Removes GPU times of a frame if timestamps cannot be trusted.
+    /// Sets the GPU times in `frame` to `None` if timestamps cannot be trusted.
     pub fn distrust(&self, frame: &mut FrameTimes) {
         if !self.timestamps {
             frame.without_gpu();
         }
     }
 
-    /// Creates the run of a method with its measurements.
+    /// Creates the run of a method from `planned`, its run with nothing measured, and its
+    /// measurements.
     pub fn run(&self, method: &Method, planned: &Run, measured: Measured) -> Run {
         Run {
             measured: Some(measured),
@@ -330,7 +336,8 @@ impl MeasureContext<'_> {
         }
     }
 
-    /// Creates the run of a method with the reason why there are no measurements.
+    /// Creates the run of a method from `planned`, its run with nothing measured, and the reason
+    /// why there are no measurements.
     pub fn unavailable(&self, method: &Method, planned: &Run, reason: String) -> Run {
         Run {
             unavailable: Some(reason),
@@ -338,7 +345,8 @@ impl MeasureContext<'_> {
         }
     }
 
-    /// Decodes the outputs that were read from a frame, under the light that is judged.
+    /// Decodes the outputs that were read from a frame, for the light with the index
+    /// [`light`](Self::light).
     pub fn decode(
         &self,
         contents: Contents,
@@ -347,11 +355,12 @@ impl MeasureContext<'_> {
         Outputs::from_contents(contents, self.light, &truth_view.ground_truth.pixels)
     }
 
-    /// Makes the pictures and data files of a view, or of a frame of a path, where there are to be
-    /// any. Returns the names of the pictures.
+    /// Makes the pictures and data files that the protocol asks for, of a view or of the frame with
+    /// the index `frame` of a path, and puts them into [`pictures`](Self::pictures). Returns the
+    /// names of the pictures; `None` without pictures.
     ///
     /// # Errors
-    /// Outputs that do not fit the reference.
+    /// Outputs of another size than the reference.
     pub fn draw(
         &self,
         method: &Method,
@@ -398,8 +407,8 @@ impl MeasureContext<'_> {
     }
 }
 
-/// Returns the bytes of the buffers that the scene gives to a plan. What is no buffer, such as an
-/// acceleration structure, does not tell its size.
+/// Returns the bytes of the scene's buffers that a plan reads, such as positions and indices. An
+/// acceleration structure is not a buffer and does not tell its size.
 ///
 /// # Errors
 /// A resource that cannot be built.

@@ -9,13 +9,39 @@
 //! ```
 
 use crate::pictures::run_pictures::slug;
+use crate::records::read_back::with_scenes;
 use skiagraph_scene::MeshFile;
 use std::path::Path;
 
+/// Checks that results may be written into `folder`: results of a single scene (in the folder
+/// itself) must not be mixed with those of several (in its subfolders), which `report` would not
+/// find then. `of_several` is true if several scenes are to be compared.
+///
+/// # Errors
+/// The folder holds results of the other kind. The text for the user says so, with advice.
+pub fn check_kind(folder: &Path, of_several: bool) -> Result<(), String> {
+    let (own, page) = (folder.join("results.json"), folder.join("report.html"));
+    let refused = |holds: &str, others: &str| {
+        Err(format!(
+            "{} holds results of {holds}, which do not go together with those of {others}: name \
+             another folder (--out), or delete it",
+            folder.display()
+        ))
+    };
+    match of_several {
+        true if own.exists() => refused("a single scene", "several"),
+        // A page without results of its own is that of the scenes' folders.
+        false if page.exists() && with_scenes(&[folder.into()]) != [folder] => {
+            refused("several scenes", "a single one")
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Returns the names of the folders below a common one that hold the results of scenes, no two
 /// alike. `scenes` are names or paths as `--scene` takes them: `park`, `city:1000000`,
-/// `levels/room.glb`. A folder is called after its scene (`city-1000000`, `room`), the second of
-/// one name `room-2`.
+/// `levels/room.glb`. A folder has the name of its scene (`city-1000000`, `room`); the second of
+/// the same name is `room-2`.
 pub fn scene_folders(scenes: &[String]) -> Vec<String> {
     let mut folders: Vec<String> = Vec::new();
     for scene in scenes {
@@ -43,6 +69,28 @@ pub fn scene_folders(scenes: &[String]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn results_of_one_scene_and_of_several_do_not_share_a_folder() {
+        let folder = tempfile::tempdir().unwrap();
+        let place = |name: &str| folder.path().join(name);
+        let write = |name: &str| std::fs::write(place(name), "{}").unwrap();
+        std::fs::create_dir(place("park")).unwrap();
+        write("park/results.json");
+        let both = || [false, true].map(|several| check_kind(folder.path(), several));
+        assert!(
+            both().iter().all(Result::is_ok),
+            "results of other commands lie below"
+        );
+        write("report.html");
+        let [single, several] = both();
+        assert!(single.unwrap_err().contains("results of several scenes"));
+        assert_eq!(several, Ok(()));
+        write("results.json");
+        let [single, several] = both();
+        assert!(several.unwrap_err().contains("results of a single scene"));
+        assert_eq!(single, Ok(()));
+    }
 
     #[test]
     fn each_scene_has_a_folder_of_its_own() {

@@ -6,26 +6,28 @@
 
 use std::collections::BTreeSet;
 
-/// A combination: for each param the index of its value; 0 is the value that it has by default.
+/// A combination of values: for each param, in the order of the [`Axis`] list, the index of its
+/// value. 0 is the value that the param has by default.
 pub type Point = Vec<usize>;
 
 /// Outcome of a trial of a combination.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Trial {
-    /// The combination has this error, 0 or more.
+    /// The combination has this error, 0 or more; less is better.
     Error(f64),
     /// The combination has a greater error than the best one so far, or cannot run.
     Worse,
-    /// A combination with fewer changes does the same; this one was not tried.
+    /// A combination with fewer values other than the defaults has the same effect; this one was
+    /// not tried.
     Same,
     /// No more trials are allowed; the combination was not tried.
     Ended,
 }
 
-/// A param, as far as the search needs it.
+/// A param of the search, with the number and kind of its values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Axis {
-    /// Number of its values.
+    /// Number of its values, the default included.
     pub values: usize,
     /// True if the values are words or booleans. Their combinations with numbers are tried first.
     pub is_word: bool,
@@ -34,19 +36,20 @@ pub struct Axis {
 /// The best combination that a search found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
-    /// The combination.
+    /// The combination, as indices of values.
     pub point: Point,
     /// Its error; infinite if no combination could run.
     pub error: f64,
     /// Number of combinations that were tried, the defaults included.
     pub tried: u32,
-    /// True if the search came to its own end; false if trials ended.
+    /// True if the search ended because no change helps; false if a trial was [`Trial::Ended`].
     pub is_whole: bool,
 }
 
 /// Searches for the combination with the least error, beginning with the defaults. `trial` gets a
 /// combination, never the same twice, and the least error so far: it may answer [`Trial::Worse`] as
-/// soon as the error must be greater. Of equal errors the one with fewer changes is kept.
+/// soon as the error must be greater. Of combinations with equal errors the one with fewer values
+/// other than the defaults is kept.
 ///
 /// # Errors
 /// The errors of `trial`.

@@ -1,4 +1,4 @@
-//! A method over the frames of a camera path, each judged.
+//! Runs a method over the frames of a camera path, and judges each frame.
 
 use crate::error::CompareError;
 use crate::graphs::ground_truth::{Judgement, judged};
@@ -64,13 +64,13 @@ struct Account {
     worst: Option<(usize, Outputs, Judgement)>,
 }
 
-/// Runs a method over a path, with what it keeps from frame to frame. It stands still at the path's
-/// begin until it is warm, or, if it remembers, until it is in its steady state: so all flags give
-/// the same pictures.
+/// Runs a method over a camera path and judges each frame; passes whose inputs have not changed are
+/// skipped. Before the path begins, its first frame is drawn for the protocol's warm-up frames, or,
+/// by a method that reuses results of earlier frames, until its picture repeats.
 ///
 /// # Errors
-/// A method that the device refuses, Ctrl-C, a lost device, outputs that are not a shadow
-/// method's, a picture that cannot be written.
+/// A method that the device refuses; an early end; a lost device; outputs whose size, format or
+/// values a shadow method must not have; a picture that cannot be encoded.
 pub fn follow(
     context: &MeasureContext,
     method: &Method,

@@ -74,7 +74,8 @@ pub struct Series<'a> {
     pub results: Results,
     /// Where they are kept, with what is in the folder besides; `None` to keep them in memory.
     folder: Option<ResultsFolder>,
-    /// Messages on graphs whose outputs break the contract of a shadow method's outputs.
+    /// Messages on graphs that ran but whose outputs do not have the size, format or values that a
+    /// shadow method's must have.
     pub broken: Vec<String>,
     /// Counts the runs that are measured now.
     progress: Runs<'a>,
@@ -83,8 +84,8 @@ pub struct Series<'a> {
 /// Checks a comparison, measures all its runs and returns the results, without writing files.
 ///
 /// # Errors
-/// The errors of [`Comparison::check`] and [`Series::measure`]; outputs that are not a shadow
-/// method's.
+/// The errors of [`Comparison::check`] and [`Series::measure`]; [`CompareError::InvalidOutputs`]
+/// for the graphs in [`Series::broken`].
 pub fn run(comparison: &Comparison, session: Session) -> Result<Results, CompareError> {
     comparison.check(session)?;
     let mut series = Series::new(comparison, session, None)?;
@@ -103,8 +104,8 @@ pub fn run(comparison: &Comparison, session: Session) -> Result<Results, Compare
 const ROOM: u64 = 1 << 30;
 
 impl<'a> Series<'a> {
-    /// Begins a comparison. `kept_in` is the folder to write results to, and which of the earlier
-    /// results in it are kept; `None` to keep results in memory only.
+    /// Begins a comparison. `kept_in` is the folder to write results to, and the choice of earlier
+    /// results in it to keep; with `None` results stay in memory.
     ///
     /// # Errors
     /// The errors of [`earlier`].
@@ -176,13 +177,14 @@ impl<'a> Series<'a> {
         self.planned.len()
     }
 
-    /// Returns all planned runs with nothing measured, in the order of the results.
+    /// Returns all planned runs with nothing measured, in the order of views, in these of
+    /// viewports, in these of methods.
     pub fn planned_runs(&self) -> &[Run] {
         &self.planned
     }
 
-    /// Returns the finished runs of a view and viewport, which are indices into the lists of the
-    /// comparison.
+    /// Returns the finished runs of a view and viewport, in the order of the methods. Both
+    /// arguments are indices, into [`Comparison::views`] and [`Comparison::viewports`].
     pub fn runs(&self, view: usize, viewport: usize) -> &[Run] {
         let places = self.places(view, viewport);
         &self.results.runs[self.done_before(places.start)..self.done_before(places.end)]
@@ -195,8 +197,9 @@ impl<'a> Series<'a> {
         first..first + methods
     }
 
-    /// Measures the missing runs of a view and viewport, which are indices into the lists of the
-    /// comparison, and writes the results.
+    /// Measures the runs of a view and viewport that are not finished, and writes the results into
+    /// the folder, if there is one. Both arguments are indices, into [`Comparison::views`] and
+    /// [`Comparison::viewports`].
     ///
     /// # Errors
     /// An early end, a lost device, a file that cannot be written, a reference that cannot be
@@ -399,7 +402,8 @@ impl<'a> Series<'a> {
         self.save(pictures)
     }
 
-    /// Returns the finished runs, together with the kept runs of others in the folder.
+    /// Returns the finished runs, and behind them the kept runs in the folder that are not of this
+    /// comparison.
     pub fn whole(&self) -> Results {
         match &self.folder {
             Some(folder) => folder.whole(&self.results),
@@ -407,12 +411,12 @@ impl<'a> Series<'a> {
         }
     }
 
-    /// Writes the finished runs into the folder, with `pictures` of the last run. Does nothing if
-    /// results are kept in memory only.
+    /// Writes the finished runs into the folder, and the files `pictures` of the last run. Does
+    /// nothing if results stay in memory.
     ///
     /// # Errors
-    /// An early end; a file that cannot be written, or that another process has written under other
-    /// conditions.
+    /// An early end; a file that cannot be written; a results.json that another process has
+    /// meanwhile written of another adapter, scene or protocol.
     pub fn save(&mut self, pictures: &[PictureFile]) -> Result<(), CompareError> {
         match &mut self.folder {
             Some(folder) => folder.save(&self.results, pictures, self.session.sink),
@@ -433,13 +437,24 @@ impl<'a> Series<'a> {
             return Ok(());
         }
         let capabilities = Capabilities::new(self.session.gpu);
-        if let Err(diagnostics) = method.plan(viewport, capabilities, &self.provider) {
-            let run = Run {
-                unavailable: Some(reasons(&diagnostics)),
-                ..run.clone()
-            };
-            self.done(place, run);
-            self.save(&[])?;
+        match method.plan(viewport, capabilities, &self.provider) {
+            Err(diagnostics) => {
+                let run = Run {
+                    unavailable: Some(reasons(&diagnostics)),
+                    ..run.clone()
+                };
+                self.done(place, run);
+                self.save(&[])?;
+            }
+            // It is of this session from here on, not of the one in which it could not run.
+            Ok(_) => {
+                self.planned[place] = Run {
+                    session: self.results.began.clone(),
+                    commit: self.comparison.commit.clone(),
+                    machine: Some(self.results.machine.clone()),
+                    ..run.clone()
+                };
+            }
         }
         Ok(())
     }

@@ -1,4 +1,5 @@
-//! The steady state: what a method that remembers shows of a still view.
+//! Finds the steady state of a method that reuses results of earlier frames: the pictures of a
+//! still view that it repeats.
 
 use crate::error::CompareError;
 use crate::graphs::ground_truth::Judgement;
@@ -25,11 +26,12 @@ const MOST: usize = 256;
 /// Shares of light that differ by no more are the same: less than 8 bits can show.
 const SAME: f32 = 1.0 / 1024.0;
 
-/// Runs frames of a new executor until its picture repeats, whatever else is asked for: so the same
-/// is judged under all flags. Hard answers repeat to the bit, shares of light within 1/1024.
+/// Runs frames of a new executor until its output `visibility` repeats with a period of at most 16
+/// frames, for 32 frames in a row; after 256 frames it gives up. Answers 0 and 1 must repeat to the
+/// bit, shares of light within 1/1024.
 ///
 /// # Errors
-/// Ctrl-C, and those of the executor.
+/// An early end; the errors of the executor.
 pub fn settle(session: Session, executor: &mut Executor) -> Result<Steady, Stop> {
     let mut pictures = Pictures::default();
     while pictures.period.is_none() && pictures.frames < MOST {
@@ -139,8 +141,9 @@ impl Pictures {
     }
 }
 
-/// Judges the pictures of one period of a steady state, and returns the worst of them. Writes the
-/// means of all pictures into `steady`.
+/// Draws the pictures of one period of a steady state (16 if it has none), and judges each by
+/// `judge`, which gets the contents of the outputs `names`. Returns the worst, and writes the means
+/// of all into `steady`.
 ///
 /// # Errors
 /// An early end; the errors of the executor and of `judge`.

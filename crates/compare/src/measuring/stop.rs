@@ -1,4 +1,4 @@
-//! Why a method's frames ended early.
+//! Reason why the frames of a method ended early.
 
 use crate::error::{CompareError, explain, is_fatal};
 use crate::graphs::method::Method;
@@ -6,16 +6,17 @@ use crate::measuring::frame;
 use crate::sink::Session;
 use skiagraph_gpu::ExecuteError;
 
-/// Why a method's frames ended early.
+/// Reason why the frames of a method ended early.
 pub enum Stop {
-    /// The device refuses the method, or is lost.
+    /// The device refuses the method, for example for want of memory, or is lost.
     Refused(Box<ExecuteError>),
-    /// Any other error.
+    /// Any other error, such as an early end that the sink asked for.
     Failed(CompareError),
 }
 
 impl Stop {
-    /// Converts the reason into the error that ends all further work on `graph`.
+    /// Converts the reason into the error that ends the command. `graph` is the graph's name for
+    /// messages.
     pub fn into_error(self, session: Session, graph: &str) -> CompareError {
         match self {
             Self::Refused(error) => frame::failed(session, graph, *error),
@@ -36,11 +37,11 @@ impl From<CompareError> for Stop {
     }
 }
 
-/// Turns the result of running a method into one whose inner error is the reason why the device
-/// refuses this method, and whose outer error ends other methods, too.
+/// Splits the errors of running a method. The inner error is the reason why the device refuses this
+/// method; other methods may still run. The outer one ends the work on all methods.
 ///
 /// # Errors
-/// An early end, a lost device, and all errors that end more than this method.
+/// [`Stop::Failed`], an early end and a lost device.
 pub fn attempt<T>(
     session: Session,
     method: &Method,

@@ -1,4 +1,4 @@
-//! Many frames of a graph, timed.
+//! Times many frames of graphs.
 
 use crate::error::CompareError;
 use crate::measuring::frame;
@@ -9,17 +9,18 @@ use crate::sink::Session;
 use skiagraph_gpu::{ExecuteError, Executor, Frame, FrameReport};
 use std::time::{Duration, Instant};
 
-/// Kinds of frames that are timed.
+/// Choice of the passes that run in timed frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrameMode {
     /// Every pass runs in every frame.
     AllPasses,
-    /// The camera moves before every frame, and passes run by their conditions.
+    /// Only the camera counts as changed before every frame, so that a pass is skipped if none of
+    /// its inputs has changed.
     CameraMoves,
 }
 
-/// Runs `warmup` frames, then `frames` timed ones. `done` hears how many frames are over. Ctrl-C
-/// ends it early; what was timed until then is returned.
+/// Runs `warmup` frames, then `frames` timed ones. `done` is called with the number of finished
+/// frames. If the session's sink asks for an early end, the frames timed until then are returned.
 ///
 /// # Errors
 /// Those of the executor.
@@ -74,12 +75,13 @@ fn one_frame(
 }
 
 /// Runs frames of several executors in turns: `warmup` turns, then `frames` timed ones. Each turn
-/// begins with another of them, so that none always follows the same one. `done` hears how many
-/// turns are over. Returns an entry per executor, in the same order: its timed frames, or the error
-/// that ended it. An executor that fails takes no further part, and its times are dropped.
+/// begins with another of them, so that none always follows the same one. `done` is called with the
+/// number of finished turns. Returns an entry per executor, in the same order: its timed frames, or
+/// the error that ended it. An executor that fails takes no further part, and its times are
+/// dropped.
 ///
 /// # Errors
-/// Ctrl-C; all times are dropped then.
+/// An early end; all times are dropped then.
 pub fn in_turns(
     session: Session,
     executors: &mut [&mut Executor],
@@ -112,8 +114,9 @@ pub fn in_turns(
     Ok(all)
 }
 
-/// Returns the times of a frame that was run with timing. `began` is the time since the first timed
-/// frame, `wall` that until the GPU was done.
+/// Returns the times of a frame that was run with timing. `began` is the time from the start of the
+/// first timed frame to the start of this one, `wall` that from the start of encoding until the GPU
+/// was done.
 ///
 /// # Errors
 /// The report has no times, as the frame was run without timing.
@@ -133,13 +136,13 @@ pub fn timed_frame(
     })
 }
 
-/// Times of some frames, per pass and whole.
+/// Order statistics of the times of some frames, of each pass and of whole frames.
 pub struct Times {
-    /// Times of each pass.
+    /// Order statistics of the times of each pass, in the order in which the passes ran.
     pub passes: Vec<Pass>,
-    /// Times of whole frames.
+    /// Order statistics of the times of whole frames, and the time of each frame.
     pub frame: FrameTimes,
-    /// The passes that did not run in the first frame.
+    /// Names of the passes that did not run in the first of the frames.
     pub skipped: Vec<String>,
 }
 
@@ -172,7 +175,7 @@ impl Times {
 /// 0.
 ///
 /// # Errors
-/// Ctrl-C.
+/// An early end.
 pub fn cached(
     session: Session,
     executors: &mut [&mut Executor],

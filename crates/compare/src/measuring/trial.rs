@@ -1,4 +1,4 @@
-//! Trials of a method's settings on some views: each is run and judged once, without being timed.
+//! Tries settings of a method on some views: runs and judges each once.
 
 use crate::error::CompareError;
 use crate::graphs::method::{Method, ParamValues};
@@ -37,14 +37,14 @@ impl TrialView<'_> {
     }
 }
 
-/// Limits of trials.
+/// Limits of work, frame time and memory for trials.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
-    /// Work that may be done: a plan that runs counts one, and so does a frame.
+    /// Number of plans and frames that may be run, added up.
     pub work: u64,
-    /// Budgets that a setting must keep.
+    /// Limits of frame time and memory that a setting must keep to.
     pub budgets: Budgets,
-    /// True if GPU times can be trusted; a budget of time is of wall times otherwise.
+    /// True if GPU times can be trusted; otherwise the limit of frame time is one of wall times.
     pub has_timestamps: bool,
 }
 
@@ -53,7 +53,7 @@ pub struct Limits {
 const TIMED: [u32; 2] = [1, 5];
 const MARGIN: f64 = 0.9;
 
-/// Runs settings of one method on the views that take part.
+/// Tries settings of one method on the views whose kind of light it takes.
 pub struct Trials<'a> {
     session: Session<'a>,
     method: &'a Method,
@@ -76,12 +76,13 @@ pub struct Trials<'a> {
 }
 
 impl<'a> Trials<'a> {
-    /// True if no pixel of the views can be judged.
+    /// True if no pixel of the views faces the light, so that no setting can be judged.
     pub fn is_blind(&self) -> bool {
         self.facing_light == 0.0
     }
 
-    /// Prepares trials of a method on the views whose kind of light it takes.
+    /// Prepares trials of a method on those of `views` whose kind of light it takes, in the
+    /// method's viewport.
     pub fn new(
         session: Session<'a>,
         method: &'a Method,
@@ -106,26 +107,29 @@ impl<'a> Trials<'a> {
         }
     }
 
-    /// Work that may still be done.
+    /// Number of plans and frames that may still be run, added up.
     pub fn left(&self) -> u64 {
         self.left
     }
 
-    /// True if there are budgets of memory or time.
+    /// True if there are limits of memory or frame time.
     pub fn has_budgets(&self) -> bool {
         let of = &self.limits.budgets;
         of.memory_bytes.is_some() || of.frame_ms.is_some()
     }
 
-    /// Allows for more work, by so much.
+    /// Raises the number of plans and frames that may still be run by `more`.
     pub fn allow(&mut self, more: u64) {
         self.left += more;
     }
 
-    /// Tries the method with `params`. Ends as soon as its error must be greater than `best`.
+    /// Tries the method with `params` on all views, and returns its error: the share of wrong
+    /// pixels, or under lights with an extent the mean square error. Returns [`Trial::Worse`] as
+    /// soon as it must be greater than `best`.
     ///
     /// # Errors
-    /// An early end, a lost device, outputs that are not a shadow method's.
+    /// An early end; a lost device; outputs whose size, format or values a shadow method must not
+    /// have.
     pub fn run(&mut self, params: &ParamValues, best: f64) -> Result<Trial, CompareError> {
         self.session.check_stopped()?;
         if self.left < 1 + self.views.len() as u64 {
@@ -145,7 +149,8 @@ impl<'a> Trials<'a> {
         }
     }
 
-    /// Refuses settings that need too much memory from now on, if the defaults do not.
+    /// Makes [`run`](Self::run) answer [`Trial::Worse`] from now on for settings beyond the limit
+    /// of memory, unless the method's own setting is beyond it as well.
     ///
     /// # Errors
     /// A lost device.
@@ -163,8 +168,8 @@ impl<'a> Trials<'a> {
         set.named(&self.method.name)
     }
 
-    /// True if the method with `params` keeps to the budget of memory under each kind of light.
-    /// True without such a budget.
+    /// True if the method with `params` keeps to the limit of memory under each kind of light, or
+    /// if there is none.
     ///
     /// # Errors
     /// A lost device.
@@ -199,8 +204,8 @@ impl<'a> Trials<'a> {
         Ok(true)
     }
 
-    /// True if a frame of the method with `params` keeps to nine tenths of the budget of time, on
-    /// the view with most errors. True without such a budget.
+    /// True if a frame of the method with `params` takes at most nine tenths of the limit of frame
+    /// time, on the view with most errors, or if there is no limit. False if the method cannot run.
     ///
     /// # Errors
     /// An early end, a lost device.

@@ -26,7 +26,7 @@
 use crate::comparison::Comparison;
 use crate::default_view::more_views;
 use crate::error::CompareError;
-use crate::graphs::method::{Method, ParamValues};
+use crate::graphs::method::{Method, ParamValues, as_json};
 use crate::graphs::variants::MAP_SIZE;
 use crate::lists::entry;
 use crate::measuring::ground_truth::GroundTruthView;
@@ -34,7 +34,6 @@ use crate::measuring::search::{Axis, Trial, search};
 use crate::measuring::trial::{Limits, TrialView, Trials};
 use crate::measuring::view_or_path::ViewOrPath;
 use crate::measuring::{device, guarantee};
-use crate::records::results::Promise;
 use crate::records::tuned::{Tuned, named};
 use crate::sink::{Session, Silent, Step};
 use crate::wording::size;
@@ -60,11 +59,12 @@ const MOST_COST: u64 = 10;
 /// odd view does not decide.
 const OTHERS: usize = 3;
 
-/// Searches good settings for the methods of a comparison, and adds each as a method behind the one
-/// that it is a setting of. If the comparison has several views, every second one is taken out of
-/// it, and settings are chosen on these; otherwise they are chosen on other views of the scene, and
-/// on generated ones where it has fewer than three. Params that a method sets stay as they are. A
-/// method that promises to be exact for all casters needs no search.
+/// Searches good values of the params that documents mark with `tune`, and adds each method with
+/// the best ones as a method of its own behind it. If the comparison has several views, every
+/// second one is taken out of it, and settings are chosen on these; otherwise they are chosen on
+/// other views of the scene, and on generated ones where it has fewer than three. Params that a
+/// method sets stay as they are. A method whose document promises exact shadows for all casters is
+/// not searched.
 ///
 /// The work is bounded: plans and frames of a method, those of its tuned setting included, are at
 /// most ten times those of its part in the comparison.
@@ -149,10 +149,11 @@ fn check_methods(methods: &[Method]) -> Result<(), CompareError> {
     )))
 }
 
-/// True if a method has params to tune, and is not exact for all casters anyway.
+/// True if [`tune`] searches for settings of a method: its document marks with `tune` params that
+/// the method does not set, and does not promise exact shadows for all casters.
 pub fn needs_tuning(method: &Method) -> bool {
-    let is_exact = |promise: Promise| promise.of == "exact" && !promise.closed_only;
-    !guarantee::promise(method).is_some_and(is_exact) && !axes(method).is_empty()
+    let promise = guarantee::promise(method);
+    !promise.is_some_and(|promise| promise.is_exact_for_all()) && !axes(method).is_empty()
 }
 
 /// A param to tune, with its values; the first one is that which the method has.
@@ -362,6 +363,7 @@ fn best(
         params,
         Tuned {
             of: method.name.clone(),
+            given: as_json(&method.given()),
             set: changed.collect(),
             tried: found.tried,
             is_whole: found.is_whole,

@@ -48,8 +48,9 @@ impl ViewOrPath {
         scene.light_of(self.view())
     }
 
-    /// Returns the name of the light if the view's name has the form `VIEW@LIGHT`, as
-    /// [`under_lights`] gives it; `None` for other views.
+    /// Returns the name of the view's or path's own light if its name ends in `@` and that name, as
+    /// views and paths under several lights are named by [`under_lights`] and
+    /// [`paths`](Self::paths); `None` otherwise.
     pub fn one_of_lights(&self) -> Option<&str> {
         let view = self.view();
         let light = &view.light.as_ref()?.name;
@@ -57,7 +58,7 @@ impl ViewOrPath {
         view.ends_with('@').then_some(light)
     }
 
-    /// Returns the hash `of` extended by all data of the view or path.
+    /// Returns the hash `of` extended by all fields of the view or path.
     pub fn fingerprint(&self, of: Fingerprint) -> Fingerprint {
         match self {
             Self::Still(view) => of.with_view(view),
@@ -66,8 +67,9 @@ impl ViewOrPath {
     }
 
     /// Returns the path of `paths` that is named `name`, or all of `paths` if the name is `all`.
-    /// With `light`, each path is put under the light of that name; `all` gives one path for each
-    /// light of the path.
+    /// With `light`, each path is put under the light of that name; the light `all` gives one path
+    /// for each light that [`Scene::lights_of`] lists for its view, named `PATH@LIGHT` if there are
+    /// several.
     ///
     /// # Errors
     /// The scene has no path of this name, no light of this name, or no paths at all.
@@ -116,9 +118,9 @@ fn lit(scene: &Scene, path: &CameraPath, mut view: View) -> Result<CameraPath, C
     Ok(path)
 }
 
-/// Returns the views under the light named `name`. The name `all` gives one view for each light of
-/// a view; these views are named `VIEW@LIGHT` if there are several lights. With `None` the views
-/// are returned unchanged.
+/// Returns the views under the light named `name`. The name `all` gives one view for each light
+/// that [`Scene::lights_of`] lists for a view; these views are named `VIEW@LIGHT` if there are
+/// several. With `None` the views are returned unchanged.
 ///
 /// # Errors
 /// The scene has no such light.

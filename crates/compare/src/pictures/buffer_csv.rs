@@ -15,7 +15,8 @@ use skiagraph_graph::{Field, Item, ItemScalar};
 
 /// Returns the bytes of a buffer as CSV, a line per item. `item` is the item's layout as a shader
 /// declares it; its scalars are the columns. With `None` each 32-bit word is an item, shown as u32,
-/// i32 and f32. Items are numbered from `first` on. Bytes behind the last whole item are left out.
+/// i32 and f32. Items are numbered from `first` on, the index of the first item in the whole
+/// buffer. Bytes behind the last whole item are left out.
 pub fn to_csv(bytes: &[u8], item: Option<&Item>, first: usize) -> Result<String, ::csv::Error> {
     let words = || {
         let field = |(name, scalar): (&str, _)| Field {

@@ -15,7 +15,7 @@ use skiagraph_reference::BACKGROUND;
 use skiagraph_scene::View;
 use std::collections::BTreeSet;
 
-/// RGB colour and meaning of each value of an output `status`; the index is the value, 0 to 4.
+/// RGB colour and legend of each value of an output `status`, at the index of the value, 0 to 4.
 pub const STATUS: [([u8; 3], &str); 5] = [
     ([96, 112, 128], "grey background"),
     ([0, 128, 0], "green facing away"),
@@ -23,9 +23,10 @@ pub const STATUS: [([u8; 3], &str); 5] = [
     ([0, 0, 0], "black certain shadow"),
     ([160, 32, 240], "purple uncertain"),
 ];
-/// RGB colour of pixels that show no triangle, and of depths that still have the cleared value.
+/// RGB colour of pixels that show no triangle, and of depths that still have the value to which
+/// they were cleared.
 pub const EMPTY: [u8; 3] = STATUS[0].0;
-/// RGB colour of NaN, and of integers that have no meaning.
+/// RGB colour of NaN, and of integers that are not a value of `status`.
 pub const INVALID: [u8; 3] = [255, 0, 255];
 /// RGB colour of positive infinity.
 pub const POSITIVE_INFINITY: [u8; 3] = [255, 128, 0];
@@ -56,8 +57,9 @@ impl ClipPlanes {
     }
 }
 
-/// Colours integers by their meaning: values of a material `status`, 0 and 1 as black and white, or
-/// ids with a colour each. Returns three bytes (RGB) per value, and the legend.
+/// Colours integers: by [`STATUS`] if the material `name` is `status`, otherwise 0 and 1 as black
+/// and white, or each number in a colour of its own if there are others. Returns three bytes (RGB)
+/// per value, and the legend.
 pub fn integers(name: &str, values: &[u32]) -> (Vec<u8>, String) {
     let (colour, legend): (fn(u32) -> [u8; 3], _) = match () {
         // An include puts its instance's name before that of the material.
@@ -117,8 +119,8 @@ fn mark(meaning: &str, count: usize) -> Option<String> {
     (count > 0).then(|| counted(meaning, count))
 }
 
-/// Returns the RGB colour of an id, by a multiplicative hash (Knuth's 2³²/φ), so that neighbouring
-/// ids look different.
+/// Returns the RGB colour of an id, such as a triangle's, by a multiplicative hash (Knuth's 2³²/φ),
+/// so that consecutive ids look different.
 pub fn id_colour(id: u32) -> [u8; 3] {
     if id == BACKGROUND {
         return EMPTY;
@@ -131,8 +133,8 @@ pub fn id_colour(id: u32) -> [u8; 3] {
         .map(|channel| 48 + (channel * 207 / 255) as u8)
 }
 
-/// Returns the depth of a texel in which nothing was drawn: 0 for a camera, whose depths are
-/// reversed (`planes` given), 1 for a light (`None`).
+/// Returns the depth of a texel in which nothing was drawn: 0 with `planes`, as a camera's depths
+/// are reversed, 1 with `None` for a light.
 pub fn cleared(planes: Option<ClipPlanes>) -> f32 {
     match planes {
         Some(_) => 0.0,
@@ -171,8 +173,9 @@ pub fn depths(values: &[f32], planes: Option<ClipPlanes>) -> (Vec<u8>, String) {
     (values.iter().flat_map(colour).collect(), legend.join(", "))
 }
 
-/// Colours texels of `channels` values each, where 0 is black and 1 is full intensity. Returns
-/// three bytes (RGB) per texel, and the legend.
+/// Colours texels of `channels` values each, in which 0 is black and 1 is full intensity. One
+/// channel is grey, others are red, green and blue; a fourth is not shown. Returns three bytes
+/// (RGB) per texel, and the legend.
 pub fn fractions(values: &[f32], channels: usize) -> (Vec<u8>, String) {
     let whole = [(0.0, 1.0); 4];
     let rgb = coloured(values, channels, &whole[..channels.min(3)]);
@@ -181,8 +184,8 @@ pub fn fractions(values: &[f32], channels: usize) -> (Vec<u8>, String) {
 }
 
 /// Colours texels of `channels` values each; each channel is scaled between its own least and
-/// greatest finite value. One channel is grey; two are red and green; a fourth is not shown.
-/// Returns three bytes (RGB) per texel, and the legend.
+/// greatest finite value. One channel is grey, others are red, green and blue; a fourth is not
+/// shown. Returns three bytes (RGB) per texel, and the legend.
 pub fn floats(values: &[f32], channels: usize) -> (Vec<u8>, String) {
     let shown: Vec<(f32, f32)> = (0..channels.min(3))
         .map(|index| range(channel(values, channels, index)))

@@ -1,4 +1,4 @@
-//! Values of pixels as files for other programs: NumPy arrays and OpenEXR pictures.
+//! Encodes values of pixels as files for other programs: NumPy arrays and OpenEXR pictures.
 //!
 //! Rows run from the top to the bottom, and pixels in them from left to right.
 //!
@@ -26,7 +26,7 @@ use std::{io::Cursor, str::FromStr};
 pub enum DataFormat {
     /// Array of NumPy, `.npy`.
     Npy,
-    /// Picture of OpenEXR with a channel for each of the texels', `.exr`.
+    /// OpenEXR picture, `.exr`, with a channel for each channel of the texels.
     Exr,
 }
 
@@ -53,19 +53,19 @@ impl FromStr for DataFormat {
 /// Numbers of an array, all of one type.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Values {
-    /// Floating-point numbers.
+    /// 32-bit floating-point numbers.
     F32(Vec<f32>),
-    /// Numbers from 0 up.
+    /// Unsigned 32-bit integers.
     U32(Vec<u32>),
-    /// Whole numbers of any sign.
+    /// Signed 32-bit integers.
     I32(Vec<i32>),
-    /// Small numbers from 0 up.
+    /// Unsigned 8-bit integers.
     U8(Vec<u8>),
-    /// Truth values.
+    /// Booleans.
     Bool(Vec<bool>),
 }
 
-/// Texels of one or several layers of a size.
+/// Texels of one or several layers of the same size, with one or several numbers each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Array {
     /// Width and height of each layer in texels.
@@ -89,10 +89,11 @@ impl Array {
         }
     }
 
-    /// Creates an array of the texels of a texture.
+    /// Creates an array of the texels of a texture; its mips and layers become layers of the array.
     ///
     /// # Errors
-    /// The reason why the content is not an array, as the rest of a sentence.
+    /// The reason why it cannot, such as a buffer or mips of several sizes, as the rest of a
+    /// sentence that begins with the material's name.
     pub fn from_content(content: &Content) -> Result<Self, String> {
         let Content::Texture { format, parts, .. } = content else {
             return Err("is a buffer and has no texels; save it as .csv or .bin".into());
@@ -122,7 +123,8 @@ impl Array {
     /// Returns the array as a file.
     ///
     /// # Errors
-    /// The reason why the format cannot hold it, as the rest of a sentence.
+    /// The reason why the format cannot hold it, as the rest of a sentence that begins with the
+    /// material's name.
     pub fn encode(&self, format: DataFormat) -> Result<Vec<u8>, String> {
         match format {
             DataFormat::Npy => Ok(self.npy()),
@@ -130,7 +132,7 @@ impl Array {
         }
     }
 
-    /// Returns size and type as text: `512 × 256, f32`.
+    /// Returns shape and type in NumPy's notation, rows first: `an array (256, 512) of f4`.
     pub fn text(&self) -> String {
         let (_, shape, kind) = self.described();
         let kind = kind.trim_start_matches(['<', '|']);
@@ -205,7 +207,7 @@ impl Array {
 }
 
 impl Values {
-    /// Returns the count of the numbers.
+    /// Returns the number of values.
     #[allow(clippy::len_without_is_empty, reason = "a picture has pixels")]
     pub fn len(&self) -> usize {
         match self {
@@ -218,9 +220,10 @@ impl Values {
     }
 }
 
-/// Returns what a method answered and what is right, each as an array with the kind that ends its
-/// file's name. The first list is of the method (`visibility`, `status`), the second of the
-/// reference (`visibility`, `status`, `indeterminate`).
+/// Returns arrays of the pixels of a method and of the reference, each behind the name that ends
+/// its file's name. The first list is the method's (`visibility`, `status`), the second the
+/// reference's (`visibility`, `status`, and `indeterminate`: true where rounding may flip the
+/// answer).
 pub fn judged(outputs: &Outputs, ground_truth: &GroundTruth) -> [Vec<(&'static str, Array)>; 2] {
     let truth = &ground_truth.pixels;
     let array = |values| Array::of_pixels(truth.viewport, values);

@@ -23,16 +23,18 @@ use skiagraph_reference::Image;
 pub struct Picture {
     /// The picture in RGB; several mips and layers stand one below the other.
     pub image: Image,
-    /// Text on how values became colours, as a part of a sentence.
+    /// Meaning of the colours, as a part of a sentence.
     pub legend: String,
 }
 
 impl Picture {
-    /// Draws the content of a texture. `name` is the material's name, as integers of `status` have
-    /// colours of their own. `planes` are the clip planes if the content is a camera's depths.
+    /// Draws the content of a texture. `name` is the material's name: integers of `status` have
+    /// colours of their own. `planes` are the camera's clip planes if the content is a camera's
+    /// depths; `None` for a light's depths and for other content.
     ///
     /// # Errors
-    /// The reason why the content has no picture.
+    /// The reason why there is no picture, such as a buffer, as the rest of a sentence that begins
+    /// with the material's name.
     pub fn new(name: &str, content: &Content, planes: Option<ClipPlanes>) -> Result<Self, String> {
         let Content::Texture { format, parts, .. } = content else {
             return Err("is a buffer and has no picture; save it as .csv or .bin".into());

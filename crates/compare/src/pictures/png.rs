@@ -1,4 +1,4 @@
-//! PNG files.
+//! Encodes and writes PNG files.
 
 use crate::error::CompareError;
 use crate::files::write::write_whole;
@@ -24,7 +24,7 @@ pub fn encode(path: &Path, image: &Image) -> Result<Vec<u8>, CompareError> {
 /// Writes a picture, whole or not at all.
 ///
 /// # Errors
-/// The path cannot be written.
+/// The picture cannot be encoded, or the file cannot be written.
 pub fn save(path: &Path, image: &Image) -> Result<(), CompareError> {
     write_whole(path, &encode(path, image)?)
 }

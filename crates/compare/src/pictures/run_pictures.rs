@@ -23,8 +23,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// A picture or data file that is made but not written yet. It is written together with the figures
-/// of its run.
+/// A picture or data file in memory. It is written together with the figures of its run.
 pub struct PictureFile {
     /// File name in the folder of the results.
     pub name: String,
@@ -41,8 +40,7 @@ pub fn write_pictures(folder: &Path, files: &[PictureFile]) -> Result<(), Compar
     files.try_for_each(|file| write_whole(&folder.join(&file.name), &file.bytes))
 }
 
-/// Place of a method's pictures in the results: the view and frame that they show, and the
-/// beginning of their file names.
+/// View and frame that a method's pictures show, and the beginning of their file names.
 pub struct PicturePlace<'a> {
     /// Beginning of the file names of the method's pictures, from [`stem`].
     pub stem: String,
@@ -61,12 +59,12 @@ impl PicturePlace<'_> {
     }
 }
 
-/// Draws the pictures of a method's frame and of the reference. `footprints` are those of the
-/// pixels in the shadow map, one entry per pixel; with them, pictures of the texels per pixel are
-/// drawn as well. Returns the names of the files, and the pictures to write.
+/// Draws the pictures of a method's frame and of the reference. `footprints` has one entry per
+/// pixel, row by row from the top left: its footprint in the shadow map; with it, pictures of the
+/// texels per pixel are drawn as well. Returns the names of the files, and the files to write.
 ///
 /// # Errors
-/// Outputs that do not fit the reference.
+/// Outputs of another size than the reference; a picture that cannot be encoded.
 pub fn draw_pictures(
     place: &PicturePlace,
     ground_truth: &GroundTruth,
@@ -123,8 +121,8 @@ pub fn draw_pictures(
     Ok((images, files))
 }
 
-/// Encodes what a method answered in a frame and what is right, as [`data::judged`] lists it.
-/// Returns the files to write.
+/// Encodes the arrays of [`data::judged`]: visibility and status of each pixel, of a method's frame
+/// and of the reference. Returns the files to write.
 ///
 /// # Errors
 /// A file that cannot be encoded.
@@ -161,10 +159,10 @@ pub fn numbered(file: &Path, frame: usize) -> PathBuf {
 }
 
 /// Checks, before anything runs, that pictures do not overwrite each other. Each item is the
-/// beginning of a picture's file name, and the owner of the picture as messages name it.
+/// beginning of a picture's file name, and a name for its method and view in messages.
 ///
 /// # Errors
-/// Names two owners whose pictures would overwrite each other.
+/// Two items with the same beginning; the message has both names.
 pub fn check_stems(stems: impl IntoIterator<Item = (String, String)>) -> Result<(), CompareError> {
     let mut owners: BTreeMap<String, String> = BTreeMap::new();
     for (stem, owner) in stems {
@@ -189,7 +187,8 @@ pub fn conditions(method: &Method, view: &str, viewport: [u32; 2]) -> String {
     format!("{} {}{map}", slug(view), size(viewport))
 }
 
-/// Returns the beginning of the file names of a run's pictures: `nsm-main-512x512-map1024`.
+/// Returns the beginning of the file names of a run's pictures: `nsm-main-512x512-map1024`, without
+/// `-map1024` for a method without a map.
 pub fn stem(method: &Method, view: &str, viewport: [u32; 2]) -> String {
     format!(
         "{}-{}",

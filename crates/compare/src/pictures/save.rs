@@ -33,7 +33,7 @@ use std::{collections::BTreeMap, path::PathBuf, str::FromStr};
 pub enum Encoding {
     /// A picture for viewing, `.png`.
     Png,
-    /// Texels or items as they are in memory, rows tightly packed, `.bin`.
+    /// Bytes of the texels or items, rows tightly packed, `.bin`.
     Raw,
     /// A table with a line per item of a buffer, `.csv`.
     Csv,
@@ -92,8 +92,8 @@ impl FromStr for Save {
     }
 }
 
-/// Returns the captures of `saves` that are not among `outputs`, which are read back anyway; each
-/// once, sorted by name.
+/// Returns the captures of `saves` whose names are not in `outputs`, the names of the outputs that
+/// are read back anyway; each once, sorted by name.
 pub fn captures(outputs: &[&str], saves: &[Save]) -> Vec<Capture> {
     let wanted = saves.iter().map(|save| &save.capture);
     let wanted = wanted.filter(|capture| !outputs.contains(&&*capture.name()));
@@ -101,11 +101,11 @@ pub fn captures(outputs: &[&str], saves: &[Save]) -> Vec<Capture> {
     wanted.cloned().collect()
 }
 
-/// Checks, before anything is rendered, that no buffer is to be saved as a picture and no texture
-/// as a table.
+/// Checks, before anything is rendered, that no buffer is to be saved as `.png`, `.npy` or `.exr`,
+/// and no texture as `.csv`.
 ///
 /// # Errors
-/// Names the encodings in which the output can be saved.
+/// A material that cannot be saved in this way; the message names the encodings that it can have.
 pub fn check_encodings(plan: &Plan, saves: &[Save]) -> Result<(), CompareError> {
     let outputs = plan.outputs();
     for save in saves {
@@ -133,7 +133,7 @@ pub struct Decoding {
     pub planes: Option<ClipPlanes>,
     /// Layout of a buffer's items; `None` for a texture, or if no shader declares the layout.
     pub item: Option<Item>,
-    /// Range of the mips, layers or items that are read; `None` if all are read.
+    /// Range of the mips, layers or items that the content has; `None` if it has all.
     pub part: Option<PartSummary>,
 }
 
@@ -151,8 +151,8 @@ impl Decoding {
         }
     }
 
-    /// Returns text on the part of a texture or buffer that is read, such as `layer 0 of 3, `;
-    /// empty if all of it is read.
+    /// Describes the part of a texture or buffer that `content` has, such as `layer 0 of 3, `;
+    /// empty if it has all of it.
     pub fn part_text(&self, content: &Content) -> String {
         let Some(PartSummary { mips, layers, of }) = &self.part else {
             return String::new();
@@ -170,14 +170,15 @@ impl Decoding {
         text.collect()
     }
 
-    /// Returns the index in the buffer of the first item that is read.
+    /// Returns the index, in the whole buffer, of the content's first item.
     pub fn first_item(&self) -> usize {
         let part = self.part.as_ref();
         part.map_or(0, |part| part.layers.start as usize)
     }
 }
 
-/// Returns the names of the materials that are saved, each once, sorted.
+/// Returns the names under which the saved materials are read back (`MATERIAL` or `MATERIAL@PASS`),
+/// each once, sorted.
 pub fn names(saves: &[Save]) -> Vec<String> {
     let names = saves.iter().map(|save| save.capture.name());
     names.sorted().dedup().collect()
@@ -192,7 +193,7 @@ pub fn decodings(plan: &Plan, saves: &[Save], planes: ClipPlanes) -> Vec<Decodin
 
 /// Writes the saved materials of the graph named `graph`. Each is written when the returned
 /// iterator reaches it; the item is the text of [`write`](fn@write). `decodings` are parallel to
-/// `saves`; `contents` are by the names of the materials.
+/// `saves`; `contents` are by the names that [`names`] returns.
 pub fn write_all<'a>(
     graph: &'a str,
     saves: &'a [Save],
@@ -206,7 +207,7 @@ pub fn write_all<'a>(
     })
 }
 
-/// Writes a material's content into the file of a save. `reading` says how the content is decoded.
+/// Writes a material's content into the file of a save. `reading` is the content's decoding.
 /// Returns a line of text about the file.
 ///
 /// # Errors

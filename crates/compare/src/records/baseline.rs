@@ -28,9 +28,9 @@ pub struct Comparison {
     /// Conditions that differ between the two profiles; if there are any, a ratio says little about
     /// the code.
     pub differences: Vec<Difference>,
-    /// Ratios of the passes that both profiles have, in the order of the new profile.
+    /// Ratios of the times of the passes that both profiles have, in the order of the new profile.
     pub passes: Vec<PassRatio>,
-    /// Ratios of whole frames.
+    /// Ratios of the times of whole frames.
     pub frame: FrameRatio,
     /// Names of the passes that only the older profile has.
     pub only_old: Vec<String>,
@@ -56,7 +56,7 @@ pub struct PassRatio {
     pub name: String,
     /// Ratio of GPU times; null unless both profiles have them.
     pub gpu: Option<Ratio>,
-    /// Ratio of encoding times on the CPU.
+    /// Ratio of the CPU times of encoding.
     pub cpu: Ratio,
 }
 
@@ -65,7 +65,7 @@ pub struct PassRatio {
 pub struct FrameRatio {
     /// Ratio of GPU times; null unless both profiles have them.
     pub gpu: Option<Ratio>,
-    /// Ratio of encoding times on the CPU.
+    /// Ratio of the CPU times of encoding.
     pub cpu: Ratio,
     /// Ratio of the times from the start of encoding until the GPU was done.
     pub wall: Ratio,
@@ -84,7 +84,7 @@ pub struct Ratio {
     pub low: f64,
     /// Upper end of the ratio's spread: Q3(new) / Q1(old).
     pub high: f64,
-    /// Verdict on the ratio: a difference, or no difference.
+    /// Verdict: faster, slower, or no difference.
     pub verdict: Verdict,
 }
 
@@ -132,7 +132,7 @@ impl Ratio {
         }
     }
 
-    /// Compares a new series of times with an old one; `None` unless both are given.
+    /// Compares a new series of times with an old one; `None` if one of them is `None`.
     pub fn from_both(old: Option<&Series>, new: Option<&Series>) -> Option<Self> {
         Some(Self::new(old?, new?))
     }

@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// Limits that an acceptable method keeps, set by the user; `None` for no limit. They are recorded
-/// with the results and change no measurement: a report's verdict takes no method that exceeds one.
+/// with the results and change no measurement: a report recommends no method that exceeds one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Budgets {

@@ -27,7 +27,7 @@ pub struct CheckReport {
     files: Vec<FileReport>,
 }
 
-/// Report on one graph that `check` was given.
+/// Report on one graph that the command `check` was given.
 #[derive(Debug, Serialize)]
 pub struct FileReport {
     /// The argument: a path, or a preset's name.

@@ -307,9 +307,9 @@ const IF_PUBLISHED: [&str; 8] = [
     "fps",
 ];
 
-/// Names of the steps of the built-in presets, each with its column head in tables. A step is a
-/// group of passes with the same name up to the first dot. The head of any other step is the step's
-/// name.
+/// Names of the steps of the built-in presets, each with the word for it in heads of table columns.
+/// A step is the passes of a graph with the same name up to the first dot. The word for any other
+/// step is its name.
 pub const STEPS: [(&str, &str); 5] = [
     ("create_shadow_map", "map"),
     ("detect_uncertain", "detect"),
@@ -318,8 +318,8 @@ pub const STEPS: [(&str, &str); 5] = [
     ("fix_pixels", "fix"),
 ];
 
-/// Returns the head of the column of a step, or of a sum of steps such as
-/// `gbuffer+detect_uncertain`.
+/// Returns the head of the column with the GPU time of a step, or of a sum of steps: `gbuffer +
+/// detect ms` for `gbuffer+detect_uncertain`.
 pub fn step_head(step: &str) -> String {
     let heads = step.split('+').map(|step| {
         let short = STEPS.iter().find(|(name, _)| *name == step);
@@ -419,12 +419,12 @@ fn area(run: &Run, figure: fn(&AreaReference) -> Value) -> Value {
     run.area.as_ref().map_or(Unknown, figure)
 }
 
-/// A column in a table of runs: how to get one figure, or one condition, from a run.
+/// A column in a table with a row per run: one figure or one condition of each run.
 pub struct Column {
     /// Head of the column.
     pub head: &'static str,
-    /// Name of the quantity, such as `wrong_percent`, whose published figures can stand beside the
-    /// column; empty if there are none.
+    /// Name of the column's quantity in files of published figures, such as `wrong_percent`; empty
+    /// if such files cannot have it.
     pub quantity: &'static str,
     source: &'static Source,
 }
@@ -453,7 +453,7 @@ impl Column {
     }
 
     /// Returns the text of a run's cell in a table; `–` if the figure is unknown. `share` formats a
-    /// count and the whole that it is a share of.
+    /// count as a share of the count behind it, for example as percent.
     pub fn cell(&self, results: &Results, run: &Run, share: fn(u64, u64) -> String) -> String {
         match self.value(results, run) {
             Unknown => "–".to_owned(),
@@ -485,8 +485,8 @@ pub fn csv() -> Vec<Column> {
     entries.filter_map(Column::new).collect()
 }
 
-/// Returns the columns of the terminal's table, in order, without columns that do not concern any
-/// of `runs`.
+/// Returns the columns of the terminal's table of `runs`, in order. Those for map sizes, camera
+/// paths or shares of light are left out if no run has them.
 pub fn terminal(runs: &[&Run]) -> Vec<Column> {
     let has_maps = runs.iter().any(|run| run.map_size.is_some());
     let entries = TERMINAL.iter().filter(|(name, ..)| {
@@ -501,15 +501,15 @@ fn is_shown<'a>(name: &str, runs: impl Iterator<Item = &'a Run> + Clone) -> bool
         && (!OF_GRADES.contains(&name) || runs.clone().any(|run| !run.is_hard()))
 }
 
-/// True if any run follows a camera path.
+/// True if any run has measurements along a camera path.
 pub fn are_paths<'a>(runs: impl IntoIterator<Item = &'a Run>) -> bool {
     let mut measured = runs.into_iter().filter_map(|run| run.measured.as_ref());
     measured.any(|of| of.sequence.is_some())
 }
 
 /// Returns the columns of a document's table of `runs` in two lists: those to the left and those to
-/// the right of the columns with times of steps, which the caller adds. `published` tells whether
-/// there are published figures of a quantity.
+/// the right of the columns with times of steps, which the caller adds. `published` returns true if
+/// there are published figures of the quantity with this name.
 pub fn document(runs: &[&Run], published: impl Fn(&str) -> bool) -> [Vec<Column>; 2] {
     let shown = |(name, _, quantity): &Entry| {
         (!IF_PUBLISHED.contains(name) || published(quantity))
@@ -523,8 +523,8 @@ pub fn document(runs: &[&Run], published: impl Fn(&str) -> bool) -> [Vec<Column>
     })
 }
 
-/// Lists the quantities that published figures can have, without sums of steps such as
-/// `ms.gbuffer+detect_uncertain`.
+/// Lists the names of the quantities that published figures can have, such as `wrong_percent` and
+/// `ms.trace_rays`, without sums of steps such as `ms.gbuffer+detect_uncertain`.
 pub fn quantities() -> Vec<String> {
     let of_columns = DOCUMENT.iter().map(|(.., quantity)| quantity.to_string());
     let of_steps = STEPS.iter().map(|(step, _)| format!("ms.{step}"));
@@ -540,7 +540,8 @@ pub fn steps_of(quantity: &str) -> Option<&str> {
     steps.split('+').all(is_known).then_some(steps)
 }
 
-/// Returns the head of the column of a quantity; the quantity itself if it has no column.
+/// Returns the head of the table column of a quantity such as `wrong_percent`; the quantity itself
+/// if it has no column.
 pub fn head_of(quantity: &str) -> String {
     let mut entries = DOCUMENT.iter();
     let entry = entries.find(|(.., known)| *known == quantity);
@@ -551,8 +552,9 @@ pub fn head_of(quantity: &str) -> String {
     }
 }
 
-/// Returns a run's own figure for a quantity, in the quantity's unit: percent, milliseconds, a
-/// count, frames per second. Returns `None` if the figure is unknown or not a number.
+/// Returns the measured figure of a run for a quantity such as `wrong_percent`, in the quantity's
+/// unit: percent, milliseconds, a count, frames per second. Returns `None` if the figure is unknown
+/// or not a number.
 pub fn figure(quantity: &str, results: &Results, run: &Run) -> Option<f64> {
     if let Some(steps) = steps_of(quantity) {
         return run.measured.as_ref()?.step_ms(steps);

@@ -8,19 +8,21 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Cause of most of a method's wrong pixels, and a setting that was tried on the same view and
-/// makes more than half of them right.
+/// Cause of most of a method's wrong pixels on a view, and a setting that was tried on this view
+/// and makes more than half of them right. Pixels whose right answer rounding may flip are not
+/// counted.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Hint {
     /// Cause of the wrong pixels.
     pub cause: Cause,
-    /// Number of wrong pixels outside the band that have this cause.
+    /// Number of the pixels of `wrong` that have this cause.
     pub explained: u64,
-    /// Number of all wrong pixels outside the band.
+    /// Number of wrong pixels, without those whose right answer rounding may flip.
     pub wrong: u64,
-    /// The method with the setting to try: `nsm@cull=none,slope_bias=1`.
+    /// The method with the setting to try and what `--set` gave to it, as an argument of `compare`:
+    /// `nsm@cull=none,slope_bias=1`.
     pub set: String,
-    /// Number of wrong pixels outside the band with that setting.
+    /// Number of wrong pixels with that setting, counted as `wrong` is.
     pub wrong_then: u64,
 }
 
@@ -28,15 +30,16 @@ pub struct Hint {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Cause {
-    /// Wrongly lit: the shadow is that of an open part alone, such as a wall with one side, and the
-    /// map does not hold the side that faces the light.
+    /// The pixels are lit by mistake: only an open part of the mesh, such as a one-sided wall,
+    /// blocks their light, and the shadow map does not hold the side that faces the light.
     OpenParts,
-    /// Wrongly in shadow, with nothing between them and the light.
+    /// The pixels are in shadow by mistake: nothing is between them and the light.
     NoBlocker,
 }
 
 impl Cause {
-    /// Returns the words behind "of so many wrong pixels so many": `are shadowed by open parts`.
+    /// Returns the cause as the end of a sentence whose subject is the pixels: `are shadowed by
+    /// open parts alone`.
     pub fn words(self) -> &'static str {
         match self {
             Self::OpenParts => "are shadowed by open parts alone",

@@ -19,6 +19,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod assignments;
 pub mod baseline;
 pub mod budgets;
 pub mod check;

@@ -64,22 +64,23 @@ pub struct Conditions {
     pub adapter: Adapter,
     /// The scene that was drawn.
     pub scene: Scene,
-    /// Name of the preset, or path of the graph.
+    /// Name of the preset, or path of the graph, with the assignments that tell settings of its
+    /// params apart: `crsm@n=1`.
     pub preset: String,
     /// Name of the view.
     pub view: String,
-    /// Width and height in pixels.
+    /// Width and height of the viewport in pixels.
     pub viewport: [u32; 2],
-    /// All params of the graph with the values it ran with.
+    /// All params of the graph, defaults included, with the values that it ran with.
     pub params: BTreeMap<String, serde_json::Value>,
     /// Number of timed frames that were requested. There are fewer samples if the work ended early.
     pub frames: u32,
-    /// Number of warm-up frames before the timed ones.
+    /// Number of untimed warm-up frames before the timed ones.
     pub warmup: u32,
 }
 
 impl Conditions {
-    /// Returns each param's name and value as text, as `--set` takes them: `cull` and `front`.
+    /// Returns each param's name, such as `cull`, and its value as text, such as `front`.
     pub fn params(&self) -> impl Iterator<Item = (&str, String)> {
         self.params.iter().map(|(name, value)| {
             let text = value
@@ -131,22 +132,23 @@ pub struct PassProfile {
     /// Milliseconds between the pass's GPU timestamps; null if there are no timestamps or they
     /// cannot be trusted.
     pub gpu_ms: Option<Series>,
-    /// Share of the frame's GPU time that the pass takes, 0 to 1, median over the frames; null
-    /// without GPU times. Passes may overlap, so that shares need not add up to 1.
+    /// Share of the frame's GPU time that the pass takes, 0 to 1, as the median over the frames;
+    /// null without GPU times. Passes may overlap, so that shares need not add up to 1.
     pub share: Option<f64>,
-    /// Milliseconds of encoding the pass on the CPU.
+    /// CPU time of encoding the pass, in milliseconds, for each frame.
     pub cpu_ms: Series,
 }
 
 /// Times of whole frames, in milliseconds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrameProfile {
-    /// GPU time from the start of the first pass to the end of the last; null if there are no
-    /// timestamps or they cannot be trusted.
+    /// GPU time from the start of a frame's first pass to the end of its last, in milliseconds;
+    /// null if there are no timestamps or they cannot be trusted.
     pub gpu_ms: Option<Series>,
-    /// CPU time of encoding all passes.
+    /// CPU time of encoding all passes of a frame, in milliseconds.
     pub cpu_ms: Series,
-    /// Time from the start of encoding until the GPU was done, measured by the CPU's clock.
+    /// Time from the start of encoding a frame until the GPU was done, by the CPU's clock, in
+    /// milliseconds.
     pub wall_ms: Series,
 }
 
@@ -155,7 +157,7 @@ pub struct FrameProfile {
 pub struct Memory {
     /// Bytes of all textures and buffers together.
     pub bytes: u64,
-    /// Bytes saved by materials that share memory with others.
+    /// Bytes saved because materials share memory: those that `bytes` would be more without it.
     pub saved_bytes: u64,
     /// Textures and buffers, in the order of the document.
     pub materials: Vec<Material>,
@@ -176,13 +178,14 @@ pub struct Material {
     pub layers: u32,
     /// Bytes of the texture or buffer.
     pub bytes: u64,
-    /// Names of the materials that share this one's memory.
+    /// Names of the materials that use the same memory at other times of the frame; empty if there
+    /// are none.
     pub shared_with: Vec<String>,
 }
 
 impl Profile {
-    /// Creates a profile from the times of frames. `kinds` are the passes of the plan, which give
-    /// the kind of each pass. Returns `None` if `samples` has no frames.
+    /// Creates a profile from the times of frames. `kinds` are the passes of the plan, from which
+    /// each pass's kind is taken by name. Returns `None` if `samples` has no frames.
     pub fn new(
         conditions: Conditions,
         kinds: &[PassSummary],

@@ -56,15 +56,15 @@ pub fn read(files: &[PublishedFile]) -> Result<Vec<Row>, CompareError> {
     })
 }
 
-/// Replaces the published figures of a run by those of `rows` that apply to it. `scene` is the name
-/// of the run's scene.
+/// Replaces the published figures of a run by those of the `rows` that [apply to
+/// it](Row::applies_to). `scene` is the name of the run's scene.
 pub fn attach(rows: &[Row], scene: &str, run: &mut Run) {
     let figures = rows.iter().filter(|row| row.applies_to(scene, run));
     run.published = figures.map(|row| row.figure.clone()).collect();
 }
 
-/// Replaces the published figures of all runs of `results` by those of `rows` that apply to each
-/// run.
+/// Replaces the published figures of each run of `results` by those of the `rows` that [apply to
+/// it](Row::applies_to). Runs of [`Results::others`] stay as they are.
 pub fn attach_all(rows: &[Row], results: &mut Results) {
     for run in &mut results.runs {
         attach(rows, &results.scene.name, run);

@@ -61,10 +61,10 @@ pub struct Row {
     view: String,
     viewport: [u32; 2],
     map_size: Option<u32>,
-    /// Name of the preset; empty for a figure of the reference. In a row from [`Row::read`] it is
-    /// all preset names of the line, separated by spaces.
+    /// Name of the preset; empty for a figure of the reference, such as its number of lit pixels.
+    /// In a row from [`Row::read`] it is all preset names of the line, separated by spaces.
     pub preset: String,
-    /// Names of all presets on the row's line.
+    /// Names of all presets on the row's line; empty for a figure of the reference.
     pub named: Vec<String>,
     /// The figure, with its quantity and source.
     pub figure: Published,
@@ -73,8 +73,8 @@ pub struct Row {
 }
 
 impl Row {
-    /// Returns the fields that identify the figure: scene, view, viewport, map size, preset,
-    /// quantity.
+    /// Returns the fields that identify the figure: scene, view, viewport in pixels, map size in
+    /// texels (`None` for a method without a map), preset and quantity.
     pub fn key(&self) -> (&str, &str, [u32; 2], Option<u32>, &str, &str) {
         let Self { scene, view, .. } = self;
         let quantity = &self.figure.quantity;
@@ -95,8 +95,8 @@ impl Row {
         self.named.iter().map(of).collect()
     }
 
-    /// True if the figure was published for `run` on the scene named `scene`, or for the reference
-    /// of that run.
+    /// True if the figure was published for the scene named `scene`, the view and viewport of
+    /// `run`, and, unless it is of the reference, for its preset and map size.
     pub fn applies_to(&self, scene: &str, run: &Run) -> bool {
         let of_run = self.preset == run.preset && self.map_size == run.map_size;
         (self.scene.as_str(), &self.view, self.viewport) == (scene, &run.view, run.viewport)
@@ -286,7 +286,8 @@ impl Columns {
         }
     }
 
-    /// Returns the index of the column `name`, one of [`HEADER`], among the fields of a line.
+    /// Returns the index of the column `name`, one of [`HEADER`], among the fields of a line; 0 for
+    /// any other name.
     pub fn at(&self, name: &str) -> usize {
         let mut columns = HEADER.into_iter().zip(self.0);
         let column = columns.find(|(known, _)| *known == name);

@@ -76,8 +76,8 @@ pub fn results(path: &Path) -> Result<Option<Results>, CompareError> {
     file.map(|file| results_of(&file)).transpose()
 }
 
-/// Reads the text of the results.json at `path`, without parsing it; `None` if the file does not
-/// exist.
+/// Reads the text of the file at `path`, a results.json, without parsing it; `None` if the file
+/// does not exist.
 ///
 /// # Errors
 /// A file that cannot be read.
@@ -115,12 +115,12 @@ pub fn with_scenes(folders: &[PathBuf]) -> Vec<PathBuf> {
     each.collect()
 }
 
-/// Reads the finished results.json in a folder, or a file of that kind, for example to write a
-/// report of it.
+/// Reads a results.json, for example to write a report of it. `place` is a folder that holds one,
+/// or the path of the file.
 ///
 /// # Errors
-/// No such folder or results.json; a file that cannot be read, or is not a results.json. The
-/// message shows the place.
+/// A missing folder or file; a file that cannot be read, or is not a results.json. The message
+/// shows the place.
 pub fn kept(place: &Path) -> Result<Results, CompareError> {
     let refused = |why: String| CompareError::Input(format!("{why}; {COMPARE_FIRST}"));
     let shown = place.display();

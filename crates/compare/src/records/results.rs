@@ -18,6 +18,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+use crate::records::assignments::assignments;
 use crate::records::budgets::Budgets;
 use crate::records::hint::Hint;
 use crate::records::sequence::Sequence;
@@ -26,6 +27,7 @@ use crate::records::steady::Steady;
 use crate::records::tuned::Tuned;
 use crate::records::turns::Turns;
 use crate::wording::{size, thousands};
+use itertools::Itertools;
 use serde::{Deserialize, Serialize};
 use skiagraph_reference::{
     AreaVisibility, BlockerCounts, CertainCounts, EdgeDistances, Graded, GroundTruthPixels,
@@ -49,17 +51,19 @@ pub struct Results {
     pub machine: Machine,
     /// The scene that was drawn.
     pub scene: Scene,
-    /// The oracle's mode, `exact` or `offset:LENGTH`.
+    /// Mode of the reference's shadow rays: `exact` (from the visible surface, whose own triangle
+    /// is excluded) or `offset:LENGTH` (the origin is moved towards the light by so many scene
+    /// units).
     pub oracle: String,
-    /// Timed frames per run.
+    /// Number of timed frames of a still view. Of a camera path each frame is timed.
     pub frames: u32,
-    /// Number of warm-up frames before the timed ones.
+    /// Number of untimed warm-up frames before the timed ones.
     pub warmup: u32,
-    /// Timed frames in which only the camera moves, per run.
+    /// Number of timed frames of a still view in which only the camera moves; 0 if there are none.
     pub cached_frames: u32,
     /// Start of the comparison that measured the newest runs, in UTC: `2026-11-21T04:30:12Z`.
     pub began: String,
-    /// Limits that an acceptable method keeps; absent if there are none.
+    /// Limits on frame time, errors and memory that the user set; absent if there are none.
     #[serde(default, skip_serializing_if = "Budgets::is_empty")]
     pub budgets: Budgets,
     /// Commands that measured the runs, the first one first.
@@ -91,7 +95,7 @@ impl Results {
 pub struct Adapter {
     /// Name of the GPU by its driver.
     pub name: String,
-    /// Graphics API: vulkan, metal or dx12.
+    /// Graphics API: vulkan, metal, dx12 or gl.
     pub backend: String,
     /// Driver and its version.
     pub driver: String,
@@ -143,7 +147,7 @@ pub struct Scene {
     pub name: String,
     /// Number of triangles in the mesh.
     pub triangles: u64,
-    /// Numbers of open and closed parts of the mesh.
+    /// Numbers of open and of all parts (connected sets of triangles) of the mesh.
     pub parts: OpenParts,
 }
 
@@ -154,7 +158,7 @@ pub struct OpenParts {
     pub all: u64,
     /// Number of open parts, which have an edge with a triangle on one side only.
     pub open: u64,
-    /// Number of triangles in open parts.
+    /// Number of triangles in open parts, those that have an edge with a triangle on one side only.
     pub open_triangles: u64,
 }
 
@@ -214,11 +218,12 @@ pub struct Run {
     /// Name of the light, where the view is compared under several; absent elsewhere.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub light: Option<String>,
-    /// Width and height in pixels.
+    /// Width and height of the viewport in pixels.
     pub viewport: [u32; 2],
-    /// Value of the param `map_size`; null where the graph has none.
+    /// Width and height of the shadow map in texels (the param `map_size`); null where the graph
+    /// has no such param.
     pub map_size: Option<u32>,
-    /// All params of the graph with the values it ran with.
+    /// All params of the graph, defaults included, with the values that it ran with.
     pub params: BTreeMap<String, serde_json::Value>,
     /// Hash of everything but the params that the run depends on: the files of the graph, its
     /// includes and shaders; those of the graph that finds the visible triangles; mesh, light and
@@ -228,8 +233,9 @@ pub struct Run {
     pub date: String,
     /// Start of the comparison that measured the run, in UTC: `2026-11-21T04:30:12Z`.
     pub session: String,
-    /// Id of the cell, 16 hexadecimal digits, the same on every machine
-    /// ([`cell::id`](crate::measuring::cell::id)); empty in results of older versions.
+    /// Id of the cell (the method with its params on the view, in the viewport, under the
+    /// protocol), 16 hexadecimal digits, the same on every machine
+    /// ([`cell::id`](crate::measuring::cell::id)). Empty in results of older versions.
     #[serde(default)]
     pub cell: String,
     /// Commit that the measuring program was built from; absent where the program does not know.
@@ -239,14 +245,14 @@ pub struct Run {
     /// in results of older versions, whose machine is that of the results.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub machine: Option<Machine>,
-    /// Search for good settings that ended in these params; absent for a method that was not tuned.
+    /// Record of the search that chose these params; absent for a method that was not tuned.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tuned: Option<Tuned>,
     /// Promise of the method's document about its answers with these params; absent if it makes
     /// none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub promise: Option<Promise>,
-    /// Counts of the reference's pixels.
+    /// Numbers of pixels by the reference's answer, over all frames of a camera path.
     pub pixels: PixelCounts,
     /// Number of pixels facing the light whose answer flips within the rounding error of receiver
     /// and casters: the band.
@@ -257,25 +263,27 @@ pub struct Run {
     /// Sampling of the reference for a light with an extent; absent for other lights.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub area: Option<AreaReference>,
-    /// The measurements; absent where the preset is unavailable.
+    /// The measurements; absent where the method could not run.
     #[serde(flatten)]
     pub measured: Option<Measured>,
-    /// Reason why the preset could not run on this adapter; absent where it did.
+    /// Reason why the method could not run on this adapter, or its outputs are not those of a
+    /// shadow method; absent where it was measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unavailable: Option<String>,
-    /// Figures that others have published about the run, with `--beside`.
+    /// Figures that others have published about the run, from the files of `--beside`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub published: Vec<Published>,
 }
 
 impl Run {
-    /// True if method and light are hard: each pixel is then lit or in shadow, and right or wrong.
+    /// True if the method answers only 0 or 1 and the light has no extent: each pixel is then lit
+    /// or in shadow, and right or wrong. Without measurements only the light counts.
     pub fn is_hard(&self) -> bool {
         let measured = self.measured.as_ref();
         self.area.is_none() && measured.is_none_or(|of| of.answer == Answer::Hard)
     }
 
-    /// True unless the run was kept at an early end, with a single frame that was timed by itself.
+    /// True unless only a single frame of the run was timed before an early end.
     pub fn is_whole(&self) -> bool {
         let measured = self.measured.as_ref();
         measured.is_none_or(|of| of.sequence.is_some() || of.turns.is_some())
@@ -313,7 +321,8 @@ impl Run {
             == (&other.preset, &other.view, other.viewport, other.map_size)
     }
 
-    /// True if both runs are in one place and of one cell, so that of the two the newer one counts.
+    /// True if both runs have the same preset, view, viewport, map size and cell (in results of
+    /// older versions, the same params), so that reports use only the newer one.
     pub fn is_same_cell(&self, other: &Self) -> bool {
         let are_known = !self.cell.is_empty() && !other.cell.is_empty();
         let is_same = if are_known {
@@ -324,21 +333,9 @@ impl Run {
         is_same && self.is_in_place_of(other)
     }
 
-    /// Returns all params as assignments, as `--set` takes them: `cull=front;slope_bias=1.5`.
+    /// Returns all params as assignments, separated by semicolons: `cull=front;slope_bias=1.5`.
     pub fn assignments(&self) -> String {
-        let text = |value: &serde_json::Value| match value {
-            serde_json::Value::String(word) => word.clone(),
-            serde_json::Value::Array(numbers) => {
-                let numbers: Vec<String> = numbers.iter().map(ToString::to_string).collect();
-                numbers.join(",")
-            }
-            value => value.to_string(),
-        };
-        let params = self.params.iter();
-        let params: Vec<String> = params
-            .map(|(name, value)| format!("{name}={}", text(value)))
-            .collect();
-        params.join(";")
+        assignments(&self.params).join(";")
     }
 
     /// Returns preset and map size as the name of a row: `nsm 1024`.
@@ -348,14 +345,23 @@ impl Run {
     }
 }
 
-/// Promise that a document makes about its method's answers.
+/// Promise that a method's document makes about which of its pixels are right.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Promise {
-    /// Pixels that are promised to be right: `exact` for all, `certain` for those that the method
-    /// calls certain.
+    /// Pixels that are promised to be right, but where rounding decides the answer: `exact` for
+    /// all, `certain` for those that the method's output `status` calls certain.
     pub of: String,
-    /// True if the promise holds for closed casters alone, since the method leaves out faces.
+    /// True if the promise holds for closed casters alone, since the method culls faces from its
+    /// shadow map.
     pub closed_only: bool,
+}
+
+impl Promise {
+    /// True if all pixels are promised to be right (but where rounding decides), for closed and
+    /// open casters.
+    pub fn is_exact_for_all(&self) -> bool {
+        self.of == "exact" && !self.closed_only
+    }
 }
 
 /// Kind of a method's answers.
@@ -364,7 +370,8 @@ pub struct Promise {
 pub enum Answer {
     /// Answers 0 and 1: the output `visibility` is a texture of integers.
     Hard,
-    /// Answers that are shares of light.
+    /// Answers that are shares of light, 0 to 1: the output `visibility` is a texture of floats or
+    /// normalised integers.
     Graded,
 }
 
@@ -410,19 +417,19 @@ impl AreaReference {
     }
 }
 
-/// A part of some pixels, as two counts.
+/// Number of pixels of some kind, with the number of all pixels among which they are counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Part {
-    /// Number of pixels in the part.
+    /// Number of pixels of that kind.
     pub count: u64,
-    /// Number of all pixels of which these are a part.
+    /// Number of all pixels among which they are counted.
     pub of: u64,
 }
 
 /// A figure that others have published about a run, or about its view and viewport.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Published {
-    /// Label of the publication.
+    /// Label of the publication, from `--beside LABEL:FILE.csv`.
     pub by: String,
     /// Name of the quantity: `wrong_percent`, `ms.trace_rays` …
     pub quantity: String,
@@ -438,27 +445,31 @@ pub struct Published {
 /// Measurements of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
-    /// Counts of the pixels that the method decided by its map alone.
+    /// Numbers of pixels facing the light that the method calls certain, since its shadow map
+    /// decides them.
     pub certain: CertainCounts,
-    /// Number of pixels that the method left to rays, or all that it traced.
+    /// Number of pixels facing the light that the method calls uncertain: its shadow map does not
+    /// decide them, so that it traces rays or guesses.
     pub uncertain: u64,
     /// Counts of the certain and the uncertain pixels, and of the wrong ones among them, separately
     /// for pixels that the reference lights and pixels in its shadow.
     pub split: Split,
-    /// Number of rays traced per frame; null where the graph does not count them.
+    /// Number of rays traced in the frame, for a camera path in all frames together; null where the
+    /// graph does not count them.
     pub rays: Option<u64>,
-    /// Counts of the pixels facing the light on which method and reference disagree.
+    /// Numbers of pixels on which method and reference disagree. Pixels facing the light are
+    /// judged, and those that only the method takes for facing it.
     pub wrong: WrongCounts,
     /// Counts of the pixels of `wrong.certain`, by the caster that blocks their light; absent if
     /// there are none, or if answers are graded.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub certain_wrong_blockers: Option<BlockerCounts>,
     /// A setting that makes most wrong pixels right; absent if none was found, if methods were
-    /// tuned, if answers are graded, and for a camera path.
+    /// tuned, if answers are shares of light, and for a camera path.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hint: Option<Hint>,
-    /// Number of pixels that face the light by the reference but not by the method, or the other
-    /// way round.
+    /// Number of pixels that face the light by the reference but not by the method's output
+    /// `status`, or the other way round.
     pub facing_mismatch: u64,
     /// Kind of the answers: 0 and 1, or shares of light. Of shares, `certain`, `split` and `wrong`
     /// count one half or more as lit.
@@ -466,35 +477,40 @@ pub struct Measured {
     /// Errors of the shares of light that the method shows, against the reference; a hard answer
     /// shows 0 or 1.
     pub graded: Graded,
-    /// Distances of wrong pixels from the edges of the reference's shadows.
+    /// Distances in pixels of wrong pixels from the edges of the reference's shadows.
     pub edges: EdgeDistances,
-    /// Times of each pass, in the order in which they ran.
+    /// Times of each pass over the timed frames, in the order in which they ran.
     pub passes: Vec<Pass>,
-    /// Times of whole frames.
+    /// Times of whole frames: of a still view with every pass run, of a camera path with passes
+    /// skipped whose inputs had not changed.
     pub frame: FrameTimes,
     /// Times of frames in which only the camera moved and unchanged passes were skipped; null if no
     /// pass was skipped.
     pub cached: Option<Cached>,
-    /// Bytes of the graph's own materials.
+    /// Bytes of the textures and buffers that the graph makes; memory that several share counts
+    /// once.
     pub memory_bytes: u64,
-    /// Bytes saved by letting materials share memory.
+    /// Bytes by which `memory_bytes` is less because textures and buffers share memory.
     pub saved_bytes: u64,
-    /// Bytes of the scene's resources: positions, indices, hierarchy …
+    /// Bytes of the scene's resources that the graph reads, such as positions, indices and
+    /// hierarchy.
     pub scene_bytes: u64,
     /// Group of methods that took turns with this one, frame by frame; absent for a camera path,
     /// which each method follows by itself.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub turns: Option<Turns>,
-    /// Steady state of a method that remembers earlier frames, with means over its pictures; the
-    /// other fields count the worst of these pictures. Absent for other methods.
+    /// Steady state of a method that reuses results of earlier frames: the pictures of a still view
+    /// that it repeats, with means over them. The other fields count the worst of these pictures.
+    /// Absent for other methods.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub steady: Option<Steady>,
     /// Texels of the shadow map per pixel, for a path in its worst frame; absent where the graph
     /// has no output `texel_density`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub texels: Option<TexelsPerPixel>,
-    /// Jumps of errors where two layers of the shadow map meet, for a path in its worst frame;
-    /// absent where the graph has no output `map_layer`, or no two layers meet.
+    /// Differences of the errors of neighbouring pixels that read different layers of the shadow
+    /// map, for a path in its worst frame; absent where the graph has no output `map_layer`, or no
+    /// two layers meet.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub layer_jump: Option<LayerJump>,
     /// Measurements of each frame of a camera path; all other fields are sums and spreads over the
@@ -515,12 +531,14 @@ pub fn step(pass: &str) -> &str {
     steps.find(|step| !step.ends_with(']')).unwrap_or(pass)
 }
 
-/// Name of the step that every preset begins with, and that is not the method's own work.
+/// Name of the step that draws the camera's G-buffer. Every built-in preset begins with it, so that
+/// it is not counted as a shadow method's own work.
 pub const GBUFFER: &str = "gbuffer";
 
 impl Measured {
-    /// Returns the median GPU times of a step's passes, added up, in milliseconds; `one+another`
-    /// adds up several steps. Returns `None` if a step has no pass, or a pass no GPU time.
+    /// Returns the median GPU times of the passes of the [`step`] with this name, added up, in
+    /// milliseconds; `one+another` adds up several steps. Returns `None` if a step has no pass, or
+    /// a pass no GPU time.
     pub fn step_ms(&self, name: &str) -> Option<f64> {
         let steps = name.split('+');
         let each = steps.map(|name| self.sum_ms(|pass| step(pass) == name));
@@ -561,9 +579,10 @@ impl Measured {
         Some(self.frame.gpu_ms?.median - self.gbuffer_ms().unwrap_or(0.0))
     }
 
-    /// Returns the number of wrong pixels outside the band, where rounding cannot be the cause. Of
-    /// a method that remembers earlier frames it is the worst picture of its steady state; the
-    /// mean, by which reports rank, is in [`steady`](Self::steady).
+    /// Returns the number of wrong pixels outside the band (the pixels whose right answer rounding
+    /// may flip). For a method that reuses results of earlier frames it is that of the worst
+    /// picture of its steady state; the mean, by which reports rank, is in
+    /// [`steady`](Self::steady).
     pub fn wrong_outside_band(&self) -> u64 {
         self.wrong.total.saturating_sub(self.wrong.in_band)
     }
@@ -580,7 +599,8 @@ pub struct Pass {
     pub cpu_ms: Spread,
 }
 
-/// Times of frames in which unchanged passes did not run.
+/// Times of frames in which only the camera moved, so that passes with unchanged inputs were
+/// skipped.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cached {
     /// Times of whole frames.
@@ -603,8 +623,8 @@ pub struct Images {
     /// File name of the picture of the output `visibility`.
     pub visibility: String,
     /// File name of the picture of the errors: blue where wrongly lit, red where wrongly in shadow,
-    /// paler in the band. For shares of light the colour grows with the error, and is full from an
-    /// error of a quarter on.
+    /// paler where rounding may flip the right answer. For shares of light the colour grows with
+    /// the error, and is full from an error of a quarter on.
     pub error: String,
     /// File name of the picture `shaded` with uncertain pixels in purple; absent where the method
     /// calls no pixel certain or uncertain.
@@ -614,12 +634,12 @@ pub struct Images {
     /// yellow (1) to blue (many); absent where the graph has no output `texel_density`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub texels: Option<String>,
-    /// File name of the picture of the part of the texels per pixel that comes from distance and
-    /// map alone; absent as `texels` is.
+    /// File name of the picture of the factor of the texels per pixel that distances and the map's
+    /// resolution cause (perspective aliasing); absent as `texels` is.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub perspective: Option<String>,
-    /// File name of the picture of the part of the texels per pixel that comes from angles alone;
-    /// absent as `texels` is.
+    /// File name of the picture of the factor of the texels per pixel that the surface's angles to
+    /// eye and light cause (projection aliasing); absent as `texels` is.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub projection: Option<String>,
 }

@@ -33,7 +33,7 @@ use crate::wording::{plural, size, thousands};
 use itertools::Itertools;
 use std::path::Path;
 
-/// Older results, to compare newer ones with.
+/// Older results of `compare`, to compare newer ones with.
 #[derive(Debug)]
 pub struct Baseline {
     /// Path of the file or folder, for messages.
@@ -42,71 +42,78 @@ pub struct Baseline {
     all: Vec<Results>,
 }
 
-/// Comparison of results with a baseline.
+/// Comparison of results with a baseline, older results.
 #[derive(Debug)]
 pub struct Changes {
     /// Path of the baseline's file or folder.
     pub baseline: String,
     /// Start of the comparison that measured the newest runs of the baseline, in UTC.
     pub began: String,
-    /// Cells that both have, in the order of the new results.
+    /// Cells that are in both, in the order of the new results. A cell is one method with its
+    /// params on one view, in one viewport, under one protocol.
     pub cells: Vec<CellChange>,
-    /// Number of cells of the scene that only the baseline has.
+    /// Number of cells (method, view, viewport and protocol) of the scene that only the baseline
+    /// has.
     pub only_then: usize,
-    /// Names of the new runs that the baseline does not have, or that could not run then.
+    /// Names of the new runs that the baseline lacks, or that could not run when it was measured.
     pub only_now: Vec<String>,
-    /// Remarks: tolerances, and why times were not compared.
+    /// Lines of remarks: tolerances, and why times were not compared.
     pub notes: Vec<String>,
 }
 
-/// One cell then and now.
+/// Figures of one cell (a method with its params on one view, in one viewport, under one protocol)
+/// in the baseline and in the new results.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CellChange {
-    /// Name of the method with its map size.
+    /// Name of the method with its map size in texels: `nsm 1024`.
     pub method: String,
     /// Name of the view or path.
     pub view: String,
     /// Width and height of the viewport in pixels.
     pub viewport: [u32; 2],
-    /// Figures of the baseline.
+    /// Figures of the cell in the baseline.
     pub then: Figures,
-    /// New figures; `None` for a method that cannot run any more.
+    /// New figures; `None` for a method that could not run this time.
     pub now: Option<Figures>,
-    /// Change of the errors; a method that cannot run any more is worse.
+    /// Change of the errors; a method that could not run this time is worse.
     pub errors: Change,
-    /// Ratio of the new time to the old one; `None` if they are not compared.
+    /// Ratio of the new time of a frame to the old one; `None` if they are not compared, for
+    /// example on another machine.
     pub ratio: Option<UnpairedRatio>,
 }
 
-/// Figures of a cell that are compared.
+/// Figures of a method on one view that are compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Figures {
-    /// Wrong pixels outside the band; of a method that remembers the mean of its pictures, rounded
+    /// Number of wrong pixels outside the band (the pixels whose right answer rounding may flip);
+    /// for a method that reuses results of earlier frames the mean over its steady state, rounded
     /// up.
     pub wrong: u64,
-    /// Root mean square error of the shares of light outside the band.
+    /// Root mean square error of the shares of light, 0 to 1, without pixels whose answer rounding
+    /// decides; for a method that reuses results of earlier frames the mean over its steady state,
+    /// of all pixels.
     pub rmse: f64,
-    /// Median of a frame with every pass run, milliseconds.
+    /// Median milliseconds of a frame in which every pass runs: GPU time, or wall time without it.
     pub ms: f64,
 }
 
-/// Direction of a change.
+/// Direction of a change since the baseline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Change {
     /// Fewer errors or less time.
     Better,
-    /// No difference that counts.
+    /// A difference within the [`Tolerance`], or times that cannot be told apart.
     Same,
     /// More errors or more time.
     Worse,
 }
 
-/// Growth of errors that does not count as a change.
+/// Greatest difference of errors that does not count as a change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
-    /// Number of wrong pixels.
+    /// Difference of the numbers of wrong pixels.
     pub pixels: u64,
-    /// Root mean square error.
+    /// Difference of the root mean square errors of the shares of light, 0 to 1.
     pub rmse: f64,
 }
 
@@ -132,7 +139,8 @@ impl Baseline {
     /// ([`with_scenes`](read_back::with_scenes)).
     ///
     /// # Errors
-    /// The errors of [`read_back::kept`]; results of an older version, whose cells have no ids.
+    /// The errors of [`read_back::kept`]; results of an older version, whose runs have no ids of
+    /// cells.
     pub fn read(place: &Path) -> Result<Self, CompareError> {
         let mut all = Vec::new();
         for place in read_back::with_scenes(&[place.to_path_buf()]) {
@@ -156,8 +164,8 @@ impl Baseline {
         all.flat_map(|results| results.runs.iter().map(move |run| (results, run)))
     }
 
-    /// Checks that the baseline has cells of a comparison. `planned` are the comparison's runs, and
-    /// `now` holds its conditions.
+    /// Checks that the baseline has a cell (method, view, viewport and protocol) of a comparison.
+    /// `planned` are the comparison's runs, and `now` holds its scene and protocol.
     ///
     /// # Errors
     /// No cell is in both; the message lists how scene, protocol, views and methods differ.
@@ -179,8 +187,8 @@ impl Baseline {
     /// Compares new results with the baseline.
     ///
     /// # Errors
-    /// On one adapter and driver the reference counts other pixels than then: the scene has
-    /// changed.
+    /// The scene has changed: the reference counts other numbers of lit and shadowed pixels, by
+    /// more than the [`Tolerance`].
     pub fn against(&self, now: &Results) -> Result<Changes, CompareError> {
         let mut changes = Changes {
             baseline: self.name.clone(),
@@ -313,7 +321,7 @@ impl Baseline {
 }
 
 impl CellChange {
-    /// Returns the change of the times; `Same` if they are not compared.
+    /// Returns the change of the frame times; [`Change::Same`] if they are not compared.
     pub fn times(&self) -> Change {
         match self.ratio.filter(UnpairedRatio::is_told_apart) {
             None => Change::Same,
@@ -322,8 +330,8 @@ impl CellChange {
         }
     }
 
-    /// Returns the verdict on the cell: worse if errors or times are worse, else better if one of
-    /// both is better.
+    /// Returns the verdict on the method on this view: worse if errors or frame times are worse
+    /// than in the baseline, otherwise better if one of both is better.
     pub fn verdict(&self) -> Change {
         let both = [self.errors, self.times()];
         let is = |change: &Change| both.contains(change);
@@ -333,7 +341,7 @@ impl CellChange {
 }
 
 impl Changes {
-    /// Returns the cells with a verdict.
+    /// Returns the cells whose [`verdict`](CellChange::verdict) is `verdict`.
     pub fn with(&self, verdict: Change) -> Vec<&CellChange> {
         let cells = self.cells.iter();
         cells.filter(|cell| cell.verdict() == verdict).collect()

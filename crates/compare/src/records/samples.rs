@@ -18,7 +18,7 @@
 use skiagraph_gpu::FrameTiming;
 use std::time::Duration;
 
-/// Times of one frame.
+/// Times of one frame, as measured.
 pub struct TimedFrame {
     /// Time from the start of the first timed frame until the start of this frame's encoding.
     pub began: Duration,
@@ -35,11 +35,12 @@ pub struct TimedFrame {
 pub struct Samples {
     /// Times of each pass, in the order in which the passes ran.
     pub passes: Vec<PassSamples>,
-    /// GPU time from the start of the first pass to the end of the last; `None` if it is not known.
+    /// GPU time of each frame from the start of the first pass to the end of the last; `None` if it
+    /// is not known.
     pub gpu: Vec<Option<Duration>>,
-    /// CPU time of encoding all passes.
+    /// CPU time of encoding all passes of each frame.
     pub cpu: Vec<Duration>,
-    /// Time from the start of encoding until the GPU was done.
+    /// Time of each frame from the start of encoding until the GPU was done.
     pub wall: Vec<Duration>,
 }
 
@@ -47,14 +48,15 @@ pub struct Samples {
 pub struct PassSamples {
     /// Name of the pass.
     pub name: String,
-    /// GPU time between the pass's timestamps; `None` if it is not known.
+    /// GPU time between the pass's timestamps, for each frame in which it ran; `None` if it is not
+    /// known.
     pub gpu: Vec<Option<Duration>>,
-    /// CPU time of encoding the pass.
+    /// CPU time of encoding the pass, for each frame in which it ran.
     pub cpu: Vec<Duration>,
 }
 
 impl Samples {
-    /// Gathers the times of `frames`, in their order.
+    /// Gathers the times of `frames` into lists, in their order.
     pub fn new(frames: &[TimedFrame]) -> Self {
         let mut samples = Self::default();
         for TimedFrame { timing, wall, .. } in frames {

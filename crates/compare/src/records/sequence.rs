@@ -22,8 +22,8 @@ use serde::{Deserialize, Serialize};
 use skiagraph_reference::{Graded, Shimmer};
 use std::collections::BTreeMap;
 
-/// Measurements of each frame of a camera path. The run's own counts are sums over all frames; its
-/// times are order statistics over the frames.
+/// Measurements of each frame of a camera path. The counts of its run are sums over all frames; the
+/// run's times are order statistics over the frames.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sequence {
     /// Measurements of each frame, in the order of the path.
@@ -31,8 +31,8 @@ pub struct Sequence {
     /// Counts, over all frames, of answers that changed from one frame to the next although the
     /// right answers did not.
     pub shimmer: Shimmer,
-    /// Order statistics of the frames' times when every pass runs; absent if no frame skips a pass,
-    /// and with `--cached-frames 0`.
+    /// Order statistics of the frames' times when no pass is skipped, measured in a second walk
+    /// along the path; absent if no frame skips a pass, and with `--cached-frames 0`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub every_pass: Option<FrameTimes>,
 }
@@ -42,17 +42,17 @@ pub struct Sequence {
 pub struct SequenceFrame {
     /// Number of pixels whose visible surface faces the light.
     pub facing_light: u64,
-    /// Number of pixels facing the light on which method and reference disagree, pixels in the band
-    /// included.
+    /// Number of pixels facing the light on which method and reference disagree, also where
+    /// rounding decides the answer.
     pub wrong: u64,
     /// Number of wrong pixels facing the light outside the band, which is the set of pixels whose
     /// answer rounding decides.
     pub wrong_outside_band: u64,
     /// Errors of the shares of light, 0 to 1, that the frame shows.
     pub graded: Graded,
-    /// Number of rays traced; null where the graph does not count them.
+    /// Number of rays traced in the frame; null where the graph does not count them.
     pub rays: Option<u64>,
-    /// Times of the frame. In JSON the fields of this struct stand beside the other fields.
+    /// Times of the frame. In JSON the fields of this struct are beside the other fields.
     #[serde(flatten)]
     pub cost: FrameCost,
     /// Counts of the answers that changed since the frame before; absent in the first frame.
@@ -65,8 +65,8 @@ pub struct SequenceFrame {
     /// depend on had changed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub remade: Vec<Remade>,
-    /// Times of the frame when every pass runs, as if no results were kept from earlier frames;
-    /// absent if this was not measured.
+    /// Times of the frame when no pass is skipped, measured in a second walk along the path; absent
+    /// if it was not measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub every_pass: Option<FrameCost>,
 }
@@ -75,7 +75,7 @@ pub struct SequenceFrame {
 /// triangles.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Remade {
-    /// Name of the resource.
+    /// Name of the resource in graph documents.
     pub name: String,
     /// `made` if it was built from scratch, `refitted` for a hierarchy whose boxes were updated.
     pub how: String,
@@ -83,7 +83,7 @@ pub struct Remade {
     pub ms: f64,
 }
 
-/// Times of one frame.
+/// Times of one frame of a camera path.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrameCost {
     /// GPU time in milliseconds, from the start of the first pass to the end of the last; null if

@@ -1,5 +1,6 @@
-//! Joins the results of several folders and machines. What was measured alike becomes one source;
-//! results of other machines, adapters, scenes or protocols stay apart.
+//! Joins the results of several folders and machines. Results of one machine, adapter, scene and
+//! protocol become one source; others stay apart, and so do methods that have the same label and
+//! other params.
 //!
 //! ```
 //! use skiagraph_compare::records::sources::{Kept, merged, sources};
@@ -30,13 +31,14 @@ use std::path::{Path, PathBuf};
 pub struct Kept {
     /// The folder that the results were read from, with their pictures.
     pub folder: PathBuf,
-    /// Results from the folder's `results.json` that were measured alike: `others` is empty.
+    /// Results from the folder's `results.json` of one machine, adapter, scene and protocol:
+    /// `others` is empty.
     pub results: Results,
 }
 
 impl Kept {
-    /// Reads the results of a folder, or of a results.json whose folder has its pictures. A file
-    /// that `merge` wrote may hold several.
+    /// Reads the results of `place`: a folder with a results.json, or the path of that file.
+    /// Returns one entry for each machine, adapter, scene and protocol in it.
     ///
     /// # Errors
     /// The errors of [`read_back::kept`].
@@ -48,7 +50,8 @@ impl Kept {
             place.parent()
         };
         let folder = folder.unwrap_or(Path::new(""));
-        let each = results.each().into_iter().map(|results| Self {
+        let each = results.each().into_iter().flat_map(by_machine);
+        let each = each.map(|results| Self {
             folder: folder.to_path_buf(),
             results,
         });
@@ -56,21 +59,49 @@ impl Kept {
     }
 }
 
-/// Measurements of one scene on one machine and adapter under one protocol.
+/// Parts results by the machine of their runs: another machine may have gone on with a comparison.
+fn by_machine(mut results: Results) -> Vec<Results> {
+    let mut parts: Vec<Results> = Vec::new();
+    for run in std::mem::take(&mut results.runs) {
+        let machine = results.machine_of(&run).clone();
+        let known = parts.iter().position(|part| part.machine.is_same(&machine));
+        let index = known.unwrap_or_else(|| {
+            parts.push(Results {
+                // Load is that of the comparison, where it is the same machine.
+                machine: if machine.is_same(&results.machine) {
+                    results.machine.clone()
+                } else {
+                    machine
+                },
+                ..results.clone()
+            });
+            parts.len() - 1
+        });
+        parts[index].runs.push(run);
+    }
+    if parts.is_empty() {
+        parts.push(results);
+    }
+    parts
+}
+
+/// Measurements of one scene on one machine and adapter under one protocol, in which each label of
+/// a method is of one choice of params.
 #[derive(Debug)]
 pub struct Source {
     /// All runs of the source, with their conditions.
     pub results: Results,
-    /// The folders that the runs come from.
+    /// The folders of the joined results, in the order in which they were joined.
     pub folders: Vec<PathBuf>,
     /// Index of each run's folder.
     places: Vec<usize>,
-    /// Number of runs that were left out, as a newer one of the same cell is there.
+    /// Number of runs that were left out because there is a newer one of the same method, params,
+    /// view and viewport.
     pub replaced: usize,
 }
 
 impl Source {
-    /// Returns the folder with the pictures of the run with this index in the results.
+    /// Returns the folder with the pictures of the run with the index `run` in `results.runs`.
     pub fn folder_of(&self, run: usize) -> &Path {
         &self.folders[self.places[run]]
     }
@@ -96,6 +127,16 @@ impl Source {
         };
         let results = &self.results;
         results.machine.is_same(&other.machine) && conditions(results) == conditions(other)
+    }
+
+    /// True if one of the runs has the label of a run of this source and is another cell, of other
+    /// params for example. Under one label a table could not tell them apart.
+    fn is_at_odds(&self, other: &Results) -> bool {
+        let at_odds =
+            |known: &Run, run: &Run| known.is_in_place_of(run) && !known.is_same_cell(run);
+        let known = &self.results.runs;
+        let mut runs = other.runs.iter();
+        runs.any(|run| known.iter().any(|known| at_odds(known, run)))
     }
 
     fn add(&mut self, folder: PathBuf, other: Results) {
@@ -132,12 +173,15 @@ impl Source {
     }
 }
 
-/// Joins kept results into sources, one for each scene, machine, adapter and protocol, in the order
-/// of the folders. Of the runs of one cell in a source the newest one counts.
+/// Joins results into sources, one for each scene, machine, adapter and protocol, in the order of
+/// `kept`. Of several runs of one method with the same params, view and viewport only the newest
+/// stays in a source; results in which methods of the same labels have other params, of another
+/// `--set` for example, are a source of their own.
 pub fn sources(kept: Vec<Kept>) -> Vec<Source> {
     let mut sources: Vec<Source> = Vec::new();
     for Kept { folder, results } in kept {
-        let index = sources.iter().position(|source| source.is_like(&results));
+        let fits = |of: &Source| of.is_like(&results) && !of.is_at_odds(&results);
+        let index = sources.iter().position(fits);
         let index = index.unwrap_or_else(|| {
             sources.push(Source::new(&results));
             sources.len() - 1
@@ -148,7 +192,7 @@ pub fn sources(kept: Vec<Kept>) -> Vec<Source> {
 }
 
 /// Returns the content of one results.json with all sources, for the folder `out`; `None` without
-/// sources. Runs whose pictures are in other folders have none in it.
+/// sources. Runs whose pictures are in other folders list no pictures in it.
 pub fn merged(sources: &[Source], out: &Path) -> Option<Results> {
     let mut each = sources.iter().map(|source| {
         let mut results = source.results.clone();
@@ -169,6 +213,7 @@ pub fn merged(sources: &[Source], out: &Path) -> Option<Results> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::records::results::Machine;
     use crate::records::results::tests::sample;
 
     fn kept(folder: &str, results: Results) -> Kept {
@@ -210,11 +255,35 @@ mod tests {
     }
 
     #[test]
+    fn runs_of_another_machine_in_one_file_are_a_source_of_their_own() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut of_two = sample();
+        of_two.runs[1].machine = Some(Machine {
+            host: Some("far".into()),
+            ..of_two.machine.clone()
+        });
+        crate::records::results_csv::save(&of_two, folder.path()).unwrap();
+        let kept = Kept::read(folder.path()).unwrap();
+        let runs = kept.iter().map(|kept| kept.results.runs.len());
+        assert_eq!(runs.collect::<Vec<_>>(), [2, 1]);
+        let joined = sources(kept);
+        assert_eq!(joined[1].results.machine.host.as_deref(), Some("far"));
+        assert_eq!(joined[1].results.runs, of_two.runs[1..2]);
+    }
+
+    #[test]
     fn other_cells_machines_scenes_and_protocols_stay_apart() {
         let mut other_cell = later();
         other_cell.runs[0].cell = "1".into();
+        let joined = sources(vec![kept("a", sample()), kept("b", other_cell.clone())]);
+        assert_eq!(joined.len(), 2, "one label has one cell in each source");
+        // Read back from one file, they are the same sources again.
+        let again = merged(&joined, Path::new("a")).unwrap();
+        let again = again.each().into_iter().map(|results| kept("a", results));
+        assert_eq!(sources(again.collect()).len(), 2);
+        other_cell.runs[0].preset = "another".into();
         let joined = sources(vec![kept("a", sample()), kept("b", other_cell)]);
-        assert_eq!(joined[0].results.runs.len(), 4);
+        assert_eq!((joined.len(), joined[0].results.runs.len()), (1, 4));
         type Change = fn(&mut Results);
         let changes: [Change; 5] = [
             |of| of.machine.host = Some("far".into()),

@@ -18,29 +18,31 @@ use std::time::Duration;
 /// Order statistics of times over frames, in milliseconds, without the samples.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
-    /// Least sample.
+    /// Least sample, in milliseconds.
     pub min: f64,
-    /// First quartile, interpolated linearly between the two nearest samples.
+    /// First quartile in milliseconds, interpolated linearly between the two nearest samples.
     pub q1: f64,
-    /// Middle sample, or the mean of the two in the middle.
+    /// Middle sample in milliseconds, or the mean of the two in the middle.
     pub median: f64,
-    /// Third quartile, interpolated linearly between the two nearest samples.
+    /// Third quartile in milliseconds, interpolated linearly between the two nearest samples.
     pub q3: f64,
-    /// The smallest sample that at least 95 % of the samples do not exceed.
+    /// The smallest sample that at least 95 % of the samples do not exceed, in milliseconds.
     pub p95: f64,
 }
 
 /// Times of frames in milliseconds, by the GPU's clock and by the CPU's.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrameTimes {
-    /// GPU times from the start of the first pass to the end of the last; null if there are no
-    /// timestamps or they cannot be trusted.
+    /// Order statistics of the GPU times from the start of a frame's first pass to the end of its
+    /// last; null if there are no timestamps or they cannot be trusted.
     pub gpu_ms: Option<Spread>,
-    /// Times from the start of encoding until the GPU was done, by the CPU's clock.
+    /// Order statistics of the times from the start of a frame's encoding until the GPU was done,
+    /// by the CPU's clock.
     pub wall_ms: Spread,
-    /// GPU time of each frame, in order; null if the GPU time of any frame is missing.
+    /// GPU time of each frame in milliseconds, in order; null if the GPU time of any frame is
+    /// missing.
     pub gpu_frames: Option<Vec<f64>>,
-    /// Time of each frame by the CPU's clock, in order.
+    /// Time of each frame by the CPU's clock in milliseconds, in order.
     pub wall_frames: Vec<f64>,
 }
 
@@ -78,7 +80,7 @@ impl FrameTimes {
         }
     }
 
-    /// Removes the GPU times.
+    /// Sets the GPU times to `None`.
     pub fn without_gpu(&mut self) {
         (self.gpu_ms, self.gpu_frames) = (None, None);
     }
@@ -138,15 +140,15 @@ fn all(samples: &[Option<Duration>]) -> Option<Vec<Duration>> {
 /// Times in milliseconds, one per frame, and their order statistics.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Series {
-    /// Least sample.
+    /// Least sample, in milliseconds.
     pub min: f64,
-    /// Middle sample, or the mean of the two in the middle.
+    /// Middle sample in milliseconds, or the mean of the two in the middle.
     pub median: f64,
-    /// The smallest sample that at least 95 % of the samples do not exceed.
+    /// The smallest sample that at least 95 % of the samples do not exceed, in milliseconds.
     pub p95: f64,
-    /// Greatest sample.
+    /// Greatest sample, in milliseconds.
     pub max: f64,
-    /// Samples, one per frame, in the order of the frames.
+    /// Samples in milliseconds, one per frame, in the order of the frames.
     pub samples: Vec<f64>,
 }
 

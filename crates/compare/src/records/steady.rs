@@ -15,14 +15,15 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Steady state of a method that reuses results of earlier frames: how many frames a still view
-/// took until the picture repeated.
+/// Steady state of a method that reuses results of earlier frames: the pictures of a still view
+/// that it repeats.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Steady {
-    /// Number of frames until the picture repeated. The first frame has no earlier frames to reuse.
+    /// Number of frames that were run, the first without earlier ones to reuse, until the picture
+    /// had repeated over 32 frames; 256 if it did not.
     pub frames: u32,
-    /// Number of frames after which the picture repeats; shares of light may differ by 1/1024. Null
-    /// if the picture did not repeat within `frames`.
+    /// Number of frames after which the picture repeats, at most 16; shares of light may differ by
+    /// 1/1024. Null if the picture did not repeat within `frames`.
     pub period: Option<u32>,
     /// Means over the pictures that were judged in the steady state; absent for a camera path that
     /// begins in it.
@@ -34,15 +35,14 @@ pub struct Steady {
 /// of the worst picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Cycle {
-    /// Number of pictures: one period, or the longest period that was tried if the picture did not
-    /// repeat.
+    /// Number of pictures: those of one period, or 16 if the picture did not repeat.
     pub pictures: u32,
-    /// Mean number of wrong pixels of a picture, pixels in the band included.
+    /// Mean number of all wrong pixels of a picture.
     pub wrong_mean: f64,
     /// Mean number of wrong pixels of a picture outside the band (the pixels whose answer rounding
     /// decides).
     pub wrong_outside_band_mean: f64,
-    /// Mean of the pictures' root mean square errors of the shares of light.
+    /// Mean of the pictures' root mean square errors of the shares of light, 0 to 1.
     pub rmse_mean: f64,
     /// Mean of the pictures' FLIP errors (perceptual difference to the reference's picture, 0 to
     /// 1).

@@ -24,7 +24,7 @@ pub use skiagraph_cases::Casters;
 use skiagraph_reference::{PixelCounts, Statistics, WrongCounts};
 use std::collections::BTreeMap;
 
-/// Results of `stress`: a matrix with a row per case and a column per method.
+/// Results of the command `stress`: a matrix with a row per case and a column per method.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Report {
     /// Version of this schema: 1.
@@ -33,7 +33,7 @@ pub struct Report {
     pub program: String,
     /// GPU on which the cases ran.
     pub adapter: Adapter,
-    /// Width and height in pixels.
+    /// Width and height of the viewport in pixels.
     pub viewport: [u32; 2],
     /// Methods, the columns of the matrix.
     pub methods: Vec<Column>,
@@ -47,18 +47,19 @@ pub struct Report {
 pub struct Column {
     /// Name of the preset, or path of the graph.
     pub preset: String,
-    /// Value of the param `map_size`; null where the graph has none.
+    /// Width and height of the shadow map in texels (the param `map_size`); null where the graph
+    /// has no such param.
     pub map_size: Option<u32>,
-    /// All params of the graph with the values that it runs with. A cell with `set` differs in that
-    /// one param.
+    /// All params of the graph with the values that it runs with. A [`Cell`] with
+    /// [`set`](Cell::set) differs in that one param.
     pub params: BTreeMap<String, Value>,
     /// Pixels that the method guarantees to be right; null where nothing is guaranteed.
     #[serde(rename = "promise")]
     pub guarantee: Option<Guarantee>,
     /// Reason for the guarantee; null where nothing is guaranteed.
     pub because: Option<String>,
-    /// Reason why the method cannot run on this adapter; absent where it can. Such a method has no
-    /// cells.
+    /// Reason why the method cannot run on this adapter, so that it has no results; absent where it
+    /// can.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unavailable: Option<String>,
 }
@@ -68,9 +69,10 @@ pub struct Column {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Guarantee {
-    /// All pixels of the final picture.
+    /// All pixels of the final picture, but for those whose answer rounding decides.
     Exact,
-    /// Only the pixels that the method calls certain.
+    /// Only the pixels that the method calls certain by its output `status`, but for those whose
+    /// answer rounding decides.
     Certain,
 }
 
@@ -89,19 +91,20 @@ impl Guarantee {
 pub struct Case {
     /// Name of the case in the catalogue.
     pub name: String,
-    /// Fault in shadow methods that the case provokes.
+    /// Fault in shadow methods that the case provokes, as a line of text.
     pub reason: String,
     /// Kind of the case's casters: closed or open.
     pub casters: Casters,
-    /// Greatest share of the pixels facing the light, 0 to 1, that the band may take.
+    /// Greatest share of the pixels facing the light, 0 to 1, that may be in the band (the pixels
+    /// whose answer rounding decides).
     pub band_cap: f64,
-    /// Verdict on the band: `Fail` if the band is above its cap or the case has no reference,
-    /// otherwise `Pass`.
+    /// Verdict on the case itself: `Fail` if the band (the pixels whose answer rounding decides) is
+    /// above `band_cap` or the case has no reference, otherwise `Pass`.
     pub verdict: Verdict,
-    /// Reason why the case has no reference, and so no cells; absent where it has one.
+    /// Reason why the case has no reference, and so no results of methods; absent where it has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failed: Option<String>,
-    /// Counts of the reference's pixels.
+    /// Numbers of the viewport's pixels by the reference's answer.
     pub pixels: PixelCounts,
     /// Number of pixels facing the light whose answer flips within the rounding error of receiver
     /// and casters: the band.
@@ -109,8 +112,11 @@ pub struct Case {
     /// Number of pixels whose primitive, as rasterised, is hidden behind another one by more than
     /// rounding.
     pub wrong_surface: u64,
-    /// Results of the methods: one cell per method that can run, and a second one with `cull=none`
-    /// if the guarantee can only be judged in that way.
+    /// Results of the methods, in the order of [`Report::methods`]. A method that is `unavailable`
+    /// or does not take the case's kind of light has none; one that failed on this case has one,
+    /// with `failed`. On open casters a method that culls faces and guarantees something has a
+    /// second one behind its first, with `cull=none` (front and back faces cast shadows). Empty if
+    /// the case has no reference.
     pub cells: Vec<Cell>,
 }
 
@@ -119,25 +125,28 @@ pub struct Case {
 pub struct Cell {
     /// Name of the preset, or path of the graph.
     pub preset: String,
-    /// Value of the param `map_size`; null where the graph has none.
+    /// Width and height of the shadow map in texels (the param `map_size`); null where the graph
+    /// has no such param.
     pub map_size: Option<u32>,
-    /// Assignment in which the cell differs from the method's params: `cull=none`. Null if there is
-    /// none.
+    /// Assignment in which this run of the method differs from its params: `cull=none`. Null if
+    /// there is none.
     pub set: Option<String>,
-    /// The cell's verdict.
+    /// Verdict on the method on this case.
     pub verdict: Verdict,
-    /// Counts of the cell's pixels; absent where the method could not run.
+    /// Counts of the method's wrong and uncertain pixels; absent where the method could not run.
     #[serde(flatten)]
     pub counts: Option<Counts>,
-    /// Reason why the method could not run; absent where it could.
+    /// Reason why the method failed on this case; absent where it ran.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failed: Option<String>,
-    /// File names of the cell's pictures in the folder of `--save`; absent without pictures.
+    /// File names of the method's pictures of this case in the folder of `--save`; absent without
+    /// pictures.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub images: Option<Images>,
 }
 
-/// Verdict on a cell, or on the band of a case.
+/// Verdict on one method on one case, or on a case itself: its band, the pixels whose answer
+/// rounding decides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
@@ -148,20 +157,21 @@ pub enum Verdict {
     /// Not judged: the case has open casters, and the method's guarantee holds for closed casters
     /// only.
     Open,
-    /// Not judged: the method guarantees nothing, or it guarantees only certain pixels and calls
-    /// none certain.
+    /// Not judged: the method guarantees nothing, or only the pixels that its output `status` calls
+    /// certain, and there are none.
     Unjudged,
 }
 
-/// Counts of a cell's pixels.
+/// Counts of a method's wrong and uncertain pixels on one case.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Counts {
-    /// Counts of the pixels on which method and reference disagree.
+    /// Numbers of the pixels on which method and reference disagree.
     pub wrong: WrongCounts,
-    /// Counts of the wrong pixels that are not in the band.
+    /// Numbers of the wrong pixels that are not in the band (the pixels whose answer rounding
+    /// decides).
     pub outside_band: OutsideBand,
-    /// Number of pixels facing the light that the method calls uncertain: it decides them by
-    /// tracing rays.
+    /// Number of pixels facing the light that the method calls uncertain: its shadow map does not
+    /// decide them, so that it traces rays or guesses.
     pub uncertain: u64,
     /// Uncertain pixels as a share of the pixels facing the light, 0 to 1.
     pub uncertain_share: f64,
@@ -169,19 +179,23 @@ pub struct Counts {
     pub rays: Option<u64>,
 }
 
-/// Counts of the wrong pixels outside the band.
+/// Numbers of the wrong pixels outside the band (the pixels whose answer rounding decides).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct OutsideBand {
-    /// Number of pixels lit by the method, but not by the reference.
+    /// Number of pixels that are lit by the method, but not by the reference, without those whose
+    /// answer rounding decides.
     pub lit: u64,
-    /// Number of pixels in shadow by the method, but lit by the reference.
+    /// Number of pixels that are in shadow by the method, but lit by the reference, without those
+    /// whose answer rounding decides.
     pub shadow: u64,
-    /// Number of wrong pixels of both kinds that the method called certain.
+    /// Number of wrong pixels of both kinds that the method called certain by its output `status`,
+    /// without those whose answer rounding decides.
     pub certain: u64,
 }
 
 impl OutsideBand {
-    /// True if any of these wrong pixels breaks the guarantee.
+    /// True if any of these wrong pixels breaks the guarantee: any for `Exact`, one that the method
+    /// called certain for `Certain`.
     pub fn breaks(&self, guarantee: Guarantee) -> bool {
         match guarantee {
             Guarantee::Exact => self.lit + self.shadow > 0,
@@ -191,9 +205,10 @@ impl OutsideBand {
 }
 
 impl Verdict {
-    /// Judges a cell whose method ran. `culls` is true if not all faces cast shadows; the guarantee
-    /// then does not cover open casters. `certain` is the number of pixels that the method calls
-    /// certain; `outside` counts the wrong pixels outside the band.
+    /// Judges a method that ran on a case with these casters. `culls` is true if the method culls
+    /// faces from its shadow map; the guarantee then does not cover open casters. `certain` is the
+    /// number of pixels that the method calls certain; `outside` counts its wrong pixels outside
+    /// the band (the pixels whose answer rounding decides).
     pub fn new(
         guarantee: Option<Guarantee>,
         culls: bool,
@@ -212,10 +227,10 @@ impl Verdict {
 }
 
 impl Counts {
-    /// Creates the counts of a picture. `whole` counts the method's answers as they are; `settled`
-    /// counts them with the reference's answer at each pixel in the band, so that its wrong pixels
-    /// are those outside the band. `rays` is the number of rays traced; `None` if the graph does
-    /// not count them.
+    /// Creates the counts of a picture. `whole` counts the method's answers as they are. `settled`
+    /// counts them with the reference's answer at each pixel in the band (the pixels whose answer
+    /// rounding decides), so that its wrong pixels are those outside the band. `rays` is the number
+    /// of rays traced; `None` if the graph does not count them.
     pub fn new(whole: &Statistics, settled: &Statistics, rays: Option<u64>) -> Self {
         let outside = settled.wrong;
         Self {
@@ -233,21 +248,21 @@ impl Counts {
 }
 
 impl Cell {
-    /// True if the cell belongs to the method of `column`.
+    /// True if the cell has the preset and map size of `column`.
     pub fn is_of(&self, column: &Column) -> bool {
         (&self.preset, self.map_size) == (&column.preset, column.map_size)
     }
 }
 
 impl Case {
-    /// True if the band takes more than its cap of the pixels facing the light. Pixels in the band
-    /// prove nothing, and neither does a case that consists mostly of them.
+    /// True if more than the share `band_cap` of the pixels facing the light is in the band, the
+    /// pixels whose answer rounding decides. Such a case proves little.
     pub fn exceeds_cap(&self) -> bool {
         self.band as f64 > self.band_cap * self.pixels.facing_light as f64
     }
 
-    /// True if a method with a shadow map left all pixels facing the light to rays, so that a right
-    /// answer does not test its map.
+    /// True if a method with a shadow map called all pixels facing the light uncertain, so that a
+    /// right answer does not test its map.
     pub fn is_left_to_rays(&self, cell: &Cell) -> bool {
         let all = self.pixels.facing_light;
         let of_all = |counts: &Counts| all > 0 && counts.uncertain == all;
@@ -256,13 +271,14 @@ impl Case {
 }
 
 impl Report {
-    /// Returns the number of cells with the verdict `verdict`.
+    /// Returns the number of results (one method on one case) with the verdict `verdict`.
     pub fn count(&self, verdict: Verdict) -> usize {
         let cells = self.cases.iter().flat_map(|case| &case.cells);
         cells.filter(|cell| cell.verdict == verdict).count()
     }
 
-    /// Returns the number of cells that passed, but whose method left all pixels to rays.
+    /// Returns the number of results (one method on one case) that passed although the method
+    /// called all pixels facing the light uncertain, so that its shadow map was not tested.
     pub fn left_to_rays(&self) -> usize {
         let cases = self.cases.iter();
         let cells = cases.flat_map(|case| case.cells.iter().map(move |cell| (case, cell)));
@@ -272,7 +288,8 @@ impl Report {
             .count()
     }
 
-    /// Returns the number of cases that failed: their band is too large, or they have no reference.
+    /// Returns the number of cases with the [verdict](Case::verdict) `Fail`: too many of their
+    /// pixels are decided by rounding, or they have no reference.
     pub fn failed_cases(&self) -> usize {
         let failed = |case: &&Case| case.verdict == Verdict::Fail;
         self.cases.iter().filter(failed).count()

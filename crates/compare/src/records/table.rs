@@ -13,7 +13,7 @@
 use crate::files::csv;
 use serde::Serialize;
 
-/// A table of cells with text that is shown as it is.
+/// A table of cells that hold text.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Table {
     /// Text above each column, one per column.
@@ -38,8 +38,8 @@ impl Table {
         }
     }
 
-    /// Returns the table as Markdown, with numbers aligned to the right. Lines of a cell are joined
-    /// by commas.
+    /// Returns the table as Markdown, with numbers aligned to the right. Several lines of text in a
+    /// cell are joined by commas.
     pub fn markdown(&self) -> String {
         let cell = |text: &String| text.replace('|', "\\|").replace('\n', ", ");
         let line = |cells: &[String]| {

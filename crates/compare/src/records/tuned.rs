@@ -10,8 +10,12 @@
 //! };
 //! assert_eq!(tuned.words(), "cull=none, slope_bias=2");
 //! assert_eq!(tuned.argument(), "nsm@cull=none,slope_bias=2");
+//! let given = [("fit".to_owned(), "camera".into())].into();
+//! let tuned = Tuned { given, ..tuned };
+//! assert_eq!(tuned.argument(), "nsm@cull=none,fit=camera,slope_bias=2");
 //! ```
 
+use crate::records::assignments::assignments;
 use itertools::Itertools;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -21,18 +25,23 @@ use std::collections::BTreeMap;
 pub struct Tuned {
     /// Name of the method as it was before the search: `nsm`. Its runs stand beside the tuned ones.
     pub of: String,
+    /// Values of the params that were set for all methods of the comparison (`--set`), by name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub given: BTreeMap<String, serde_json::Value>,
     /// Params that the search changed, with their values; empty if no setting was better than the
     /// defaults.
     pub set: BTreeMap<String, serde_json::Value>,
-    /// Names of the views on which the settings were chosen. The runs are of other views.
+    /// Names of the views on which the settings were chosen. The runs in the results are of other
+    /// views.
     pub chosen_on: Vec<String>,
     /// Number of settings that were tried, the defaults included.
     pub tried: u32,
-    /// True if the search came to its own end; false if it ended at the bound of its cost.
+    /// True if the search ended because no change helps; false if it ended at the limit of its
+    /// cost.
     pub is_whole: bool,
-    /// Error of the defaults on the views of `chosen_on`, from 0 to 1: the share of wrong pixels
-    /// outside the band among those that face the light; under lights with an extent the mean
-    /// square error of the shares of light.
+    /// Error of the defaults on the views of `chosen_on`, from 0 to 1: the share of the pixels
+    /// facing the light that are wrong, without those whose right answer rounding may flip; under
+    /// lights with an extent the mean square error of the shares of light.
     pub default_error: f64,
     /// Error of the tuned setting on the views of `chosen_on`, in the same unit.
     pub error: f64,
@@ -41,28 +50,14 @@ pub struct Tuned {
 impl Tuned {
     /// Returns the changed params as a list for a reader: `cull=none, slope_bias=2`.
     pub fn words(&self) -> String {
-        self.assignments().join(", ")
+        assignments(&self.set).join(", ")
     }
 
-    /// Returns the tuned method as an argument of `compare`: `nsm@cull=none,slope_bias=2`.
+    /// Returns the tuned method as an argument of `compare`, with all params that it needs to be
+    /// the same again: `nsm@cull=none,slope_bias=2`.
     pub fn argument(&self) -> String {
-        named(&self.of, &self.assignments().join(","))
-    }
-
-    fn assignments(&self) -> impl Iterator<Item = String> {
-        let set = self.set.iter();
-        set.map(|(name, value)| format!("{name}={}", text(value)))
-    }
-}
-
-/// A value as the command line writes it: `none`, `2`, `0.5`, `1,0,0`.
-fn text(value: &serde_json::Value) -> String {
-    use serde_json::Value;
-    match value {
-        Value::String(word) => word.clone(),
-        Value::Array(list) => list.iter().map(text).join(","),
-        Value::Number(number) => number.as_f64().map_or(String::new(), |n| n.to_string()),
-        other => other.to_string(),
+        let all = assignments(&self.given).chain(assignments(&self.set));
+        named(&self.of, &all.sorted().join(","))
     }
 }
 

@@ -23,8 +23,8 @@ use serde::{Deserialize, Serialize};
 ///
 /// Two runs are in one group if they have the same [`session`](super::results::Run::session), view,
 /// viewport and [`group`](Self::group). Runs of two groups of a session are compared by their
-/// anchors: multiply the time of frame `i` of the one by the ratio of the other group's to its own
-/// `anchor` in frame `i`.
+/// anchor, the first method of both groups: multiply the time of frame `i` of the one by the ratio
+/// of the other group's to its own `anchor` in frame `i`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Turns {
     /// Index of the group among the groups of the same session, view and viewport, from 0. A group
@@ -43,7 +43,7 @@ pub struct PairedRatio {
     pub low: f64,
     /// Median of the ratios, one per turn.
     pub median: f64,
-    /// Upper end of the interval.
+    /// Upper end of that interval.
     pub high: f64,
 }
 

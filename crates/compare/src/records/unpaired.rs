@@ -12,14 +12,15 @@
 
 use crate::records::turns::{LEAST_TURNS, LEVEL, RESOLUTION_MS};
 
-/// Ratio of the times of two runs, with the interval that the ranks of all frames give.
+/// Ratio of the frame times of two runs that did not take turns, with an interval from the ranks of
+/// the frames' times.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UnpairedRatio {
     /// Lower end of the interval in which the ratio lies with a confidence of at least 99.9 %.
     pub low: f64,
     /// Median of the ratios of every frame of one run to every frame of the other.
     pub median: f64,
-    /// Upper end of the interval.
+    /// Upper end of that interval.
     pub high: f64,
 }
 

@@ -73,13 +73,15 @@ pub struct Executor {
 
 impl Executor {
     /// Creates an executor for a plan. It creates the plan's textures, buffers and pipelines and
-    /// asks the provider for the resources that live passes bind. It encodes every pass once into a
-    /// throw-away encoder, so that errors of the device are found here. A pass that uses an import,
-    /// or a resource that the provider cannot build yet, is tried only in [`Executor::encode`],
-    /// before the host's encoder is touched.
+    /// asks the provider for the resources that passes bind whose results are needed. It encodes
+    /// each of these passes once into a throw-away encoder, so that errors of the device are found
+    /// here. A pass that uses an import (a resource that the host sets later), or a resource that
+    /// the provider cannot build yet, is tried only in [`Executor::encode`], before the host's
+    /// encoder is touched.
     ///
     /// # Errors
-    /// See [`ExecuteError`]; an error about a pass names the pass and its place in the document.
+    /// See [`ExecuteError`]; an error about a pass names the pass and its place in the graph
+    /// document.
     pub fn new(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
@@ -114,19 +116,20 @@ impl Executor {
         Ok(executor)
     }
 
-    /// Returns the plan that the executor runs.
+    /// Returns the plan that the executor runs now, after the last change of viewport, param or
+    /// graph.
     pub fn plan(&self) -> &Plan {
         &self.state.plan
     }
 
     /// Encodes the passes of a frame into `encoder`, which the host then submits, and returns the
     /// frame's number, counted from 0. It never waits; any number of frames may be in flight.
-    /// Textures and buffers with `grow` in the document that proved too small for an earlier,
-    /// submitted frame are larger from this frame on: see [`Plan::grown`].
+    /// Textures and buffers that the graph document declares with `grow` and that proved too small
+    /// for an earlier, submitted frame are larger from this frame on: see [`Plan::grown`].
     ///
     /// # Errors
-    /// If the plan lacks an output of [`Frame::read`] or the output cannot be copied; an import or
-    /// a provided resource of a pass that runs is missing; the device is lost, has too little
+    /// If the plan lacks an output or capture of [`Frame::read`] or it cannot be copied; an import
+    /// or a provided resource of a pass that runs is missing; the device is lost, has too little
     /// memory, or refuses a pass that is bound for the first time; a pass works on the CPU. After
     /// an error nothing has been encoded.
     pub fn encode(
@@ -275,10 +278,10 @@ impl Executor {
         Ok(())
     }
 
-    /// Returns the report of the oldest frame that requested times, statistics or readbacks and has
-    /// not been reported yet. `None` if the GPU has not finished that frame, or if no such frame is
-    /// left. It never waits. Each frame with a request brings one report, in the order of encoding;
-    /// frames whose encoder was dropped without being submitted bring none.
+    /// Returns the report of the oldest frame that requested times, statistics or readbacks (fields
+    /// of [`Frame`]) and has not been reported yet. `None` if the GPU has not finished that frame,
+    /// or if no such frame is left. It never waits. Each frame with a request brings one report, in
+    /// the order of encoding; frames whose encoder was dropped without being submitted bring none.
     ///
     /// # Errors
     /// If the device was lost, or a readback or the times of the frame failed. The failed frame
@@ -291,9 +294,9 @@ impl Executor {
         self.frames_in_flight.report(&self.device, &self.presence)
     }
 
-    /// Returns the number of encoded frames that requested times, statistics or readbacks and have
-    /// not been reported yet. It grows without bound if a host makes a request in every frame but
-    /// does not call [`poll`](Self::poll).
+    /// Returns the number of encoded frames that requested times, statistics or readbacks (fields
+    /// of [`Frame`]) and have not been reported yet. It grows without bound if a host makes a
+    /// request in every frame but does not call [`poll`](Self::poll).
     pub fn under_way(&self) -> usize {
         self.frames_in_flight.asked()
     }
@@ -371,13 +374,14 @@ impl Executor {
 
     /// Sets the texture of the import `name`, which
     /// [`PlanRequest::imports`](skiagraph_graph::PlanRequest::imports) describes. Its content
-    /// counts as changed, even if the texture is the one set before: passes with `run: OnChange`
-    /// that read it run in the next frame. The texture may have more usages than described.
+    /// counts as changed, even if the texture is the one set before: passes that run only when an
+    /// input has changed (`run: OnChange` in the document) and read it run in the next frame. The
+    /// texture may have more usages than described.
     ///
     /// # Errors
     /// [`ExecuteError::NoSuchImport`] if the plan has no import of this name,
     /// [`ExecuteError::Import`] if the texture differs from its description,
-    /// [`ExecuteError::DeviceLost`].
+    /// [`ExecuteError::DeviceLost`] if the device is lost.
     pub fn import_texture(
         &mut self,
         name: &str,
@@ -386,7 +390,8 @@ impl Executor {
         self.import(name, Physical::Texture(texture.clone()))
     }
 
-    /// Sets the buffer of an import; see [`import_texture`](Self::import_texture).
+    /// Sets the buffer of the import `name`. It works as [`import_texture`](Self::import_texture)
+    /// does.
     ///
     /// # Errors
     /// Those of [`import_texture`](Self::import_texture).
@@ -394,8 +399,9 @@ impl Executor {
         self.import(name, Physical::Buffer(buffer.clone()))
     }
 
-    /// Sets the sampler of an import; see [`import_texture`](Self::import_texture). wgpu does not
-    /// tell how a sampler filters, so a wrong one is refused only when a pass binds it.
+    /// Sets the sampler of the import `name`. It works as [`import_texture`](Self::import_texture)
+    /// does. wgpu does not tell how a sampler filters, so a wrong one is refused only when a pass
+    /// binds it.
     ///
     /// # Errors
     /// Those of [`import_texture`](Self::import_texture).
@@ -438,14 +444,15 @@ impl Executor {
         Ok(())
     }
 
-    /// Marks the content of an import or provided resource as changed, after the host has written
-    /// it. In the next frame, passes with `run: OnChange` that read it run; the frame after that
-    /// finds this content as `.previous`. With a provider that counts
-    /// [`versions`](Provider::version), call [`refresh`](Self::refresh) instead.
+    /// Marks the content of the import or provided resource `name` as changed, after the host has
+    /// written to it. In the next frame, passes with `run: OnChange` (which run only when an input
+    /// has changed) that read it run; the frame after that finds this content as `.previous`
+    /// (content of the frame before). With a provider that counts [`versions`](Provider::version),
+    /// call [`refresh`](Self::refresh) instead.
     ///
     /// # Errors
     /// [`ExecuteError::NotOfHost`] if the plan has neither an import nor a provided resource of
-    /// this name. A name that no live pass uses is accepted.
+    /// this name. A name that no pass uses is accepted.
     pub fn touch(&mut self, name: &str) -> Result<(), ExecuteError> {
         let of_host = |resource: &Resource| resource.origin == Origin::Host;
         if !self.plan().imports().contains_key(name) {
@@ -524,12 +531,13 @@ impl Executor {
         Ok(())
     }
 
-    /// Returns a view of the output or capture `name` with the content of the last encoded frame,
-    /// for the host to bind. It covers the mips and layers that belong to the output; its dimension
-    /// is `D3` for a 3D texture, `D2` for a single layer, `D2Array` for several. `None` if no
-    /// texture is an output or capture of this name, or it is an import that is not set. Fetch the
-    /// view anew in every frame if the resource is also read as `.previous`, and after
-    /// [`resize`](Self::resize) or another change of the plan.
+    /// Returns a view of the output or capture `name` (see [`Executor`]) with the content of the
+    /// last encoded frame, for the host to bind. It covers the mips and layers that belong to the
+    /// output; its dimension is `D3` for a 3D texture, `D2` for a single layer, `D2Array` for
+    /// several. `None` if no texture is an output or capture of this name, or it is an import that
+    /// is not set. Fetch the view anew after [`resize`](Self::resize) or another change of the
+    /// plan, and in every frame if a pass also reads the resource as `.previous` (content of the
+    /// frame before).
     pub fn output_view(&self, name: &str) -> Option<wgpu::TextureView> {
         let target = self.plan().readable_target(name)?;
         let dimension = match &self.plan().resource(target.id).kind {
@@ -543,10 +551,10 @@ impl Executor {
             .ok()
     }
 
-    /// Returns the buffer of the output or capture `name` with the content of the last encoded
-    /// frame; the whole buffer, even if only some of its items belong to the output. `None` if no
-    /// buffer is an output or capture of this name, or it is an import that is not set. Fetch it
-    /// anew when [`output_view`](Self::output_view) says so.
+    /// Returns the buffer of the output or capture `name` (see [`Executor`]) with the content of
+    /// the last encoded frame; the whole buffer, even if only some of its items belong to the
+    /// output. `None` if no buffer is an output or capture of this name, or it is an import that is
+    /// not set. Fetch it anew when [`output_view`](Self::output_view) says so.
     pub fn output_buffer(&self, name: &str) -> Option<wgpu::Buffer> {
         let target = self.plan().readable_target(name)?;
         self.state
@@ -557,12 +565,12 @@ impl Executor {
     }
 
     /// Changes the viewport to a width and height in pixels and plans the graph again. Textures
-    /// whose size follows the viewport are recreated: their contents are lost, `.previous` contents
-    /// are zero, and the passes that write them run again.
+    /// whose size follows the viewport are recreated: their contents are lost, contents read as
+    /// `.previous` (from the frame before) are zero, and the passes that write them run again.
     ///
     /// # Errors
     /// If the graph cannot be planned for this viewport, a provided resource cannot be built, or
-    /// the device refuses something. After an error the executor is unchanged.
+    /// the device refuses a resource or pass. After an error the executor is unchanged.
     pub fn resize(
         &mut self,
         viewport: [u32; 2],
@@ -572,9 +580,10 @@ impl Executor {
         self.replace_graph(plan, provider)
     }
 
-    /// Changes the value of a param of the root document. If shaders read the param only in
-    /// `var<uniform> params`, the change costs an upload. For every other param the graph is
-    /// planned again, and the cost depends on the param's use:
+    /// Changes the value of the param `name` of the graph document that was loaded (not of one that
+    /// it includes). If shaders read the param only in `var<uniform> params`, the change costs an
+    /// upload. For every other param the graph is planned again, and the cost depends on the
+    /// param's use:
     ///
     /// - an `override` constant, a culling mode, a depth bias or the like: new pipelines for the
     ///   passes that use it;
@@ -584,8 +593,8 @@ impl Executor {
     ///
     /// # Errors
     /// If the graph has no such param, its value is out of range, the graph cannot be planned with
-    /// it, or a changed provided resource cannot be built. After an error the executor is
-    /// unchanged.
+    /// it, a changed provided resource cannot be built, or the device refuses a resource or pass.
+    /// After an error the executor is unchanged.
     pub fn set_param(
         &mut self,
         name: &str,
@@ -628,8 +637,8 @@ impl Executor {
     /// imports, and the provided resources whose version is unchanged.
     ///
     /// # Errors
-    /// If a provided resource cannot be built or the device refuses something. After an error the
-    /// executor is unchanged.
+    /// If a provided resource cannot be built or the device refuses a resource or pass. After an
+    /// error the executor is unchanged.
     pub fn replace_graph(
         &mut self,
         plan: Plan,
@@ -735,7 +744,7 @@ impl Executor {
 
     /// Replaces the plan, as [`replace_graph`](Self::replace_graph) does, by one whose pipelines a
     /// [`Preparer`] has created. If the executor's plan has changed since
-    /// [`preparer`](Self::preparer) was called, pipelines that are missing are created now.
+    /// [`preparer`](Self::preparer) was called, pipelines that are still missing are created now.
     ///
     /// # Errors
     /// Those of [`replace_graph`](Self::replace_graph). After an error the executor's plan is
@@ -752,18 +761,19 @@ impl Executor {
         report
     }
 
-    /// Enlarges the buffers and textures with `grow` that were too small for a finished frame.
-    /// [`encode`](Self::encode) does this by itself; call `grow` to choose the time or to get the
-    /// report. `None` if no resource had to grow, or the larger size was refused. It never waits: a
-    /// counter that the GPU has not delivered yet is read by a later call.
+    /// Enlarges the buffers and textures declared with `grow` that were too small for a finished
+    /// frame. Shaders count in a buffer how many items or layers each of them needs.
+    /// [`encode`](Self::encode) enlarges them by itself; call `grow` to choose the time or to get
+    /// the report. `None` if no resource had to grow, or the larger size was refused. It never
+    /// waits: a count that the GPU has not delivered yet is read by a later call.
     ///
     /// If the memory limit or the device refuses a larger size, the resources keep their size, and
-    /// growth stops until the plan is changed. Items that do not fit are then handled as the
+    /// growth stops until the plan is changed. Items that do not fit are then handled as the graph
     /// document says.
     ///
     /// # Errors
     /// If the device was lost, or a changed provided resource cannot be built. After an error the
-    /// executor is unchanged, and the next frame tries again.
+    /// executor is unchanged, and the next frame tries to grow again.
     pub fn grow(
         &mut self,
         provider: &mut dyn Provider,

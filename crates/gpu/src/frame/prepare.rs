@@ -9,8 +9,9 @@ use crate::{
 use skiagraph_graph::{Ids, Plan, step::Step};
 use std::collections::HashMap;
 
-/// Creates the pipelines of an executor's next plan. It can be sent to another thread, so that the
-/// executor goes on drawing. [`Executor::preparer`](super::Executor::preparer) returns one.
+/// Creates the pipelines of an [`Executor`](super::Executor)'s next plan. It can be sent to another
+/// thread, so that the executor goes on drawing. [`Executor::preparer`](super::Executor::preparer)
+/// returns one.
 pub struct Preparer {
     pub(super) device: wgpu::Device,
     pub(super) pipelines: Pipelines,
@@ -30,8 +31,8 @@ impl Preparer {
     /// [`Executor::preparer`](super::Executor::preparer) was called.
     ///
     /// # Errors
-    /// If the device refuses a shader or pipeline; the error names the pass and its place in the
-    /// document. If the device is lost.
+    /// If the device refuses a shader or pipeline, or is lost. An error about a pass names the pass
+    /// and its place in the graph document.
     pub fn prepare(self, plan: Plan) -> Result<Prepared, ExecuteError> {
         let Self {
             device,

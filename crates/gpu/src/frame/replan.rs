@@ -20,17 +20,18 @@ use crate::{
 use skiagraph_graph::{Ids, LinkedPass, Plan, ResourceId, ResourceKind, step::Step};
 use std::collections::{BTreeMap, HashMap};
 
-/// Work that a change of an executor's plan took. Names stand in the order in which the passes run,
-/// or in which the document lists the resources.
+/// Work that a change of an [`Executor`](super::Executor)'s plan took. Names of passes stand in the
+/// order in which the passes run, names of resources in the order of the graph document.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ReplanReport {
-    /// Names of the passes whose uniform `params` got other values; new passes are not listed.
+    /// Names of the passes whose uniform buffer `params` was uploaded again with other values; new
+    /// passes are not listed.
     pub uploads: Vec<String>,
     /// Names of the passes that got new pipelines: new passes, and passes with another shader,
     /// target format, `override` constant, or state such as culling or depth bias.
     pub pipelines: Vec<String>,
-    /// Names of the graph's own textures and buffers that were created anew without their former
-    /// content.
+    /// Names of the textures and buffers of the graph itself (not those of the host) that were
+    /// created anew without their former content.
     pub resources: Vec<String>,
 }
 

@@ -7,20 +7,22 @@ use crate::readback::Readback;
 /// requests no report and runs only the passes that have to run.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Frame<'a> {
-    /// Measures the GPU and CPU time of every pass; the times come in [`FrameReport::timing`].
+    /// Measures the GPU and CPU time of every pass that runs; the times come in
+    /// [`FrameReport::timing`].
     pub timing: bool,
     /// Counts how often the shaders of each pass run, if the device has the feature
     /// `PIPELINE_STATISTICS_QUERY`; the counts come in [`FrameReport::statistics`].
     pub statistics: bool,
-    /// Runs every live pass, even if nothing that it reads has changed. Passes whose `run: When(…)`
-    /// condition is false are still skipped.
+    /// Runs every pass whose results are needed, even if nothing that it reads has changed. Passes
+    /// whose `run: When(…)` condition in the document is false are still skipped.
     pub all: bool,
-    /// Names of the outputs and captures to copy to the host; their contents come in
-    /// [`FrameReport::readbacks`]. [`Capture::name`](skiagraph_graph::Capture::name) returns the
-    /// name of a capture.
+    /// Names of the outputs of the graph document and of the captures
+    /// ([`PlanRequest::captures`](skiagraph_graph::PlanRequest)) to copy to the host; their
+    /// contents come in [`FrameReport::readbacks`].
+    /// [`Capture::name`](skiagraph_graph::Capture::name) returns the name of a capture.
     pub read: &'a [&'a str],
-    /// Time in seconds that shaders read as `frame.seconds`, for animation; the host chooses its
-    /// zero.
+    /// Time in seconds that shaders read as `frame.seconds`, for animation; the host chooses which
+    /// moment is 0.
     pub seconds: f32,
 }
 
@@ -29,7 +31,7 @@ pub struct Frame<'a> {
 #[derive(Clone, Debug, Default)]
 pub struct FrameReport {
     /// Number of the frame, counted from 0: `frame.index` in the shaders, and the result of
-    /// [`encode`](crate::Executor::encode).
+    /// [`encode`](crate::Executor::encode). `u32::MAX` if no frame was encoded.
     pub index: u32,
     /// Times of the passes; `None` if [`Frame::timing`] was not set.
     pub timing: Option<FrameTiming>,
@@ -37,8 +39,9 @@ pub struct FrameReport {
     /// `None` if [`Frame::statistics`] was not set, the device cannot count, or the plan has no
     /// draws and dispatches.
     pub statistics: Option<Vec<PassStatistics>>,
-    /// Names of the live passes that did not run, because their inputs were unchanged (`run:
-    /// OnChange`) or their condition was false (`run: When(…)`), in schedule order.
+    /// Names of the passes that did not run although their results are needed, because their inputs
+    /// were unchanged (`run: OnChange`), they had run before (`run: Once`) or their condition was
+    /// false (`run: When(…)`). They stand in the order in which the passes would have run.
     pub skipped: Vec<String>,
     /// Contents of the requested outputs and captures: one entry for each name in [`Frame::read`],
     /// in that order.

@@ -8,20 +8,22 @@ use crate::{
 use skiagraph_graph::{Plan, step::Step};
 use std::{cell::Cell, mem::size_of, ops::Range, sync::Arc};
 
-/// Number of shader runs of a pass in one frame, as the device counted them. Only the first 4096
-/// draws and dispatches of a frame are counted.
+/// Number of shader runs of one pass in one frame, summed over its draws and dispatches, as the
+/// device counted them. Only the first 4096 draws and dispatches of a frame are counted.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct PassStatistics {
-    /// Name of the pass.
+    /// Name of the pass, as in [`PassSummary::name`](skiagraph_graph::PassSummary::name).
     pub name: String,
     /// Runs of vertex shaders. A device may run the shader once for a vertex that several triangles
     /// share.
     pub vertices: u64,
-    /// Primitives that remained after clipping. Clipping may cut a primitive into several.
+    /// Primitives that remained after clipping. Clipping may cut a primitive into several, each of
+    /// which counts.
     pub primitives: u64,
     /// Runs of fragment shaders. A device may count helper invocations as well.
     pub fragments: u64,
-    /// Runs of compute shaders, including threads beyond the end of the dispatch size.
+    /// Runs of compute shaders: all threads of every workgroup, including those in the last
+    /// workgroup that have no item to work on.
     pub threads: u64,
 }
 

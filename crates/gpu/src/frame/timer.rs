@@ -75,7 +75,9 @@ impl Timer {
     }
 
     /// Returns the times of the frame; `None` if its timestamps are not mapped yet. `passes` holds
-    /// the name and the CPU time of each pass, in order. The timer can then be used for another
+    /// the name and the CPU time of each pass that ran, in the order in which they ran. The GPU
+    /// time of a pass is from the begin of the first to the end of the last query labelled with
+    /// its name; without such a query it has none. After `Some` the timer can be used for another
     /// frame.
     pub fn take(&mut self, passes: &[(Arc<str>, Duration)]) -> Option<FrameTiming> {
         let results = self.profiler.process_finished_frame(self.period)?;

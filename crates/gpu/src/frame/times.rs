@@ -12,16 +12,17 @@ pub struct FrameTiming {
 /// GPU and CPU times of one pass in one frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PassTiming {
-    /// Name of the pass.
+    /// Name of the pass, as in [`PassSummary::name`](skiagraph_graph::PassSummary::name).
     pub name: String,
     /// Time on the GPU at which the pass began, counted from the earliest begin of a pass in the
     /// frame. `None` if `gpu` is `None`.
     pub begin: Option<Duration>,
-    /// GPU time from the begin of the pass's first draw, dispatch or copy to the end of its last.
-    /// `None` if there are no valid timestamps, for example because the adapter has none. Of a pass
-    /// that works on the CPU, how long the GPU stands still for it.
+    /// GPU time from the begin of the pass's first draw, dispatch, copy or clear to the end of its
+    /// last. `None` if there are no valid timestamps, for example because the adapter has none.
+    /// Of a pass that works on the CPU, how long the GPU stands still for it.
     pub gpu: Option<Duration>,
-    /// CPU time that encoding the pass took, or its work if it works on the CPU.
+    /// CPU time that the encoding of the pass's commands took, or the work itself of a pass that
+    /// works on the CPU.
     pub cpu: Duration,
 }
 
@@ -39,7 +40,7 @@ impl FrameTiming {
         Some(end - begin)
     }
 
-    /// Returns the CPU time that encoding took: the sum over all passes that ran.
+    /// Returns the CPU time that the encoding of commands took: the sum over all passes that ran.
     pub fn cpu(&self) -> Duration {
         self.passes.iter().map(|pass| pass.cpu).sum()
     }

@@ -12,14 +12,14 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Result of [`check`]: whether an adapter's GPU timestamps can be believed.
+/// Result of [`check`]: tells if an adapter's GPU timestamps can be believed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Trust {
     /// The timestamps agree with the wall time measured on the CPU.
     Trusted,
     /// The timestamps disagree with wall time, are missing, or cannot be checked on this backend.
     Untrusted {
-        /// Reason, as text for the user.
+        /// Reason why they cannot be believed, as text for the user.
         reason: String,
     },
 }

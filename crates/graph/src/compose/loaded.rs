@@ -38,16 +38,16 @@ use std::{
 /// A document that was read, with all documents, shaders and pictures that it names.
 #[derive(Debug)]
 pub(crate) struct Loaded {
-    /// The root document, with its includes.
+    /// The document that was asked for, with the documents that it includes.
     pub document: Arc<Document>,
     pub shaders: Shaders,
     pub pictures: Pictures,
     include_sites: Vec<IncludeSite>,
-    /// Device features that the document and its includes require.
+    /// Device features that the document and its includes require (`requires`).
     pub required: wgt::Features,
     /// Features that they ask for by `has`, or that their passes can make use of.
     asked_for: wgt::Features,
-    /// Warnings that loading gave.
+    /// Warnings that loading gave, in the order in which they were found.
     pub warnings: Vec<Diagnostic>,
 }
 
@@ -63,11 +63,12 @@ impl Pictures {
 }
 
 impl Loaded {
-    /// Reads a document with its includes. Returns its readable part, and the errors. `chosen` maps
-    /// names of open includes to paths of the documents to include there.
+    /// Reads the document at `path` with its includes, and all shaders and pictures that they name.
+    /// Returns the readable part, and the errors. `chosen` maps names of open includes to paths of
+    /// the documents to include there.
     ///
     /// # Errors
-    /// All diagnostics, if the root document itself cannot be read.
+    /// All diagnostics, if the document at `path` itself cannot be read.
     pub fn read(
         path: &str,
         registry: &Registry,
@@ -119,7 +120,7 @@ impl Loaded {
         Ok((loaded, errors))
     }
 
-    /// Returns the path of the document.
+    /// Returns the path of the document that was asked for.
     pub fn path(&self) -> &str {
         &self.document.file.name
     }
@@ -139,8 +140,8 @@ impl Loaded {
         find(&self.document.params, name, self.path())
     }
 
-    /// Sorts the mistakes of the document. A mistake in an included document gets the place of the
-    /// include, too.
+    /// Sorts diagnostics of the document. One of an included or extended document also gets the
+    /// place where that document is included or extended.
     pub fn diagnostics(&self, mut list: Vec<Diagnostic>) -> Diagnostics {
         label(&mut list, self.path(), &self.include_sites);
         Diagnostics::new(list)

@@ -48,7 +48,7 @@ pub(crate) struct Reader<'a> {
     read: HashMap<String, Result<Arc<Document>, ErrorGuaranteed>>,
     /// The documents that are being read, outermost first, with the include that asks for each.
     open: Vec<(String, Option<Span>)>,
-    /// Every place where a document is extended or included.
+    /// Every place where a document is extended or included, in the order in which they were read.
     pub include_sites: Vec<IncludeSite>,
     /// Documents for open includes of the root document, by path.
     chosen: &'a BTreeMap<String, String>,
@@ -74,7 +74,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Iterates over the included documents that were read, each once.
+    /// Iterates over the included documents that could be read, each once, in no order.
     pub fn documents(&self) -> impl Iterator<Item = &Arc<Document>> {
         self.read.values().flatten()
     }

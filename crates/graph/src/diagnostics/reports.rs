@@ -22,15 +22,16 @@ pub(crate) type Reported<T> = Result<T, ErrorGuaranteed>;
 pub(crate) struct Reports {
     list: Vec<Diagnostic>,
     errors: usize,
-    /// True if the adapter is not known yet: exceeding its limits is then a warning.
+    /// True if the device that will run the graph is not known. Exceeding its limits and features
+    /// is then a warning.
     pub any_adapter: bool,
-    /// Params of the root document that the plan depends on; other values of these may lead to
-    /// other mistakes.
+    /// Params of the loaded document on which the plan depends; other values of these may lead to
+    /// another plan or other mistakes.
     pub depends_on: BTreeSet<String>,
 }
 
 impl Reports {
-    /// Reports the mistake of a result that is an error; passes a value on.
+    /// Returns the value of `result`, or reports its mistake and returns the proof of that.
     pub fn check<T>(&mut self, result: Result<T, impl Into<Diagnostic>>) -> Reported<T> {
         result.map_err(|mistake| self.report(mistake))
     }
@@ -52,8 +53,8 @@ impl Reports {
         });
     }
 
-    /// Reports that the adapter cannot do something. If the adapter is not known yet, this is a
-    /// warning, and the result is `Ok`.
+    /// Reports that the device cannot do something that the graph needs. If the device is not known
+    /// ([`any_adapter`](Self::any_adapter)), this is a warning, and the result is `Ok`.
     pub fn unsupported(&mut self, mistake: impl Into<Diagnostic>) -> Result<(), ErrorGuaranteed> {
         if self.any_adapter {
             self.warn(mistake);
@@ -77,12 +78,12 @@ impl Reports {
         self.errors
     }
 
-    /// True if so many mistakes were reported that the search for more may end.
+    /// True if more than 1,000 mistakes were reported, so that the search for more may end.
     pub fn has_enough(&self) -> bool {
         self.list.len() > ENOUGH
     }
 
-    /// Returns the diagnostics reported so far.
+    /// Iterates over the diagnostics reported so far, in the order in which they were reported.
     pub fn iter(&self) -> std::slice::Iter<'_, Diagnostic> {
         self.list.iter()
     }

@@ -31,7 +31,8 @@ impl Material {
         }
     }
 
-    /// True if the material's content stays from frame to frame.
+    /// True if the material's content stays from frame to frame (`keep: true`); false for a
+    /// sampler.
     pub fn keeps(&self) -> bool {
         match self {
             Self::Texture(texture) => texture.keep,
@@ -40,7 +41,8 @@ impl Material {
         }
     }
 
-    /// Calls `each` with every leaf of the expressions for the material's size and format.
+    /// Calls `each` with every leaf (param, word, material, constant or feature) of the expressions
+    /// for the material's size, format and growth.
     pub fn visit<'a>(&'a self, each: &mut dyn FnMut(Leaf<'a>)) {
         let (grow, exprs) = match self {
             Self::Texture(texture) => {
@@ -232,27 +234,27 @@ pub(crate) struct SamplerEntry {
     pub compare: Option<Compare>,
 }
 
-/// A sampler's filter.
+/// Filter of a sampler, for minification, magnification and between mips.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Filter {
-    /// The nearest texel.
+    /// Takes the nearest texel of the nearest mip.
     #[default]
     Nearest,
-    /// Bilinear (and between mips).
+    /// Interpolates between texels (bilinear) and between mips (trilinear).
     Linear,
 }
 
-/// Addressing outside of a texture.
+/// Texels that a sampler reads outside of the texture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Address {
-    /// The border texels go on.
+    /// The texels of the edge, repeated.
     #[default]
     ClampToEdge,
-    /// The texture repeats.
+    /// The texture again, side by side.
     Repeat,
-    /// The texture repeats, mirrored.
+    /// The texture again, every second one mirrored.
     MirrorRepeat,
 }
 

@@ -28,7 +28,7 @@ pub(crate) type RawMap = Vec<(Located<String>, Node)>;
 #[derive(Debug)]
 pub(crate) struct RawDocument {
     pub file: SourceFile,
-    /// Paths of the documents that this one extends, the nearest first.
+    /// Paths of the documents that this one extends, directly or through others, the nearest first.
     pub extended: Vec<Arc<str>>,
     pub description: Option<Node>,
     pub extends: Option<Node>,
@@ -66,7 +66,7 @@ pub(crate) struct RawEntry {
     pub fields: Vec<Field>,
     pub bind: RawMap,
     pub set: RawMap,
-    /// Entries of a group; `None` for other entries.
+    /// Entries of a group, in the order of the document; `None` for an entry that is not a group.
     pub passes: Option<Vec<Result<RawEntry, Invalid>>>,
 }
 
@@ -74,7 +74,7 @@ pub(crate) struct RawEntry {
 /// are unknown, and so is the content of an include.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Invalid {
-    /// True if the entry is an include.
+    /// True if the entry is an include, whose content is then unknown, too.
     pub is_include: bool,
     pub reported: ErrorGuaranteed,
 }
@@ -93,8 +93,8 @@ impl RawItem {
 }
 
 impl RawEntry {
-    /// Returns the entry's name, or the file name of an include without a name. `None` if neither
-    /// can be read.
+    /// Returns the entry's name, or for an include without a name the name of its file, without
+    /// folder and ending. `None` if neither can be read.
     pub fn name(&self) -> Option<String> {
         if let Some(name) = name_of(&self.fields) {
             return Some(name.value);

@@ -24,36 +24,45 @@ use std::{collections::BTreeSet, sync::Arc};
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Document {
     pub file: SourceFile,
-    /// Paths of the documents that this one extends, the nearest first.
+    /// Paths of the documents that this one extends, directly or through others, the nearest first.
     pub extended: Vec<Arc<str>>,
     pub description: String,
     pub requires: Vec<(Located<String>, wgt::Features)>,
-    /// Params that the document declares, then the params that it exposes of its includes.
+    /// Params that the document declares itself ([`declared`](Self::declared) of them), then the
+    /// params that it exposes from its includes, each in the order of the document.
     pub params: Vec<Param>,
     /// Number of params at the front of `params` that the document declares itself.
     pub declared: usize,
-    /// Named expressions.
+    /// Named expressions of the section `values`: name and expression, in the order of the
+    /// document.
     pub values: Vec<(Located<Name>, Expr)>,
-    /// Names of `Choice` params, each with the words that remain.
+    /// Names of `Choice` params, each with the words that remain of it and the reason. Empty once
+    /// the params are narrowed.
     pub narrow: Vec<(Located<String>, Narrow)>,
-    /// Modules that shaders import in the place of other modules.
+    /// Modules that shaders import in the place of other modules, in the order of the document; a
+    /// later one replaces an earlier one for the same module.
     pub imports: Vec<ImportEntry>,
-    /// Exposed params, each with the default that the document gives it.
+    /// Names of params that the document exposes from its includes, each with the default that the
+    /// section `set` gives it.
     pub defaults: Vec<(Located<String>, Expr)>,
     pub inputs: Vec<Input>,
     pub materials: Vec<Material>,
     pub entries: Vec<Result<Entry, Invalid>>,
     pub outputs: Vec<Output>,
-    /// Kinds of light that the method takes.
+    /// Kinds of light that the document takes, as words such as `spot`; empty if it takes the first
+    /// kind alone.
     pub lights: Vec<Located<Name>>,
-    /// Backends below WebGPU on which the graph is known to be right.
+    /// Names of backends that lack part of WebGPU, such as `gl`, on which the graph is known to be
+    /// right.
     pub proven_on: Vec<Located<Name>>,
     pub claims: Vec<(Located<String>, ClaimEntry)>,
-    /// Names of the materials and inputs that could not be read.
+    /// Names of the materials, inputs and values that could not be read, each with the proof that
+    /// this was reported.
     pub broken_materials: Vec<(String, ErrorGuaranteed)>,
     /// Set if a param could not be read; sizes of this document are then unknown.
     pub invalid_params: Option<ErrorGuaranteed>,
-    /// Set if something could not be read; some names are then unknown.
+    /// Set if something without a readable name could not be read, so that an unknown name may have
+    /// been declared there.
     pub incomplete: Option<ErrorGuaranteed>,
     /// Set if an output could not be read; its name is then unknown.
     pub broken_outputs: Option<ErrorGuaranteed>,
@@ -100,7 +109,7 @@ pub(crate) struct ImportEntry {
 /// A promise of a method: `(if: "n >= 0.5", because: "…")`, or its condition alone.
 #[derive(Clone, Debug)]
 pub(crate) struct ClaimEntry {
-    /// Condition under which the promise holds; `None` for always.
+    /// Condition, an expression over params, under which the promise holds; `None` for always.
     pub condition: Option<Expr>,
     pub because: String,
 }
@@ -139,7 +148,7 @@ pub(crate) struct Output {
     pub material: Reference,
     /// Condition under which the output exists; `None` for always.
     pub condition: Option<Expr>,
-    /// True if only a host that names the output gets it.
+    /// True if the output is computed only for a host that names it.
     pub on_request: bool,
 }
 
@@ -184,9 +193,11 @@ pub(crate) struct Entry {
     pub name: Located<Name>,
     /// Condition under which the entry exists; `None` for always.
     pub condition: Option<Expr>,
-    /// Number of copies of the entry; `None` for one copy without an index.
+    /// Expression for the number of copies of the entry, which have the index 0, 1 and so on;
+    /// `None` for one copy without an index.
     pub repeat: Option<Expr>,
-    /// Frames in which the entry runs; `None` to run as the entry around it does.
+    /// Frames in which the entry runs; `None` to run in the frames of the group or include around
+    /// it.
     pub run: Option<Run>,
     pub bind: Vec<(Located<String>, Reference)>,
     pub set: Vec<(Located<String>, Expr)>,
@@ -204,28 +215,31 @@ pub(crate) enum What {
 #[derive(Clone, Debug)]
 pub(crate) struct Pass {
     pub shader: Option<Located<String>>,
-    /// Materials that are cleared to zero before the pass runs.
+    /// Materials that are cleared to zero each time before the pass runs.
     pub clear: Vec<Reference>,
-    /// Materials that the pass writes in every texel or item, as its author promises.
+    /// Materials that the pass writes in every texel or item, as the document promises.
     pub overwrites: Vec<Reference>,
-    /// Materials that the pass reads; `None` if the author does not list them.
+    /// All materials that the pass reads; `None` if the document does not list them.
     pub reads: Option<Vec<Reference>>,
     pub kind: &'static str,
     pub body: Arc<dyn PassKind>,
-    /// Shaders that the pass runs, for any values of its params.
+    /// Shaders that the pass runs for any values of its params: its own, and those that its kind
+    /// brings.
     pub shaders: Vec<ShaderUse>,
-    /// Optional device features that the pass can use.
+    /// Device features that the pass uses if the device has them.
     pub features: wgt::Features,
-    /// Expressions and references in the fields of the pass's kind.
+    /// Expressions and references in the fields of the pass's kind, and its references in `clear`,
+    /// `overwrites` and `reads`.
     pub mentions: Mentions,
 }
 
 /// An include: another document whose passes run at this place.
 #[derive(Clone, Debug)]
 pub(crate) struct Include {
-    /// Document to include; in an open include, the document that was asked for.
+    /// Path of the document to include, as the document writes it; in an open include, of the
+    /// document that the host chose for it.
     pub graph: Located<String>,
-    /// Name under which a run can ask for another document; `None` if the include is not open.
+    /// Name under which the host can choose another document; `None` if the include is not open.
     pub open: Option<Located<Name>>,
     /// True if the include has a name of its own, which is put before the names that it gives.
     pub is_named: bool,
@@ -299,13 +313,15 @@ impl Document {
         found.map_or(0, |below| below + 1)
     }
 
-    /// Iterates over the outputs that give a material, not a value.
+    /// Iterates over the outputs that give a texture, buffer or sampler, not a named value, in the
+    /// order of the document.
     pub fn material_outputs(&self) -> impl Iterator<Item = &Output> {
         let is_value = |output: &&Output| self.gives_values.contains(output.name.as_str());
         self.outputs.iter().filter(move |output| !is_value(output))
     }
 
-    /// Iterates over all entries, including those in groups.
+    /// Iterates over all readable entries of `passes` in the order of the document, including those
+    /// in groups: a group before the entries in it.
     pub fn all_entries(&self) -> impl Iterator<Item = &Entry> {
         let mut open = vec![self.entries.iter().flatten()];
         std::iter::from_fn(move || {
@@ -322,7 +338,7 @@ impl Document {
         })
     }
 
-    /// Iterates over all passes, including those in groups.
+    /// Iterates over all readable passes in the order of the document, including those in groups.
     pub fn passes(&self) -> impl Iterator<Item = &Pass> {
         self.all_entries().filter_map(|entry| match &entry.what {
             What::Pass(pass) => Some(pass),
@@ -339,8 +355,8 @@ impl Document {
         })
     }
 
-    /// Iterates over the open includes, including those in groups, each with the name under which a
-    /// run can ask for another document.
+    /// Iterates over the open includes, including those in groups, each with the name under which
+    /// the host can choose another document.
     pub fn openings(&self) -> impl Iterator<Item = (&Located<Name>, &Include)> {
         self.all_entries().filter_map(|entry| match &entry.what {
             What::Include(include) => Some((include.open.as_ref()?, include)),
@@ -348,7 +364,8 @@ impl Document {
         })
     }
 
-    /// Calls `each` with every leaf of the document's expressions and references.
+    /// Calls `each` with every leaf (param, word, material, constant or feature) of the document's
+    /// expressions and references.
     pub fn visit<'a>(&'a self, each: &mut dyn FnMut(Leaf<'a>)) {
         let params = self.params[..self.declared].iter();
         let exprs = params
@@ -376,7 +393,9 @@ impl Document {
 }
 
 impl Entry {
-    /// Returns the name, in the including document, of an output or exposed param of `include`.
+    /// Returns the name, in the including document, of the output or exposed param `name` of
+    /// `include`, which is this entry: with the entry's name in front (`left.depth`) if the include
+    /// has a name of its own.
     pub fn outer_name(&self, include: &Include, name: &str) -> String {
         if include.is_named {
             format!("{}.{name}", *self.name)

@@ -13,11 +13,11 @@ pub(crate) struct Entry {
 /// Memory of an entry point above a limit, and its largest variable.
 #[derive(Clone, Debug)]
 pub(crate) struct Excess {
-    /// Memory that the entry point takes, in bytes.
+    /// Memory in bytes that the shader takes.
     pub bytes: u64,
-    /// The limit, in bytes.
+    /// Greatest size in bytes that is allowed.
     pub most: u64,
-    /// Size of the largest variable, in bytes.
+    /// Size in bytes of the largest variable.
     pub of_largest: u64,
     /// Name of the largest variable, with its place.
     pub largest: Located<String>,

@@ -11,18 +11,20 @@ use crate::{
 use petgraph::unionfind::UnionFind;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Frames in which a scheduled pass runs: the [`Run`] of its document, with the condition of
-/// [`Run::When`] evaluated.
+/// Frames in which a pass of a [`Schedule`](crate::Schedule) runs: the [`Run`] of its document,
+/// with the condition of [`Run::When`] evaluated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum When {
-    /// In every frame.
+    /// In every frame: the pass has [`Run::Always`], or the condition of its [`Run::When`] is true
+    /// in this plan.
     Always,
     /// In no frame: the condition of its [`Run::When`] is false in this plan.
     Never,
-    /// In the first frame that the executor runs after planning.
+    /// In the first frame, and again when the content that the pass wrote is lost, for example by a
+    /// change of the viewport.
     Once,
-    /// In the first frame, and in frames where content that the pass reads, params included, has
-    /// changed since the pass last ran.
+    /// In the first frame, in frames where content that the pass reads, params included, has
+    /// changed since the pass last ran, and when the content that the pass wrote is lost.
     OnChange,
     /// In frames where another pass of its group (see [`Conditions`]) runs: the pass copies a
     /// material for a capture between two passes that write the material.
@@ -31,18 +33,23 @@ pub enum When {
 
 /// Run conditions of the passes of a schedule. A *position* is an index into
 /// [`Schedule::passes`](crate::Schedule::passes). A *group* is a set of passes that run or are
-/// skipped together in a frame; its number is the position of its first pass.
+/// skipped together in a frame, because they write the same resource or read content of it that a
+/// later pass overwrites; its number is the position of its first pass.
 #[derive(Clone, Debug, Default)]
 pub struct Conditions {
-    /// Number of the group of each pass, by position.
+    /// Number of the group of each pass, by position in
+    /// [`Schedule::passes`](crate::Schedule::passes). The number of a group is the position of its
+    /// first pass.
     pub group: Vec<usize>,
-    /// Run condition of each pass, by position.
+    /// Frames in which each pass runs, by position in
+    /// [`Schedule::passes`](crate::Schedule::passes).
     pub when: Vec<When>,
-    /// Pairs of the position of a pass and a resource that the pass writes, sorted by position.
+    /// Pairs of the position of a pass in [`Schedule::passes`](crate::Schedule::passes) and a
+    /// resource that the pass writes, sorted by position. A pair occurs once for each write.
     pub written: Vec<(usize, ResourceId)>,
-    /// Number of the group that writes each resource, by [`ResourceId::index`]; `None` if no
-    /// scheduled pass writes the resource. A resource with `keep` may be written by several groups;
-    /// the entry is the number of the first.
+    /// Number of the [group](Self::group) that writes each resource, by [`ResourceId::index`];
+    /// `None` if no scheduled pass writes the resource. A resource with `keep` may be written by
+    /// several groups; the entry is the number of the first.
     pub writers: Vec<Option<usize>>,
     /// Resources whose content must outlive the frame: those with `keep`, and those written by a
     /// pass that may be skipped.
@@ -50,16 +57,18 @@ pub struct Conditions {
 }
 
 impl Conditions {
-    /// Returns true if a pass of the group with number `group` writes the resource `id`.
+    /// Returns true if a pass of the [group](Self::group) with the number `group` writes the
+    /// resource `id`.
     pub fn is_written_by(&self, group: usize, id: ResourceId) -> bool {
         let mut written = self.written.iter();
         written.any(|(at, of)| *of == id && self.group[*at] == group)
     }
 
     /// Returns true if a pass that runs in this frame writes the resource `id` before the pass at
-    /// position `at` reads it. `keep` is [`Resource::keep`](crate::Resource::keep) of the resource.
-    /// `runs` has an entry for each position; at the number of a group it is true if the group runs
-    /// in this frame.
+    /// position `at` in [`Schedule::passes`](crate::Schedule::passes) reads it. `keep` is
+    /// [`Resource::keep`](crate::Resource::keep) of the resource. `runs` has an entry for each
+    /// position; at the number of a [group](Self::group) it is true if the group runs in this
+    /// frame.
     pub fn is_written_before(
         &self,
         (id, keep): (ResourceId, bool),

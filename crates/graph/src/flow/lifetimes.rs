@@ -8,22 +8,25 @@ use crate::{
 };
 use std::collections::BTreeMap;
 
-/// Lifetimes by resource. Only resources of which a scheduled pass uses the content of this frame
-/// or of the frame before are listed, and only these are created.
+/// Lifetimes in a frame, by resource. Only resources of which a scheduled pass uses the content of
+/// this frame or of the frame before are listed, and only these are created on the device.
 pub type Lifetimes = BTreeMap<ResourceId, Lifetime>;
 
-/// First and last use of one resource in a schedule, and the usages to create it with.
+/// First and last use of one resource in a schedule, and the usages to create it with on the
+/// device.
 #[derive(Clone, Debug)]
 pub struct Lifetime {
-    /// Usages that a texture must be created with; without meaning if the resource is a buffer.
+    /// Usages that the resource must be created with on the device if it is a texture; without
+    /// meaning for other resources.
     pub textures: wgt::TextureUsages,
-    /// Usages that a buffer must be created with; without meaning if the resource is a texture.
+    /// Usages that the resource must be created with on the device if it is a buffer; without
+    /// meaning for other resources.
     pub buffers: wgt::BufferUsages,
-    /// Index in [`Schedule::passes`](crate::Schedule::passes) of the first pass that uses the
-    /// resource.
+    /// Index in [`Schedule::passes`](crate::Schedule::passes) of the first pass of a frame that
+    /// uses the resource.
     pub first: usize,
-    /// Index in [`Schedule::passes`](crate::Schedule::passes) of the last pass that uses the
-    /// resource.
+    /// Index in [`Schedule::passes`](crate::Schedule::passes) of the last pass of a frame that uses
+    /// the resource, that pass included.
     pub last: usize,
 }
 

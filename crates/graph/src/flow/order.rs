@@ -14,31 +14,32 @@ use petgraph::{
 };
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Reason for which one pass must run before another pass that uses the same part of a texture or
-/// buffer.
+/// Reason for which one pass of a plan must run before another one that uses the same part of a
+/// texture or buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Hazard {
     /// The later pass reads content that the earlier pass wrote.
     ReadAfterWrite,
-    /// The later pass overwrites content that the earlier pass reads.
+    /// The later pass writes where the earlier pass still reads former content.
     WriteAfterRead,
-    /// The later pass overwrites content that the earlier pass wrote.
+    /// The later pass writes where the earlier pass wrote, so its content must come last.
     WriteAfterWrite,
 }
 
-/// Dependences between passes of a plan. A key is the earlier pass, the later pass and the reason
-/// for which the earlier one must run first; its value is the set of resources that cause the
-/// dependence.
+/// Dependences between passes of a plan. A key is the id of the earlier pass, the id of the later
+/// pass, and the reason for which the earlier one must run first. Its value is the set of resources
+/// that cause the dependence, never empty.
 pub type Dependences = BTreeMap<(PassId, PassId, Hazard), BTreeSet<ResourceId>>;
 
 /// Dependency graph of passes: node i is pass i of the document, and an edge runs from the earlier
 /// to the later pass.
 #[derive(Debug)]
 pub(crate) struct Order {
-    /// The edges between passes, each with its reason.
+    /// The edges between passes, each with its reason. The index of a node is the index of the pass
+    /// in the document's order.
     pub edges: DiGraph<(), Hazard>,
-    /// The edges with the resources behind them, for drawings.
+    /// The edges together with the resources that cause them, for drawings.
     pub dependences: Dependences,
     /// The pass that writes each subresource last.
     last: BTreeMap<(ResourceId, [u32; 3]), PassId>,
@@ -46,7 +47,8 @@ pub(crate) struct Order {
 }
 
 impl Order {
-    /// Returns the passes that write a part of a resource last.
+    /// Returns the passes that write a part of a resource last: of each mip, layer or range of
+    /// items in the part, the last pass in the order of the document that writes it.
     pub fn final_writers(&self, target: &Target) -> BTreeSet<PassId> {
         let parts = self.subresources.within(target.id, &target.part);
         parts

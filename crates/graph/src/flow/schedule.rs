@@ -13,17 +13,19 @@ use std::{
 /// run, with the lifetimes, run conditions and allocations that follow from this order.
 #[derive(Debug, Default)]
 pub struct Schedule {
-    /// Ids of the live passes in the order in which they run. A *position* is an index into this
-    /// list.
+    /// Ids of the [live](crate::Plan::live) passes in the order in which they run in a frame. A
+    /// *position* is an index into this list.
     pub passes: Vec<PassId>,
-    /// First use, last use and usages of each resource that is created.
+    /// First use, last use and usages of each resource that is created on the device.
     pub lifetimes: Lifetimes,
-    /// Run condition of each pass, and the groups of passes that run or are skipped together.
+    /// Frames in which each pass runs, and the groups of passes that run or are skipped together.
     pub conditions: Conditions,
-    /// Allocations, and the resources that share each of them.
+    /// Allocations of textures and buffers on the device, and the resources that share each of
+    /// them.
     pub aliases: Aliases,
-    /// Textures and buffers of the graph that a pass also reads as they were in the frame before
-    /// (`.previous`). The executor makes two of each, which take turns from frame to frame.
+    /// Textures and buffers of the graph that a live pass also reads as they were in the frame
+    /// before (`.previous`). Two of each are made on the device, which take turns from frame to
+    /// frame.
     pub ping_pong: BTreeSet<ResourceId>,
 }
 

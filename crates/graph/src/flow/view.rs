@@ -103,8 +103,9 @@ impl Subresources {
         }
     }
 
-    /// Returns the parts of a resource that lie in `part`, each as mip, first layer or item, and
-    /// aspect (1 for stencil, otherwise 0).
+    /// Returns the parts of a resource that overlap `part`, each as mip, first layer or item (which
+    /// may lie before `part`), and aspect (1 for stencil, otherwise 0). Parts that nothing accesses
+    /// are left out.
     pub fn within(
         &self,
         id: ResourceId,

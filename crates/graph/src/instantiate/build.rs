@@ -98,7 +98,7 @@ pub(crate) fn flatten<'a>(
 }
 
 impl<'a> Builder<'a> {
-    /// Reports features that a document requires and the device lacks.
+    /// Reports the features that a document requires and the request's device lacks.
     pub fn require(&mut self, document: &Document) {
         for (feature, flag) in &document.requires {
             if !self.symbols.request.features.contains(*flag) {
@@ -540,7 +540,7 @@ impl<'a> Builder<'a> {
         said
     }
 
-    /// Returns the settings of groups for the names that `asks` accepts.
+    /// Returns the bindings or values of groups in `said` for the names that `asks` accepts.
     pub fn asked<T>(
         &self,
         said: &[Inherited<'a, T>],
@@ -552,7 +552,8 @@ impl<'a> Builder<'a> {
             .collect()
     }
 
-    /// Notes that an entry uses these settings of groups.
+    /// Notes that an entry uses these bindings and values of groups, so that they are not reported
+    /// as unused.
     pub fn mark<T, U>(&mut self, bind: &[Inherited<'_, T>], set: &[Inherited<'_, U>]) {
         let numbers = bind.iter().map(|said| said.number);
         for number in numbers.chain(set.iter().map(|said| said.number)) {

@@ -17,18 +17,19 @@ use crate::{
 };
 use std::{collections::BTreeSet, ops::Range};
 
-/// Frames in which a pass runs, as its document gives them in `run: …`.
+/// Frames in which a pass runs, as its document gives them in the pass's field `run`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Run {
-    /// In every frame.
+    /// In every frame, which is the default.
     Always,
-    /// In the first frame that the executor runs after planning.
+    /// In the first frame, and again when the content that the pass wrote is lost, for example by a
+    /// change of the viewport.
     Once,
-    /// In the first frame, and in frames where content that the pass reads, params included, has
-    /// changed since the pass last ran.
+    /// In the first frame, in frames where content that the pass reads, params included, has
+    /// changed since the pass last ran, and when the content that the pass wrote is lost.
     OnChange,
     /// In every frame if an expression over params is true in the plan, in no frame otherwise.
-    /// Holds the text of the expression; equal texts are equal conditions.
+    /// Holds the text of the expression; passes with equal texts run in the same frames.
     /// [`LinkedPass::enabled`](crate::LinkedPass::enabled) holds its value.
     When(String),
 }
@@ -44,30 +45,32 @@ impl std::fmt::Display for Run {
 
 /// A graph whose includes, groups and repetitions are resolved to one list of passes.
 pub(crate) struct Flat<'a> {
-    /// Meanings of the names in the graph's documents.
+    /// Meanings of the names in the graph's documents, and the resources found so far.
     pub symbols: SymbolTable<'a>,
     /// The passes in the order of the documents.
     pub passes: Vec<FlatPass<'a>>,
-    /// Number of passes above the first entry with a mistake that was reported; `None` without a
+    /// Number of passes above the first entry with a reported mistake; `None` if no entry has a
     /// mistake.
     pub first_invalid: Option<usize>,
-    /// Inputs and outputs of each instance of a document.
+    /// Inputs and outputs of each use of a document: of the loaded document and of every include.
     pub interfaces: Vec<Interface>,
     /// Includes that are replaced by an earlier include of the same content.
     pub merged: Vec<Merge>,
-    /// Params and features that decide which entries exist.
+    /// Params and features that decide which entries of the documents exist.
     pub plan_inputs: PlanInputs,
 }
 
 /// An include that is replaced by an earlier include of the same content.
 pub(crate) struct Merge {
-    /// Indices of the passes between the end of the earlier include and this one.
+    /// Indices in [`Flat::passes`] of the passes between the end of the earlier include and this
+    /// one.
     pub between: Range<usize>,
-    /// Resources of the including document that are bound to the inputs of the included one.
+    /// Resources of the including document that are bound to the inputs of the included one, in the
+    /// order of the inputs.
     pub inputs: Vec<ResourceId>,
-    /// Indices in the plan's resources of those that the earlier include declares.
+    /// Indices, in the list of the plan's resources, of those that the earlier include declares.
     pub owned: Range<usize>,
-    /// Path of the included document.
+    /// Path of the included document, as the include writes it.
     pub graph: String,
     pub span: Span,
 }
@@ -79,11 +82,14 @@ pub(crate) struct FlatPass<'a> {
     pub pass: &'a Pass,
     pub position: Position,
     pub run: Run,
-    /// Value of the expression in [`Run::When`]; true for every other [`Run`].
+    /// Value of the expression in [`Run::When`] with the plan's params; true for every other
+    /// [`Run`].
     pub enabled: bool,
-    /// Bindings that groups around the pass give to globals of its shader.
+    /// Bindings that groups around the pass give to globals of its shader, an inner group's in
+    /// place of an outer one's.
     pub bind: Vec<Inherited<'a, Reference>>,
-    /// Values that groups around the pass give to params of its shader.
+    /// Values that groups around the pass give to params and overrides of its shader, an inner
+    /// group's in place of an outer one's.
     pub set: Vec<Inherited<'a, Expr>>,
 }
 
@@ -91,7 +97,8 @@ pub(crate) struct FlatPass<'a> {
 #[derive(Clone)]
 pub(super) struct EntryContext<'a> {
     pub scope: ScopeId,
-    /// Prefix of the full names of the passes inside.
+    /// Prefix of the full names of the passes inside, such as `cascade[2].`; empty at the top of
+    /// the loaded document.
     pub prefix: String,
     pub run: Option<(Run, bool)>,
     pub bind: Vec<Inherited<'a, Reference>>,
@@ -141,16 +148,18 @@ impl<T> Copy for Inherited<'_, T> {}
 /// Inputs and outputs of an instance of a document, to be compared with the accesses of its passes.
 pub(crate) struct Interface {
     pub instance: InstanceId,
-    /// Outputs of the document, each with the target that it means.
+    /// Outputs of the document that are textures, buffers or samplers, each with the target that it
+    /// means; empty for the loaded document.
     pub outputs: Vec<(Located<Name>, Target)>,
-    /// Inputs that the document must not write, because they are not outputs, too.
+    /// Inputs that the document must not write, because they are not outputs, too, each with the
+    /// target that is bound to it.
     pub read_only: Vec<(Located<Name>, Target)>,
 }
 
 /// Params and features that decide which entries exist.
 #[derive(Debug, Default)]
 pub(crate) struct PlanInputs {
-    /// Names of params of the root document.
+    /// Names of params of the loaded document.
     pub params: BTreeSet<String>,
     pub features: wgt::Features,
 }

@@ -36,8 +36,8 @@ pub(super) struct Call<'e> {
     include: &'e Include,
     document: &'e Document,
     position: Position,
-    /// True if the include has a name of its own or stands in a repetition, so that its outputs
-    /// have a prefix.
+    /// True if the include has a name of its own or is repeated, so that the names of its outputs
+    /// have a prefix in the including document.
     pub has_namespace: bool,
     /// Bindings of names of the included document: those of the include before those of groups.
     bind: Vec<(&'e Located<String>, &'e Reference, Position)>,
@@ -120,7 +120,8 @@ pub(super) fn overridden(material: &Material, at: &mut At<'_, '_>) -> Option<Rep
 }
 
 impl<'e> Call<'e> {
-    /// Creates the call with the settings of the include before those of groups.
+    /// Creates the call of an include at a position of the including document. Bindings and values
+    /// of the include itself come before `of_groups`, those of groups around it.
     pub fn new(
         entry: &'e Entry,
         include: &'e Include,
@@ -147,7 +148,7 @@ impl<'e> Call<'e> {
         }
     }
 
-    /// Returns the place of the include.
+    /// Returns the place of the include, with the prefixes of the included document's names there.
     pub fn outer(&self, context: &EntryContext<'_>) -> Outer {
         Outer {
             scope: self.position.scope,
@@ -162,8 +163,8 @@ impl<'e> Call<'e> {
         }
     }
 
-    /// Declares the inputs of the included document in its scope. Returns those that it may only
-    /// read.
+    /// Declares the inputs of the included document in its scope; `inputs` has a target for each,
+    /// in the same order. Returns those that the document may only read.
     pub fn declare_inputs(
         &self,
         scope: ScopeId,
@@ -183,7 +184,8 @@ impl<'e> Call<'e> {
         read_only
     }
 
-    /// Declares `names`, the outputs of the included document, in the including document.
+    /// Declares `names`, the outputs of the included document, in the including document. The error
+    /// is the proof of a reported mistake in these outputs.
     pub fn give(&self, names: &Names, scopes: &mut Scopes) -> Reported<()> {
         let name = &self.entry.name.value;
         if let Some(reported) = self.document.broken_outputs {
@@ -287,8 +289,9 @@ impl<'e> Call<'e> {
         });
     }
 
-    /// Returns the bindings of an include that are not for inputs: outputs, which are written into
-    /// a material of the outer document, and names of the scene.
+    /// Returns the bindings of the include that are not for inputs: first those for names of
+    /// provided resources, by that name; then those for outputs, by the document's material that is
+    /// replaced by a material of the including document.
     pub fn outside(
         &self,
         at: &mut At<'_, '_>,
@@ -345,7 +348,8 @@ impl<'e> Call<'e> {
         bound.find(|(bound, ..)| bound.as_str() == name.as_str())
     }
 
-    /// Returns the target for an input of the included document.
+    /// Returns the resource that is bound to an input of the included document: by the include, or
+    /// else by its name in the including document.
     pub fn input(&self, input: &Input, at: &mut At<'_, '_>) -> Reported<Target> {
         let name = &input.name.value;
         let (target, span) = match self.bound(name) {
@@ -393,8 +397,8 @@ impl<'e> Call<'e> {
         }))
     }
 
-    /// Returns the names that the included document gives, and every output with its target, to be
-    /// compared with the writes of its passes.
+    /// Returns the names that the included document gives, and each output that is not a value with
+    /// its target. Outputs whose `if` is false are left out.
     pub fn outputs(
         &self,
         plan_inputs: &mut PlanInputs,

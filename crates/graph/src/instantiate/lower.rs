@@ -18,13 +18,14 @@ use crate::{
 /// A pass with its body lowered to steps.
 pub(crate) struct LoweredPass<'a> {
     pub flat: FlatPass<'a>,
-    /// GPU work of the pass, in order.
+    /// GPU work of the pass, in the order in which it runs.
     pub steps: Vec<Step<Names>>,
-    /// Buffers that only this pass uses.
+    /// Buffers that only this pass uses, in the order in which its kind added them.
     pub scratch: Vec<ResourceId>,
-    /// Instance of the document that the pass belongs to.
+    /// Use of a document (the loaded one or an include) that the pass belongs to.
     pub instance: InstanceId,
-    /// Name of the shader that the pass's own bindings are for.
+    /// Name of the shader that the entry's `bind` is for: the one in the field `shader`, or else
+    /// the one with the pass's name.
     pub shader: Located<String>,
     /// True if a value of the body has a mistake, which was reported.
     pub is_broken: bool,

@@ -25,7 +25,7 @@ pub(super) struct Content {
     /// Each path is read once, so equal pointers are equal documents.
     document: *const Document,
     params: Vec<ParamContent>,
-    /// Targets for the inputs of the document, in its order.
+    /// Targets that are bound to the inputs of the document, in the order of the inputs.
     pub inputs: Vec<Target>,
     /// Targets of names of the scene; the innermost include that binds a name decides.
     scene: BTreeMap<String, Target>,
@@ -42,9 +42,9 @@ pub(super) struct Site {
     pub content: Content,
     /// Names that the include gives to the including document.
     pub names: Names,
-    /// Number of passes of the graph up to the end of the include.
+    /// Number of passes of the graph up to the end of the include, its own included.
     pub end: usize,
-    /// Indices in the plan's resources of those that the include declares.
+    /// Indices, in the list of the plan's resources, of those that the include declares.
     pub owned: Range<usize>,
 }
 

@@ -17,19 +17,19 @@ use crate::{
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Entry of a document's section `claims`: a property that the document's author promises of the
-/// outputs, under a condition. This crate does not know its meaning; a host, such as a test, checks
-/// the property.
+/// graph's outputs, under a condition. This crate does not know the meaning of the property; a
+/// host, such as a test, checks it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Claim {
-    /// Name of the property, as the document writes it.
+    /// Name of the property, as the document writes it, such as `exact`.
     pub name: String,
-    /// Text of the condition under which the document promises the property; empty without a
-    /// condition.
+    /// Text of the expression under which the document promises the property; empty if the promise
+    /// has no condition.
     pub condition: String,
-    /// Reason that the document gives; may be empty.
+    /// Reason that the document gives for the promise; may be empty.
     pub because: String,
-    /// True if the condition is true for the params given to
-    /// [`Graph::claims`](crate::Graph::claims), or the entry has no condition.
+    /// True if the document promises the property for the params given to
+    /// [`Graph::claims`](crate::Graph::claims): the condition is true, or there is none.
     pub holds: bool,
 }
 
@@ -44,10 +44,10 @@ pub(crate) struct Params {
 pub(crate) struct BoundParam {
     pub param: Param,
     pub value: Reported<ParamValue>,
-    /// Name of the param of the root document from which the value is taken unchanged; `None` if
-    /// there is no such param.
+    /// Name of the param of the loaded document from which the value is taken unchanged; `None` if
+    /// it is not taken from one.
     pub root: Option<String>,
-    /// Params of the root document that the value depends on.
+    /// Names of the params of the loaded document that the value depends on.
     pub roots: BTreeSet<String>,
 }
 
@@ -67,14 +67,16 @@ impl Params {
             .find(|bound| bound.param.name.value == name)
     }
 
-    /// Returns the param with this WGSL identifier; `None` if there is no such param.
+    /// Returns the param that a shader finds under this WGSL identifier: of the same name, or with
+    /// `_` for the dots of its name. `None` if there is no such param.
     pub fn wgsl_name(&self, identifier: &str) -> Option<&BoundParam> {
         let wgsl_name = |bound: &&BoundParam| wgsl_identifier(&bound.param.name) == identifier;
         self.bound(identifier)
             .or_else(|| self.list.iter().find(wgsl_name))
     }
 
-    /// Returns the values of all params by name, except those whose value has a mistake.
+    /// Returns the value of the param `name` for an expression, and notes in `reports` that the
+    /// plan depends on it; `None` for an unknown name.
     pub fn values(&self) -> BTreeMap<String, ParamValue> {
         let values = self.list.iter().filter_map(|bound| {
             let value = bound.value.clone().ok()?;
@@ -95,13 +97,13 @@ impl Params {
         Some(bound.in_expression())
     }
 
-    /// Returns the value of a param that an expression hands on unchanged, without noting a
-    /// dependence; `None` for any other expression.
+    /// Returns the value of a param if the expression is this param alone, without noting that the
+    /// plan depends on it; `None` for any other expression.
     pub fn forwarded(&self, expr: &Expr) -> Option<Reported<Value>> {
         Some(self.bound(expr.as_param()?)?.in_expression())
     }
 
-    /// Returns the params of the root document that an expression depends on.
+    /// Returns the names of the params of the loaded document that an expression depends on.
     pub fn roots(&self, expr: &Expr) -> BTreeSet<String> {
         let mut roots = BTreeSet::new();
         expr.visit(&mut |leaf| {
@@ -211,7 +213,7 @@ fn in_order(document: &Document) -> impl Iterator<Item = &Param> {
 pub(crate) struct SetParam {
     pub expr: Located<Expr>,
     pub value: Reported<Value>,
-    /// Params of the root document that the value depends on.
+    /// Names of the params of the loaded document that the value depends on.
     pub roots: BTreeSet<String>,
 }
 
@@ -220,15 +222,17 @@ pub(crate) struct Given<'a> {
     /// Name under which the including document exposes each exposed param of the included one, by
     /// name there: with the include's name in front, if the include has a name.
     pub exposed: BTreeMap<&'a str, String>,
-    /// Params of the including document.
+    /// Params of the including document, with their values.
     pub outer: &'a Params,
-    /// Place of the include.
+    /// Place of the include, for messages.
     pub span: &'a Span,
     pub context: Surroundings,
 }
 
 impl Given<'_> {
-    /// Returns the params of an included document with their values.
+    /// Returns the params of an included document with their values: exposed ones first, then those
+    /// that the document declares. `set` holds the values that the include sets, by name of the
+    /// param.
     pub fn bind(
         &self,
         document: &Document,

@@ -21,7 +21,8 @@ use std::{
 pub(crate) struct ScopeId(usize);
 
 impl ScopeId {
-    /// Returns the position of an expression that belongs to no entry.
+    /// Returns the position of an expression in this scope that belongs to no entry, such as the
+    /// size of a material.
     pub fn begin(self) -> Position {
         Position {
             scope: self,
@@ -41,20 +42,22 @@ pub(crate) struct InstanceId(usize);
 /// One use of a document in the graph: the root, or one include of it.
 #[derive(Debug)]
 pub(crate) struct Instance {
-    /// Document that is used.
+    /// Document that is used: the loaded one, or an included one.
     pub document: Arc<Document>,
-    /// Params of the document with their values in this instance.
+    /// Params of the document with the values that they have in this use of it.
     pub params: Arc<Params>,
-    /// Targets that the include binds to names of provided resources, by that name.
+    /// Targets that the include binds to names of provided resources, by that name, such as
+    /// `light`.
     pub scene: BTreeMap<String, Reported<Target>>,
-    /// Place where the document is included; `None` for the root.
+    /// Place where the document is included; `None` for the loaded document.
     pub outer: Option<Outer>,
     /// Materials of the including document that the instance writes instead of its own: by name of
     /// its own material, the name in the `bind` with its place, and the target.
     pub overrides: BTreeMap<String, (Located<String>, Reported<Target>)>,
     /// WGSL modules that replace others in the instance's shaders.
     pub replaced: Replaced,
-    /// Set if a part of the document could not be read, so that an unknown name is not reported.
+    /// Set if a part of the document could not be read. An unknown name may then be declared there
+    /// and is not reported.
     pub incomplete: Option<ErrorGuaranteed>,
 }
 
@@ -65,7 +68,8 @@ pub(crate) struct Outer {
     /// Prefix of the names of the document's outputs in the including document: `left.`,
     /// `lamp[2].`; `None` for an include without a name and repetition.
     pub namespace: Option<String>,
-    /// Prefix of the full names of all materials and passes of the document that are not outputs.
+    /// Prefix of the full names of the document's passes, and of its materials that are not
+    /// outputs: `soft.`.
     pub private: String,
 }
 
@@ -104,8 +108,8 @@ pub(crate) enum Symbol {
 }
 
 impl Symbol {
-    /// Returns the meanings of `name` behind this symbol and a dot: of a named include at most one,
-    /// of a repeated entry one for each repetition, in order. A target or value has none.
+    /// Returns the meanings of `name` behind this symbol and a dot. A named include has at most
+    /// one; a repeated entry has one for each repetition, in order; a target or value has none.
     pub fn named<'m>(&'m self, name: &Name) -> Vec<&'m Self> {
         match self {
             Self::Target(_) | Self::Value(_) | Self::Invalid(_) => Vec::new(),
@@ -155,7 +159,7 @@ impl Scopes {
         ScopeId(self.scopes.len() - 1)
     }
 
-    /// Returns the scope of the root document.
+    /// Returns the scope of the loaded document.
     pub fn root(&self) -> ScopeId {
         ScopeId(0)
     }
@@ -172,19 +176,20 @@ impl Scopes {
         &mut self.instances[id.0]
     }
 
-    /// Returns the instance of the document that a scope belongs to.
+    /// Returns the use of a document that a scope belongs to.
     pub fn document(&self, scope: ScopeId) -> &Instance {
         self.instance(self.instance_of(scope))
     }
 
-    /// Returns the prefix of a scope's names in its document, such as `sample[3].`; empty for the
-    /// document's own scope.
+    /// Returns the prefix of a scope's names in its document, such as `sample[3].` in a repeated
+    /// group; empty for the scope of the whole document.
     pub fn path(&self, scope: ScopeId) -> &str {
         &self.scopes[scope.0].path
     }
 
-    /// Returns the full name of the material or value `name` of an instance of a document: the name
-    /// by which the root document knows it.
+    /// Returns the full name of the material or value `name` of the instance `id` of a document:
+    /// the name by which the loaded document knows it, or else the name with the includes and
+    /// groups around the document in front.
     pub fn full_name(&self, id: InstanceId, name: &str) -> String {
         let instance = self.instance(id);
         let Some(outer) = &instance.outer else {
@@ -208,7 +213,7 @@ impl Scopes {
         Some(self.instance_of(outer.scope))
     }
 
-    /// Returns the names that were declared in a scope itself.
+    /// Returns the names that were declared in a scope itself, not in the scopes around it.
     pub fn names(&self, scope: ScopeId) -> &Names {
         &self.scopes[scope.0].names
     }
@@ -265,8 +270,8 @@ impl Scopes {
             .find_map(|scope| scope.wgsl_values.get(identifier).copied())
     }
 
-    /// Returns the index of the innermost repetition around a position, or of that of the entry
-    /// `of`; `None` outside of repetitions.
+    /// Returns the index, from 0, of the innermost repetition around a position, or with `of` of
+    /// the repetition of the entry called `of`; `None` outside of such a repetition.
     pub fn index(&self, position: Position, of: Option<&Name>) -> Option<u32> {
         let own = position.index.filter(|_| of.is_none());
         own.or_else(|| {

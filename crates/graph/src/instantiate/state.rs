@@ -25,7 +25,7 @@ pub(super) enum State {
 pub(super) struct Declared {
     pub scope: ScopeId,
     pub document: Arc<Document>,
-    /// Index in the document's `materials`.
+    /// Index of the material in the document's `materials`.
     pub number: usize,
 }
 
@@ -40,7 +40,7 @@ impl Declared {
 pub(super) struct DeclaredValue {
     pub scope: ScopeId,
     pub document: Arc<Document>,
-    /// Index in the document's `values`.
+    /// Index of the value in the document's `values`.
     pub number: usize,
     pub state: ValueState,
 }

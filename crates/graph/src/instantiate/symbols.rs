@@ -93,8 +93,8 @@ impl<'a> SymbolTable<'a> {
         }
     }
 
-    /// Returns an environment for expressions at a position. `shader` is the shader of the pass,
-    /// for an expression of a pass.
+    /// Returns an environment for expressions at a position in a document. `shader` is the shader
+    /// whose constants the expressions can use, for those of a pass; `None` for others.
     pub fn at<'w>(
         &'w mut self,
         position: Position,
@@ -111,7 +111,7 @@ impl<'a> SymbolTable<'a> {
         &self.resources[id.0]
     }
 
-    /// Adds a resource whose size is known.
+    /// Adds a resource whose size is known, and returns its id.
     pub fn add(&mut self, resource: Resource) -> ResourceId {
         self.resources.push(resource);
         self.states.push(State::Known);
@@ -136,7 +136,7 @@ impl<'a> SymbolTable<'a> {
         ValueId(self.values.len() - 1)
     }
 
-    /// Returns a value, evaluated if this is the first time that it is asked for.
+    /// Returns the result of a named value. It is evaluated the first time that it is asked for.
     pub fn value(&mut self, id: ValueId) -> Reported<Value> {
         let declared = &mut self.values[id.0];
         match &declared.state {
@@ -161,7 +161,8 @@ impl<'a> SymbolTable<'a> {
         value
     }
 
-    /// Returns the values that were evaluated: pairs of full name and result.
+    /// Returns the named values that were evaluated without a mistake, in the order of their
+    /// declaration: pairs of full name and result as text.
     pub fn found_values(&self) -> Vec<(String, String)> {
         let found = self.values.iter().filter_map(|declared| {
             let ValueState::Known(Ok(value)) = &declared.state else {
@@ -213,7 +214,7 @@ impl<'a> SymbolTable<'a> {
         }
     }
 
-    /// Returns the params of the root document that an expression depends on.
+    /// Returns the position of expressions of the loaded document that belong to no entry.
     pub fn roots(&self, scope: ScopeId, expr: &Expr) -> BTreeSet<String> {
         let mut roots = BTreeSet::new();
         self.visit(scope, expr, &mut |scope, leaf| {
@@ -368,7 +369,7 @@ impl<'a> SymbolTable<'a> {
         known
     }
 
-    /// Returns the name of a resource with `keep: true`; `None` for any other.
+    /// Returns the name of a resource with `keep: true`; `None` for a resource without `keep`.
     pub fn kept(&self, id: ResourceId) -> Option<String> {
         let resource = self.get(id);
         resource.keep.then(|| resource.name.clone())
@@ -403,8 +404,8 @@ impl<'a> SymbolTable<'a> {
         Ok(id)
     }
 
-    /// Returns the resource that has the layout and size of `id`: for last frame's version of a
-    /// resource that resource, otherwise `id` itself.
+    /// Returns the resource that has the layout and size of `id`: if `id` holds another resource's
+    /// content of the frame before (`.previous`), that resource; otherwise `id` itself.
     pub fn base(&self, id: ResourceId) -> ResourceId {
         match self.get(id).origin {
             Origin::Previous(base) => base,
@@ -412,7 +413,8 @@ impl<'a> SymbolTable<'a> {
         }
     }
 
-    /// Copies the kind and size of each resource to last frame's version of it.
+    /// Copies the kind and size of each resource to the one that holds its content of the frame
+    /// before (`.previous`).
     pub fn size_previous(&mut self) {
         for (base, previous) in &self.previous {
             self.resources[previous.0].kind = self.resources[base.0].kind.clone();
@@ -529,7 +531,7 @@ impl<'a> SymbolTable<'a> {
 /// Environment that evaluates expressions and resolves references at a position of a document.
 pub(crate) struct At<'w, 'a> {
     symbols: &'w mut SymbolTable<'a>,
-    /// Position of the expressions and references.
+    /// Position in a document at which the expressions and references stand.
     pub position: Position,
     /// Shader of the pass, for an expression of a pass.
     shader: Option<Reported<Arc<Shader>>>,
@@ -544,12 +546,12 @@ impl<'a> At<'_, 'a> {
         self.symbols
     }
 
-    /// Returns the instance of the document at this position.
+    /// Returns the use of a document that this position lies in.
     pub fn instance(&self) -> &Instance {
         self.symbols.scopes.document(self.position.scope)
     }
 
-    /// Returns an environment at another position, without a shader.
+    /// Returns an environment at another position in a document, without constants of a shader.
     pub fn elsewhere(&mut self, position: Position) -> At<'_, 'a> {
         self.symbols.at(position, None)
     }

@@ -41,9 +41,10 @@ pub(crate) const OF_PASS: [&str; 10] = [
     "reads",
 ];
 
-/// Interface through which a [`PassKind`] turns its body into steps: it gives the kind the pass's
-/// name, shader and values, and collects steps and diagnostics. While a document is loaded,
-/// expressions have no value yet, and the methods that evaluate them return a fixed substitute.
+/// Interface through which a [`PassKind`] turns its body, the fields of one pass, into steps: it
+/// gives the kind the pass's name, shader and values, and collects steps and diagnostics. While a
+/// document is loaded, expressions have no value yet, and the methods that evaluate them return a
+/// fixed substitute.
 pub struct Lowering<'a> {
     pub(crate) name: &'a Located<Name>,
     pub(crate) shader: Option<&'a Located<String>>,
@@ -81,19 +82,22 @@ impl<'a> Lowering<'a> {
         }
     }
 
-    /// Returns the pass's name with its place in the document.
+    /// Returns the pass's name as its document writes it, without the names of includes and groups
+    /// around it and without the index of a repetition, with its place in the document.
     pub fn name(&self) -> Located<String> {
         self.named(self.name)
     }
 
     /// Returns a program for the pass's own shader, with the bindings of the entry's field `bind`.
-    /// The shader is the one that the field `shader` names, or else the one with the pass's name.
+    /// The shader is the one that the entry's field `shader` names, or else the one with the pass's
+    /// name. Entry points are left open: each stage has the only one in the shader.
     pub fn program(&self) -> Program {
         self.program_with(self.shader.cloned().unwrap_or_else(|| self.name()))
     }
 
     /// Returns a program for a shader that comes with the pass kind, with the bindings of the
-    /// entry's field `bind`. `shader` is the name of the WGSL file without folder and ending.
+    /// entry's field `bind`. `shader` is the name of the WGSL file without folder and ending. Entry
+    /// points are left open: each stage has the only one in the shader.
     pub fn program_of(&self, shader: &str) -> Program {
         self.program_with(self.named(shader))
     }
@@ -115,8 +119,9 @@ impl<'a> Lowering<'a> {
         Located::new(name.to_owned(), self.name.span.clone())
     }
 
-    /// Adds a buffer of `bytes` bytes that only this pass uses, and returns its handle for steps. A
-    /// capture reads it as the material `pass/name`.
+    /// Adds a buffer of `bytes` bytes, a multiple of 4, that only this pass uses, and returns its
+    /// handle for steps. A step must write it before another reads it. A capture reads it as the
+    /// material `pass/name`, where `pass` is the full name of the pass.
     pub fn scratch(&mut self, name: &str, bytes: u64) -> Scratch {
         self.scratch.push((name.to_owned(), bytes));
         Scratch(self.scratch.len() - 1)
@@ -124,9 +129,9 @@ impl<'a> Lowering<'a> {
 
     /// Announces a shader that the pass runs only for other values of its expressions, so that the
     /// shader is loaded with the document. `shader` is the name of a WGSL file that comes with the
-    /// pass kind, without folder and ending. Each pair in `imports` is a module that an `#import`
-    /// names and the module that is imported instead. `features` are device features that the pass
-    /// uses if the device has them.
+    /// pass kind, without folder and ending. Each pair in `imports` is the path that an `#import`
+    /// names and the path of the module that is imported instead. `features` are device features
+    /// that the pass uses if the device has them.
     pub fn alternative(&mut self, shader: &str, imports: &[(&str, &str)], features: wgt::Features) {
         let imports = imports.iter();
         self.alternatives.push(ShaderUse {
@@ -138,18 +143,20 @@ impl<'a> Lowering<'a> {
         self.features |= features;
     }
 
-    /// Appends a step to the pass. Steps run in the order in which they are appended.
+    /// Appends a step (a draw, dispatch, copy or clear) to the pass. Steps run in the order in
+    /// which they are appended.
     pub fn step(&mut self, step: Step<Names>) {
         self.steps.push(step);
     }
 
-    /// Reports a mistake in the pass's body, an error or a warning.
+    /// Reports a mistake in the pass's body, an error or a warning, which planning returns. While a
+    /// document is loaded, when expressions have no value yet, reports are ignored.
     pub fn report(&mut self, mistake: impl Into<Diagnostic>) {
         self.diagnostics.push(mistake.into());
     }
 
-    /// Reports an error at the place of the expression `expr`, whose value is not allowed. `what`
-    /// is the message.
+    /// Reports an error of kind `code` at the place of the expression `expr`, whose value is not
+    /// allowed. `what` is the message.
     pub fn report_value(&mut self, code: Code, expr: &Expr, what: impl Into<String>) {
         self.report(Diagnostic::error(code, what).at(expr.span.clone(), ""));
     }
@@ -167,8 +174,9 @@ impl<'a> Lowering<'a> {
         }
     }
 
-    /// Returns the number of items of the provided buffer `name`, such as `scene.indices`. Returns
-    /// 0 if the provider does not know the name or the number, and while a document is loaded.
+    /// Returns the number of items of the buffer `name` that the host's provider describes, such as
+    /// `scene.indices`. Returns 0 if the provider does not know the name or the number, and while a
+    /// document is loaded.
     pub fn provided_items(&self, name: &str) -> u64 {
         let environment = self.environment.as_ref();
         environment
@@ -194,8 +202,8 @@ impl<'a> Lowering<'a> {
         self.evaluate(1, |environment| eval::count32(expr, environment))
     }
 
-    /// Evaluates an expression to a number. Returns 0 while a document is loaded, and after a
-    /// mistake, which is reported.
+    /// Evaluates an expression to a number, an integer or a float. Returns 0 while a document is
+    /// loaded, and after a mistake, which is reported.
     pub fn number(&mut self, expr: &Expr) -> f64 {
         self.evaluate(0.0, |environment| eval::number(expr, environment))
     }
@@ -206,9 +214,9 @@ impl<'a> Lowering<'a> {
         self.evaluate(false, |environment| eval::boolean(expr, environment))
     }
 
-    /// Returns the word for the kind of the provided resource `name`, such as `spot` for a `light`.
-    /// Returns `None` if the provider does not know the name or the resource has no kind, and while
-    /// a document is loaded.
+    /// Returns the word for the kind of the resource `name` that the host's provider describes,
+    /// such as `spot` for a `light`. Returns `None` if the provider does not know the name or the
+    /// resource has no kind, and while a document is loaded.
     pub fn kind_of(&mut self, name: &str) -> Option<&'static str> {
         let environment = self.environment.as_mut()?;
         environment.kind(name).map(|kind| kind.word())

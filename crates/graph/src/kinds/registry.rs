@@ -31,14 +31,16 @@ pub(crate) struct Kind {
 type Described = fn(&mut schemars::SchemaGenerator) -> schemars::Schema;
 
 /// The pass kinds that documents may use, each with its tag: the word before the fields of a pass,
-/// `Raster` in `Raster(name: …)`.
+/// `Raster` in `Raster(name: …)`. The default has no kinds; [`standard`](Self::standard) has the
+/// usual ones.
 #[derive(Default)]
 pub struct Registry {
     kinds: Vec<Kind>,
 }
 
 impl Registry {
-    /// Creates a registry with the kinds `Raster`, `Fullscreen`, `Compute`, `Copy` and `Clear`.
+    /// Creates a registry with this crate's kinds `Raster`, `Fullscreen`, `Compute`, `Copy` and
+    /// `Clear`, under these tags.
     pub fn standard() -> Self {
         let mut registry = Self::default();
         macro_rules! register {
@@ -53,8 +55,8 @@ impl Registry {
     }
 
     /// Adds the pass kind `K`, which documents write as `tag(…)`. Replaces a kind that already has
-    /// this tag. The language's own entries (`Include`, `Group`, `Change`, `Remove`) cannot be
-    /// replaced.
+    /// this tag. A tag of the language's own entries (`Include`, `Group`, `Change`, `Remove`) has
+    /// no effect.
     pub fn register<K: PassKind + DeserializeOwned + 'static>(&mut self, tag: &'static str) {
         self.kinds.retain(|kind| kind.name != tag);
         let parse: Parse =

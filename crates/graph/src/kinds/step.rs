@@ -81,13 +81,15 @@ impl Stage for Names {
     type Canvas = Located<[u64; 2]>;
 }
 
-/// A texture or buffer that a step uses: one with a name, or a buffer that only the step's pass
-/// uses.
+/// A texture or buffer that a [`Step`] uses: one that the document can name, or a buffer that only
+/// the step's pass uses.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Operand {
-    /// A material or input of the document, a provided resource, or a part of one of these.
+    /// A material or input of the document, a resource that the host's provider describes, or a
+    /// part of one of these.
     Named(Reference),
-    /// A buffer that only this pass uses.
+    /// A buffer that only this pass uses, which [`Lowering::scratch`](crate::Lowering::scratch) has
+    /// added.
     Scratch(Scratch),
 }
 
@@ -109,14 +111,17 @@ impl From<Scratch> for Operand {
     }
 }
 
-/// Number of threads or workgroups of a dispatch.
+/// Number of threads or workgroups of a [`Dispatch`].
 #[derive(Clone, Debug, PartialEq)]
 pub enum Threads {
-    /// This many threads in one dimension, rounded up to whole workgroups. If the device does not
-    /// allow so many workgroups in x, they are spread over x and y. The index of a thread is then
-    /// `(workgroup.y * num_workgroups.x + workgroup.x) * workgroup_size + local index`.
+    /// This many threads in one dimension, rounded up to whole workgroups: threads beyond the
+    /// number must return. If the device does not allow so many workgroups in x, they are spread
+    /// over x and y. The index of a thread is then `(workgroup_id.y * num_workgroups.x +
+    /// workgroup_id.x) * n + local_invocation_index`, where n is the number of threads in a
+    /// workgroup.
     Items(u64),
-    /// This many threads in x, y and z, rounded up to whole workgroups in each direction.
+    /// This many threads in x, y and z, rounded up to whole workgroups in each direction: threads
+    /// beyond the numbers must return.
     Texels([u64; 3]),
     /// This many workgroups in x, y and z.
     Groups([u32; 3]),
@@ -132,17 +137,19 @@ pub enum Step<S: Stage> {
     Dispatch(Dispatch<S>),
     /// A copy of a texture, a buffer or a part of one.
     Copy {
-        /// Texture or buffer that is copied from.
+        /// Texture, buffer, or part of one, that is copied from.
         from: S::Operand,
-        /// Texture or buffer that is copied to, of the same format and size as `from`.
+        /// Texture, buffer, or part of one, that is copied to: of the same format and size in
+        /// texels as `from`, or of the same number of bytes.
         to: S::Operand,
     },
     /// A clear of a texture, a buffer or a part of one.
     Clear {
-        /// Texture or buffer that is cleared.
+        /// Texture, buffer, or part of one, that is cleared.
         target: S::Operand,
-        /// Red, green, blue and alpha of a colour texture; depth, then stencil, of a depth or
-        /// stencil texture. All zero for a buffer, which can be cleared to nothing else.
+        /// Red, green, blue and alpha of a colour texture, whole numbers for an integer format; for
+        /// a depth or stencil texture the depth in the first number, the stencil in the second. All
+        /// zero for a buffer, which can be cleared to nothing else.
         value: [f64; 4],
     },
     /// Work of the CPU, for which the frame waits.
@@ -163,25 +170,30 @@ impl<S: Stage> Step<S> {
 /// A shader of a draw or dispatch, by name, with its entry points, constants and bindings.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Program {
-    /// Name of the WGSL file without folder and ending. A step whose program has `None` is refused.
+    /// Name of the program's WGSL file without folder and ending. A program needs a shader:
+    /// planning reports an error for `None`, the default.
     pub shader: Option<Located<String>>,
-    /// Modules that replace others in the shader's imports: pairs of the module that an `#import`
-    /// names and the module that is imported instead.
+    /// Modules that replace others in the shader's imports: pairs of the path that an `#import`
+    /// names and the path of the module that is imported instead.
     pub imports: Vec<(String, String)>,
-    /// Name of the vertex entry point; `None` takes the only one in the shader's file.
+    /// Name of the vertex entry point. `None` takes the only one in the shader; planning reports an
+    /// error if there are several, or none where a draw needs it.
     pub vertex: Option<Located<String>>,
-    /// Name of the fragment entry point; `None` takes the only one in the shader's file.
+    /// Name of the fragment entry point. `None` takes the only one in the shader; planning reports
+    /// an error if there are several. A draw without colour attachments takes the only one without
+    /// colour outputs, if there is one.
     pub fragment: Option<Located<String>>,
-    /// True for a draw without a fragment stage, even if the file has fragment entry points.
+    /// True for a draw without a fragment stage, even if the shader has fragment entry points.
     pub no_fragment: bool,
-    /// Name of the compute entry point; `None` takes the only one in the shader's file.
+    /// Name of the compute entry point. `None` takes the only one in the shader; planning reports
+    /// an error if there are several, or none for a dispatch.
     pub compute: Option<Located<String>>,
     /// Values of pipeline-overridable constants by name. A constant that is not listed gets the
-    /// value that the pass's entry sets for it, or else the value of the param or named expression
-    /// of the same name.
+    /// value that the pass's entry sets for it (`set`), or else the value of the param or named
+    /// expression of the same name, or else the shader's default.
     pub constants: Vec<(String, f64)>,
     /// Names of shader globals, each with the resource that is bound to it. A global that is not
-    /// listed is bound to the resource of the same name.
+    /// listed is bound to the resource of the same name, in which dots are underscores.
     pub bind: Vec<(Located<String>, Operand)>,
 }
 
@@ -206,28 +218,29 @@ impl Program {
 /// A render pass with one draw call, a [`Step`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Draw<S: Stage> {
-    /// Shader with the vertex and fragment entry points.
+    /// Shader of the draw, with the vertex and fragment entry points.
     pub program: S::Program,
-    /// True if the vertex stage is a built-in triangle over the whole target instead of an entry
-    /// point of the program.
+    /// True if the draw's vertex stage is a built-in triangle over the whole target instead of an
+    /// entry point of the program.
     pub fullscreen: bool,
-    /// Colour attachments; the index is the fragment shader's `@location`.
+    /// Colour attachments of the draw; the index in the list is the fragment shader's `@location`.
     pub colors: Vec<ColorTarget<S>>,
-    /// Depth attachment; `None` for a draw without a depth test.
+    /// Depth attachment of the draw; `None` for a draw without a depth test.
     pub depth: Option<DepthTarget<S>>,
-    /// Stencil attachment; `None` for a draw without a stencil test. If there is a depth
-    /// attachment, too, both are the same texture.
+    /// Stencil attachment of the draw; `None` for a draw without a stencil test. If there is a
+    /// depth attachment, too, both are the same texture.
     pub stencil: Option<StencilTarget<S>>,
     /// Target of a draw without attachments, whose fragment shader writes buffers or storage
-    /// textures: width and height in texels before linking, afterwards a texture of that size that
-    /// is never read. `None` for a draw with attachments.
+    /// textures: at the stage [`Names`] its width and height in texels, at the stage
+    /// [`Ids`](crate::Ids) a texture of that size that is never read. `None` for a draw with
+    /// attachments.
     pub canvas: Option<S::Canvas>,
-    /// Viewport and scissor rectangle in texels of the target: x and y of its upper left corner,
-    /// width, height. `None` draws to the whole target.
+    /// Viewport and scissor rectangle of the draw in texels of the target: x and y of its upper
+    /// left corner, width, height. `None` draws to the whole target.
     pub area: Option<[u32; 4]>,
-    /// Numbers of vertices and instances.
+    /// Numbers of vertices and instances of the draw, as numbers or in a buffer.
     pub call: DrawCall<S>,
-    /// Primitive topology, and winding and culling of triangles.
+    /// Primitive topology of the draw, and winding and culling of its triangles.
     pub primitive: wgt::PrimitiveState,
 }
 
@@ -237,7 +250,7 @@ pub struct Draw<S: Stage> {
 pub enum DrawCall<S: Stage> {
     /// Numbers that are known when the graph is planned.
     Direct {
-        /// Number of vertices.
+        /// Number of vertices of each instance.
         vertices: u32,
         /// Number of instances.
         instances: u32,
@@ -273,7 +286,7 @@ impl<S: Stage> DrawCall<S> {
 /// A colour attachment of a [`Draw`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColorTarget<S: Stage> {
-    /// Texture that is drawn to: one mip of one layer.
+    /// Texture that the draw writes colours to: one mip of one layer or slice.
     pub target: S::Attachment,
     /// Texture that a multisampled `target` is resolved into after the draw; `None` if it is not
     /// resolved.
@@ -284,19 +297,20 @@ pub struct ColorTarget<S: Stage> {
     /// Blending of the drawn colour with the colour in the target; `None` replaces the colour in
     /// the target.
     pub blend: Option<wgt::BlendState>,
-    /// Colour channels that are written.
+    /// Colour channels that the draw writes; the others keep their content.
     pub write: wgt::ColorWrites,
 }
 
 /// A depth attachment of a [`Draw`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct DepthTarget<S: Stage> {
-    /// Texture that is drawn to: one mip of one layer.
+    /// Texture that the draw tests and writes depths in: one mip of one layer or slice.
     pub target: S::Attachment,
     /// Depth, from 0 to 1, that the target is cleared to before the draw; `None` keeps the target's
     /// content.
     pub clear: Option<f32>,
-    /// Depth test: comparison of a fragment's depth with the depth in the target.
+    /// Depth test: a fragment passes if its depth stands in this relation to the depth in the
+    /// target, with `Less` if it is less.
     pub compare: wgt::CompareFunction,
     /// True if fragments that pass the depth test write their depth.
     pub write: bool,
@@ -307,30 +321,32 @@ pub struct DepthTarget<S: Stage> {
 /// A stencil attachment of a [`Draw`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct StencilTarget<S: Stage> {
-    /// Texture that is drawn to: one mip of one layer.
+    /// Texture that the draw tests and writes stencil values in: one mip of one layer or slice.
     pub target: S::Attachment,
-    /// Stencil value that the target is cleared to before the draw; `None` keeps the target's
-    /// content.
+    /// Stencil value, from 0 to 255, that the target is cleared to before the draw; `None` keeps
+    /// the target's content.
     pub clear: Option<u32>,
-    /// Stencil tests and operations of front and back faces.
+    /// Stencil tests and operations of the draw for front and back faces, with the bits that are
+    /// read and written.
     pub state: wgt::StencilState,
-    /// Value that the stencil tests compare with, and that `Replace` writes.
+    /// Value that the stencil tests compare with, and that the operation `Replace` writes.
     pub reference: u32,
 }
 
 /// A compute pass with one dispatch, a [`Step`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dispatch<S: Stage> {
-    /// Shader with the compute entry point.
+    /// Shader of the dispatch, with the compute entry point.
     pub program: S::Program,
-    /// Numbers of workgroups.
+    /// Numbers of workgroups of the dispatch in x, y and z, as numbers or in a buffer.
     pub groups: Groups<S>,
 }
 
-/// Numbers of workgroups of a [`Dispatch`].
+/// Numbers of workgroups of a [`Dispatch`] in x, y and z.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Groups<S: Stage> {
-    /// Numbers that are known when the graph is planned: workgroups in a plan, [`Threads`] before.
+    /// Numbers that are known when the graph is planned: numbers of workgroups at the stage
+    /// [`Ids`](crate::Ids), [`Threads`] at the stage [`Names`].
     Direct(S::Size),
     /// Numbers of workgroups in x, y and z that the GPU reads from this buffer, a u32 each.
     Indirect(S::Arguments),

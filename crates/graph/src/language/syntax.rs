@@ -3,8 +3,8 @@
 use super::{name::Name, value::Value};
 use crate::source::span::{Located, Span};
 
-/// A parsed expression, whose value is a number, size, vector, bool, word or format:
-/// `"ceil_div(viewport.size, 2)"`. docs/authoring.md has the grammar.
+/// A parsed expression of a document, whose value ([`Value`]) is a number, size, vector, bool, word
+/// or format: `"ceil_div(viewport.size, 2)"`. docs/authoring.md has the grammar.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expr {
     pub(crate) kind: ExprKind,
@@ -227,7 +227,7 @@ pub(crate) enum Leaf<'a> {
 }
 
 impl<'a> Leaf<'a> {
-    /// Returns the leaf's name if it may name a param or a value; `None` for other leaves.
+    /// Returns the leaf's name if it may name a param or a named value; `None` for other leaves.
     pub fn named(&self) -> Option<&'a str> {
         match self {
             Self::Param(name) => Some(name),

@@ -41,14 +41,16 @@ impl fmt::Display for Scalar {
     }
 }
 
-/// A word as the value of an expression: a word of a `Choice` param, or of the kind of a provided
-/// resource. Two words are equal if their field `word` is equal.
+/// A word as the value of an expression: a word of a [`Choice`](crate::ParamType::Choice) param, or
+/// the word for the kind of a resource that the host's provider describes, such as `spot`. Two
+/// words are equal if their fields `word` are equal.
 #[derive(Clone, Debug)]
 pub struct Word {
-    /// The word itself.
+    /// The word itself, such as `spot`.
     pub word: Name,
-    /// All words of the `Choice` param, or of the kinds of a provided resource, that the value
-    /// comes from; `None` if the word is written in the expression.
+    /// All words of the [`Choice`](crate::ParamType::Choice) param, or for the kinds of the
+    /// provider's resource, that the value comes from, in the order of their numbers; `None` if the
+    /// word is written in the expression.
     pub of: Option<Arc<[Name]>>,
 }
 
@@ -58,17 +60,18 @@ impl PartialEq for Word {
     }
 }
 
-/// Value of an expression.
+/// Value of an expression ([`Expr`](crate::Expr)) in a document.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     /// An integer or a float.
     Scalar(Scalar),
     /// A boolean.
     Bool(bool),
-    /// A word of a [`Choice`](crate::ParamType::Choice) param, or of the kind of a provided
-    /// resource.
+    /// A word of a [`Choice`](crate::ParamType::Choice) param, or the word for the kind of a
+    /// resource that the host's provider describes.
     Word(Word),
-    /// Several numbers: a size, with width and height first, or a vector.
+    /// Several numbers: a size, which is width, height and, for a 3D texture, depth in texels, or a
+    /// vector with its components x, y, z, w.
     List(Vec<Scalar>),
     /// The format of a texture.
     Format(wgt::TextureFormat),

@@ -309,6 +309,9 @@ pub(super) fn clear_value(
     let is_stencil = |v: &f64| v.fract() == 0.0 && (0.0..=255.0).contains(v);
     if format.is_combined_depth_stencil_format() && is_stencil(&value[1]) {
         channels = &value[..1];
+    } else if format.has_stencil_aspect() && !format.has_depth_aspect() {
+        // A single number stands in all four; of two the second is the stencil.
+        channels = &value[1..2];
     }
     let (fits, expected): (fn(&f64) -> bool, _) = match scalar_of(format, TextureAspect::All) {
         _ if format.is_combined_depth_stencil_format() => (

@@ -38,7 +38,8 @@ struct Copied {
 }
 
 impl Layouts {
-    /// Adds the layout that a shader declares for a part of a buffer by a global.
+    /// Adds the layout that a shader declares, by the global `global`, for the part `part` of the
+    /// buffer `id`. A global that is not a buffer is ignored.
     pub fn see(&mut self, id: ResourceId, part: &SubresourceRange, global: &Global) {
         let (fixed, stride, layout, uniform) = match &global.class {
             Class::Storage {
@@ -91,8 +92,8 @@ impl Layouts {
         }));
     }
 
-    /// Returns every buffer of the graph with its size by id, and the mistakes of buffers whose
-    /// size cannot be found.
+    /// Returns every buffer of the plan, by id, with its size, item stride and content, and the
+    /// mistakes of buffers whose size cannot be found.
     pub fn sized(
         self,
         symbols: &SymbolTable<'_>,

@@ -23,22 +23,23 @@ use std::collections::BTreeSet;
 
 /// All passes of a graph after linking, with its resources.
 pub(crate) struct Linked<'a> {
-    /// Resources of the graph, and the meanings of names.
+    /// Resources of the graph, with their sizes, and the meanings of names.
     pub symbols: SymbolTable<'a>,
     /// The linked passes and captures, in the order of the documents.
     pub passes: Vec<LinkedPass>,
-    /// Instance of the document that each pass belongs to; `None` for a capture.
+    /// Use of a document (the loaded one or an include) that each pass belongs to, parallel to
+    /// `passes`; `None` for a capture.
     pub instances: Vec<Option<InstanceId>>,
-    /// Index in `passes` of each pass, by its index before captures were added.
+    /// Index in `passes` of each pass of the documents, by its index before captures were added.
     pub numbers: Vec<usize>,
     /// Includes that are replaced by an earlier include of the same content.
     pub merged: Vec<Merge>,
-    /// Number of passes above the first mistake, `None` without a mistake. Writes below the mistake
-    /// are not known.
+    /// Number of passes above the first mistake; `None` without a mistake. Writes of passes below
+    /// the mistake are not known.
     pub first_invalid: Option<usize>,
-    /// Inputs and outputs of each instance of a document.
+    /// Inputs and outputs of each use of a document: of the loaded document and of every include.
     pub interfaces: Vec<Interface>,
-    /// Params and features that decide which entries exist.
+    /// Params and features that decide which entries of the documents exist.
     pub plan_inputs: PlanInputs,
 }
 
@@ -213,7 +214,8 @@ impl Linked<'_> {
         })
     }
 
-    /// True if the pass at index `pass` writes to a part of the resource `id`.
+    /// True if the pass at the index `pass` in `passes` writes to a part of the resource `id` that
+    /// overlaps `part`.
     pub fn writes(&self, pass: usize, id: ResourceId, part: &SubresourceRange) -> bool {
         let writes =
             |access: &Access| access.writes && access.resource == id && access.part.overlaps(part);

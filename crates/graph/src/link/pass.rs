@@ -16,7 +16,8 @@ use std::sync::Arc;
 pub struct PassId(pub(crate) usize);
 
 impl PassId {
-    /// Returns the index, counted from 0.
+    /// Returns the index of the pass in [`Plan::all_passes`](crate::Plan::all_passes), counted from
+    /// 0.
     pub fn index(self) -> usize {
         self.0
     }
@@ -30,17 +31,23 @@ pub const CAPTURE: &str = "Capture";
 #[derive(Clone, Debug)]
 pub struct LinkedPass {
     /// Full name with its place in the document: the name there, with the names of the groups and
-    /// named includes around the pass in front, `blur.x`; `material@pass` for a capture.
+    /// includes around the pass in front, `blur.x`, and the index of a repetition behind,
+    /// `fill[0]`. An include without a name counts by the name of its file. `material@pass` for a
+    /// capture.
     pub name: Located<String>,
-    /// Kind of the pass, as the document writes it, such as `Compute`; or [`CAPTURE`].
+    /// Kind of the pass, as the document writes it, such as `Compute`; [`CAPTURE`] for a pass that
+    /// planning added.
     pub kind: &'static str,
-    /// Work of the pass, in the order in which it is done.
+    /// Work of the pass (draws, dispatches, copies, clears, work for the CPU), in the order in
+    /// which it is done.
     pub steps: Vec<Step<Ids>>,
-    /// Every read and write of a resource by the steps, in the order of the steps.
+    /// Every read and write of a resource by the pass, in the order of its steps.
     pub accesses: Vec<Access>,
-    /// Frames in which the pass runs, if it is live.
+    /// Frames in which the pass runs, if it is [live](crate::Plan::live): needed by an output or
+    /// the host.
     pub run: Run,
-    /// Value of the expression in [`Run::When`]; true for every other [`Run`].
+    /// Value of the expression in [`Run::When`] with the plan's params; true for every other
+    /// [`Run`].
     pub enabled: bool,
 }
 
@@ -51,8 +58,9 @@ impl LinkedPass {
         self.kind == CAPTURE
     }
 
-    /// Iterates over the bytes of the `params` uniform of each step, in the order of the steps;
-    /// `None` for a step whose shader has no global `params`, and for one without a shader.
+    /// Iterates over the bytes of the `params` uniform of each step, one entry per step, in the
+    /// order of the steps. The uniform holds the values of params for the step's shader. `None` for
+    /// a step whose shader has no global `params`, and for one without a shader.
     pub fn params(&self) -> impl Iterator<Item = Option<&[u8]>> {
         self.steps.iter().map(|step| step.program()?.params())
     }
@@ -61,33 +69,37 @@ impl LinkedPass {
 /// One use of a resource, or of a part of it, by a step: a read, a write or both.
 #[derive(Clone, Debug)]
 pub struct Access {
-    /// Id of the resource that is used.
+    /// Id of the resource that the access reads or writes.
     pub resource: ResourceId,
-    /// Mips and layers of a texture, or items of a buffer, that are used.
+    /// Part of the resource that the access reads or writes: mips and layers of a texture, or items
+    /// of a buffer.
     pub part: SubresourceRange,
-    /// True if the step reads the part.
+    /// True if the access reads its [`part`](Self::part) of the resource.
     pub reads: bool,
-    /// True if the step writes the part.
+    /// True if the access writes its [`part`](Self::part) of the resource.
     pub writes: bool,
-    /// True if the step certainly overwrites every texel or byte of the part.
+    /// True if the access certainly overwrites every texel or byte of its [`part`](Self::part) of
+    /// the resource: as a clear, a copy or a cleared attachment does, or because the document
+    /// promises it (`overwrites`).
     pub fully_overwrites: bool,
-    /// True if a change of the resource's content is a reason for a pass with [`Run::OnChange`] to
-    /// run. False only for the uniform `frame` if the shader reads just its flags.
+    /// True if a change of the resource's content, of which the step uses something, is a reason
+    /// for a pass with [`Run::OnChange`] to run. False only for the uniform `frame` if the shader
+    /// reads just its flags.
     pub triggers: bool,
-    /// Usage that the resource must be created with for this use.
+    /// Usage that the resource must be created with on the device for this access.
     pub usage: Usage,
-    /// Place in the document or shader that causes the use, for messages.
+    /// Place in the document or shader that causes the access, for messages.
     pub span: Span,
-    /// Index of the step in [`LinkedPass::steps`].
+    /// Index in [`LinkedPass::steps`] of the step that makes the access.
     pub step: usize,
 }
 
 /// Usage that one [`Access`] needs the resource to be created with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Usage {
-    /// Usage of a texture.
+    /// Usage of a texture, such as `TEXTURE_BINDING`.
     Texture(wgt::TextureUsages),
-    /// Usage of a buffer.
+    /// Usage of a buffer, such as `STORAGE`.
     Buffer(wgt::BufferUsages),
     /// No usage: the resource is a sampler, an acceleration structure or work for the CPU.
     None,
@@ -112,27 +124,28 @@ impl Stage for Ids {
 /// attachments.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Attachment {
-    /// The texture, with the one mip and one layer or slice that is drawn to.
+    /// The attached texture, with the one mip and one layer or slice that is drawn to.
     pub target: Target,
-    /// Format of the texture.
+    /// Format of the attached texture.
     pub format: wgt::TextureFormat,
-    /// Number of samples of each texel; 1 without multisampling.
+    /// Number of samples of each texel of the attached texture; 1 without multisampling.
     pub samples: u32,
 }
 
 /// A shader of a draw or dispatch, with its entry points, constants and bindings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinkedProgram {
-    /// The shader, which holds the naga module and its reflection.
+    /// The program's shader, which holds the naga module and its reflection.
     pub shader: Arc<Shader>,
     /// Indices of the entry points in `shader.module().entry_points`: for a draw the vertex and
     /// then the fragment entry point, as far as the draw has them; for a dispatch the compute entry
     /// point.
     pub entries: Vec<usize>,
     /// Values of pipeline-overridable constants by the key that wgpu expects: the constant's name,
-    /// or its `@id`.
+    /// or its `@id` in decimal. A constant that is not listed keeps the shader's default.
     pub constants: Vec<(String, f64)>,
-    /// Bindings of the shader's globals that the entry points use.
+    /// Bindings of the shader's globals that the entry points use, in the order of their
+    /// declaration. Other globals are not bound.
     pub bindings: Vec<LinkedBinding>,
 }
 
@@ -145,8 +158,8 @@ impl LinkedProgram {
         entries.find(|entry| points[*entry].stage == stage)
     }
 
-    /// Returns the bytes of the `params` uniform; `None` if the entry points use no global
-    /// `params`.
+    /// Returns the bytes of the `params` uniform, which holds the values of params for this
+    /// program; `None` if the entry points use no global `params`.
     pub fn params(&self) -> Option<&[u8]> {
         self.bindings.iter().find_map(|it| match &it.target {
             BindTarget::Params(block) => Some(&block.bytes[..]),
@@ -158,24 +171,24 @@ impl LinkedProgram {
 /// One binding of a program: its numbers, and the resource or bytes bound to it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinkedBinding {
-    /// Index of the bind group, counted from 0.
+    /// Index of the bind group that holds the binding, counted from 0 (`@group`).
     pub group: u32,
-    /// Number of the binding in its group, `@binding`.
+    /// Number of the binding in its group (`@binding`), counted from 0.
     pub binding: u32,
-    /// Resource or bytes that are bound.
+    /// Resource, part of one, or bytes that the binding gives the shader.
     pub target: BindTarget,
     /// Type of the binding in the bind group layout.
     pub ty: wgt::BindingType,
-    /// Shader stages that use the binding.
+    /// Shader stages of the program whose entry points use the binding.
     pub visibility: wgt::ShaderStages,
 }
 
 /// Resource or bytes that a [`LinkedBinding`] binds.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BindTarget {
-    /// A buffer, or a range of its items.
+    /// A buffer, or a range of its items, bound as a uniform or storage buffer.
     Buffer(Target),
-    /// A texture or a part of one.
+    /// A texture or a part of one, bound as a sampled or storage texture.
     Texture {
         /// The texture, with the mips and layers that are bound.
         target: Target,
@@ -186,7 +199,8 @@ pub enum BindTarget {
     Sampler(ResourceId),
     /// The acceleration structure with this id.
     AccelerationStructure(ResourceId),
-    /// The `params` uniform, a buffer that the executor makes and fills with these bytes.
+    /// The `params` uniform: a buffer that the executor, which runs the plan on a device, makes and
+    /// fills with these bytes.
     Params(Block),
 }
 
@@ -195,7 +209,8 @@ pub enum BindTarget {
 /// upload, but not another binding.
 #[derive(Clone, Debug, Default)]
 pub struct Block {
-    /// Content of the uniform.
+    /// Content of the uniform, in the layout of the shader's struct, numbers in little-endian
+    /// order.
     pub bytes: Vec<u8>,
     /// Members whose value is a param of the root document, unchanged: the param's name, and the
     /// member's offset in bytes.

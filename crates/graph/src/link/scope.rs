@@ -33,11 +33,11 @@ use std::{collections::BTreeSet, sync::Arc};
 /// writes and layouts found so far.
 pub(super) struct PassScope<'a> {
     symbols: SymbolTable<'a>,
-    /// Layouts that shaders declare for buffers, so far.
+    /// Layouts that shaders of the passes linked so far declare for buffers.
     pub layouts: Layouts,
-    /// Full name of the pass.
+    /// Full name of the pass that is being linked, with its place.
     pub pass: Located<String>,
-    /// Reads and writes of the pass so far.
+    /// Reads and writes by the steps of the pass that were linked so far.
     pub accesses: Vec<Access>,
     position: Position,
     /// Buffers that only the pass uses; for a capture, its source and destination.
@@ -45,7 +45,8 @@ pub(super) struct PassScope<'a> {
     set: &'a [(Located<String>, Expr)],
     inherited_bind: Vec<Inherited<'a, Reference>>,
     inherited_set: Vec<Inherited<'a, Expr>>,
-    /// The shader that has the pass's own bindings.
+    /// Name of the shader that the pass's own `bind` and `set` are for; `None` before the first
+    /// pass.
     pub own_shader: Option<Located<String>>,
     /// Names of the bindings and values that shaders of the pass have asked for.
     asked: BTreeSet<String>,
@@ -79,7 +80,7 @@ impl<'a> PassScope<'a> {
         }
     }
 
-    /// Begins the linking of a pass.
+    /// Begins the linking of `pass`, whose inherited bindings and values are moved here.
     pub fn enter(&mut self, pass: &mut LoweredPass<'a>) {
         self.position = pass.flat.position;
         let scratch = pass.scratch.iter().map(|id| self.symbols.whole(*id));
@@ -104,7 +105,7 @@ impl<'a> PassScope<'a> {
         &self.symbols
     }
 
-    /// Returns the mistakes so far.
+    /// Returns the collection of the mistakes reported so far, to add to.
     pub fn reports(&mut self) -> &mut Reports {
         &mut self.symbols.reports
     }
@@ -113,18 +114,20 @@ impl<'a> PassScope<'a> {
         self.symbols.reports.report(mistake)
     }
 
-    /// Reports that the adapter cannot do something that the graph needs: an error, or a warning if
-    /// the adapter is not known.
+    /// Reports that the device cannot do something that the graph needs: an error, or a warning and
+    /// `Ok` if the device is not known.
     pub fn unsupported(&mut self, mistake: impl Into<Diagnostic>) -> Reported<()> {
         self.symbols.reports.unsupported(mistake)
     }
 
-    /// Reports the mistake of a result, if it has one.
+    /// Returns the value of `result`, or reports its mistake and returns the proof of that.
     pub fn check<T>(&mut self, result: Result<T, impl Into<Diagnostic>>) -> Reported<T> {
         self.symbols.reports.check(result)
     }
 
-    /// Adds a read or write of `target` by a step to the pass's accesses.
+    /// Adds a use of `target` by the current step to the pass's accesses: true in the triple if the
+    /// step reads the part, writes it, and overwrites all of it. `span` is the place that causes
+    /// the use.
     pub fn access(
         &mut self,
         target: &Target,
@@ -145,7 +148,8 @@ impl<'a> PassScope<'a> {
         });
     }
 
-    /// Adds a resource that no document names.
+    /// Adds a resource of the graph that no document names, such as the copy for a capture. Returns
+    /// a target that holds all of it.
     pub fn add(&mut self, name: String, kind: ResourceKind) -> Target {
         let id = self.symbols.add(Resource::new(name, kind, Origin::Own));
         self.symbols.whole(id)
@@ -193,8 +197,8 @@ impl<'a> PassScope<'a> {
         }
     }
 
-    /// Checks that a resource may be written: last frame's versions and content of the document are
-    /// read-only.
+    /// Checks that the resource `id` may be written. Content of the frame before (`.previous`) and
+    /// content that the document gives are read-only.
     pub fn writable(&mut self, id: ResourceId, span: &Span) -> Reported<()> {
         let Resource { name, origin, .. } = self.get(id);
         let span = span.clone();
@@ -234,7 +238,8 @@ impl<'a> PassScope<'a> {
         }
     }
 
-    /// Finds the target of a shader's global: bound by a group, or else of the same name.
+    /// Returns the target of a shader's global that the pass itself does not bind: bound by a group
+    /// around the pass, or else of the same name.
     pub fn target(&mut self, global: &Global) -> Reported<Target> {
         let mut said = self.inherited_bind.iter();
         if let Some(&said) = said.find(|said| said.name.value == global.name) {
@@ -319,14 +324,15 @@ impl<'a> PassScope<'a> {
         Some(value.map(|value| Asked::Param(bound.param.clone().into(), value, bound.root.clone())))
     }
 
-    /// Returns the document's param that a shader spells `name`.
+    /// Returns the param of the pass's document that a shader finds under the WGSL identifier
+    /// `name`; `None` if there is no such param.
     pub fn param(&self, name: &str) -> Option<&BoundParam> {
         let instance = self.symbols.scopes.document(self.position.scope);
         instance.params.wgsl_name(name)
     }
 
-    /// Returns the words of the document's `Choice` param that a shader spells `name`; `None` for
-    /// any other param.
+    /// Returns the words of the `Choice` param that a shader finds under the WGSL identifier
+    /// `name`, in the order of their numbers; `None` for any other param or name.
     pub fn words(&self, name: &str) -> Option<&[Name]> {
         match &self.param(name)?.param.ty {
             ParamType::Choice(words) => Some(words),
@@ -334,7 +340,7 @@ impl<'a> PassScope<'a> {
         }
     }
 
-    /// Returns the names of the document's params.
+    /// Iterates over the names of the params of the pass's document.
     pub fn params(&self) -> impl Iterator<Item = &str> {
         let instance = self.symbols.scopes.document(self.position.scope);
         instance.params.names()
@@ -347,7 +353,7 @@ impl<'a> PassScope<'a> {
         Some(f64::from(kind.number))
     }
 
-    /// Reports each value that the entry sets (`set`) and none of its shaders takes.
+    /// Reports each value that the pass's entry sets (`set`) and none of its shaders takes.
     pub fn unasked(&mut self) -> Reported<()> {
         let mut wrong = None;
         for (name, _) in self.set {

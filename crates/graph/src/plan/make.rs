@@ -56,15 +56,16 @@ pub(super) struct Planned {
     pub readable: Vec<(String, Target)>,
     pub culled: Vec<CulledPass>,
     pub warnings: Vec<Diagnostic>,
-    /// Params of the root document on which the plan depends. The values of all other params only
-    /// stand in uniforms.
+    /// Params of the loaded document of which another value may need another plan. The values of
+    /// all other params stand only in the bytes of `params` uniforms.
     pub depends_on: BTreeSet<String>,
 }
 
-/// Name of a pass that a plan does not run, with the reason.
+/// A pass that a plan does not run because nothing needs its results, with the reason.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CulledPass {
-    /// Full name of the pass.
+    /// Full name of the pass ([`LinkedPass::name`]), with the names of the groups and includes
+    /// around it in front: `blur.x`.
     pub name: String,
     /// Reason for which the pass does not run, as a clause for messages: "it writes nothing".
     pub reason: String,

@@ -11,24 +11,29 @@ use crate::{
 /// Greatest number of allocations that a memory table lists; small ones rarely matter.
 const ROWS: usize = 12;
 
-/// Memory that one of the graph's own textures or buffers takes.
+/// Memory that one texture or buffer of the graph takes on the device; the host's resources have no
+/// entry.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MemoryEntry {
-    /// Full name of the material, or of a buffer that only one pass uses.
+    /// Full name of the material, or of a buffer or texture that only one pass uses
+    /// ([`Resource::name`]).
     pub name: String,
-    /// Format of a texture; `None` for a buffer.
+    /// Format of the texture that takes the memory; `None` for a buffer.
     pub format: Option<wgt::TextureFormat>,
-    /// Width and height in texels of a texture's mip 0; for a buffer `[n, 1]` with its size of n
-    /// bytes.
+    /// Width and height in texels of mip 0 of the texture that takes the memory; for a buffer `[n,
+    /// 1]`, where n is its size in bytes.
     pub size: [u32; 2],
-    /// Number of mip levels of a texture; 1 for a buffer.
+    /// Number of mip levels of the texture that takes the memory; 1 for a buffer.
     pub mips: u32,
-    /// Number of array layers of a texture, or of slices of mip 0 of a 3D texture; 1 for a buffer.
+    /// Number of array layers of the texture that takes the memory, or of slices of mip 0 of a 3D
+    /// texture; 1 for a buffer.
     pub layers: u32,
-    /// Size in bytes of all texels or items, without padding that a driver adds. Doubled if a pass
-    /// also reads the resource as it was in the frame before (`.previous`).
+    /// Memory in bytes that all texels or items take, without padding that a driver adds; the whole
+    /// size also if the memory is shared. Doubled if a pass also reads the resource as it was in
+    /// the frame before (`.previous`).
     pub bytes: u64,
-    /// Full names of the other materials that use the same memory at other times of the frame.
+    /// Full names of the other materials that use the same memory at other times of the frame, in
+    /// the order of their first use; empty if the memory is not shared.
     pub shared_with: Vec<String>,
 }
 
@@ -177,7 +182,8 @@ impl Memory<'_> {
         [text::cut(&names, 40), size + &versions, format]
     }
 
-    /// Returns the error for a plan that takes more memory than `limit`.
+    /// Returns the error for a plan whose textures and buffers take more than `limit` bytes
+    /// together; `None` if they do not, or without a limit. The error is reported at `place`.
     pub fn check(&self, limit: Option<u64>, place: Span) -> Option<OutputError> {
         let takes = self.bytes();
         let limit = limit.filter(|limit| takes > *limit)?;

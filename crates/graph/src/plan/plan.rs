@@ -47,54 +47,62 @@ impl Plan {
     }
 
     /// Returns every resource that a pass may name; [`ResourceId::index`] is the index in this
-    /// list. Resources that no live pass uses are in the list, but are not created.
+    /// list. Resources that no [live](Self::live) pass uses are in the list, but are not created on
+    /// the device.
     pub fn resources(&self) -> &[Resource] {
         &self.0.resources
     }
 
     /// Returns the resource with this id, which must be an id of this plan.
+    ///
+    /// # Panics
+    /// If the plan has no resource of this index.
     pub fn resource(&self, id: ResourceId) -> &Resource {
         &self.0.resources[id.0]
     }
 
-    /// Iterates over the resources that live passes use, in the order of
-    /// [`resources`](Self::resources). Only these are created.
+    /// Iterates over the resources that [live](Self::live) passes use, in the order of
+    /// [`resources`](Self::resources). Only these are created on the device.
     pub fn used(&self) -> impl Iterator<Item = &Resource> {
         let used = self.0.schedule.lifetimes.keys();
         used.map(|id| self.resource(*id))
     }
 
-    /// Returns every pass in the order of the document, those that do not run included.
-    /// [`PassId::index`] is the index in this list.
+    /// Returns every pass in the order of the document, with the passes that planning adds for
+    /// captures, and those that do not run included. [`PassId::index`] is the index in this list.
     pub fn all_passes(&self) -> &[LinkedPass] {
         &self.0.passes
     }
 
     /// Returns the pass with this id, which must be an id of this plan.
+    ///
+    /// # Panics
+    /// If the plan has no pass of this index.
     pub fn pass(&self, id: PassId) -> &LinkedPass {
         &self.0.passes[id.0]
     }
 
-    /// Iterates over the live passes with their steps, in the order in which they run.
+    /// Iterates over the live passes, those that an output, a capture or the host needs, in the
+    /// order in which they run.
     pub fn live(&self) -> impl Iterator<Item = &LinkedPass> + Clone {
         self.0.schedule.passes.iter().map(|id| self.pass(*id))
     }
 
-    /// Returns the order of the live passes, with the lifetimes, run conditions and allocations
-    /// that follow from it.
+    /// Returns the order of the [live](Self::live) passes, with the lifetimes of resources, run
+    /// conditions and allocations that follow from it.
     pub fn schedule(&self) -> &Schedule {
         &self.0.schedule
     }
 
-    /// Returns the name of every output and capture that can be read back, with the texture or
-    /// buffer, or part of it, that holds its content: first the outputs in the order of the
-    /// document, then the captures in the order of the request.
+    /// Returns the name of every output and capture that can be read back after a frame, with the
+    /// texture or buffer, or part of it, that holds its content: first the outputs in the order of
+    /// the document, then the captures in the order of the request.
     pub fn readable(&self) -> &[(String, Target)] {
         &self.0.readable
     }
 
     /// Finds the dependences between the passes for which `runs` returns true, as if the plan had
-    /// no other passes.
+    /// no other passes: the pairs of passes whose order matters.
     pub fn dependences(&self, runs: impl Fn(PassId) -> bool) -> Dependences {
         let view = GraphView {
             passes: &self.0.passes,
@@ -103,9 +111,9 @@ impl Plan {
         dependences(view, runs)
     }
 
-    /// Returns the named expressions in the section `values` of the documents: pairs of full name
-    /// and result, the result as text in the language of documents. A value that nothing uses is
-    /// not listed.
+    /// Returns the named expressions in the section `values` of the documents, in the order of the
+    /// documents: pairs of full name (with the names of includes in front) and result, the result
+    /// as text in the language of documents. A value that nothing uses is not listed.
     pub fn named_values(&self) -> &[(String, String)] {
         &self.0.named_values
     }
@@ -116,35 +124,38 @@ impl Plan {
         &self.0.request.imports
     }
 
-    /// Returns the [`grown`](crate::Request::grown) of the request: the number of items of growing
-    /// buffers, and of layers of growing textures, by full name of the material.
+    /// Returns the [`grown`](crate::Request::grown) of the request: the number of items that
+    /// growing buffers need, and of layers that growing textures need, by full name of the material
+    /// ([`Resource::name`]).
     pub fn grown(&self) -> &BTreeMap<String, u64> {
         &self.0.request.grown
     }
 
-    /// Returns the [`poison`](crate::Request::poison) of the request: the byte that the memory of a
-    /// resource is filled with before its first use in a frame; `None` if memory is not filled.
+    /// Returns the [`poison`](crate::Request::poison) of the request: the byte that the memory of
+    /// the graph's own resources is filled with before its first use in a frame; `None` if memory
+    /// is not filled.
     pub fn poison(&self) -> Option<u8> {
         self.0.request.poison
     }
 
     /// Returns true if the request imports a resource under this name, or its provider describes
-    /// one, even if no pass uses it.
+    /// one, such as `light`, even if no pass uses it.
     pub fn offers(&self, name: &str) -> bool {
         let request = &self.0.request;
         request.imports.contains_key(name) || request.provider.0.contains_key(name)
     }
 
-    /// Returns an entry for each texture and buffer that a live pass uses and the executor
-    /// allocates, with its size in memory, in the order of [`resources`](Self::resources). Imported
-    /// and provided resources are left out.
+    /// Returns an entry for each texture and buffer of the graph that a [live](Self::live) pass
+    /// uses, with its size in memory, in the order of [`resources`](Self::resources). Imported and
+    /// provided resources, which the host makes, are left out.
     pub fn memory(&self) -> Vec<MemoryEntry> {
         self.own_memory().entries()
     }
 
-    /// Returns the buffers and textures that live passes use and that may grow (`grow`), each with
-    /// its counter and its greatest number of items or layers. The device's limits may lower the
-    /// number that the document gives.
+    /// Returns the buffers and textures that [live](Self::live) passes use and that may grow
+    /// (`grow`), in the order of [`resources`](Self::resources), each with its counter and its
+    /// greatest number of items or layers. The device's limits may lower the number that the
+    /// document gives.
     pub fn growing(&self) -> Vec<(ResourceId, Growth)> {
         self.own_memory().growing(&self.0.request.limits)
     }
@@ -157,7 +168,7 @@ impl Plan {
     }
 
     /// Returns the number of bytes that sharing memory between resources saves, compared with an
-    /// allocation for each.
+    /// allocation for each resource.
     pub fn saved_bytes(&self) -> u64 {
         self.own_memory().saved_bytes()
     }
@@ -169,8 +180,9 @@ impl Plan {
         self.own_memory().table()
     }
 
-    /// Returns the number of textures or buffers that the executor makes for a resource: 2 if a
-    /// pass also reads it as it was in the frame before (`.previous`), otherwise 1.
+    /// Returns the number of textures or buffers that are made on the device for a resource of the
+    /// graph: 2, which take turns from frame to frame, if a pass also reads it as it was in the
+    /// frame before (`.previous`); otherwise 1.
     pub fn versions(&self, id: ResourceId) -> usize {
         self.own_memory().versions(id)
     }
@@ -189,9 +201,10 @@ impl Plan {
         Err(self.0.graph.diagnostics(reports.into_list()))
     }
 
-    /// Returns the names of the params that the request sets without effect: the value differs from
-    /// the param's default, but with the default the plan would have the same passes, and shaders
-    /// would read the same values. Plans the graph again for each param of the request.
+    /// Returns the names of the params that the request sets without effect, in alphabetical order:
+    /// the value differs from the param's default, but with the default the plan would have the
+    /// same passes, and shaders would read the same values. Plans the graph again for each param of
+    /// the request.
     pub fn idle_params(&self) -> Vec<&str> {
         let by_default = |name: &&String| {
             let others = self.with(|request| {
@@ -206,9 +219,9 @@ impl Plan {
         asked.filter(by_default).map(String::as_str).collect()
     }
 
-    /// Returns true if frames would do the same work with `value` for the param `name`: the same
-    /// passes, and the same values for shaders. Plans the graph again; returns false if that fails,
-    /// for example because the param cannot have this value.
+    /// Returns true if frames would do the same work with `value` for the param `name` as with this
+    /// plan: the same passes, and the same values for shaders. Plans the graph again; returns false
+    /// if that fails, for example because the param cannot have this value.
     pub fn is_same_with(&self, name: &str, value: ParamValue) -> bool {
         self.with_param(name, value)
             .is_ok_and(|other| self.does_the_same_as(&other))
@@ -224,9 +237,9 @@ impl Plan {
                 .eq(other.used().map(|it| &it.kind))
     }
 
-    /// Returns the names of the provided buffers that are bound by the passes that write the output
-    /// or capture called `output`. For example, if these passes bind a `camera`, depths in the
-    /// output are that camera's. Empty for an unknown name.
+    /// Returns the names of the buffers of the host's provider that are bound by the passes that
+    /// write the output or capture called `output`. For example, if these passes bind a `camera`,
+    /// depths in the output are that camera's. Empty for an unknown name.
     pub fn provided_behind(&self, output: &str) -> BTreeSet<&str> {
         let target = self.readable_target(output);
         let behind = |target| items::provided_behind(self.live(), target, &self.0.resources);
@@ -234,8 +247,9 @@ impl Plan {
     }
 
     /// Returns the layout of one item of the buffer that holds the output or capture called
-    /// `output`. Returns `None` for a texture or an unknown name, or if no live pass binds the
-    /// whole buffer with items of 32-bit numbers.
+    /// `output`, as a shader declares it. Returns `None` for a texture or an unknown name, or if no
+    /// [live](Self::live) pass binds the whole buffer with items of 32-bit numbers, at most 64 in
+    /// an item.
     pub fn item(&self, output: &str) -> Option<Item> {
         items::item_of(self.live(), self.readable_target(output)?)
     }
@@ -266,10 +280,10 @@ impl Plan {
         })
     }
 
-    /// Sets a param to another value without planning again, if
+    /// Sets the param `name` to `value` without planning again, if
     /// [`is_in_uniforms`](Self::is_in_uniforms) allows it; otherwise changes nothing and returns an
-    /// empty list. Returns the indices in [`Schedule::passes`] of the passes whose uniforms have
-    /// other bytes now and must be uploaded.
+    /// empty list. Returns the indices in [`Schedule::passes`] of the passes whose `params`
+    /// uniforms have other bytes now and must be uploaded to the device.
     pub fn set_in_uniforms(&mut self, name: &str, value: ParamValue) -> Vec<usize> {
         let Ok(param) = self.0.graph.param(name) else {
             return Vec::new();
@@ -287,7 +301,7 @@ impl Plan {
             .collect()
     }
 
-    /// Returns the name and kind of each live pass, in the order in which they run.
+    /// Returns the name and kind of each [live](Self::live) pass, in the order in which they run.
     pub fn passes(&self) -> Vec<PassSummary> {
         let summary = |pass: &LinkedPass| PassSummary {
             name: pass.name.value.clone(),
@@ -296,14 +310,15 @@ impl Plan {
         self.live().map(summary).collect()
     }
 
-    /// Returns the passes that do not run because no output needs them, each with the reason, in
-    /// the order of the document.
+    /// Returns the passes that do not run because no output, capture or host needs them, each with
+    /// the reason, in the order of the document. Entries whose `if` is false are no passes of the
+    /// plan and not listed.
     pub fn culled(&self) -> &[CulledPass] {
         &self.0.culled
     }
 
-    /// Returns the names of the provided resources that live passes bind, in the order of
-    /// [`resources`](Self::resources). The host needs to make only these.
+    /// Returns the names of the provider's resources that [live](Self::live) passes bind, in the
+    /// order of [`resources`](Self::resources). The host needs to make only these.
     pub fn provided(&self) -> Vec<&str> {
         let is_provided = |resource: &&Resource| {
             matches!(
@@ -318,8 +333,9 @@ impl Plan {
     }
 
     /// Returns true if the outputs may differ from frame to frame although the host changes
-    /// nothing: a live pass uses a resource with `keep`, reads a material of the graph as it was in
-    /// the frame before (`.previous`), or binds the uniform `frame`.
+    /// nothing: a [live](Self::live) pass uses a resource with `keep`, reads a material of the
+    /// graph as it was in the frame before (`.previous`), or binds the uniform `frame`, which holds
+    /// the frame's index and time.
     pub fn remembers(&self) -> bool {
         self.used().any(|resource| match resource.kind {
             _ if resource.keep => true,
@@ -358,11 +374,11 @@ impl Plan {
         self.with(|request| request.viewport = viewport)
     }
 
-    /// Returns a plan of the same graph with another value of the param `name`. This plan stays as
-    /// it is.
+    /// Returns a plan of the same graph with `value` for the param `name`, set or not before. This
+    /// plan stays as it is.
     ///
     /// # Errors
-    /// All mistakes of the graph with this value.
+    /// All mistakes of the graph with this value, such as an unknown name or a value out of range.
     pub fn with_param(&self, name: &str, value: ParamValue) -> Result<Self, Diagnostics> {
         self.with(|request| {
             request.params.insert(name.to_owned(), value);
@@ -371,7 +387,8 @@ impl Plan {
 
     /// Returns a plan of the same graph for a changed request. `change` gets a copy of this plan's
     /// request and may change several parts at once, such as the viewport and the imports that
-    /// depend on it. The descriptions of the provider stay, unless `change` sets another provider.
+    /// depend on it. The descriptions that the provider gave for this plan stay, unless `change`
+    /// sets another provider.
     ///
     /// # Errors
     /// All mistakes of the graph with the changed request.
@@ -385,7 +402,7 @@ impl Plan {
     }
 
     /// Returns the warnings that planning gave, in the order in which they were found; empty
-    /// without warnings.
+    /// without warnings. [`Graph::warnings`](crate::Graph::warnings) has those of loading.
     pub fn warnings(&self) -> &[Diagnostic] {
         &self.0.warnings
     }

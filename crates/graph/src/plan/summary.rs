@@ -7,14 +7,15 @@ use crate::{
     resource::{Resource, ResourceKind, Target},
 };
 
-/// Name and kind of a pass that runs.
+/// Name and kind of a pass that a plan runs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PassSummary {
-    /// Full name of the pass: the name in the document, with the names of the groups and named
-    /// includes around it in front, `blur.x`.
+    /// Full name of the pass: the name in the document, with the names of the groups and includes
+    /// around it in front, `blur.x`, and the index of a repetition behind, `fill[0]`. An include
+    /// without a name counts by the name of its file.
     pub name: String,
-    /// Kind of the pass, as the document writes it, such as `Compute`; or
-    /// [`CAPTURE`](crate::CAPTURE).
+    /// Kind of the pass, as the document writes it, such as `Compute`; [`CAPTURE`](crate::CAPTURE)
+    /// for a pass that planning added.
     pub kind: String,
 }
 
@@ -22,14 +23,16 @@ pub struct PassSummary {
 /// back after a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OutputSummary {
-    /// Name of the output, or of the capture ([`Capture::name`](crate::Capture::name)).
+    /// Name of the output, or of the capture ([`Capture::name`](crate::Capture::name)), by which it
+    /// is read back.
     pub name: String,
-    /// Format of a texture; `None` for a buffer.
+    /// Format of the texture that holds the output or capture; `None` for a buffer.
     pub format: Option<wgt::TextureFormat>,
-    /// Width and height in texels of the first mip of a texture that is read back; for a buffer
+    /// Width and height in texels of the first mip that is read back of a texture; for a buffer
     /// `[n, 1]`, where n is the number of bytes that are read back.
     pub size: [u32; 2],
-    /// Number of layers, or of slices of a 3D texture, that are read back; 1 for a buffer.
+    /// Number of layers of the output or capture, or of slices of a 3D texture, that are read back;
+    /// 1 for a buffer.
     pub layers: u32,
 }
 

@@ -24,7 +24,7 @@ pub fn cut(text: &str, characters: usize) -> String {
 }
 
 /// Formats a number of bytes in the largest unit in which it is at least 1: `B`, `KiB`, `MiB` or
-/// `GiB`.
+/// `GiB`, each 1,024 times the one before. It has one decimal, two for `GiB`, none for `B`.
 pub fn bytes(bytes: u64) -> String {
     match bytes {
         0..1024 => format!("{bytes} B"),

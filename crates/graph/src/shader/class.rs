@@ -58,9 +58,10 @@ impl TextureClass {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Member {
     pub name: String,
-    /// Offset from the start of the struct, in bytes.
+    /// Offset in bytes of the member from the start of the struct.
     pub offset: u64,
-    /// Scalar class and number of components; `None` for matrices, arrays and structs.
+    /// Scalar class and number of components (1 for a scalar) of the member's type; `None` for
+    /// matrices, arrays and structs.
     pub vector: Option<(ScalarClass, u32)>,
 }
 

@@ -21,8 +21,8 @@ struct ChoiceConstant {
 }
 
 impl ChoiceConstants {
-    /// Creates the constants of `params`. Also returns an error for each two words that give one
-    /// constant.
+    /// Creates the constants for the words of all `Choice` params in `params`. Also returns an
+    /// error for each two words that give constants of one name.
     pub fn new(params: &[Param]) -> (Self, Vec<ShaderError>) {
         let (mut constants, mut clashes) = (BTreeMap::<String, ChoiceConstant>::new(), Vec::new());
         for param in params {
@@ -47,8 +47,8 @@ impl ChoiceConstants {
         (Self(constants), clashes)
     }
 
-    /// Appends the constants that the shader's text uses without declaring them. Returns the names
-    /// of the constants that the text declares itself.
+    /// Appends to the shader's text the constants that it uses without declaring them. Returns the
+    /// names of the constants that the text declares itself.
     pub fn append(&self, source: &mut Expanded) -> Vec<&str> {
         let mut used: HashMap<&str, bool> = HashMap::new();
         for (word, before, is_outside) in identifiers(&source.text) {

@@ -30,22 +30,22 @@ const DEEPEST_IMPORT: usize = 64;
 /// Text of a shader with its imports in place.
 #[derive(Clone, Debug)]
 pub(crate) struct Expanded {
-    /// WGSL of the shader and of the modules that it imports.
+    /// WGSL of the shader, with the modules that it imports in the place of the import lines.
     pub text: String,
-    /// File of the shader itself.
+    /// File of the shader itself, without its imports.
     pub file: SourceFile,
     /// Consecutive pieces of `text`: where each begins, and the file and offset it came from.
     pieces: Vec<(usize, SourceFile, usize)>,
-    /// All `#import` lines of the shader and its modules.
+    /// All `#import` lines of the shader and its modules, in the order in which they were read.
     pub imports: Vec<ImportLine>,
 }
 
 /// An `#import` line of a shader, or of a module that it imports.
 #[derive(Clone, Debug)]
 pub(crate) struct ImportLine {
-    /// Path as it is written in the line.
+    /// Path as the line writes it, with the place of the line.
     pub asked: Located<String>,
-    /// Path of the module that the line names.
+    /// Path in the store of the module that the line names.
     pub path: Arc<str>,
     /// File that is imported: the module that the line names, or the module that replaces it.
     pub file: SourceFile,
@@ -54,7 +54,8 @@ pub(crate) struct ImportLine {
 }
 
 impl Expanded {
-    /// Maps a byte range of the expanded text to its place in the author's file.
+    /// Maps a byte range of the expanded text to its place in the file that it came from. A range
+    /// that spans several files is taken to lie in the first.
     pub fn locate(&self, range: Range<usize>) -> Span {
         let index = self
             .pieces
@@ -69,7 +70,8 @@ impl Expanded {
         }
     }
 
-    /// Maps a span of naga's to its place in the author's file; the begin if naga gives none.
+    /// Maps a span of naga's in the expanded text to its place in the file that it came from; the
+    /// start of the text if naga gives no span.
     pub fn place(&self, span: naga::Span) -> Span {
         self.locate(span.to_range().unwrap_or(0..0))
     }

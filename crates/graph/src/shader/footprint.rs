@@ -12,7 +12,7 @@ use std::collections::BTreeSet;
 /// Size in bytes of several variables of a shader, and the largest of them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Memory {
-    /// Sum of the sizes in bytes.
+    /// Sum of the sizes in bytes of the variables.
     pub bytes: u64,
     largest: Option<(u64, Located<String>)>,
 }
@@ -36,14 +36,16 @@ impl Memory {
 /// Memory that an entry point takes, including the functions that it calls.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Footprint {
-    /// Memory of a workgroup; each variable is rounded up to 16 bytes, as WebGPU counts.
+    /// Memory of the workgroup variables, once per workgroup; each variable is rounded up to 16
+    /// bytes, as WebGPU counts.
     pub workgroup: Memory,
-    /// Memory of one thread's `var<private>` variables.
+    /// Memory of the `var<private>` variables, per thread.
     pub private: Memory,
-    /// Names of the functions that run, each with the memory of its local variables, per thread.
+    /// Names of the entry point and of the functions that it calls, each with the memory of its
+    /// local variables, per thread.
     pub functions: Vec<(String, Memory)>,
-    /// Memory of the largest array or struct that is a value, not a variable; named after its
-    /// function.
+    /// Memory of the largest array or struct that is a value of an expression, not a variable; its
+    /// name is that of the function.
     pub value: Memory,
 }
 

@@ -2,15 +2,15 @@
 
 use naga::{Handle, ScalarKind, TypeInner};
 
-/// One scalar in each item of a buffer, such as `origin.x`.
+/// One scalar in each item of a buffer, such as `origin.x`, as a shader declares the item.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Field {
     /// Path of the scalar in the item, as in WGSL: `origin.x`, `indices[2]`. Empty if the item is a
     /// single scalar.
     pub name: String,
-    /// Offset of the scalar from the start of the item, in bytes.
+    /// Offset in bytes of the scalar from the start of the item.
     pub offset: usize,
-    /// Type of the scalar.
+    /// Type of the scalar, which takes 4 bytes.
     pub scalar: ItemScalar,
 }
 
@@ -46,9 +46,10 @@ impl ItemScalar {
 /// as a shader that binds the buffer declares it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Item {
-    /// Distance from one item to the next, in bytes.
+    /// Distance in bytes from the start of one item to the start of the next; for a buffer without
+    /// an array its size.
     pub stride: usize,
-    /// All scalars of the item, at most 64, in the order of their offsets; bytes between them are
+    /// All scalars of the item, from 1 to 64, in the order of their offsets; bytes between them are
     /// padding.
     pub fields: Vec<Field>,
 }

@@ -28,8 +28,9 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 
-/// A parsed and validated WGSL shader with its imports in place. Each of its resource globals has a
-/// binding number. Two shaders are equal if their expanded texts are.
+/// A parsed and validated WGSL shader with its imports in place. Each of its resource globals
+/// (buffers, textures, samplers) has a binding number. Two shaders are equal if their texts with
+/// imports in place are.
 #[derive(Debug)]
 pub struct Shader {
     pub(crate) source: Expanded,
@@ -62,18 +63,19 @@ impl Eq for Shader {}
 pub(crate) struct Global {
     pub handle: Handle<naga::GlobalVariable>,
     pub name: String,
-    /// Place of the declaration.
+    /// Place of the global's name in the file that declares it.
     pub span: Span,
     pub group: u32,
     pub binding: u32,
-    /// Type of the global.
+    /// Type of the global: uniform, storage buffer, texture, sampler or acceleration structure,
+    /// with its layout.
     pub class: Class,
     /// True if one of the entry points reads the global.
     pub reads: bool,
     /// True if one of the entry points writes the global.
     pub writes: bool,
-    /// Layout of the global's items; `None` if they have members other than 32-bit numbers, or more
-    /// than 64.
+    /// Layout of the global's items; `None` if an item has scalars other than 32-bit numbers, or
+    /// more than 64.
     pub item: Option<Item>,
     /// Stages of the entry points that use the global.
     pub stages: wgt::ShaderStages,
@@ -191,12 +193,14 @@ impl Shader {
         &self.module
     }
 
-    /// Returns the path of the shader's file, not of the modules that it imports.
+    /// Returns the path in the store ([`Sources`](crate::Sources)) of the shader's own file, not of
+    /// the modules that it imports.
     pub fn file(&self) -> &str {
         &self.source.file.name
     }
 
-    /// Returns the name of the entry point with the index `entry` in `module().entry_points`.
+    /// Returns the name of the entry point with the index `entry` in the list `entry_points` of
+    /// [`module`](Self::module).
     ///
     /// # Panics
     /// If there is no such entry point.

@@ -72,7 +72,7 @@ impl Shaders {
         variants.filter_map(|(_, shader)| shader.as_ref().ok())
     }
 
-    /// Returns the paths of all modules that any shader imports.
+    /// Returns the paths of all modules that `#import` lines of the valid shaders name.
     pub fn imported(&self) -> BTreeSet<&str> {
         let read = self.shaders.values().flatten();
         read.filter_map(|(_, shader)| shader.as_ref().ok())
@@ -81,7 +81,8 @@ impl Shaders {
             .collect()
     }
 
-    /// Returns the path of a module that a document names; `None` if the module was not found.
+    /// Returns the path in the store of a module that a document names; `None` if the module was
+    /// not found.
     pub fn module(&self, name: &Located<String>) -> Option<&String> {
         self.modules.get(&Self::module_key(name))
     }

@@ -16,7 +16,7 @@ impl Comments {
         self.depth > 0
     }
 
-    /// Reads the next piece of the text.
+    /// Reads the next piece of the text, which follows the pieces read before.
     pub fn read(&mut self, text: &str) {
         let mut at = 0;
         while at < text.len() {

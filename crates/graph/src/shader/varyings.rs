@@ -10,7 +10,7 @@ use naga::{Binding, BuiltIn, Handle, Module, Type, TypeInner};
 pub(crate) struct Varying {
     pub location: u32,
     pub scalar: ScalarClass,
-    /// Number of components, from 1 to 4.
+    /// Number of components, from 1 to 4; 1 for a scalar.
     pub width: u32,
     pub interpolation: Option<naga::Interpolation>,
     pub sampling: Option<naga::Sampling>,
@@ -27,7 +27,8 @@ pub(crate) struct Varyings {
 }
 
 impl Varyings {
-    /// Returns the values that an entry point takes as arguments.
+    /// Returns the values that an entry point takes as arguments. `entry` is its index in the
+    /// module.
     pub fn inputs(module: &Module, entry: usize) -> Self {
         let mut inputs = Self::default();
         for argument in &module.entry_points[entry].function.arguments {
@@ -36,7 +37,8 @@ impl Varyings {
         inputs
     }
 
-    /// Returns the values that an entry point gives as its result.
+    /// Returns the values that an entry point gives as its result. `entry` is its index in the
+    /// module.
     pub fn outputs(module: &Module, entry: usize) -> Self {
         let mut outputs = Self::default();
         if let Some(result) = &module.entry_points[entry].function.result {

@@ -3,27 +3,28 @@
 use crate::picture::Picture;
 use std::{io::Read, path::PathBuf, sync::Arc};
 
-/// A store of RON documents and WGSL files: a folder, embedded files, or a host's own.
+/// A store of RON documents, WGSL files and pictures: a folder, embedded files, or a host's own.
 ///
 /// Paths have forward slashes and are relative to the store (`pipelines/nsm.ron`,
 /// `shaders/shared/camera.wgsl`), or absolute.
 pub trait Sources: Send + Sync {
-    /// Reads the text of the file at `path`; `Ok(None)` if the store has no such file.
+    /// Reads the text of the document or shader file at `path`; `Ok(None)` if the store has no such
+    /// file.
     ///
     /// # Errors
-    /// The reason, if the file is there but cannot be read.
+    /// The reason as text, if the file is there but cannot be read.
     fn read(&self, path: &str) -> Result<Option<Arc<str>>, String>;
 
-    /// Returns the names of the files directly in `folder`, sorted, without their folder. Empty if
-    /// there is no such folder. Used for listings and for suggestions on misspelt names.
+    /// Returns the names of the files directly in `folder`, sorted, without the folder in front.
+    /// Empty if there is no such folder. Used for listings and for suggestions on misspelt names.
     fn list(&self, folder: &str) -> Vec<String>;
 
     /// Reads and decodes the picture at `path`, for a `Texture` with a `file`; `Ok(None)` if the
-    /// store has no such file. Each store decides which picture formats it decodes; without an
-    /// implementation it decodes none.
+    /// store has no such file. Each store decides which picture formats it decodes; this default
+    /// implementation decodes none.
     ///
     /// # Errors
-    /// The reason, if the file is there but cannot be decoded.
+    /// The reason as text, if the file is there but cannot be read or decoded.
     fn picture(&self, path: &str) -> Result<Option<Picture>, String> {
         match self.read(path) {
             Ok(None) => Ok(None),
@@ -61,7 +62,7 @@ fn too_long(length: &str) -> String {
 /// longer than 8 MiB is an error, and pictures are not decoded.
 #[derive(Clone, Debug)]
 pub struct FolderSources {
-    /// Folder that relative paths start from.
+    /// Folder on disk that relative paths start from.
     pub root: PathBuf,
 }
 

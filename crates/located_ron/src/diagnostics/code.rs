@@ -9,11 +9,11 @@ macro_rules! codes {
         pub enum Code { $($(#[doc = $doc])+ $name,)+ }
 
         impl Code {
-            /// All kinds of mistakes, in the order of their declaration.
+            /// All kinds of mistakes, in the order of their declaration, each once.
             pub const ALL: &[Self] = &[$(Self::$name),+];
 
-            /// Returns the kind's kebab-case name, as it is printed and written to machine-readable
-            /// output.
+            /// Returns the kind's kebab-case name, such as `missing-file`, as it is printed and
+            /// written to machine-readable output.
             pub fn as_str(self) -> &'static str {
                 match self { $(Code::$name => $text,)+ }
             }
@@ -37,7 +37,7 @@ codes! {
     MissingFile = "missing-file",
         "Check the name and where it is looked for: beside the document, in `shaders/` or \
          `pipelines/`, among the built-in ones. Paths cannot lead out of these folders.";
-    /// Documents that include each other.
+    /// Documents that include or extend each other in a circle.
     IncludeCycle = "include-cycle",
         "Move what both need into a third document that includes neither.";
     /// The RON text is not well-formed, or a value has the wrong type.
@@ -57,14 +57,15 @@ codes! {
     /// The document's `format` is not one this version reads.
     FormatVersion = "format-version",
         "Write the document in format 3 (docs/authoring.md), or use a newer Skiagraph.";
-    /// A name outside the grammar, reserved, or spelt in WGSL like another.
+    /// A name that breaks the rules for names, is a reserved word, or becomes the same WGSL
+    /// identifier as another name.
     Name = "name",
         "Names begin with a small letter and go on with small letters, digits and single \
          underscores; some words of the language are taken.";
-    /// An expression or reference outside the grammar, of the wrong type, or without a value.
+    /// An expression or reference that does not parse, has the wrong type, or has no value.
     Expression = "expression",
         "Mend the expression at the place that is underlined; docs/authoring.md has the grammar.";
-    /// Two things of one name.
+    /// Two materials, passes, params or values of one name.
     DuplicateName = "duplicate-name",
         "Rename one of the two; an include can be given a `name`.";
     /// A name that no material, input or provided resource has in this document.
@@ -81,16 +82,18 @@ codes! {
     Input = "input",
         "Give the included document what it asks for, by name or by `bind`; the host imports what \
          the root document asks for.";
-    /// An edit of an extended document that has no place there.
+    /// An edit of an extended document that names an entry which that document lacks, or that the
+    /// entry does not allow.
     Edit = "edit",
         "Name an entry of the extended document; `skiagraph show FILE --flat` prints what it has.";
-    /// A graph that is wrong for one value of a param that decides an `if`.
+    /// With one value of a param that an `if` depends on, the graph has a fault that it does not
+    /// have with another.
     Condition = "condition",
         "Give the pass that reads and the pass that writes conditions that agree.";
     /// A word of a `Choice` and a constant of the shader that do not agree.
     ChoiceConstant = "choice-constant",
         "Leave the constant out of the shader: the document's words bring it.";
-    /// A mip, layer or item that is not there.
+    /// A mip or layer of a texture, or an item of a buffer, that does not exist.
     Range = "range",
         "Name a part that there is; parts are counted from 0.";
     /// An item of a buffer that cannot be bound by itself.
@@ -113,8 +116,8 @@ codes! {
     /// The WGSL does not parse or validate.
     Shader = "shader",
         "Mend the WGSL at the place that is underlined.";
-    /// A library panicked on the file: a mistake of the library, which may have nothing against the
-    /// same written differently.
+    /// A library panicked on the file. The mistake is the library's; the same content written
+    /// differently may work.
     LibraryPanic = "library-panic",
         "Write it differently at the place that is underlined, and tell the library's authors.";
     /// A shader without the entry point that the pass needs.
@@ -132,7 +135,7 @@ codes! {
     ReadBeforeWrite = "read-before-write",
         "Move the writer above the reader, clear the material first, or read `….previous` if \
          last frame's content is meant.";
-    /// Passes that need each other's results.
+    /// Passes that read each other's results in a circle.
     Cycle = "cycle",
         "Write a second material, read `….previous`, or move the read into a pass below.";
     /// A pass samples a texture that it draws to.
@@ -144,7 +147,7 @@ codes! {
     /// An import of the host lacks a usage that a pass needs.
     Import = "import",
         "Make the texture or buffer with the usages that the help names.";
-    /// A limit of the adapter.
+    /// The graph needs more than a limit of the adapter allows.
     Limit = "limit",
         "Use less: fewer or smaller targets, bindings, workgroups; or run on an adapter that has \
          more.";
@@ -156,10 +159,10 @@ codes! {
     /// know.
     Feature = "feature",
         "Run on an adapter that has the feature, or ask `has(FEATURE)` in an `if`.";
-    /// A value that is made of itself.
+    /// A named value whose expression needs the value itself.
     Value = "value",
         "Let one of the values of the ring be made of params or sizes alone.";
-    /// An include that runs twice although another one has the same content.
+    /// An include that runs twice, because a pass in between writes a material that it reads.
     TwoCopies = "two-copies",
         "Put the include above the pass that writes in between, or give it a name.";
     /// A light of a kind that the document does not take.

@@ -13,21 +13,23 @@ pub enum Severity {
     Warning,
 }
 
-/// A place in a file, with the text that a [`Diagnostic`] prints beside it.
+/// A place in a file, with the text that is printed beside it: one of the places that a
+/// [`Diagnostic`] is about.
 #[derive(Clone, Debug)]
 pub struct Label {
-    /// Place in the source file.
+    /// Place in the file: a range of its text.
     pub span: Span,
     /// Text that is printed beside the place; may be empty.
     pub text: String,
 }
 
-/// A mistake in a file: its kind, its message, and the places that it is about.
+/// A mistake in a file, or something in it that is likely one: its kind, its message, and the
+/// places that it is about.
 #[derive(Clone, Debug)]
 pub struct Diagnostic {
-    /// Kind of the mistake.
+    /// Kind of the mistake, which has a stable name for scripts.
     pub code: Code,
-    /// Severity: error or warning.
+    /// Severity: an error, or a warning with which the file can still be used.
     pub severity: Severity,
     /// Message, which names the thing that is wrong: "unknown field `hieght`".
     pub message: String,
@@ -39,7 +41,8 @@ pub struct Diagnostic {
 }
 
 impl Diagnostic {
-    /// Creates an error without a place; [`at`](Self::at) adds one.
+    /// Creates an error of the kind `code`, without places and help. [`at`](Self::at) adds a place,
+    /// the method `help` a hint.
     pub fn error(code: Code, message: impl Into<String>) -> Self {
         Self {
             code,
@@ -50,7 +53,8 @@ impl Diagnostic {
         }
     }
 
-    /// Creates a warning without a place; [`at`](Self::at) adds one.
+    /// Creates a warning of the kind `code`, without places and help. [`at`](Self::at) adds a
+    /// place, the method `help` a hint.
     pub fn warning(code: Code, message: impl Into<String>) -> Self {
         Self {
             severity: Severity::Warning,
@@ -69,8 +73,8 @@ impl Diagnostic {
         self
     }
 
-    /// Appends a place to [`labels`](Self::labels), with a text to print beside it; `None` adds
-    /// nothing.
+    /// Appends a place to [`labels`](Self::labels), with a text to print beside it, as
+    /// [`at`](Self::at) does; `None` adds nothing.
     #[must_use]
     pub fn at_any(self, place: Option<impl Into<Span>>, text: impl Into<String>) -> Self {
         self.at_all(place.map(|place| (place, text)))
@@ -86,8 +90,9 @@ impl Diagnostic {
         places.fold(self, |diagnostic, (place, text)| diagnostic.at(place, text))
     }
 
-    /// Adds another diagnostic as the reason for this mistake: appends the message of `reason` as a
-    /// label at `place`, appends its help, and takes over its kind ([`code`](Self::code)).
+    /// Adds another diagnostic as the reason for this mistake. Appends the message of `reason` as a
+    /// label at `place`, appends its help to this diagnostic's, and takes over its kind
+    /// ([`code`](Self::code)); the places of `reason` are dropped.
     #[must_use]
     pub fn because(self, place: impl Into<Span>, reason: impl Into<Self>) -> Self {
         let reason = reason.into();
@@ -115,15 +120,16 @@ impl Diagnostic {
         text.into_iter().fold(self, Self::help)
     }
 
-    /// Appends the hint "did you mean …?" if a name in `known` is close to the misspelt `word`, or
-    /// else a list of the names in `known`. An empty `known` adds nothing.
+    /// Appends a hint for the misspelt `word`, as [`suggestion`] makes it: "did you mean …?" if a
+    /// name in `known` is close, or else a list of the first names in `known`. An empty `known`
+    /// adds nothing.
     #[must_use]
     pub fn suggest<S: AsRef<str>>(self, word: &str, known: impl IntoIterator<Item = S>) -> Self {
         self.help_any(suggestion(word, known))
     }
 
-    /// Returns the first place and the message as `FILE:LINE:COLUMN: MESSAGE`, without the help.
-    /// Without a place it is only the message.
+    /// Returns the first place and the message as `FILE:LINE:COLUMN: MESSAGE`, line and column
+    /// counted from 1, without the help. Without a place it is only the message.
     pub fn brief(&self) -> String {
         match self.labels.first() {
             Some(label) => format!("{}: {}", label.span, self.message),

@@ -6,14 +6,15 @@ use std::fmt;
 /// Most diagnostics that are printed, each with a piece of its file.
 const MOST_SHOWN: usize = 200;
 
-/// A sorted list of diagnostics, as loading or planning returns it: errors before warnings, and
-/// both by file name and place.
+/// A sorted list of diagnostics, such as all those of a document: errors before warnings, and both
+/// by file name and place.
 #[derive(Clone, Debug)]
 pub struct Diagnostics(Vec<Diagnostic>);
 
 impl Diagnostics {
-    /// Creates a list from `list`: sorts the diagnostics and drops duplicates. If there are more
-    /// than 200, those after the first 200 are replaced by one that counts them.
+    /// Creates a list from `list`: sorts the diagnostics and drops duplicates, which have the same
+    /// message at the same place. If there are more than 200, those after the first 200 are
+    /// replaced by one that counts them.
     pub fn new(mut list: Vec<Diagnostic>) -> Self {
         list.sort_by(|a, b| a.key().cmp(&b.key()));
         list.dedup_by(|a, b| a.message == b.message && a.key() == b.key());
@@ -31,13 +32,13 @@ impl Diagnostics {
         Self(list)
     }
 
-    /// Iterates over the diagnostics, in the order in which they are printed.
+    /// Iterates over the diagnostics: errors before warnings, and both by file name and place.
     pub fn iter(&self) -> std::slice::Iter<'_, Diagnostic> {
         self.0.iter()
     }
 
-    /// Returns all diagnostics as text for a terminal, each with the source lines that it is about.
-    /// `colour` adds ANSI colours.
+    /// Returns all diagnostics as text for a terminal, in the order of the list, each with the
+    /// source lines that it is about. `colour` adds ANSI colours.
     #[cfg(feature = "render")]
     pub fn render(&self, colour: bool) -> String {
         super::render::render(&self.0, colour)

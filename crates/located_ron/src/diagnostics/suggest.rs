@@ -11,8 +11,9 @@ const LONGEST: usize = 80;
 const SHOWN: usize = 16;
 
 /// Returns the name in `known` that is most like the misspelt `word`, by similarity of the letters;
-/// `None` if no name is close enough. A dotted name that ends in `.word` counts as closest if it is
-/// the only one. Names of more than 80 bytes, and those after the first 1,024, are not compared.
+/// `None` if no name is close enough or `word` has more than 80 bytes. A dotted name that ends in
+/// `.word` counts as closest if it is the only one that does. Names of more than 80 bytes, and
+/// those after the first 1,024 others, are not compared.
 pub fn closest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
     if word.len() > LONGEST {
         return None;
@@ -41,8 +42,8 @@ pub fn closest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Opti
 }
 
 /// Returns a hint for a misspelt `word`: "did you mean …?" with the [`closest`] name in `known`, or
-/// else "known here: …" with the first 16 names in `known`. `None` if `known` is empty. Names of
-/// more than 80 bytes are left out.
+/// else "known here: …" with the first 16 names in `known` and the number of the others. Names of
+/// more than 80 bytes are left out. `None` if no name is left.
 pub fn suggestion<S: AsRef<str>>(word: &str, known: impl IntoIterator<Item = S>) -> Option<String> {
     let known: Vec<S> = known.into_iter().collect();
     let count = known.len();

@@ -1,4 +1,4 @@
-//! Charts of the page, one for each choice that the page offers.
+//! Draws the charts of the page, one for each choice that the page offers.
 
 use crate::charts::path_panels;
 use crate::html::shown::{Shown, part, times};
@@ -29,7 +29,9 @@ fn drawn(svg: Result<String, Error>) -> String {
     svg.unwrap_or_else(|why| format!("<p class=\"quiet\">{}</p>", xml(&why.to_string())))
 }
 
-/// Returns the charts of time against error as HTML, for each table and kind of time.
+/// Returns the charts of time against error as HTML: for each table one for each kind of frame
+/// (every pass runs; only the camera moved), in several widths. The page's script shows the chosen
+/// one.
 pub fn fronts(tables: &[Shown]) -> String {
     let mut html = String::new();
     for (index, table) in tables.iter().enumerate() {
@@ -51,8 +53,8 @@ fn halves(figure: &Figure, tables: &[usize], kept: Option<bool>) -> String {
     HALVES.map(half).concat()
 }
 
-/// Returns the charts of errors over the frames of camera paths as HTML, for each table. Lines look
-/// as their methods do in other charts.
+/// Returns the charts of errors over the frames of camera paths as HTML, for each table; empty
+/// without paths. A method has the colour that it has in other charts.
 pub fn paths(tables: &[Shown]) -> String {
     let of_table = |(index, table): (usize, &Shown)| {
         let runs = table.summary.rows.iter().flat_map(Row::runs);
@@ -107,7 +109,8 @@ fn about(table: &Shown, index: usize) -> String {
     table.summary.rows[index].label.clone() + &told.collect::<String>()
 }
 
-/// Returns the sign of a method as SVG: its colour and mark in all charts.
+/// Returns the mark of a method as SVG, in the colour and shape that it has in all charts of
+/// `tables`.
 pub fn sign(tables: &[Shown], method: &str) -> String {
     let svg = drawn(figure(tables, Vec::new()).sign(method)).replace('\n', "");
     svg.replacen("<svg", "<svg class=\"sign\" aria-hidden=\"true\"", 1)
@@ -131,8 +134,8 @@ pub fn legends(tables: &[Shown]) -> String {
     tables.iter().enumerate().map(legend).collect()
 }
 
-/// Returns charts as HTML that show how time grows with the viewport and with the map size, where
-/// several were measured.
+/// Returns charts as HTML that show how time grows with the viewport and with the map size. A chart
+/// is missing if no method was measured in two of its sizes.
 pub fn growths(tables: &[Shown]) -> String {
     let mut html = String::new();
     for (index, table) in tables.iter().enumerate() {

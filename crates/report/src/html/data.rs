@@ -1,4 +1,4 @@
-//! Words and pictures of the page, as JSON for its script.
+//! Writes the words and pictures of the page as JSON for its script.
 
 use crate::html::pictures::Pictures;
 use crate::html::shown::Shown;
@@ -59,7 +59,8 @@ struct Line<'a> {
     wrong: u64,
 }
 
-/// Returns the words and pictures of the page as JSON that may stand in a script element.
+/// Returns the words and pictures of the page as JSON, escaped for an HTML script element. The
+/// indices in it refer to `sources` and `tables`.
 pub fn text(sources: &[Source], tables: &[Shown], pictures: &Pictures) -> String {
     let data = Data {
         program: PROGRAM,

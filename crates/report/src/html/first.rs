@@ -1,5 +1,5 @@
-//! The first screen: reference, the method to take, and where the alternative is wrong, as pictures
-//! beside each other. The page's script puts in the files.
+//! Writes the first screen: pictures of the reference, of the method to take, and of the errors of
+//! the alternative, beside each other. The page's script inserts the picture files.
 
 use crate::html::charts::sign;
 use crate::html::shown::{Shown, part};
@@ -9,8 +9,8 @@ use skiagraph_chart::xml;
 use skiagraph_compare::records::results::{Measured, Run};
 use skiagraph_compare::wording::{ms, percent};
 
-/// Returns the pictures of each table's verdict as HTML. A table without a verdict or without
-/// pictures has none.
+/// Returns HTML with the pictures of each table's verdict: reference, recommended method, and
+/// errors of the alternative. A table without a verdict or without pictures has none.
 pub fn pictures(tables: &[Shown]) -> String {
     let of_table = |(index, table): (usize, &Shown)| {
         let figures = figures(tables, table)?;

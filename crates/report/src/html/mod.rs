@@ -47,11 +47,13 @@ const SCRIPTS: [&str; 9] = [
 pub struct Page {
     /// Content of the HTML file.
     pub html: String,
-    /// Lines that name the pictures left out. The page shows them as well.
+    /// Lines that count the pictures left out because the page would exceed [`LIMIT`]. The page
+    /// shows them as well. Empty if all pictures are in it.
     pub left_out: Vec<String>,
 }
 
-/// Returns the page of the given sources and the given reports of `stress`.
+/// Returns the page of results: `sources` of `compare`, and `reports` of `stress`. Pictures are
+/// read from the sources' folders.
 pub fn page(sources: &[Source], reports: &[Report]) -> Page {
     page_within(sources, reports, LIMIT)
 }
@@ -71,8 +73,8 @@ fn page_within(sources: &[Source], reports: &[Report], limit: usize) -> Page {
         .replace("<!--FRONTS-->", &charts::fronts(&tables))
         .replace("<!--LEGEND-->", &charts::legends(&tables))
         .replace("<!--TABLES-->", &rows::tables(&tables))
-        .replace("<!--LIGHTS-->", &rows::lights(sources))
-        .replace("<!--OVERVIEW-->", &rows::overview(sources, &all))
+        .replace("<!--LIGHTS-->", &rows::lights(sources, &tables))
+        .replace("<!--OVERVIEW-->", &rows::overview(sources, &tables))
         .replace("<!--STEPS-->", &steps::bars(&tables))
         .replace("<!--GROWTHS-->", &charts::growths(&tables))
         .replace("<!--PATHS-->", &charts::paths(&tables))

@@ -1,4 +1,5 @@
-//! The pictures of a page, the most telling first, as far as there is room.
+//! Chooses the pictures of a page, those of the reference and of errors first, as far as there is
+//! room.
 
 use crate::notes::map_figures;
 use base64::{Engine, engine::general_purpose::STANDARD};
@@ -13,13 +14,13 @@ use std::{collections::BTreeMap, fs};
 /// Embedded files of a page. Other structs refer to a file by its index in `files`.
 #[derive(Debug, Default, Serialize)]
 pub struct Pictures {
-    /// Pictures of each run that has any, and of the references.
+    /// One set for each run that has pictures, and one for each picture of a reference.
     pub sets: Vec<Set>,
     /// Drawings of graphs, one for each source and method.
     pub graphs: Vec<Graph>,
-    /// The files, in Base64.
+    /// Contents of the files, in Base64.
     pub files: Vec<String>,
-    /// Lines that name the pictures left out because the page is full.
+    /// Lines that count the pictures left out because the page is full; empty if there are none.
     #[serde(skip)]
     pub left_out: Vec<String>,
 }
@@ -96,8 +97,9 @@ struct EmbedCandidate {
 }
 
 impl Pictures {
-    /// Embeds the pictures in the sources' folders, using at most `room` bytes of the page. Files
-    /// that are missing are skipped without a message.
+    /// Embeds the pictures in the sources' folders, using at most `room` bytes of the page: those
+    /// of the references first, then errors, shaded pictures, graphs and the others. Missing files
+    /// are skipped without a message.
     pub fn embed(sources: &[Source], room: usize) -> Self {
         let mut pictures = Self::default();
         let mut room = room;

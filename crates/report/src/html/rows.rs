@@ -1,11 +1,11 @@
-//! All rows: the tables of the terminal, joined.
+//! Writes the rows of all tables as HTML.
 
 use crate::html::charts::sign;
 use crate::html::shown::{Shown, part};
 use crate::matrices::by_light;
 use crate::overview::{Matrix, Overview, scene_names};
 use crate::summary::Row;
-use crate::summary_table::{NOT_THERE, Summary, WRONG};
+use crate::summary_table::{NOT_THERE, WRONG};
 use crate::table::{html, html_with};
 use itertools::Itertools;
 use skiagraph_chart::xml;
@@ -14,7 +14,8 @@ use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::size;
 use std::path::{Path, PathBuf};
 
-/// Returns one HTML table with the rows of all tables.
+/// Returns one HTML table with the rows of all tables. The page's script shows those of the chosen
+/// ones.
 pub fn tables(tables: &[Shown]) -> String {
     let each = tables.iter().map(|of| &of.table);
     // Tables of paths have columns that others lack.
@@ -56,11 +57,11 @@ pub fn tables(tables: &[Shown]) -> String {
     part("rows", &all, None, &table)
 }
 
-/// Returns HTML tables of each method under each light, for the sources and viewports with several
-/// lights.
-pub fn lights(sources: &[Source]) -> String {
+/// Returns HTML tables with a row for each method and a column for each light, one for each source
+/// and viewport with several lights; empty if there are none. `tables` are those of the page.
+pub fn lights(sources: &[Source], tables: &[Shown]) -> String {
     let of_source = |source: &Source| {
-        let tables = by_light(&source.results).into_iter();
+        let of_lights = by_light(&source.results).into_iter();
         let scene = &source.results.scene.name;
         let table = |(viewport, table): ([u32; 2], Table)| {
             let head = format!("{scene}, {}", size(viewport));
@@ -68,18 +69,32 @@ pub fn lights(sources: &[Source]) -> String {
             format!(
                 "<h3>{}</h3>{}",
                 xml(&head),
-                html(&table, |_| String::new(), |_| String::new(), none)
+                html(
+                    &table,
+                    |_| String::new(),
+                    |row| sign_of(tables, &table, row),
+                    none
+                )
             )
         };
-        tables.map(table).collect::<String>()
+        of_lights.map(table).collect::<String>()
     };
     sources.iter().map(of_source).collect()
 }
 
-/// Returns the overview of the sources' scenes as HTML: tables whose cells link to the table of
-/// their scene, and the verdicts. It is empty for results of one scene. `all` holds the summaries
-/// of the page's tables, each with the index of its source.
-pub fn overview(sources: &[Source], all: &[(usize, Summary)]) -> String {
+/// The sign of the method that a row of a table is of. The row begins with the label of a row of
+/// the page's tables.
+fn sign_of(tables: &[Shown], table: &Table, row: usize) -> String {
+    let label = table.rows[row].first();
+    let mut rows = tables.iter().flat_map(|of| &of.summary.rows);
+    let row = rows.find(|row| Some(&row.label) == label);
+    row.map_or(String::new(), |row| sign(tables, &row.method))
+}
+
+/// Returns the overview of the sources' scenes as HTML: tables of methods and scenes, whose cells
+/// link to the table of their scene among the page's `tables`, and the verdicts. It is empty for
+/// results of one scene.
+pub fn overview(sources: &[Source], tables: &[Shown]) -> String {
     let scenes = sources.iter().map(|source| {
         let folder = source.folders.first().map(PathBuf::as_path);
         (folder.unwrap_or(Path::new("")), &source.results)
@@ -91,8 +106,8 @@ pub fn overview(sources: &[Source], all: &[(usize, Summary)]) -> String {
         return String::new();
     }
     let names = scene_names(&scenes);
-    let columns = all.iter();
-    let columns = columns.map(|(source, summary)| (names[*source].as_str(), summary));
+    let columns = tables.iter();
+    let columns = columns.map(|of| (names[of.source].as_str(), of.summary));
     let Some(overview) = Overview::new(&columns.collect::<Vec<_>>()) else {
         return String::new();
     };
@@ -107,7 +122,8 @@ pub fn overview(sources: &[Source], all: &[(usize, Summary)]) -> String {
             format!("<a href=\"#table-section\" data-choose=\"{table}\">{text}</a>")
         };
         let none = |_| String::new();
-        head + &html_with(&of.table, none, none, class, link)
+        let sign = |row| sign_of(tables, &of.table, row);
+        head + &html_with(&of.table, none, sign, class, link)
     };
     let matrices = overview.matrices().into_iter().map(matrix);
     let sentences = overview.sentences().into_iter();

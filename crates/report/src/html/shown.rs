@@ -10,21 +10,24 @@ use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::{frames, size};
 use std::collections::BTreeSet;
 
-/// A table of the page: all rows of one source and viewport.
+/// A table of the page: the rows of one source (a scene on one machine and adapter under one
+/// protocol), viewport and light.
 pub struct Shown<'a> {
-    /// Index of the table's source.
+    /// Index of the table's source among the page's sources.
     pub source: usize,
-    /// Summary of the source in that viewport.
+    /// Summary of the source in that viewport under that light.
     pub summary: &'a Summary<'a>,
     /// The rows as the terminal shows them.
     pub table: Table,
-    /// True if the times are wall times.
+    /// True if the times are wall times, since a row has no GPU times.
     pub by_wall: bool,
-    /// Source and viewport in words.
+    /// Heading: scene, views and viewport, the adapter, machine or protocol if the sources differ
+    /// in it, and the folder or a number if it would be that of another table.
     pub title: String,
 }
 
-/// Returns a table for each summary. Each summary comes with the index of its source.
+/// Returns a table for each summary, in order. Each summary comes with the index of its source in
+/// `sources`.
 pub fn shown<'a>(sources: &[Source], all: &'a [(usize, Summary<'a>)]) -> Vec<Shown<'a>> {
     let different = |of: fn(&Results) -> String| {
         let values = sources.iter().map(|source| of(&source.results));
@@ -59,9 +62,26 @@ pub fn shown<'a>(sources: &[Source], all: &'a [(usize, Summary<'a>)]) -> Vec<Sho
         }
     };
     let tables = all.iter();
-    tables
+    let mut tables: Vec<Shown> = tables
         .map(|(source, summary)| table(*source, summary))
-        .collect()
+        .collect();
+    // Sources that have other cells under the same labels are told apart by their folders, or by
+    // their numbers.
+    let alike = tables.iter().map(|table| table.title.clone()).duplicates();
+    for title in alike.collect::<Vec<_>>() {
+        let folder = |of: &Shown| sources[of.source].folders.first().cloned();
+        let alike = || tables.iter().filter(|table| table.title == title);
+        let by_folder = alike().map(folder).all_unique();
+        let mut number = 0;
+        for table in tables.iter_mut().filter(|table| table.title == title) {
+            number += 1;
+            table.title += &match folder(table) {
+                Some(folder) if by_folder => format!(" · {}", folder.display()),
+                _ => format!(" · group {number}"),
+            };
+        }
+    }
+    tables
 }
 
 /// The protocol of results in words.
@@ -71,9 +91,10 @@ fn protocol(of: &Results) -> String {
 }
 
 impl Shown<'_> {
-    /// Returns the error of a row: wrong pixels outside the band, in percent of the pixels that
-    /// face the light. Under a light with an extent it is the root mean square error of the shares
-    /// of light. `None` if the row was not judged.
+    /// Returns the error of a row: wrong pixels outside the band (those whose answer rounding
+    /// decides), in percent of the pixels that face the light; half a pixel if only shares of light
+    /// are off. Under a light with an extent it is the root mean square error of the shares of
+    /// light. `None` if no pixel was judged.
     pub fn error(&self, row: &Row) -> Option<f64> {
         if self.summary.is_soft() {
             return row.rmse();
@@ -85,24 +106,26 @@ impl Shown<'_> {
         (wrong.facing_light > 0).then(|| 100.0 * pixels / wrong.facing_light as f64)
     }
 
-    /// Returns the milliseconds of a row's frame; `None` if they cannot be drawn on an axis. `kept`
-    /// selects a frame in which only the camera has moved, if the row has one.
+    /// Returns the milliseconds of a row's frame; `None` if they are missing or 0, so that they
+    /// cannot be drawn on a logarithmic axis. `kept` selects a frame in which only the camera has
+    /// moved, so that passes are skipped; a row without such times shows the others.
     pub fn ms(&self, row: &Row, kept: bool) -> Option<f64> {
         let kept = row.kept_ms(self.by_wall).filter(|_| kept);
         let ms = kept.or(row.frame_ms(self.by_wall));
         ms.filter(|ms| ms.is_finite() && *ms > 0.0)
     }
 
-    /// Returns the quartiles of the times of [`ms`](Self::ms); `None` if they have no spread that
-    /// can be drawn on an axis.
+    /// Returns the first and third quartile of the times of [`ms`](Self::ms), in milliseconds;
+    /// `None` if they are missing, equal or 0.
     pub fn spread(&self, row: &Row, kept: bool) -> Option<[f64; 2]> {
         let quartiles = row.quartiles(self.by_wall, kept)?;
         Some(quartiles).filter(|[q1, q3]| *q1 > 0.0 && q1 < q3 && q3.is_finite())
     }
 }
 
-/// Returns the values of `kept` that the tables' times can be shown with: false for every pass run,
-/// true for only the camera moved. True is missing if no row keeps anything.
+/// Returns the values for `kept` of [`Shown::ms`] for which the tables have times: false for frames
+/// in which every pass runs, true for frames in which only the camera moved. True is missing if no
+/// row skips a pass in these.
 pub fn times(tables: &[Shown]) -> &'static [bool] {
     let keeps = |table: &Shown| {
         let mut rows = table.summary.rows.iter();
@@ -115,8 +138,9 @@ pub fn times(tables: &[Shown]) -> &'static [bool] {
     }
 }
 
-/// Returns an HTML element that the script shows while one of the tables with these indices is
-/// chosen and, unless `kept` is `None`, while that kind of time is.
+/// Returns an HTML element with the CSS class `class` around the HTML `content`. The page's script
+/// shows it while one of the tables with the indices `tables` is chosen and, unless `kept` is
+/// `None`, while the times chosen are those of [`Shown::ms`] with this `kept`.
 pub fn part(class: &str, tables: &[usize], kept: Option<bool>, content: &str) -> String {
     let time = kept.map_or(String::new(), |kept| format!(" data-kept=\"{kept}\""));
 

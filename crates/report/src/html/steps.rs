@@ -1,4 +1,4 @@
-//! Bars of GPU time: one for each row, divided into its steps.
+//! Draws bars of GPU time: one for each row, divided into its steps.
 
 use crate::html::charts::sign;
 use crate::html::shown::{Shown, part};
@@ -9,7 +9,7 @@ use skiagraph_compare::wording::ms;
 /// Steps that have a colour of their own: those that take the longest, over all rows.
 const COLOURS: usize = 7;
 
-/// Returns the bars of each table with GPU times as HTML.
+/// Returns HTML with the bars of GPU time, in milliseconds, of each table that has such times.
 pub fn bars(tables: &[Shown]) -> String {
     let of_table = |(index, table): (usize, &Shown)| {
         let rows = table.summary.rows.iter().map(|row| (row, row.steps()));

@@ -1,4 +1,4 @@
-//! Matrices of `stress` as HTML, with the content of the terminal's.
+//! Writes the matrices of `stress` as HTML, with the content of those for a terminal.
 
 use crate::stress_matrix::{failures, heading, matrix, remarks};
 use crate::table::html;

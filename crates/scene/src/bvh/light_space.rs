@@ -15,20 +15,22 @@ use obvhs::triangle::Triangle;
 /// 5.5, 56 and 5.1, 76 and 6.1).
 const DEPTH: f64 = 0.01;
 
-/// Node of a bounding volume hierarchy in [`LightSpace`]: 32 bytes, laid out as the trace shader
-/// reads it. All coordinates are relative to [`LightSpace::centre`], in scene units, and rounded
-/// outwards.
+/// Node of a bounding volume hierarchy in [`LightSpace`]: 32 bytes, laid out as
+/// `shaders/trace_light_space.wgsl` reads it. All coordinates are relative to
+/// [`LightSpace::centre`], in scene units, and rounded outwards.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct LightSpaceNode {
-    /// Low corner of the node's box, in the two coordinates across the rays.
+    /// Low corner of the node's box, in the two coordinates across the rays
+    /// ([`LightSpace::place`]).
     pub low: [f32; 2],
-    /// High corner of the node's box, in the two coordinates across the rays.
+    /// High corner of the node's box, in the two coordinates across the rays
+    /// ([`LightSpace::place`]).
     pub high: [f32; 2],
     /// Far sides of the node's box, by which rays leave it, along the three world axes in the order
-    /// of [`LightSpace::place`]. Axes are mirrored so that all rays go up. A ray that begins beyond
-    /// any of these sides misses the node. Three sides are stored instead of one depth along the
-    /// ray because a floor is flat along an axis, but deep along a ray.
+    /// of [`LightSpace::place`]. Axes are mirrored so that each coordinate grows along the rays. A
+    /// ray that begins beyond any of these sides misses the node. Three sides are stored instead of
+    /// one depth along the ray because a floor is flat along an axis, but deep along a ray.
     pub farthest: [f32; 3],
     /// Packed count and index. The [`LEAF_BITS`](Self::LEAF_BITS) low bits hold the number of
     /// primitives of a leaf, or 0 for an inner node. The bits above hold an index. For a leaf it is
@@ -48,7 +50,7 @@ impl LightSpaceNode {
 pub struct LightSpace {
     /// Direction of the rays in world space, of any length but zero.
     pub direction: Vec3,
-    /// Origin of the light space, in world space.
+    /// Origin of the coordinates, in world space.
     pub centre: Vec3,
 }
 
@@ -67,7 +69,7 @@ impl LightSpace {
 
     /// Returns the coordinates of a world position relative to `centre`, in scene units: two
     /// coordinates across the rays, and the three world coordinates in cyclic order with the
-    /// longest component of `direction` last, mirrored so that rays go up in each.
+    /// longest component of `direction` last, mirrored so that each grows along the rays.
     pub fn place(&self, position: Vec3) -> (DVec2, DVec3) {
         let d = self.permute(self.direction.as_dvec3());
         let p = self.permute(position.as_dvec3() - self.centre.as_dvec3());
@@ -75,8 +77,8 @@ impl LightSpace {
         (p.truncate() - d.truncate() / d.z * p.z, up)
     }
 
-    /// Builds a hierarchy over a mesh with at most `most` nodes. Returns its nodes, root first, and
-    /// a [`Bvh`] of the same tree, to be used only for its `primitives` and for
+    /// Builds a hierarchy over a mesh with at most `most` nodes (0 counts as 1). Returns its nodes,
+    /// root first, and a [`Bvh`] of the same tree, to be used only for its `primitives` and for
     /// [`refit`](Self::refit). Both are empty for an empty mesh. Returns `None` if
     /// [`LightSpaceNode::link`] has too few bits: with more than 67 million triangles or nodes, or
     /// with more than 63 triangles in a leaf.
@@ -108,9 +110,12 @@ impl LightSpace {
     }
 
     /// Returns the nodes of a hierarchy, fitted to the mesh in this light space, root first. `bvh`
-    /// is a tree over the triangles of the mesh, such as [`build`](Self::build) returns; a mesh
-    /// with moved corners is allowed. Returns `None` if [`LightSpaceNode::link`] has too few bits,
+    /// is a tree over the triangles of the mesh, such as [`build`](Self::build) returns; their
+    /// corners may have moved since. Returns `None` if [`LightSpaceNode::link`] has too few bits,
     /// as for `build`.
+    ///
+    /// # Panics
+    /// If `bvh` names a triangle that the mesh does not have.
     pub fn refit(&self, bvh: &Bvh, mesh: &Mesh) -> Option<Vec<LightSpaceNode>> {
         let places = mesh.positions.iter().map(|&p| Bounds::at(self.place(p)));
         let places: Vec<Bounds> = places.collect();

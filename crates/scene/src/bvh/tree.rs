@@ -9,8 +9,8 @@ use crate::mesh::{Mesh, bounds};
 use glam::Vec3;
 use obvhs::triangle::Triangle;
 
-/// Greatest depth of a [`Bvh`] over any mesh, in nodes. A traversal stack of this many entries
-/// never overflows. Real scenes stay below 45 (Sponza: 38).
+/// Greatest depth of a [`Bvh`] over any mesh: nodes on a path from the root to a leaf. A traversal
+/// stack of this many entries never overflows. Real scenes stay below 45 (Sponza: 38).
 pub const MAX_DEPTH: u32 = 64;
 
 /// Cost of a box beside a triangle: as where the tree is built.
@@ -20,13 +20,13 @@ const BOX: f64 = 1.5;
 /// no nodes.
 #[derive(Clone, Debug, Default)]
 pub struct Bvh {
-    /// Nodes of the tree. The two children of an inner node follow each other.
+    /// Nodes of the tree, the root first. The two children of an inner node follow each other.
     pub nodes: Vec<BvhNode>,
     /// Primitive ids (indices into [`Mesh::triangles`]) in the order of the leaves, each once. Each
     /// leaf names a range of this list.
     pub primitives: Vec<u32>,
-    /// Number of nodes on the longest path from the root: the entries that a traversal's stack
-    /// needs.
+    /// Number of nodes on the longest path from the root to a leaf: the entries that a traversal's
+    /// stack needs. 0 for an empty tree.
     pub depth: u32,
 }
 
@@ -75,7 +75,7 @@ impl Bvh {
         (bvh.depth <= MAX_DEPTH).then_some(bvh)
     }
 
-    /// Returns the tree reduced to at most `most` nodes (1 at least). Subtrees with the fewest
+    /// Returns the tree reduced to at most `most` nodes (0 counts as 1). Subtrees with the fewest
     /// triangles become leaves, which may be larger than the leaves that [`build`](Self::build)
     /// makes. A tree that is small enough already is returned unchanged.
     pub fn merged(self, most: usize) -> Self {
@@ -148,11 +148,11 @@ impl Bvh {
         }
     }
 
-    /// Updates all boxes for a deformed mesh: the triangles that the tree was built from, with
-    /// their corners at other positions.
+    /// Updates the boxes of all nodes for a deformed mesh: the triangles that the tree was built
+    /// from, with their corners at other positions.
     ///
     /// # Panics
-    /// If the mesh has fewer triangles.
+    /// If the mesh has fewer triangles than the tree was built from.
     pub fn refit(&mut self, mesh: &Mesh) {
         if self.nodes.is_empty() {
             return;
@@ -176,7 +176,8 @@ impl Bvh {
     }
 
     /// Returns the expected cost of a ray that enters the root's box, in units of one triangle
-    /// test: the surface area heuristic (MacDonald and Booth 1990). It is 0 for an empty tree.
+    /// test; a box test counts as 1.5. It is the surface area heuristic (MacDonald and Booth 1990),
+    /// and 0 for an empty tree.
     pub fn cost(&self) -> f64 {
         let Some(root) = self.nodes.first() else {
             return 0.0;

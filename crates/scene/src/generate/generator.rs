@@ -4,27 +4,30 @@ use super::{avenue, city, forest, level, park};
 use crate::mesh::Mesh;
 use std::{fmt, ops::RangeInclusive, str::FromStr};
 
-/// Range of the number of triangles that a generated city or forest can have, both ends included.
+/// Range of the number of triangles that a generated city or forest ([`Generator`]) can have, both
+/// ends included.
 pub const TRIANGLES: RangeInclusive<u32> = 10_000..=10_000_000;
 
 /// Mesh that this crate generates. Its name as text is `park`, `avenue`, `level`, `city:100000` or
 /// `forest:100000`; the number is the number of triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Generator {
-    /// A bench, flowers, a lamp and trees on a lawn: about 55,000 triangles, in closed parts.
+    /// A bench, flowers, a lamp and trees on a lawn: about 55,000 triangles, in closed parts
+    /// ([`Parts`](crate::Parts)).
     Park,
-    /// An avenue of 2,000 units between fences, trees and lamps: about 50,000 triangles, in closed
-    /// parts.
+    /// An avenue of 2,000 scene units between fences, trees and lamps: about 50,000 triangles, in
+    /// closed parts ([`Parts`](crate::Parts)).
     Avenue,
     /// Storeys of rooms whose floors and walls are sheets of large triangles: 3,168 triangles, in
-    /// open parts.
+    /// open parts ([`Parts`](crate::Parts)).
     Level,
-    /// Blocks of houses on a square kilometre. More triangles mean more details on walls and roofs.
+    /// Blocks of houses on a square about 1,000 scene units wide. More triangles mean more details
+    /// on walls and roofs.
     City {
         /// Approximate number of triangles, within [`TRIANGLES`].
         triangles: u32,
     },
-    /// Trees on both sides of a straight ride. The number of trees and the number of leaves of a
+    /// Trees on both sides of a straight lane. The number of trees and the number of leaves of a
     /// tree both grow with the square root of the number of triangles.
     Forest {
         /// Approximate number of triangles, within [`TRIANGLES`].
@@ -33,8 +36,8 @@ pub enum Generator {
 }
 
 impl Generator {
-    /// Generates the mesh. 10⁷ triangles take seconds and less than 1 GB of memory. The number of
-    /// triangles of a city or forest is off by 3 % at most.
+    /// Generates the mesh, the same bits on every machine. 10⁷ triangles take seconds and less than
+    /// 1 GB of memory. The number of triangles of a city or forest is off by 3 % at most.
     pub fn build(self) -> Mesh {
         match self {
             Self::Park => park::build(),

@@ -45,7 +45,7 @@ pub struct Clip {
 impl Clip {
     /// Returns the camera paths of this animation: one for each camera that moves, or one for the
     /// view `standing` if no camera moves. If any light moves, there is a path under each light of
-    /// `lights` instead, whether that light moves or not. `views` and `lights` are those of the
+    /// `lights` instead, even under lights that stand still. `views` and `lights` are those of the
     /// [`GltfScene`](super::GltfScene) or [`MeshFile`](crate::MeshFile) that holds the animation. A
     /// path has the animation's name, followed by the names of view and light if there are several.
     ///

@@ -30,8 +30,9 @@ use std::path::Path;
 /// Most corners of all triangles together: a small file may place one mesh any number of times.
 const MOST_CORNERS: usize = 1 << 28;
 
-/// Reads a `.gltf` or `.glb` file, and the files that it names, into a welded mesh, with a report
-/// of changes and ignored parts.
+/// Reads a `.gltf` or `.glb` file, and the files that it names, into a mesh in which equal
+/// positions are one (welded). `materials` chooses the parts of materials that are read. The report
+/// lists changes that the import made and parts that it ignored.
 ///
 /// # Errors
 /// [`SceneError`]: a file that cannot be read, is damaged, requires an extension that this program
@@ -40,8 +41,8 @@ pub fn load_gltf(path: &Path, materials: MaterialUse) -> Result<(Mesh, ImportRep
     parse_gltf(&read(path)?, path, materials)
 }
 
-/// Reads a `.gltf` or `.glb` file into a welded mesh, with its cameras, lights and animations and a
-/// report of changes and ignored parts of the mesh.
+/// Reads a `.gltf` or `.glb` file into a mesh as [`load_gltf`] does, and returns the file's
+/// cameras, lights and animations between mesh and report.
 ///
 /// # Errors
 /// The errors of [`load_gltf`].
@@ -59,7 +60,7 @@ fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
     })
 }
 
-/// Reads the bytes of a `.gltf` or `.glb` file into a welded mesh, with a report. `path` names the
+/// Reads the bytes of a `.gltf` or `.glb` file into a mesh as [`load_gltf`] does. `path` names the
 /// file in messages; other files that it names are searched beside it.
 ///
 /// # Errors
@@ -72,9 +73,9 @@ pub fn parse_gltf(
     parse_gltf_scene(bytes, path, materials).map(|(mesh, _, report)| (mesh, report))
 }
 
-/// Reads the bytes of a `.gltf` or `.glb` file into a welded mesh, with its cameras, lights and
-/// animations and a report. `path` names the file in messages; other files that it names are
-/// searched beside it.
+/// Reads the bytes of a `.gltf` or `.glb` file as [`load_gltf_scene`] does the file: mesh, cameras,
+/// lights and animations, and report. `path` names the file in messages; other files that it names
+/// are searched beside it.
 ///
 /// # Errors
 /// The errors of [`parse_gltf`].

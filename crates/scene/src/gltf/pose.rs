@@ -9,7 +9,8 @@ use gltf::{Accessor, Document, Primitive, Semantic, Skin};
 pub(super) struct Vertices {
     pub positions: Vec<DVec3>,
     pub normals: Option<Vec<DVec3>>,
-    /// Vertices at which a skin turns the winding; none at all without a skin.
+    /// For each vertex, true if the skin turns the winding of its triangles (its blended matrix has
+    /// a negative determinant). Empty without a skin: read it with `get`.
     pub turned: Vec<bool>,
 }
 

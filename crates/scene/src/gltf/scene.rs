@@ -16,8 +16,8 @@ use crate::{
 use glam::{DMat3, DMat4, DVec3, Vec3};
 use serde_json::Value;
 
-/// Views, lights and animations of a glTF file. Views and lights are in the order of its scene's
-/// nodes, depth first.
+/// Views, lights and animations of a glTF file. Views and lights are in the order of the nodes of
+/// the file's scene, depth first.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GltfScene {
     /// One view for each perspective camera that a node of the scene places. Its name is the

@@ -4,16 +4,16 @@ use crate::{material_use::MaterialUse, pattern::Pattern};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
-/// Diagonal that splits a quad into two triangles. Larger polygons are split into a fan from the
-/// diagonal's first corner.
+/// Diagonal that splits a quad of an OBJ file into two triangles. Larger polygons are split into a
+/// fan from the diagonal's first corner.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum QuadDiagonal {
     /// From corner 0 to corner 2: triangles (0, 1, 2) and (0, 2, 3). Most importers do this.
     #[default]
     FirstThird,
-    /// From corner 1 to corner 3: triangles (1, 2, 3) and (1, 3, 0). This reproduces the
-    /// dissertation's Sponza.
+    /// From corner 1 to corner 3: triangles (1, 2, 3) and (1, 3, 0). This reproduces the Sponza
+    /// mesh of the dissertation (docs/methods.md).
     SecondFourth,
 }
 
@@ -27,7 +27,8 @@ impl QuadDiagonal {
     }
 }
 
-/// Treatment of a concave polygon whose fan of triangles would cover area outside it.
+/// Treatment of a concave polygon of an OBJ file whose fan of triangles would cover area outside
+/// it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Concave {
@@ -35,8 +36,8 @@ pub enum Concave {
     /// is an error.
     #[default]
     Cut,
-    /// The polygon is split into the fan nevertheless and gains area, as many importers do it: the
-    /// dissertation's Sponza has 231 such quads.
+    /// The polygon is split into the fan nevertheless and gains area, as many importers do it. The
+    /// Sponza mesh of the dissertation (docs/methods.md) has 231 such quads.
     Fan,
 }
 
@@ -46,10 +47,11 @@ pub enum Concave {
 pub enum ObjMaterials {
     /// Nothing is read: files of materials and textures may be missing.
     Ignore,
-    /// Only colours are read, for pictures. Every surface is opaque. A colour that cannot be read
-    /// is a warning in the import report.
+    /// Only colours and their textures are read, no masks: every surface is opaque. A colour that
+    /// cannot be read is a warning in the import report.
     Color,
-    /// Colours and masks (`map_d`, `d`) are read. A mask that cannot be read is an error.
+    /// Colours, their textures and masks (`map_d`, `d`) are read. A mask that cannot be read is an
+    /// error.
     #[default]
     All,
     /// Only the names of materials are read: each material in this table gets a generated mask with

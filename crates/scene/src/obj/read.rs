@@ -22,7 +22,8 @@ const OBJ_FILE: Limit = Limit {
     way_out: "split it, or leave groups out of it",
 };
 
-/// Reads an OBJ file into a welded mesh, with a report of changes and ignored parts.
+/// Reads an OBJ file into a mesh in which equal positions are one (welded). The report lists
+/// changes that the import made and parts that it ignored.
 ///
 /// # Errors
 /// [`SceneError`] with file, line, group and face number: an unreadable or damaged file, a face
@@ -36,8 +37,8 @@ pub fn load_obj(path: &Path, options: &ObjOptions) -> Result<(Mesh, ImportReport
     parse_obj(&bytes, path, options)
 }
 
-/// Reads the bytes of an OBJ file into a welded mesh, with a report of changes and ignored parts.
-/// `path` names the file in messages; files of materials are searched beside it.
+/// Reads the bytes of an OBJ file into a mesh as [`load_obj`] does. `path` names the file in
+/// messages; files of materials are searched beside it.
 ///
 /// # Errors
 /// The errors of [`load_obj`], except for errors of reading the file itself.

@@ -39,7 +39,8 @@ pub fn show(ui: &mut Ui, viewer: &mut Viewer) {
     }
 }
 
-/// Draws a choice among names; returns the newly chosen name, or `None` if it stays the same.
+/// Draws a list to choose a name of `all` from, with `now` chosen; returns the newly chosen name,
+/// or `None` if it stays the same.
 pub fn names(ui: &mut Ui, label: &str, now: &str, all: &[String]) -> Option<String> {
     let mut chosen = now.to_owned();
     ComboBox::from_label(label)

@@ -1,4 +1,4 @@
-//! Draws the state with egui: panels, plots and pictures.
+//! Draws the window's state with egui: panels, plots and pictures.
 
 mod controls;
 mod fault;
@@ -16,7 +16,7 @@ pub struct Surface {
     pictures: [picture::Held; 2],
 }
 
-/// Draws the window and applies the user's input to the state.
+/// Draws the window in `ui`, and applies the user's input to `viewer`, the state.
 pub fn show(ui: &mut Ui, viewer: &mut Viewer, surface: &mut Surface) {
     viewer.update();
     Panel::left("controls").default_size(300.0).show(ui, |ui| {

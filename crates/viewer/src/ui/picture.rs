@@ -192,7 +192,8 @@ fn point(ui: &Ui, viewer: &mut Viewer, response: &Response) {
     }
 }
 
-/// Moves the camera by the keys held down, unless a text field has the focus.
+/// Moves the camera while W, A, S, D, Q, E, an arrow key, page up or page down is held down, unless
+/// a text field has the focus.
 pub fn keys(ui: &Ui, viewer: &mut Viewer) {
     if ui.ctx().egui_wants_keyboard_input() {
         return;

@@ -100,6 +100,6 @@ pub fn engines<'a>(gpu: &'a Gpu, rays: &'a Rays) -> Vec<Engine<'a>> {
         all.push(gpu::engine(gpu, rays, "RayQuery", &[]));
     }
     #[cfg(feature = "embree")]
-    all.extend(embree::engines(rays));
+    all.push(embree::engine(rays));
     all
 }

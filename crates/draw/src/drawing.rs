@@ -86,6 +86,8 @@ pub enum Kind {
     Sampler,
     /// An acceleration structure.
     AccelerationStructure,
+    /// Work for the CPU.
+    CpuWork,
 }
 
 /// Sources from which materials come.

@@ -98,9 +98,10 @@ fn material(resource: &Resource) -> Material {
         (Of::Own, _) => Origin::Declared,
         (Of::Constant, _) => Origin::Constant,
         (Of::Previous(_), _) => Origin::Previous,
-        (Of::Host, ResourceKind::Provided(_) | ResourceKind::AccelerationStructure) => {
-            Origin::Provided
-        }
+        (
+            Of::Host,
+            ResourceKind::Provided(_) | ResourceKind::AccelerationStructure | ResourceKind::CpuWork,
+        ) => Origin::Provided,
         (Of::Host, ResourceKind::Frame) => Origin::Frame,
         (Of::Host, _) => Origin::Imported,
     };
@@ -132,6 +133,7 @@ fn material(resource: &Resource) -> Material {
         }
         ResourceKind::Sampler(_) => material.kind = Kind::Sampler,
         ResourceKind::AccelerationStructure => material.kind = Kind::AccelerationStructure,
+        ResourceKind::CpuWork => material.kind = Kind::CpuWork,
         ResourceKind::Buffer(_) | ResourceKind::Provided(_) | ResourceKind::Frame => {}
     }
     material

@@ -36,7 +36,7 @@ impl Tint {
         match material.kind {
             _ if material.origin.is_given() => Self::Given,
             Kind::Texture => Self::Texture,
-            Kind::Buffer | Kind::AccelerationStructure => Self::Buffer,
+            Kind::Buffer | Kind::AccelerationStructure | Kind::CpuWork => Self::Buffer,
             Kind::Sampler => Self::Sampler,
         }
     }

@@ -55,6 +55,7 @@ pub(crate) fn detail(material: &Material) -> String {
         (Kind::Buffer, ..) => "buffer".to_owned(),
         (Kind::Sampler, ..) => "sampler".to_owned(),
         (Kind::AccelerationStructure, ..) => "acceleration structure".to_owned(),
+        (Kind::CpuWork, ..) => "work for the CPU".to_owned(),
     }];
     if material.layers > 1 {
         let layer = Unit::from_material(material).word();

@@ -179,6 +179,19 @@ pub enum ExecuteError {
         /// Names of the passes that ran in the frame that was encoded last, separated by commas.
         passes: String,
     },
+    /// A pass does its work on the CPU, for which a frame waits, and
+    /// [`Executor::encode`](crate::Executor::encode) never does.
+    #[error(
+        "{place}: pass `{pass}` works on the CPU, and a frame that is encoded into the host's \
+         commands cannot wait for it: run frames by `Executor::submit`, or choose what works on \
+         the GPU (of a tracer `engine=hierarchy`)"
+    )]
+    OnCpu {
+        /// Name of the first such pass.
+        pass: String,
+        /// File, line and column of the pass in the graph document, as text.
+        place: String,
+    },
     /// The host called [`Executor::finish`](crate::Executor::finish) for a frame whose encoder it
     /// has not submitted.
     #[error("the frame that is waited for was encoded, but not submitted")]

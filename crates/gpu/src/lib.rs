@@ -40,6 +40,6 @@ pub mod timing;
 
 pub use error::ExecuteError;
 pub use frame::{Executor, Frame, FrameReport, Prepared, Preparer, ReplanReport};
-pub use provider::{Provider, ProviderError};
+pub use provider::{CpuWork, Provider, ProviderError};
 pub use readback::{Content, Readback};
 pub use timing::{FrameTiming, PassStatistics, PassTiming};

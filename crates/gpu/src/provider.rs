@@ -1,6 +1,7 @@
 //! Resources that the host builds for a graph, such as scene buffers.
 
 use skiagraph_graph::{Describe, NoProvider};
+use std::{fmt::Debug, sync::Arc};
 
 /// Builds the resources that a graph expects from its host program: scene buffers, camera and light
 /// uniforms, acceleration structures. The supertrait [`Describe`] describes them without a device.
@@ -63,6 +64,30 @@ pub trait Provider: Describe {
             "this provider builds no acceleration structure `{name}`"
         )))
     }
+
+    /// Makes the work for the CPU of a resource that is described as
+    /// [`CPU_WORK`](skiagraph_graph::Provided::CPU_WORK), or returns the one made before.
+    ///
+    /// # Errors
+    /// If it cannot be made. The default implementation always fails.
+    fn build_cpu_work(&mut self, name: &str) -> Result<Arc<dyn CpuWork>, ProviderError> {
+        Err(ProviderError(format!(
+            "this provider has no work for the CPU `{name}`"
+        )))
+    }
+}
+
+/// Work that the CPU does in the middle of a frame, called by passes with a
+/// [`CpuCall`](skiagraph_graph::step::CpuCall).
+pub trait CpuWork: Debug + Send + Sync {
+    /// Does what `entry` names on the items of buffers. `reads` holds the bytes of each buffer that
+    /// the call reads, `writes` those of the one that it writes, zero at first: as many items of
+    /// each.
+    ///
+    /// # Errors
+    /// If the work cannot be done; the executor reports
+    /// [`ExecuteError::Provider`](crate::ExecuteError::Provider).
+    fn run(&self, entry: &str, reads: &[&[u8]], writes: &mut [u8]) -> Result<(), ProviderError>;
 }
 
 /// Reason why a [`Provider`] could not build a resource, as text for the user.

@@ -5,7 +5,7 @@ use crate::{document::materials::Filter, provided_kind::ProvidedKind};
 use std::collections::BTreeMap;
 
 /// Source of descriptions of the resources that the host's renderer makes and a graph only reads:
-/// scene buffers, camera and light uniforms, acceleration structures.
+/// scene buffers, camera and light uniforms, acceleration structures, work for the CPU.
 ///
 /// Names have dots, such as `scene.positions`. A shader's global has underscores in their place:
 /// `scene_positions`.
@@ -19,15 +19,15 @@ pub trait Describe {
     fn describe(&self, name: &str) -> Option<Provided>;
 }
 
-/// Description of a buffer or acceleration structure that the host makes and a graph only reads, as
-/// [`Describe::describe`] returns it.
+/// Description of a buffer, an acceleration structure or work for the CPU that the host makes and a
+/// graph only reads, as [`Describe::describe`] returns it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Provided {
     /// Number of items of the buffer; `None` if it is not known before the buffer is built, and for
     /// an acceleration structure.
     pub items: Option<u64>,
     /// Size in bytes of one item of the buffer, or of the whole buffer for one that is bound as a
-    /// uniform; 0 for an acceleration structure.
+    /// uniform; 0 for what is not a buffer.
     pub stride: u64,
     /// Ways in which shaders may bind the buffer or acceleration structure.
     pub binding: ProvidedBinding,
@@ -45,6 +45,13 @@ impl Provided {
         binding: ProvidedBinding::AccelerationStructure,
         kind: None,
     };
+
+    /// Description of work for the CPU, which a [`CpuCall`](crate::step::CpuCall) calls and no
+    /// shader can bind.
+    pub const CPU_WORK: Self = Self {
+        binding: ProvidedBinding::CpuWork,
+        ..Self::ACCELERATION_STRUCTURE
+    };
 }
 
 /// Ways in which shaders may bind a resource that the host's provider describes ([`Provided`]).
@@ -60,17 +67,19 @@ pub enum ProvidedBinding {
     /// The acceleration structure, as `acceleration_structure`, for ray queries. The resource is
     /// not a buffer.
     AccelerationStructure,
+    /// By no shader: a [`CpuCall`](crate::step::CpuCall) calls it. The resource is not a buffer.
+    CpuWork,
 }
 
 impl ProvidedBinding {
-    /// Returns the usages that a buffer needs to be bound in these ways; empty for an acceleration
-    /// structure.
+    /// Returns the usages that a buffer needs to be bound in these ways; empty for what is not a
+    /// buffer.
     pub fn usages(self) -> wgt::BufferUsages {
         match self {
             Self::Uniform => wgt::BufferUsages::UNIFORM,
             Self::Storage => wgt::BufferUsages::STORAGE,
             Self::Both => wgt::BufferUsages::UNIFORM | wgt::BufferUsages::STORAGE,
-            Self::AccelerationStructure => wgt::BufferUsages::empty(),
+            Self::AccelerationStructure | Self::CpuWork => wgt::BufferUsages::empty(),
         }
     }
 }

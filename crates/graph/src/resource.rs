@@ -92,6 +92,8 @@ pub enum ResourceKind {
     Provided(Provided),
     /// An acceleration structure, for ray queries, that the host's provider makes.
     AccelerationStructure,
+    /// Work for the CPU that the host's provider makes.
+    CpuWork,
     /// The uniform buffer `frame`, which is filled before each frame: index, seconds and flags
     /// ([`FRAME_BYTES`]).
     Frame,
@@ -124,6 +126,7 @@ impl ResourceKind {
             Self::Sampler(_) => "a sampler without `compare`",
             Self::Provided(_) => "a provided buffer",
             Self::AccelerationStructure => "an acceleration structure",
+            Self::CpuWork => "work for the CPU",
             Self::Frame => "the frame's uniform",
         }
     }

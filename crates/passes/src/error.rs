@@ -44,6 +44,9 @@ pub enum Error {
          with `engine: Hierarchy`"
     )]
     LightSpaceKind(&'static str),
+    /// Embree could not build its hierarchy; the text is its reason.
+    #[error("Embree could not build `scene.embree`: {0}")]
+    Embree(String),
     /// A texture of the mesh cannot be read.
     #[error("texture {0}")]
     Texture(

@@ -34,6 +34,8 @@
 mod atlas;
 mod buffers;
 mod built;
+#[cfg(feature = "embree")]
+mod embree;
 mod error;
 mod eye;
 mod hierarchies;

@@ -41,6 +41,7 @@ names! {
     pub(crate) LIGHT_SPACE_NODES = "scene.light_space_nodes";
     pub(crate) LIGHT_SPACE_PRIMITIVES = "scene.light_space_primitives";
     pub(crate) TLAS = "scene.tlas";
+    pub(crate) EMBREE = "scene.embree";
     /// Name of the storage buffer of the triangles' alpha masks
     /// ([`mask_words`](skiagraph_scene::packed_masks::mask_words)), which `shared/masks.wgsl`
     /// reads. It has no items if no triangle of the scene is masked (cut out by the alpha of its
@@ -185,7 +186,7 @@ impl Versions {
             CAMERA | UNPROJECTION => self.eye.number,
             LIGHT_AREA => self.light.number,
             LIGHT | LIGHT_SPACE_NODES | LIGHT_SPACE_PRIMITIVES => self.light_over.number,
-            POSITIONS | NORMALS | BVH_NODES | BVH_PRIMITIVES | TLAS => self.shape,
+            POSITIONS | NORMALS | BVH_NODES | BVH_PRIMITIVES | TLAS | EMBREE => self.shape,
             INDICES | NORMAL_INDICES | UV_INDICES | ADJACENCY | MASKS => self.winding,
             _ => self.mesh,
         }
@@ -209,5 +210,6 @@ pub(crate) fn is_of_shape(name: &str) -> bool {
             | LIGHT_SPACE_NODES
             | LIGHT_SPACE_PRIMITIVES
             | TLAS
+            | EMBREE
     )
 }

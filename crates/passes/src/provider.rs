@@ -14,6 +14,8 @@ use crate::{
     uniforms::{CameraUniform, LightAreaUniform, LightUniform, UnprojectionUniform},
 };
 use glam::{DAffine3, Vec3};
+#[cfg(feature = "embree")]
+use skiagraph_gpu::CpuWork;
 use skiagraph_gpu::{Provider, ProviderError};
 use skiagraph_graph::{Describe, Plan, Provided, ProvidedBinding};
 use skiagraph_scene::{
@@ -39,6 +41,7 @@ use std::{sync::Arc, time::Instant};
 /// | `scene.light_space_nodes` | 32-byte [`LightSpaceNode`]s, node 0 is the root |
 /// | `scene.light_space_primitives` | `array<u32>`, primitive ids in their leaf order |
 /// | `scene.tlas` | `acceleration_structure`, one instance; primitives have their ids |
+/// | `scene.embree` | work for the CPU, with the feature `embree` |
 /// | `scene.masks` | `array<u32>`: [`mask_words`], what `shared/masks.wgsl` reads |
 /// | `scene.uvs` | `array<vec2<f32>>`, v down |
 /// | `scene.uv_indices` | `array<u32>`, three per primitive |
@@ -72,6 +75,8 @@ pub struct SceneProvider {
     pub(crate) masks: Vec<u32>,
     pub(crate) buffers: Buffers,
     pub(crate) tlas: Option<(wgpu::Tlas, u64)>,
+    #[cfg(feature = "embree")]
+    embree: Option<(Arc<crate::embree::Embree>, u64)>,
     pub(crate) hierarchies: Hierarchies,
     pub(crate) shape: Shape,
     pub(crate) built: Vec<Built>,
@@ -90,6 +95,8 @@ impl SceneProvider {
             scene,
             buffers: Buffers::default(),
             tlas: None,
+            #[cfg(feature = "embree")]
+            embree: None,
             hierarchies: Hierarchies::default(),
             shape: Shape::default(),
             built: Vec::new(),
@@ -123,6 +130,7 @@ impl SceneProvider {
                 // It is asked for again when it can be made.
                 _ if self.missing(name).is_some() => {}
                 TLAS => drop(self.build_acceleration_structure(name, device, queue)?),
+                EMBREE => drop(self.build_cpu_work(name)?),
                 // Resources that the executor keeps of the frame before are not ours.
                 _ if self.describe(name).is_some() => drop(self.build(name, device, queue)?),
                 _ => {}
@@ -477,6 +485,7 @@ fn unknown(name: &str) -> Error {
 impl Describe for SceneProvider {
     fn names(&self) -> Vec<String> {
         let names = NAMES.iter().copied().map(str::to_owned);
+        let names = names.filter(|name| *name != EMBREE || cfg!(feature = "embree"));
         names.chain(lights::names(self.lights().len())).collect()
     }
 
@@ -501,6 +510,7 @@ impl Describe for SceneProvider {
             BVH_NODES | LIGHT_SPACE_NODES => array(None, 32),
             BVH_PRIMITIVES | LIGHT_SPACE_PRIMITIVES => array(Some(mesh.triangles.len()), 4),
             TLAS => Some(Provided::ACCELERATION_STRUCTURE),
+            EMBREE => cfg!(feature = "embree").then_some(Provided::CPU_WORK),
             MASKS => array(Some(self.masks.len()), 4),
             UVS => array(Some(mesh.surfaces.uvs.len()), 8),
             UV_INDICES => array(Some(3 * mesh.surfaces.uv_indices.len()), 4),
@@ -572,5 +582,24 @@ impl Provider for SceneProvider {
         self.tlas = Some((tlas.clone(), version));
         self.note(TLAS, How::Made, began);
         Ok(tlas)
+    }
+
+    #[cfg(feature = "embree")]
+    fn build_cpu_work(&mut self, name: &str) -> Result<Arc<dyn CpuWork>, ProviderError> {
+        let why = |error: Error| ProviderError(error.to_string());
+        if name != EMBREE {
+            return Err(why(unknown(name)));
+        }
+        let version = self.versions.get(EMBREE);
+        if let Some((embree, of)) = &self.embree
+            && *of == version
+        {
+            return Ok(embree.clone());
+        }
+        let began = Instant::now();
+        let embree = Arc::new(crate::embree::Embree::build(&self.scene).map_err(why)?);
+        self.embree = Some((embree.clone(), version));
+        self.note(EMBREE, How::Made, began);
+        Ok(embree)
     }
 }

@@ -25,12 +25,8 @@ pub(crate) fn build(
             most,
         });
     }
-    // wgpu does not look at indices, and the memory behind the positions may belong to anything.
+    check_corners(mesh)?;
     let corners = mesh.positions.len();
-    let mut used = mesh.triangles.as_flattened().iter();
-    if let Some(&index) = used.find(|index| **index as usize >= corners) {
-        return Err(Error::Corner { index, corners });
-    }
     let size = wgpu::BlasTriangleGeometrySizeDescriptor {
         vertex_format: wgpu::VertexFormat::Float32x3,
         vertex_count: corners as u32,
@@ -79,4 +75,15 @@ pub(crate) fn build(
     encoder.build_acceleration_structures(entry.iter(), [&tlas]);
     queue.submit([encoder.finish()]);
     Ok(tlas)
+}
+
+/// Refuses a mesh whose triangles have corners that it lacks. Builders of hierarchies do not look
+/// at indices, and the memory behind the positions may belong to anything.
+pub(crate) fn check_corners(mesh: &Mesh) -> Result<(), Error> {
+    let corners = mesh.positions.len();
+    let mut used = mesh.triangles.as_flattened().iter();
+    match used.find(|index| **index as usize >= corners) {
+        Some(&index) => Err(Error::Corner { index, corners }),
+        None => Ok(()),
+    }
 }

@@ -1,13 +1,13 @@
 //! `Trace`: rays in, hits out, by one of several engines. The number of rays stays on the GPU.
 
 use crate::{
-    names::{LIGHT, MASKS},
+    names::{EMBREE, LIGHT, MASKS},
     uniforms::LIGHT_KINDS,
 };
 use serde::Deserialize;
 use skiagraph_graph::{
     Chosen, Code, Diagnostic, Lowering, PassKind, Reference, Span,
-    step::{Dispatch, Groups, Operand, Program, Step, Threads},
+    step::{CpuCall, CpuItems, Dispatch, Groups, Operand, Program, Step, Threads},
 };
 
 /// Choice of the hit that a [`Trace`] pass records for a ray.
@@ -33,6 +33,9 @@ pub enum Engine {
     /// A hierarchy for rays that all go towards one directional light; watertight, the same hits as
     /// `Hierarchy`, on every device. Needs `direction: Light`.
     LightSpace,
+    /// Embree 3 on all cores of the CPU, for which the frame waits: its hierarchy and its test of
+    /// triangles, whose rounding is its own. Where the host has it, and runs frames that wait.
+    Embree,
 }
 
 /// Property that all rays of a pass share.
@@ -52,25 +55,27 @@ const MASKED: [(&str, &str); 2] = [
 
 impl Engine {
     /// Words by which a `Choice` param of a document selects an engine, each with its engine.
-    pub const WORDS: [(&str, Self); 3] = [
+    pub const WORDS: [(&str, Self); 4] = [
         ("hierarchy", Self::Hierarchy),
         ("ray_query", Self::RayQuery),
         ("light_space", Self::LightSpace),
+        ("embree", Self::Embree),
     ];
 
-    /// The shader that traces.
-    fn shader(self) -> &'static str {
+    /// The shader that traces, if it is one.
+    fn shader(self) -> Option<&'static str> {
         match self {
-            Self::Hierarchy => "trace_rays",
-            Self::RayQuery => "trace_ray_query",
-            Self::LightSpace => "trace_light_space",
+            Self::Hierarchy => Some("trace_rays"),
+            Self::RayQuery => Some("trace_ray_query"),
+            Self::LightSpace => Some("trace_light_space"),
+            Self::Embree => None,
         }
     }
 
     /// Returns the device features that it cannot do without.
     fn features(self) -> wgpu::Features {
         match self {
-            Self::Hierarchy | Self::LightSpace => wgpu::Features::empty(),
+            Self::Hierarchy | Self::LightSpace | Self::Embree => wgpu::Features::empty(),
             Self::RayQuery => wgpu::Features::EXPERIMENTAL_RAY_QUERY,
         }
     }
@@ -124,8 +129,8 @@ pub struct Trace {
     /// Which hit is recorded.
     mode: Mode,
     /// Engine that walks the rays, `Hierarchy` without it, or in quotes a `Choice` of `hierarchy`,
-    /// `ray_query`, `light_space`. Rays of `RayQuery` need t_min ≥ 0 and finite numbers; others hit
-    /// nothing.
+    /// `ray_query`, `light_space`, `embree`. Rays of `RayQuery` and `Embree` need t_min ≥ 0 and
+    /// finite numbers; others hit nothing.
     #[serde(default = "hierarchy")]
     engine: Chosen<Engine>,
     /// `Light` is your word that all rays go towards the light, without which `LightSpace` is
@@ -164,6 +169,42 @@ impl Trace {
         pass.report(mistake);
     }
 
+    /// Refuses the engine that the host lacks.
+    fn refuse_embree(&self, pass: &mut Lowering<'_>) {
+        let mistake = Diagnostic::error(Code::Feature, "this program was built without Embree")
+            .at(self.engine_place(pass), "its rays would be traced by it")
+            .help(
+                "build it with `--features embree`, which needs Embree 3 (on Debian 12 the package \
+                 `libembree-dev`; elsewhere its folder in EMBREE_DIR), or take another engine: \
+                 `hierarchy` traces on every device",
+            );
+        pass.report(mistake);
+    }
+
+    /// Has the CPU trace.
+    fn lower_to_cpu(&self, pass: &mut Lowering<'_>) {
+        let items = |buffer: &Reference, bytes| CpuItems {
+            buffer: buffer.into(),
+            bytes,
+        };
+        let mut reads = vec![items(&self.rays, 32)];
+        reads.extend(self.skip.as_ref().map(|skip| items(skip, 4)));
+        pass.step(Step::Cpu(CpuCall {
+            work: pass.named(EMBREE),
+            entry: self.entry_point().to_owned(),
+            count: (&self.count).into(),
+            reads,
+            writes: items(&self.hits, 16),
+        }));
+    }
+
+    fn announce(engine: Engine, pass: &mut Lowering<'_>) {
+        if let Some(shader) = engine.shader() {
+            pass.alternative(shader, &[], engine.features());
+            pass.alternative(shader, &MASKED, engine.features());
+        }
+    }
+
     fn engine_place(&self, pass: &Lowering<'_>) -> Span {
         match &self.engine {
             Chosen::Expr(expr) => expr.span().clone(),
@@ -188,20 +229,28 @@ impl Trace {
 
 impl PassKind for Trace {
     fn lower(&self, pass: &mut Lowering<'_>) {
+        // A document that chooses by a param is read with the shaders of all its words.
+        if let Chosen::Expr(_) = &self.engine {
+            for (_, engine) in Engine::WORDS {
+                Self::announce(engine, pass);
+            }
+        }
+        let mut engine = pass.word(&self.engine, &Engine::WORDS);
+        if engine == Engine::Embree && !pass.is_provided(EMBREE) {
+            self.refuse_embree(pass);
+            // So that nothing that follows from it is told, too.
+            engine = Engine::Hierarchy;
+        }
+        let Some(shader) = engine.shader() else {
+            // For hosts without it, as above.
+            Self::announce(Engine::Hierarchy, pass);
+            return self.lower_to_cpu(pass);
+        };
+        Self::announce(engine, pass);
         let groups = match &self.groups {
             Some(groups) => Operand::from(groups),
             None => self.count_groups(pass),
         };
-        // A document that chooses by a param is read with the shaders of all its words.
-        if let Chosen::Expr(_) = &self.engine {
-            for (_, engine) in Engine::WORDS {
-                pass.alternative(engine.shader(), &[], engine.features());
-                pass.alternative(engine.shader(), &MASKED, engine.features());
-            }
-        }
-        let engine = pass.word(&self.engine, &Engine::WORDS);
-        pass.alternative(engine.shader(), &[], engine.features());
-        pass.alternative(engine.shader(), &MASKED, engine.features());
         if engine == Engine::LightSpace {
             match (self.direction, pass.kind_of(LIGHT)) {
                 (None, _) => self.refuse(pass),
@@ -211,7 +260,7 @@ impl PassKind for Trace {
                 (Some(Direction::Light), _) => {}
             }
         }
-        let mut trace = pass.program_of(engine.shader());
+        let mut trace = pass.program_of(shader);
         if pass.provided_items(MASKS) > 0 {
             let modules = MASKED.iter();
             trace.imports = modules

@@ -96,11 +96,12 @@ pub fn run(
     frame: &Frame,
 ) -> Result<(FrameReport, Duration), ExecuteError> {
     let began = Instant::now();
-    let label = Some("frame");
-    let begun = wgpu::CommandEncoderDescriptor { label };
-    let mut encoder = session.gpu.device.create_command_encoder(&begun);
-    executor.encode(&mut encoder, frame)?;
-    session.gpu.queue.submit([encoder.finish()]);
+    let gives_up = || is_over(session, began);
+    let submitted = executor.submit(frame, &gives_up);
+    if let Err(ExecuteError::Unfinished { .. }) = submitted {
+        abandon(session);
+    }
+    submitted?;
     let report = wait(session, executor)?;
     Ok((report, began.elapsed()))
 }
@@ -178,14 +179,24 @@ fn wait(session: Session, executor: &mut Executor) -> Result<FrameReport, Execut
             Err(ExecuteError::Unfinished { passes, .. }) => passes,
             done => return done,
         };
-        let after = began.elapsed();
-        if session.is_stopped() || session.gpu.timeout.is_some_and(|timeout| after >= timeout) {
-            // wgpu waits for the queue when its last handle is dropped, and there would be no end
-            // to that either.
-            std::mem::forget(session.gpu.queue.clone());
+        if is_over(session, began) {
+            abandon(session);
+            let after = began.elapsed();
             return Err(ExecuteError::Unfinished { after, passes });
         }
     }
+}
+
+/// True after Ctrl-C, and when a frame that began then has reached the GPU's timeout.
+fn is_over(session: Session, began: Instant) -> bool {
+    let timeout = session.gpu.timeout;
+    session.is_stopped() || timeout.is_some_and(|timeout| began.elapsed() >= timeout)
+}
+
+/// Keeps the queue of a frame that is given up: wgpu waits for it when its last handle is dropped,
+/// and there would be no end to that either.
+fn abandon(session: Session) {
+    std::mem::forget(session.gpu.queue.clone());
 }
 
 /// Converts an executor's error into the error that ends the command on the graph named `graph`: an

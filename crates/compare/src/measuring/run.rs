@@ -407,7 +407,8 @@ impl MeasureContext<'_> {
     }
 }
 
-/// Returns the bytes of the scene's resources that a plan reads, such as positions and indices.
+/// Returns the bytes of the scene's buffers that a plan reads, such as positions and indices. An
+/// acceleration structure is not a buffer and does not tell its size.
 ///
 /// # Errors
 /// A resource that cannot be built.
@@ -419,10 +420,11 @@ pub fn scene_bytes(
     let mut bytes = 0;
     let provided = plan.provided().into_iter();
     // Last frame's camera is a copy of the executor's own.
-    for name in provided
-        .filter(|name| provider.describe(name).is_some())
-        .collect::<Vec<_>>()
-    {
+    let is_buffer = |name: &&str| {
+        let described = provider.describe(name);
+        described.is_some_and(|provided| !provided.binding.usages().is_empty())
+    };
+    for name in provided.filter(is_buffer).collect::<Vec<_>>() {
         let built = provider.build(name, &session.gpu.device, &session.gpu.queue);
         let buffer = built.map_err(|error| ExecuteError::Provider {
             name: name.to_owned(),

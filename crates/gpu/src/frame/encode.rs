@@ -1,6 +1,7 @@
 //! Encodes the steps of passes as wgpu commands.
 
-use super::{statistics::Counters, timer::Timer};
+use super::{cpu::CpuTurn, statistics::Counters, timer::Timer};
+use crate::error::ExecuteError;
 use crate::pipelines::handles::{GpuAttachment, GpuOperand, GpuProgram, Handles, PipelineKind};
 use skiagraph_graph::step::{Dispatch, Draw, DrawCall, Groups, Step};
 use smallvec::SmallVec;
@@ -14,15 +15,21 @@ pub(super) struct Meters<'t> {
 
 /// Encodes the steps of a pass, under its name in captures of graphics debuggers. The render or
 /// compute pass of a single draw or dispatch carries the name as its label. A debug group around it
-/// would repeat the name, and cost more than all else that the graph adds.
+/// would repeat the name, and cost more than all else that the graph adds. So does one of work for
+/// the CPU, around which the encoder changes. Without `cpu` such work is left out.
+///
+/// # Errors
+/// Those of work for the CPU.
 pub(super) fn encode_all(
     steps: &[Step<Handles>],
     name: &str,
     encoder: &mut wgpu::CommandEncoder,
     meters: Meters<'_>,
-) {
+    mut cpu: Option<&mut CpuTurn<'_>>,
+) -> Result<(), ExecuteError> {
     let timer = meters.timer;
-    let labelled = matches!(steps, [Step::Draw(_) | Step::Dispatch(_)]);
+    let is_split = steps.iter().any(|step| matches!(step, Step::Cpu(_)));
+    let labelled = is_split || matches!(steps, [Step::Draw(_) | Step::Dispatch(_)]);
     if !labelled {
         encoder.push_debug_group(name);
     }
@@ -36,11 +43,20 @@ pub(super) fn encode_all(
                 end(timer, query, encoder);
             }
             Step::Clear { target, value } => clear(target, *value, name, encoder, timer),
+            Step::Cpu(call) => {
+                if let Some(cpu) = &mut cpu {
+                    // Its time on the GPU is how long that stands still for it.
+                    let query = timer.map(|timer| timer.profiler().begin_query(name, encoder));
+                    cpu.call(call, encoder)?;
+                    end(timer, query, encoder);
+                }
+            }
         }
     }
     if !labelled {
         encoder.pop_debug_group();
     }
+    Ok(())
 }
 
 fn encode_dispatch(

@@ -1,6 +1,7 @@
 //! Runs a plan on a device, frame by frame.
 
 use super::{
+    cpu::{CpuTurn, Staging},
     fetch::Fetch,
     growth::Unchanged,
     growth_readback::GrowthReadback,
@@ -64,6 +65,8 @@ pub struct Executor {
     /// Frames that were encoded.
     frames: u32,
     frames_in_flight: FramesInFlight,
+    /// Means by which items come back for work of the CPU.
+    staging: Staging,
     /// The passes that the frame that was encoded last did not run.
     skipped: Vec<Arc<str>>,
 }
@@ -105,6 +108,7 @@ impl Executor {
             host_changes: HostChanges::default(),
             frames: 0,
             frames_in_flight: FramesInFlight::default(),
+            staging: Staging::default(),
             skipped: Vec::new(),
         };
         executor.state.bind_what_can_be(device)?;
@@ -126,12 +130,48 @@ impl Executor {
     /// # Errors
     /// If the plan lacks an output or capture of [`Frame::read`] or it cannot be copied; an import
     /// or a provided resource of a pass that runs is missing; the device is lost, has too little
-    /// memory, or refuses a pass that is bound for the first time. After an error nothing has been
-    /// encoded.
+    /// memory, or refuses a pass that is bound for the first time; a pass works on the CPU. After
+    /// an error nothing has been encoded.
     pub fn encode(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         frame: &Frame<'_>,
+    ) -> Result<u32, ExecuteError> {
+        if let Some(pass) = self.state.on_cpu() {
+            return Err(ExecuteError::OnCpu {
+                pass: pass.name.value.clone(),
+                place: pass.name.span.to_string(),
+            });
+        }
+        self.encode_with(encoder, frame, None)
+    }
+
+    /// Encodes a frame as [`encode`](Self::encode) does, and submits it. Where a pass works on the
+    /// CPU it submits what is encoded so far and waits: for the GPU, which it asks every 100 ms
+    /// whether `gives_up` returns true, and for the work. It waits for nothing else.
+    ///
+    /// # Errors
+    /// Those of `encode`, except that passes may work on the CPU; [`ExecuteError::Provider`] if
+    /// their work fails, [`ExecuteError::Unfinished`] if `gives_up` has ended the frame. A frame
+    /// that failed has no report, and the next one begins anew.
+    pub fn submit(
+        &mut self,
+        frame: &Frame<'_>,
+        gives_up: &dyn Fn() -> bool,
+    ) -> Result<u32, ExecuteError> {
+        let label = Some("frame");
+        let begun = wgpu::CommandEncoderDescriptor { label };
+        let mut encoder = self.device.create_command_encoder(&begun);
+        let index = self.encode_with(&mut encoder, frame, Some(gives_up))?;
+        self.queue.submit([encoder.finish()]);
+        Ok(index)
+    }
+
+    fn encode_with(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        frame: &Frame<'_>,
+        gives_up: Option<&dyn Fn() -> bool>,
     ) -> Result<u32, ExecuteError> {
         self.presence.check()?;
         self.grow_by_itself()?;
@@ -143,8 +183,13 @@ impl Executor {
             self.frames_in_flight.recycle(frame_in_flight);
             return Err(with_table(error, self.plan()));
         }
-        // From here on nothing can fail.
-        self.record(&mut frame_in_flight, encoder);
+        // From here on nothing can fail but work of the CPU.
+        if let Err(error) = self.record(&mut frame_in_flight, encoder, gives_up) {
+            // Its queries are not resolved.
+            frame_in_flight.timer = None;
+            self.frames_in_flight.recycle(frame_in_flight);
+            return Err(error);
+        }
         let index = frame_in_flight.index;
         self.host_changes.clear();
         self.skipped.clone_from(&frame_in_flight.skipped);
@@ -183,7 +228,12 @@ impl Executor {
     }
 
     /// Encodes a frame that everything is ready for.
-    fn record(&mut self, frame_in_flight: &mut FrameInFlight, encoder: &mut wgpu::CommandEncoder) {
+    fn record(
+        &mut self,
+        frame_in_flight: &mut FrameInFlight,
+        encoder: &mut wgpu::CommandEncoder,
+        gives_up: Option<&dyn Fn() -> bool>,
+    ) -> Result<(), ExecuteError> {
         let state = &mut self.state;
         let FrameDecision { runs, ping_pong } = &self.decision;
         if let (Some(id), Some(copy)) = (state.uniform, &mut frame_in_flight.uniform)
@@ -195,7 +245,14 @@ impl Executor {
         let memory = &state.memory;
         let mut copy_host = |copy| State::copy_host(memory, copy, encoder);
         state.contents.first_copies(&mut copy_host);
-        state.encode(&self.decision, frame_in_flight, encoder);
+        let mut cpu = gives_up.map(|gives_up| CpuTurn {
+            device: &self.device,
+            queue: &self.queue,
+            staging: &mut self.staging,
+            gives_up,
+            worked: Duration::ZERO,
+        });
+        state.encode(&self.decision, frame_in_flight, encoder, cpu.as_mut())?;
         if let Some(timer) = frame_in_flight
             .timer
             .as_mut()
@@ -218,6 +275,7 @@ impl Executor {
         let memory = &state.memory;
         let mut copy_host = |copy| State::copy_host(memory, copy, encoder);
         state.contents.copies(&mut copy_host);
+        Ok(())
     }
 
     /// Returns the report of the oldest frame that requested times, statistics or readbacks (fields

@@ -1,6 +1,7 @@
 //! Frames: decides which passes run, encodes them into the host's encoder, and changes the plan.
 
 mod contents;
+mod cpu;
 mod encode;
 pub(crate) mod executor;
 mod fetch;

@@ -19,7 +19,7 @@ use std::sync::Arc;
 /// A pass with its pipelines, params and bindings.
 pub(super) struct GpuPass {
     pub name: Arc<str>,
-    /// Pipeline of each step; `None` for copies and clears.
+    /// Pipeline of each step; `None` for one without a shader.
     pipelines: Vec<Option<Pipeline>>,
     /// Buffer of the uniform `params` of each step; `None` for steps without one.
     params: Vec<Option<wgpu::Buffer>>,
@@ -144,10 +144,11 @@ impl GpuPass {
             scoped(device, &pass.name, || {
                 let mut encoder =
                     device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-                encode_all(&steps, &pass.name, &mut encoder, Meters::default());
-                encoder.finish()
+                let done = encode_all(&steps, &pass.name, &mut encoder, Meters::default(), None);
+                encoder.finish();
+                done
             })
-            .map_err(refused)?;
+            .map_err(refused)??;
             self.tried.push(state.clone());
         }
         self.variants.push((state, steps));

@@ -2,6 +2,7 @@
 
 use super::{
     contents::{Contents, HostCopy},
+    cpu::CpuTurn,
     encode::{Meters, encode_all},
     fetch::Readable,
     growth_readback::GrowthReadback,
@@ -18,7 +19,7 @@ use crate::{
     },
     pipelines::pipelines::Pipelines,
 };
-use skiagraph_graph::{LinkedPass, Origin, Plan, ResourceId, ResourceKind};
+use skiagraph_graph::{Ids, LinkedPass, Origin, Plan, ResourceId, ResourceKind, step::Step};
 use std::{sync::Arc, time::Instant};
 
 /// A plan and everything that was created for it on the device.
@@ -155,14 +156,24 @@ impl State {
         self.contents.ping_pong(&self.plan, runs, ping_pong);
     }
 
+    /// Returns the first pass that works on the CPU.
+    pub fn on_cpu(&self) -> Option<&LinkedPass> {
+        let is_cpu = |step: &Step<Ids>| matches!(step, Step::Cpu(_));
+        self.plan.live().find(|pass| pass.steps.iter().any(is_cpu))
+    }
+
     /// Encodes the passes that run and lists the others in `skipped`. In a timed frame it takes
     /// their times.
+    ///
+    /// # Errors
+    /// Those of work for the CPU.
     pub fn encode(
         &self,
         decision: &FrameDecision,
         frame_in_flight: &mut FrameInFlight,
         encoder: &mut wgpu::CommandEncoder,
-    ) {
+        mut cpu: Option<&mut CpuTurn<'_>>,
+    ) -> Result<(), ExecuteError> {
         let timer = frame_in_flight
             .timer
             .as_ref()
@@ -183,16 +194,18 @@ impl State {
                 timer,
                 counters: counters.as_ref(),
             };
-            encode_all(steps, &pass.name, encoder, meters);
+            encode_all(steps, &pass.name, encoder, meters, cpu.as_deref_mut())?;
             if let Some(counters) = counters {
                 counters.pass(pass.name.clone(), first);
             }
             if let Some(start) = start {
-                frame_in_flight
-                    .cpu
-                    .push((pass.name.clone(), start.elapsed()));
+                let worked = cpu.as_mut().map(|cpu| std::mem::take(&mut cpu.worked));
+                let worked = worked.filter(|worked| !worked.is_zero());
+                let time = worked.unwrap_or_else(|| start.elapsed());
+                frame_in_flight.cpu.push((pass.name.clone(), time));
             }
         }
+        Ok(())
     }
 
     /// Copies contents into the larger buffers and textures that replaced smaller ones since the

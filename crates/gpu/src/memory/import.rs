@@ -47,6 +47,7 @@ pub(crate) fn differs(physical: &Physical, described: &Import) -> Option<String>
                 Physical::Buffer(_) => "a buffer",
                 Physical::Sampler(_) => "a sampler",
                 Physical::AccelerationStructure(_) => "an acceleration structure",
+                Physical::CpuWork(_) => "work for the CPU",
             };
             let planned = match described {
                 Import::Texture { .. } => "a texture",

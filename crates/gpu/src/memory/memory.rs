@@ -2,7 +2,7 @@
 
 use super::{
     allocation::{GpuAllocation, Known},
-    physical::{Physical, PingPong},
+    physical::{Physical, PingPong, Work},
 };
 use crate::{
     buffer,
@@ -103,7 +103,12 @@ impl Memory {
             (_, Origin::Previous(base)) => {
                 self.bases.insert(id, base);
             }
-            (ResourceKind::Provided(_) | ResourceKind::AccelerationStructure, _) => {
+            (
+                ResourceKind::Provided(_)
+                | ResourceKind::AccelerationStructure
+                | ResourceKind::CpuWork,
+                _,
+            ) => {
                 self.refresh(id, plan, old, factory)?;
             }
             (ResourceKind::Frame, _) => {
@@ -210,6 +215,15 @@ impl Memory {
         }
     }
 
+    pub fn cpu_work(&self, id: ResourceId) -> Result<&Work, ExecuteError> {
+        match self.host.get(&id) {
+            Some(Physical::CpuWork(work)) => Ok(work),
+            _ => Err(ExecuteError::Internal(
+                "work for the CPU that a live pass uses was not made",
+            )),
+        }
+    }
+
     pub fn sampler(&self, id: ResourceId) -> Result<&wgpu::Sampler, ExecuteError> {
         match self.host.get(&id) {
             Some(Physical::Sampler(sampler)) => Ok(sampler),
@@ -268,6 +282,7 @@ impl Memory {
         // The plan has counted items and sized buffers by what was described to it.
         let planned = match &resource.kind {
             ResourceKind::Provided(planned) => *planned,
+            ResourceKind::CpuWork => Provided::CPU_WORK,
             _ => Provided::ACCELERATION_STRUCTURE,
         };
         if let Some(given) = provider.describe(&resource.name)
@@ -288,6 +303,9 @@ impl Memory {
             ResourceKind::AccelerationStructure => provider
                 .build_acceleration_structure(&resource.name, device, factory.queue)
                 .map(Physical::AccelerationStructure),
+            ResourceKind::CpuWork => provider
+                .build_cpu_work(&resource.name)
+                .map(|work| Physical::CpuWork(Work(work))),
             _ => provider
                 .build(&resource.name, device, factory.queue)
                 .map(Physical::Buffer),

@@ -1,7 +1,7 @@
 //! Binds pipelines to memory: bind groups, attachments, and operands of copies.
 
 use super::{
-    handles::{GpuAttachment, GpuOperand, GpuProgram, Handles},
+    handles::{GpuAttachment, GpuOperand, GpuProgram, Handles, NamedWork},
     pipelines::Pipeline,
 };
 use crate::{
@@ -15,7 +15,9 @@ use crate::{
 };
 use skiagraph_graph::{
     Attachment, BindTarget, Ids, LinkedProgram, Plan, ResourceKind, SubresourceRange, Target,
-    step::{ColorTarget, DepthTarget, Dispatch, Draw, Groups, StencilTarget, Step},
+    step::{
+        ColorTarget, CpuCall, CpuItems, DepthTarget, Dispatch, Draw, Groups, StencilTarget, Step,
+    },
 };
 
 /// Creates the uniform buffer of a step's `params`; `None` if its shader has none.
@@ -76,6 +78,30 @@ impl Binder<'_> {
                 target: self.operand(target, true)?,
                 value: *value,
             },
+            Step::Cpu(call) => Step::Cpu(self.cpu_call(call)?),
+        })
+    }
+
+    fn cpu_call(&self, call: &CpuCall<Ids>) -> Result<CpuCall<Handles>, ExecuteError> {
+        let items = |items: &CpuItems<Ids>| {
+            Ok(CpuItems {
+                buffer: self.operand(&items.buffer, false)?,
+                bytes: items.bytes,
+            })
+        };
+        Ok(CpuCall {
+            work: NamedWork {
+                name: self.plan.resource(call.work).name.clone(),
+                work: self.memory.cpu_work(call.work)?.clone(),
+            },
+            entry: call.entry.clone(),
+            count: self.operand(&call.count, false)?,
+            reads: call
+                .reads
+                .iter()
+                .map(items)
+                .collect::<Result<_, ExecuteError>>()?,
+            writes: items(&call.writes)?,
         })
     }
 

@@ -1,5 +1,6 @@
 //! Steps of passes as wgpu objects, ready to encode.
 
+use crate::memory::physical::Work;
 use skiagraph_graph::{SubresourceRange, step::Stage};
 use std::ops::Range;
 
@@ -12,6 +13,7 @@ impl Stage for Handles {
     type Operand = GpuOperand;
     type Arguments = (wgpu::Buffer, u64);
     type Program = GpuProgram;
+    type Work = NamedWork;
     type Size = [u32; 3];
     type Canvas = GpuAttachment;
 }
@@ -53,4 +55,11 @@ pub(crate) struct GpuProgram {
 pub(crate) enum PipelineKind {
     Render(wgpu::RenderPipeline),
     Compute(wgpu::ComputePipeline),
+}
+
+/// Work for the CPU with the name of its resource.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct NamedWork {
+    pub name: String,
+    pub work: Work,
 }

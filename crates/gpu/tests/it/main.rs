@@ -32,6 +32,7 @@ mod history;
 mod imports;
 mod keep;
 mod memory;
+mod on_cpu;
 mod provided;
 mod readback;
 mod refusals;

@@ -39,6 +39,10 @@ mistakes! {
         .at(span, "seen here")
         .help("let another shader see the buffer as an array of such items");
 
+    Handed { name: String, have: u64, needed: u64, span: Span } =>
+        LayoutMismatch("the items of `{name}` have {have} bytes, the CPU's {needed}")
+        .at(span, "handed to the CPU here");
+
     Alignment { name: String, stride: u64, alignment: u64, span: Span } =>
         Alignment("items of `{name}` are {stride} bytes apart, and cannot be bound alone")
         .at(span, "bound here")

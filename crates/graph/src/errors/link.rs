@@ -220,6 +220,12 @@ mistakes! {
     CopyKinds { from: Located<String>, to: Located<String>, kinds: [&'static str; 2] } =>
         ResourceKind("`{from}` cannot be copied onto `{to}`").at(from, kinds[0]).at(to, kinds[1]);
 
+    NoCpuWork(name: Located<String>, found: &'static str) =>
+        ResourceKind("`{name}` does no work on the CPU").at(name, format!("this is {found}"));
+
+    CpuItems { name: Located<String>, found: &'static str } =>
+        ResourceKind("`{name}` has no items for the CPU").at(name, format!("this is {found}"));
+
     ClearFormat { name: Located<String>, format: TextureFormat } =>
         FormatMismatch("a texture of format {format:?} cannot be cleared")
         .at(name, "wgpu clears what can be drawn to")

@@ -26,6 +26,11 @@ pub(crate) trait Environment {
         None
     }
 
+    /// True if the scene provides a resource of this name.
+    fn is_provided(&self, _: &str) -> bool {
+        false
+    }
+
     fn param(&mut self, name: &str, span: &Span) -> Result<Value, ErrorGuaranteed>;
 
     /// Returns the value of the param called `name`; `None` if there is none, so that the name is a

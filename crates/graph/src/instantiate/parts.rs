@@ -24,7 +24,10 @@ pub(super) fn layers(
             return Ok((what, target.part.layers.len() as u64));
         }
         ResourceKind::Buffer(_) | ResourceKind::Provided(_) => "items",
-        ResourceKind::Sampler(_) | ResourceKind::AccelerationStructure | ResourceKind::Frame => {
+        ResourceKind::Sampler(_)
+        | ResourceKind::AccelerationStructure
+        | ResourceKind::CpuWork
+        | ResourceKind::Frame => {
             let error = InterfaceError::NoPart {
                 text: reference.text().to_owned(),
                 span: reference.span.clone(),

@@ -262,6 +262,10 @@ impl<'a> SymbolTable<'a> {
                         binding: ProvidedBinding::AccelerationStructure,
                         ..
                     }) => ResourceKind::AccelerationStructure,
+                    Some(Provided {
+                        binding: ProvidedBinding::CpuWork,
+                        ..
+                    }) => ResourceKind::CpuWork,
                     Some(provided) => ResourceKind::Provided(provided),
                     None if name == FRAME => ResourceKind::Frame,
                     None => return None,
@@ -805,6 +809,10 @@ impl Environment for At<'_, '_> {
 
     fn provided_items(&self, name: &str) -> Option<u64> {
         self.symbols.request.provider.describe(name)?.items
+    }
+
+    fn is_provided(&self, name: &str) -> bool {
+        self.symbols.request.provider.describe(name).is_some()
     }
 
     fn param(&mut self, name: &str, span: &Span) -> Reported<Value> {

@@ -184,6 +184,12 @@ impl<'a> Lowering<'a> {
             .unwrap_or(0)
     }
 
+    /// True if the provider has a resource of this name, and while a document is loaded.
+    pub fn is_provided(&self, name: &str) -> bool {
+        let environment = self.environment.as_ref();
+        environment.is_none_or(|it| it.is_provided(name))
+    }
+
     /// Evaluates an expression to a non-negative whole number. Returns 1 while a document is
     /// loaded, and after a mistake, which is reported.
     pub fn count(&mut self, expr: &Expr) -> u64 {

@@ -1,4 +1,5 @@
-//! Steps of passes: draws, dispatches, copies and clears. The types are generic over a [`Stage`]: a
+//! Steps of passes: draws, dispatches, copies, clears and work for the CPU. The types are generic
+//! over a [`Stage`]: a
 //! step refers to resources and shaders by name as a pass kind lowers it, by id once it is linked,
 //! and by GPU handle once it is made on a device.
 //!
@@ -55,6 +56,8 @@ pub trait Stage: Clone + Debug + PartialEq {
     type Arguments: Clone + Debug + PartialEq;
     /// Shader of a draw or dispatch, with its bindings.
     type Program: Clone + Debug + PartialEq;
+    /// Work that the CPU does between GPU passes.
+    type Work: Clone + Debug + PartialEq;
     /// Number of threads or workgroups of a dispatch that is not indirect.
     type Size: Clone + Debug + PartialEq;
     /// Target of a draw without attachments: its size, or a texture of that size
@@ -73,6 +76,7 @@ impl Stage for Names {
     type Operand = Operand;
     type Arguments = Operand;
     type Program = Program;
+    type Work = Located<String>;
     type Size = Threads;
     type Canvas = Located<[u64; 2]>;
 }
@@ -123,7 +127,7 @@ pub enum Threads {
     Groups([u32; 3]),
 }
 
-/// One piece of GPU work of a pass. The steps of a pass run in order and are timed together. `S` is
+/// One piece of work of a pass. The steps of a pass run in order and are timed together. `S` is
 /// the [`Stage`], which determines the types for resources, shaders and sizes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Step<S: Stage> {
@@ -148,15 +152,17 @@ pub enum Step<S: Stage> {
         /// zero for a buffer, which can be cleared to nothing else.
         value: [f64; 4],
     },
+    /// Work of the CPU, for which the frame waits.
+    Cpu(CpuCall<S>),
 }
 
 impl<S: Stage> Step<S> {
-    /// Returns the program that a draw or dispatch runs; `None` for a copy or clear.
+    /// Returns the program that a draw or dispatch runs; `None` for every other step.
     pub fn program(&self) -> Option<&S::Program> {
         match self {
             Self::Draw(draw) => Some(&draw.program),
             Self::Dispatch(dispatch) => Some(&dispatch.program),
-            Self::Copy { .. } | Self::Clear { .. } => None,
+            Self::Copy { .. } | Self::Clear { .. } | Self::Cpu(_) => None,
         }
     }
 }
@@ -344,4 +350,31 @@ pub enum Groups<S: Stage> {
     Direct(S::Size),
     /// Numbers of workgroups in x, y and z that the GPU reads from this buffer, a u32 each.
     Indirect(S::Arguments),
+}
+
+/// Work of the CPU on the items of buffers, a [`Step`]. The frame waits for it: an executor ends
+/// the GPU's work before it, copies the items back, has the work done, and uploads what it wrote.
+/// Only `Executor::submit` of `skiagraph-gpu` runs passes with such a step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CpuCall<S: Stage> {
+    /// Provided resource that does the work: one that is described as
+    /// [`CPU_WORK`](crate::Provided::CPU_WORK).
+    pub work: S::Work,
+    /// Name of what the work is to do, as an entry point is that of a shader.
+    pub entry: String,
+    /// Buffer of one u32, the number of items; those beyond the end of a buffer are left out.
+    pub count: S::Operand,
+    /// Buffers whose items the work reads.
+    pub reads: Vec<CpuItems<S>>,
+    /// Buffer whose items the work writes, all of them.
+    pub writes: CpuItems<S>,
+}
+
+/// Buffer of a [`CpuCall`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct CpuItems<S: Stage> {
+    /// The buffer.
+    pub buffer: S::Operand,
+    /// Size of an item in bytes, a multiple of 4.
+    pub bytes: u64,
 }

@@ -78,8 +78,8 @@ fn copy_of(
         ResourceKind::Sampler(_) => {
             return Err(OutputError::Sampler(name));
         }
-        ResourceKind::AccelerationStructure => {
-            let what = "an acceleration structure".to_owned();
+        ResourceKind::AccelerationStructure | ResourceKind::CpuWork => {
+            let what = scope.get(target.id).kind.describe().to_owned();
             return Err(OutputError::Unreadable { name, what });
         }
     })

@@ -14,6 +14,8 @@ use std::{collections::BTreeMap, sync::Arc};
 pub(super) struct Layouts {
     seen: BTreeMap<ResourceId, Vec<Seen>>,
     least: BTreeMap<ResourceId, (u64, Span)>,
+    /// Bytes of an item as the CPU has it.
+    handed: BTreeMap<ResourceId, Vec<(u64, Span)>>,
     same: Vec<[Copied; 2]>,
 }
 
@@ -68,6 +70,12 @@ impl Layouts {
             let entry = self.least.entry(id).or_insert((0, span.clone()));
             entry.0 = entry.0.max(bytes);
         }
+    }
+
+    /// Adds that the items of a buffer, each of `bytes` bytes, are handed to the CPU.
+    pub fn hand(&mut self, id: ResourceId, bytes: u64, span: &Span) {
+        let handed = self.handed.entry(id).or_default();
+        handed.push((bytes, span.clone()));
     }
 
     /// Adds that the buffer `from`, or part of it, is copied onto `to`, so that both must have the
@@ -185,6 +193,20 @@ impl Layouts {
                 }
             };
             bytes = Some(bytes.unwrap_or(0).max(size));
+        }
+        for (item, span) in self.handed.get(&id).into_iter().flatten() {
+            let (have, needed) = (sized.stride, *item);
+            if have != 0 && have != needed {
+                return Err(LayoutError::Handed {
+                    name: resource.name.clone(),
+                    have,
+                    needed,
+                    span: span.clone(),
+                });
+            }
+            sized.stride = needed;
+            let count = buffer.count.unwrap_or(1);
+            bytes = Some(bytes.unwrap_or(0).max(count.saturating_mul(needed)));
         }
         // A pass's own buffers and captures have their bytes counted, in fours.
         let is_own = resource.declared.is_some();

@@ -141,7 +141,10 @@ fn reads(pass: &LinkedPass, references: &[Reference], scope: &mut PassScope<'_>)
     let unstated = pass.accesses.iter().find(|access| {
         let kind = &scope.get(access.resource).kind;
         let is_given = matches!(kind, ResourceKind::Provided(_) | ResourceKind::Frame)
-            || matches!(kind, ResourceKind::AccelerationStructure);
+            || matches!(
+                kind,
+                ResourceKind::AccelerationStructure | ResourceKind::CpuWork
+            );
         access.reads && !is_given && !stated.contains(&access.resource)
     });
     match unstated {

@@ -6,6 +6,7 @@ mod bindings;
 mod canvas;
 mod capture;
 mod covered;
+mod cpu;
 mod dispatch;
 mod layouts;
 mod limits;

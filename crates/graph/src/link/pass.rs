@@ -38,8 +38,8 @@ pub struct LinkedPass {
     /// Kind of the pass, as the document writes it, such as `Compute`; [`CAPTURE`] for a pass that
     /// planning added.
     pub kind: &'static str,
-    /// GPU work of the pass (draws, dispatches, copies and clears), in the order in which it is
-    /// done.
+    /// Work of the pass (draws, dispatches, copies, clears, work for the CPU), in the order in
+    /// which it is done.
     pub steps: Vec<Step<Ids>>,
     /// Every read and write of a resource by the pass, in the order of its steps.
     pub accesses: Vec<Access>,
@@ -60,7 +60,7 @@ impl LinkedPass {
 
     /// Iterates over the bytes of the `params` uniform of each step, one entry per step, in the
     /// order of the steps. The uniform holds the values of params for the step's shader. `None` for
-    /// a step whose shader has no global `params`, and for a copy or clear.
+    /// a step whose shader has no global `params`, and for one without a shader.
     pub fn params(&self) -> impl Iterator<Item = Option<&[u8]>> {
         self.steps.iter().map(|step| step.program()?.params())
     }
@@ -101,7 +101,7 @@ pub enum Usage {
     Texture(wgt::TextureUsages),
     /// Usage of a buffer, such as `STORAGE`.
     Buffer(wgt::BufferUsages),
-    /// No usage: the resource is a sampler or an acceleration structure.
+    /// No usage: the resource is a sampler, an acceleration structure or work for the CPU.
     None,
 }
 
@@ -115,6 +115,7 @@ impl Stage for Ids {
     type Operand = Target;
     type Arguments = Target;
     type Program = LinkedProgram;
+    type Work = ResourceId;
     type Size = [u32; 3];
     type Canvas = Attachment;
 }
@@ -241,7 +242,7 @@ pub(crate) fn block_mut(step: &mut Step<Ids>) -> Option<&mut Block> {
     let program = match step {
         Step::Draw(draw) => &mut draw.program,
         Step::Dispatch(dispatch) => &mut dispatch.program,
-        Step::Copy { .. } | Step::Clear { .. } => return None,
+        Step::Copy { .. } | Step::Clear { .. } | Step::Cpu(_) => return None,
     };
     let mut bindings = program.bindings.iter_mut();
     bindings.find_map(|binding| match &mut binding.target {

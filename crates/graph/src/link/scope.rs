@@ -186,6 +186,17 @@ impl<'a> PassScope<'a> {
         }
     }
 
+    /// Returns the target for the name of a provided resource.
+    pub fn provided(&mut self, name: &Located<String>) -> Reported<Target> {
+        match self.symbols.find_scene(name, self.position.scope) {
+            Some(found) => found,
+            None => {
+                let found = "nothing that the host provides";
+                Err(self.report(LinkError::NoCpuWork(name.clone(), found)))
+            }
+        }
+    }
+
     /// Checks that the resource `id` may be written. Content of the frame before (`.previous`) and
     /// content that the document gives are read-only.
     pub fn writable(&mut self, id: ResourceId, span: &Span) -> Reported<()> {

@@ -1,7 +1,7 @@
 //! Linking of the steps of a pass, one after the other.
 
 use super::{
-    attachments, dispatch,
+    attachments, cpu, dispatch,
     pass::{Ids, LinkedPass},
     scope::PassScope,
     transfers,
@@ -52,6 +52,7 @@ fn step(step: &Step<Names>, scope: &mut PassScope<'_>) -> Reported<Step<Ids>> {
         Step::Dispatch(step) => dispatch::link(step, scope).map(Step::Dispatch),
         Step::Copy { from, to } => transfers::copy(from, to, scope),
         Step::Clear { target, value } => transfers::clear(target, *value, scope),
+        Step::Cpu(call) => cpu::link(call, scope).map(Step::Cpu),
     }
 }
 

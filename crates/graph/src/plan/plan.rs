@@ -323,7 +323,9 @@ impl Plan {
         let is_provided = |resource: &&Resource| {
             matches!(
                 resource.kind,
-                ResourceKind::Provided(_) | ResourceKind::AccelerationStructure
+                ResourceKind::Provided(_)
+                    | ResourceKind::AccelerationStructure
+                    | ResourceKind::CpuWork
             )
         };
         let provided = self.used().filter(is_provided);

@@ -88,7 +88,10 @@ pub(super) fn readable(
         };
         if matches!(
             at.symbols().get(target.id).kind,
-            ResourceKind::Provided(_) | ResourceKind::AccelerationStructure | ResourceKind::Frame
+            ResourceKind::Provided(_)
+                | ResourceKind::AccelerationStructure
+                | ResourceKind::CpuWork
+                | ResourceKind::Frame
         ) {
             at.report(OutputError::Provided(name));
         } else if !written(&target) {

@@ -1,0 +1,168 @@
+//! Work of the CPU in the middle of a frame: what is encoded so far is submitted, items are copied
+//! back, and what the work wrote is uploaded in front of the rest.
+
+use crate::{
+    buffer,
+    error::{ExecuteError, scoped, wait},
+    pipelines::handles::{GpuOperand, Handles},
+    signal::{Progress, Signal},
+};
+use skiagraph_graph::step::CpuCall;
+use std::{
+    ops::Range,
+    time::{Duration, Instant},
+};
+
+/// How often a frame that waits for the GPU asks whether it should go on.
+const POLL_INTERVAL: Duration = Duration::from_millis(100);
+
+/// Buffer that items are copied back through, kept for the next frame.
+#[derive(Default)]
+pub(super) struct Staging(Option<wgpu::Buffer>);
+
+/// Means by which a frame waits.
+pub(super) struct CpuTurn<'t> {
+    pub device: &'t wgpu::Device,
+    pub queue: &'t wgpu::Queue,
+    pub staging: &'t mut Staging,
+    /// Asked from time to time: true ends the frame.
+    pub gives_up: &'t dyn Fn() -> bool,
+    /// Time that the work of the pass took so far.
+    pub worked: Duration,
+}
+
+/// A range of bytes of a buffer.
+type Bytes<'b> = (&'b wgpu::Buffer, Range<u64>);
+
+impl CpuTurn<'_> {
+    /// Has a call done; `encoder` is then a new one.
+    pub fn call(
+        &mut self,
+        call: &CpuCall<Handles>,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), ExecuteError> {
+        let (counter, place) = bytes(&call.count)?;
+        let counter = [(counter, place.start..place.start + 4)];
+        let count = self.read(&counter, encoder, |read| {
+            let word = read[0].first_chunk().copied().unwrap_or_default();
+            Ok(u64::from(u32::from_ne_bytes(word)))
+        })?;
+        let all = call.reads.iter().chain([&call.writes]);
+        let room = all.map(|items| {
+            let (_, place) = bytes(&items.buffer)?;
+            Ok((place.end - place.start) / items.bytes.max(1))
+        });
+        let room: Vec<u64> = room.collect::<Result<_, ExecuteError>>()?;
+        let count = room.into_iter().fold(count, u64::min);
+        if count == 0 {
+            return Ok(());
+        }
+        let reads = call.reads.iter().map(|items| {
+            let (buffer, place) = bytes(&items.buffer)?;
+            Ok((buffer, place.start..place.start + count * items.bytes))
+        });
+        let reads: Vec<Bytes<'_>> = reads.collect::<Result<_, ExecuteError>>()?;
+        let mut written = vec![0; (count * call.writes.bytes) as usize];
+        let mut worked = Duration::ZERO;
+        self.read(&reads, encoder, |read| {
+            let began = Instant::now();
+            let done = call.work.work.0.run(&call.entry, read, &mut written);
+            worked = began.elapsed();
+            done.map_err(|why| ExecuteError::Provider {
+                name: call.work.name.clone(),
+                why: why.0,
+            })
+        })?;
+        self.worked += worked;
+        let (target, place) = bytes(&call.writes.buffer)?;
+        self.queue.write_buffer(target, place.start, &written);
+        Ok(())
+    }
+
+    /// Submits what is encoded with copies of some bytes behind it, waits, and hands the bytes to
+    /// `take`.
+    fn read<T>(
+        &mut self,
+        from: &[Bytes<'_>],
+        encoder: &mut wgpu::CommandEncoder,
+        take: impl FnOnce(&[&[u8]]) -> Result<T, ExecuteError>,
+    ) -> Result<T, ExecuteError> {
+        let mut places = Vec::new();
+        let mut end = 0;
+        for (_, bytes) in from {
+            let length = bytes.end - bytes.start;
+            places.push(end..end + length);
+            end = (end + length).next_multiple_of(wgpu::MAP_ALIGNMENT);
+        }
+        let staging = self.staging.of_size(end, self.device)?;
+        for ((buffer, bytes), place) in from.iter().zip(&places) {
+            let length = bytes.end - bytes.start;
+            encoder.copy_buffer_to_buffer(buffer, bytes.start, &staging, place.start, length);
+        }
+        let mapped = Signal::default();
+        mapped.when_mapped(&staging, wgpu::MapMode::Read, encoder);
+        let next = wgpu::CommandEncoderDescriptor {
+            label: Some("frame, behind work of the CPU"),
+        };
+        let next = self.device.create_command_encoder(&next);
+        self.queue
+            .submit([std::mem::replace(encoder, next).finish()]);
+        if let Err(error) = self.wait_for(&mapped) {
+            // It may be mapped yet.
+            self.staging.0 = None;
+            return Err(error);
+        }
+        let taken = {
+            let failed = |_| ExecuteError::DeviceLost("items could not be copied back".to_owned());
+            let views = places
+                .into_iter()
+                .map(|place| staging.get_mapped_range(place));
+            let views: Vec<_> = views.collect::<Result<_, _>>().map_err(failed)?;
+            let views: Vec<&[u8]> = views.iter().map(|view| &**view).collect();
+            take(&views)
+        };
+        staging.unmap();
+        taken
+    }
+
+    fn wait_for(&self, mapped: &Signal) -> Result<(), ExecuteError> {
+        let began = Instant::now();
+        loop {
+            wait(self.device, Some(POLL_INTERVAL))?;
+            match mapped.progress() {
+                Progress::Done => return Ok(()),
+                Progress::UnderWay if (self.gives_up)() => {
+                    return Err(ExecuteError::Unfinished {
+                        after: began.elapsed(),
+                        passes: "passes in front of work of the CPU".to_owned(),
+                    });
+                }
+                Progress::UnderWay => {}
+                Progress::Failed | Progress::Dropped => {
+                    let why = "items could not be copied back for the CPU";
+                    return Err(ExecuteError::DeviceLost(why.to_owned()));
+                }
+            }
+        }
+    }
+}
+
+impl Staging {
+    /// Returns a buffer of at least `size` bytes.
+    fn of_size(&mut self, size: u64, device: &wgpu::Device) -> Result<wgpu::Buffer, ExecuteError> {
+        if let Some(buffer) = self.0.as_ref().filter(|buffer| buffer.size() >= size) {
+            return Ok(buffer.clone());
+        }
+        let name = "items for the CPU";
+        let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
+        let made = scoped(device, name, || buffer::make(device, name, size, usage))?;
+        Ok(self.0.insert(made).clone())
+    }
+}
+
+fn bytes(operand: &GpuOperand) -> Result<Bytes<'_>, ExecuteError> {
+    match operand {
+        GpuOperand::Buffer { buffer, range } => Ok((buffer, range.clone())),
+        GpuOperand::Texture { .. } => Err(ExecuteError::Internal("the CPU works on buffers alone")),
+    }
+}

@@ -4,6 +4,7 @@
 // Ray Tracing", JCGT 3(4), 2014, section 4.
 
 #import "shared/camera.wgsl"
+#import "shared/ids.wgsl"
 #import "shared/light.wgsl"
 #import "shared/ray_triangle.wgsl"
 #import "shared/receiver.wgsl"
@@ -35,11 +36,12 @@ fn leave_unless_stopped(pixel: vec2<u32>) {
     let ray = Ray(receiver.xyz, 0.0, to_light_from(receiver.xyz), light_distance(receiver.xyz));
     let start = relative_to_eye(receiver.xyz);
     let distance = dot(start, camera.forward);
-    let step = ray.direction * params.reach * distance / f32(params.steps);
+    let step = ray.direction * min(params.reach * distance, ray.t_max) / f32(params.steps);
     let size = vec2<f32>(textureDimensions(position));
-    // A surface may rise by as much within two pixels.
+    // The height of a pixel there: a surface may rise by as much from one to the next.
     let rise = 2.0 * camera.half_height / size.y * distance;
     let own = textureLoad(primitive, pixel, 0).x;
+    let begin = receiver_error_bound(receiver.xyz, camera.eye);
     let steps = select(0u, params.steps, initial_status(pixel, receiver) == STATUS_UNCERTAIN);
     // Interleaved gradient noise: Jimenez, "Next Generation Post Processing", SIGGRAPH 2014.
     let noise = fract(52.9829189 * fract(dot(vec2<f32>(pixel), vec2(0.06711056, 0.00583715))));
@@ -48,13 +50,16 @@ fn leave_unless_stopped(pixel: vec2<u32>) {
         if any(abs(clip.xy) >= vec2(clip.w)) {
             break;
         }
-        let at = vec2<u32>((clip.xy / clip.w * vec2(0.5, -0.5) + 0.5) * size);
+        let at = vec2<u32>(min((clip.xy / clip.w * vec2(0.5, -0.5) + 0.5) * size, size - 1.0));
         let id = textureLoad(primitive, at, 0).x;
         let seen = dot(relative_to_eye(textureLoad(position, at, 0).xyz), camera.forward);
         var hit = Hit(ray.t_max, id, 0.0, 0.0);
-        if id != own && id != NO_PRIMITIVE
-            && (clip.w - seen > rise && clip.w - seen < params.thickness * distance
-            || params.thickness == 0.0 && intersect(sheared(ray), id, 0.0, &hit)) {
+        let is_known = id != UNKNOWN_PRIMITIVE;
+        if id == NO_PRIMITIVE || is_known && id == own {
+            continue;
+        }
+        if clip.w - seen > rise && clip.w - seen < params.thickness * distance
+            || params.thickness == 0.0 && is_known && intersect(sheared(ray), id, begin, &hit) {
             return;
         }
     }

@@ -25,7 +25,7 @@ fn share_of_light(lookup: Lookup) -> f32 {
     let axes = light_on_plane(textureLoad(primitive, pixel, 0).x, to_light_from(receiver));
     let jitter = random_pair(pixel.y * textureDimensions(position).x + pixel.x, 0u);
 
-    let search = penumbra(lookup.place.z, 0.0);
+    let search = widest_penumbra(lookup.place.z);
     let blockers = samples_needed(params.blockers);
     var found = 0.0;
     var sum = 0.0;
@@ -60,14 +60,23 @@ fn penumbra(receiver: f32, blocker: f32) -> f32 {
     return (receiver - blocker) / max(blocker, params.near * receiver);
 }
 
+// The half width for the nearest blocker that counts: one at the map's front, or at the share `near`
+// of the way from a lamp to the receiver.
+fn widest_penumbra(receiver: f32) -> f32 {
+    return penumbra(receiver, select(params.near * receiver, 0.0, light_kind == LIGHT_DIRECTIONAL));
+}
+
 // The axes of the light's disk, moved along the light into the plane of a primitive, but for one
 // that the light grazes or that is not known.
 fn light_on_plane(id: u32, to_light: vec3<f32>) -> mat2x3<f32> {
+    let right = across_light(vec2(1.0, 0.0), to_light);
+    let up = across_light(vec2(0.0, 1.0), to_light);
+    if id == UNKNOWN_PRIMITIVE {
+        return mat2x3(right, up);
+    }
     let a = corner_position(3u * id);
     let normal = cross(corner_position(3u * id + 1u) - a, corner_position(3u * id + 2u) - a);
     let facing = dot(normal, to_light);
     let slope = select(normal / facing, vec3(0.0), abs(facing) <= 0.02 * length(normal));
-    let right = across_light(vec2(1.0, 0.0), to_light);
-    let up = across_light(vec2(0.0, 1.0), to_light);
     return mat2x3(right - to_light * dot(right, slope), up - to_light * dot(up, slope));
 }

@@ -28,15 +28,16 @@ fn layer_of(receiver: vec3<f32>) -> u32 {
 }
 
 // How far from the eye a receiver asks this layer: to the end of its split, or by chance less far.
-// Cells of light space, about a pixel wide there, have one chance each: while the eye moves,
-// nothing flickers that lies in one.
+// Cells of light space have one chance each, so that it stays while the eye moves. Their width, a
+// 512th of the end's distance, goes in powers of two, since the splits of `sdsm` move.
 fn end_of(layer: u32, receiver: vec3<f32>) -> f32 {
     let end = map_fits[layer].fit.end;
     if split_blend == 0.0 {
         return end;
     }
     let across = light_clip(receiver).xy * light.extent.xy;
-    let cell = bitcast<vec2<u32>>(vec2<i32>(floor(across * 512.0 / end)));
+    let width = exp2(floor(log2(end))) / 512.0;
+    let cell = bitcast<vec2<u32>>(vec2<i32>(floor(across / width)));
     return end * (1.0 - split_blend * random_pair(cell.x, cell.y).x);
 }
 

@@ -284,7 +284,7 @@ fn lists_answer_each_sample_of_lamps_as_its_ray_does() {
         (point(at(1.0, 1.9, 0.9), 0.4), 16, true),
         (spot(at(0.5, 2.4, 0.2), 170.0, 0.5), 16, true),
     ] {
-        let asked = assert_lists_answer_as_rays_do(&scene(light.clone()), samples, "");
+        let asked = assert_lists_answer_as_rays_do(&scene(light), samples, "");
         assert_eq!(asked > 0, asks, "{asked} pixels asked rays: {light:?}");
     }
     // Over, and between, masked leaves.

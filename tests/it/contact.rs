@@ -16,7 +16,7 @@ const VIEWPORT: [u32; 2] = [128, 128];
 
 type Params<'a> = &'a [(&'a str, ParamValue)];
 
-/// A scene and the oracle's word on it.
+/// A scene and its ground truth.
 struct Case {
     scene: Arc<Scene>,
     truth: GroundTruthPixels,
@@ -148,4 +148,11 @@ fn they_stand_over_any_method() {
             );
         }
     }
+    // Over a soft answer, too, shadows come back that a bias has lifted off their casters.
+    let gap = Case::new(hard("contact"));
+    let bias = [float("slope_bias", 2.0), ("map_size", ParamValue::U32(128))];
+    let below = gap.visibility("pcf", &bias);
+    let above = gap.visibility("contact@over=pcf", &bias);
+    let darkened = below.iter().zip(&above).filter(|(before, after)| after < before);
+    assert!(darkened.count() > 100);
 }

@@ -9,7 +9,7 @@ use crate::{
         lower::LoweredPass,
         symbols::{At, SymbolTable},
     },
-    request::PlanRequest,
+    request::{Capture, PlanRequest},
     resource::{ResourceKind, Target},
 };
 
@@ -68,23 +68,8 @@ pub(super) fn readable(
         if readable.iter().any(|(known, _)| *known == name) {
             continue;
         }
-        // Those after a pass were entered as resources of their own.
-        let target = match at.find_full(&name) {
-            Some(Ok(target)) => target,
-            Some(Err(_)) => continue,
-            None => {
-                if capture.after.is_none() {
-                    let outputs = declared.iter().map(|&name| name.to_owned());
-                    let known = at.symbols().full_names().into_iter().chain(outputs);
-                    let known = at.reports().known(known);
-                    at.report(OutputError::NoMaterial {
-                        graph: graph.path().to_owned(),
-                        name,
-                        known,
-                    });
-                }
-                continue;
-            }
+        let Some(target) = captured(graph, capture, &declared, at) else {
+            continue;
         };
         if matches!(
             at.symbols().get(target.id).kind,
@@ -103,6 +88,31 @@ pub(super) fn readable(
         }
     }
     readable
+}
+
+/// Returns the material that is captured, and reports a name that none has.
+fn captured(
+    graph: &Loaded,
+    capture: &Capture,
+    declared: &[&str],
+    at: &mut At<'_, '_>,
+) -> Option<Target> {
+    let name = capture.name();
+    // Those after a pass were entered as resources of their own.
+    if let Some(found) = at.find_full(&name) {
+        return found.ok();
+    }
+    if capture.after.is_none() {
+        let outputs = declared.iter().map(|&name| name.to_owned());
+        let known = at.symbols().full_names().into_iter().chain(outputs);
+        let known = at.reports().known(known);
+        at.report(OutputError::NoMaterial {
+            graph: graph.path().to_owned(),
+            name,
+            known,
+        });
+    }
+    None
 }
 
 /// Reports captures after passes that do not exist.

@@ -60,8 +60,8 @@ fn penumbra(receiver: f32, blocker: f32) -> f32 {
     return (receiver - blocker) / max(blocker, params.near * receiver);
 }
 
-// The half width for the nearest blocker that counts: one at the map's front, or at the share `near`
-// of the way from a lamp to the receiver.
+// The half width for the nearest blocker that counts: one at the map's front, or at the share
+// `near` of the way from a lamp to the receiver.
 fn widest_penumbra(receiver: f32) -> f32 {
     return penumbra(receiver, select(params.near * receiver, 0.0, light_kind == LIGHT_DIRECTIONAL));
 }

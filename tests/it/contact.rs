@@ -153,6 +153,9 @@ fn they_stand_over_any_method() {
     let bias = [float("slope_bias", 2.0), ("map_size", ParamValue::U32(128))];
     let below = gap.visibility("pcf", &bias);
     let above = gap.visibility("contact@over=pcf", &bias);
-    let darkened = below.iter().zip(&above).filter(|(before, after)| after < before);
+    let darkened = below
+        .iter()
+        .zip(&above)
+        .filter(|(before, after)| after < before);
     assert!(darkened.count() > 100);
 }

@@ -168,7 +168,8 @@ pub enum ExecuteError {
     #[error("the device was lost: {0}")]
     DeviceLost(String),
     /// The GPU had not finished its work within the timeout of
-    /// [`Executor::finish_within`](crate::Executor::finish_within). It may never finish.
+    /// [`Executor::finish_within`](crate::Executor::finish_within), or when
+    /// [`Executor::submit`](crate::Executor::submit) gave up. It may never finish.
     #[error(
         "the GPU was not done with the frame after {:.1} s; in it ran {passes}",
         after.as_secs_f64()

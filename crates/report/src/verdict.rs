@@ -23,7 +23,9 @@ pub struct Verdict {
     /// every pass runs. It is empty if no row keeps to the budgets or no row can be judged.
     pub first: Vec<usize>,
     /// True if the rows in `first` are recommended: they have no wrong pixel outside the band (the
-    /// pixels whose answer rounding decides), or keep to the budget of wrong pixels.
+    /// pixels whose answer rounding decides), or keep to the budget of wrong pixels, and their
+    /// times tell which is the fastest. With fewer than eight frames they do not, unless one row
+    /// alone keeps to the budgets.
     pub is_taken: bool,
     /// Index of the row to show beside the first one: the alternative that the sentences name,
     /// preferably a faster method, otherwise one that is as right. `None` without an alternative.

@@ -147,13 +147,15 @@ impl Executor {
     }
 
     /// Encodes a frame as [`encode`](Self::encode) does, and submits it. Where a pass works on the
-    /// CPU it submits what is encoded so far and waits: for the GPU, which it asks every 100 ms
-    /// whether `gives_up` returns true, and for the work. It waits for nothing else.
+    /// CPU it submits what is encoded so far, waits until the GPU is done with that, and then until
+    /// the work is done. While the GPU works, `gives_up` is called about every 100 ms; if it
+    /// returns true, the frame ends. It waits for nothing else.
     ///
     /// # Errors
     /// Those of `encode`, except that passes may work on the CPU; [`ExecuteError::Provider`] if
     /// their work fails, [`ExecuteError::Unfinished`] if `gives_up` has ended the frame. A frame
-    /// that failed has no report, and the next one begins anew.
+    /// that failed has no report and does not count: the next one runs its passes again, from the
+    /// same `.previous` contents. After `Unfinished` the GPU may never finish.
     pub fn submit(
         &mut self,
         frame: &Frame<'_>,

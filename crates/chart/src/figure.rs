@@ -77,8 +77,10 @@ impl Figure {
     }
 
     /// Returns the panels without title and legend as SVG for a web page, `width` pixels wide.
-    /// Colours are the variables `--s0` to `--s7`, `--ink`, `--quiet`, `--front`, `--line`,
-    /// `--faint`, `--strip` and `--card` of the page's style. Elements of a series carry its name
+    /// Colours are variables of the page's style: `--s0` to `--s7` of series, `--ink` of text,
+    /// `--quiet` of axes and guides, `--front` of the Pareto front, `--line` and `--faint` of grid
+    /// lines at and between labels, `--strip` of the strip for values of 0, `--card` of the
+    /// background. Elements of a series carry its name
     /// in `data-series`. A mark is a `g` of class `mark`; `aria-label` holds its text
     /// [`Mark::about`], `data-name` the first line of that.
     ///

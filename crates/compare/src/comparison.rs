@@ -46,10 +46,12 @@ pub struct Protocol {
     /// Number of untimed warm-up frames before the timed ones.
     pub warmup: u32,
     /// Number of timed frames in which only the camera changes, so that passes with unchanged
-    /// inputs may be skipped; 0 to time none.
+    /// inputs may be skipped; 0 to time none. A camera path is walked a second time with every pass
+    /// run if passes were skipped, unless this is 0.
     pub cached_frames: u32,
-    /// Number of sample positions within a pixel that the camera takes in turns, frame by frame;
-    /// `None` to sample the pixel's centre.
+    /// Number of sample positions within a pixel that the camera takes in turns along a camera
+    /// path, frame by frame; the reference samples the same ones. All frames of a still view
+    /// sample the first. `None` to sample the pixel's centre.
     pub jitter: Option<u32>,
     /// Mode of the reference (the `f64` ray tracer that is the oracle): whether its shadow rays
     /// start exactly on the visible surfaces or at an offset.

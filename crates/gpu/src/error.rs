@@ -57,6 +57,14 @@ pub enum ExecuteError {
         /// Text of the [`ProviderError`](crate::ProviderError).
         why: String,
     },
+    /// Work of a pass on the CPU failed.
+    #[error("the work `{name}` on the CPU failed: {why}")]
+    CpuWork {
+        /// Name of the provided resource that does the work, such as `scene.embree`.
+        name: String,
+        /// Text of the [`ProviderError`](crate::ProviderError).
+        why: String,
+    },
     /// The [`Provider`](crate::Provider) now describes a resource in another way than when the
     /// graph was planned: with another binding, number of items, bytes per item or kind of light.
     #[error(
@@ -147,8 +155,8 @@ pub enum ExecuteError {
         /// Names of the plan's outputs and captures, separated by commas.
         known: String,
     },
-    /// An output that was to be read back is a texture or buffer of the host that was created
-    /// without the usage `COPY_SRC`.
+    /// An output that was to be read back, or a buffer that work on the CPU reads, is a texture or
+    /// buffer of the host that was created without the usage `COPY_SRC`.
     #[error("`{name}` cannot be read back: the host must make it with {usage}")]
     NotReadable {
         /// Name of the output that cannot be copied.

@@ -349,7 +349,7 @@ impl SceneProvider {
 
     /// Returns the lights that the resources `lights` and `light_areas` describe. These are all
     /// lights of the scene in its order (its default light if it has none), or the light of a view
-    /// alone, if [`set_view`](Self::set_view) was given a view with a light of its own.
+    /// alone, if [`set_view`](Self::set_view) was given a view whose own light is none of these.
     pub fn lights(&self) -> &[LightKind] {
         &self.versions.lights.now
     }

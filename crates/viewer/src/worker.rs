@@ -130,7 +130,7 @@ impl Worker {
         }
     }
 
-    /// Runs commands until the other end of their channel is dropped.
+    /// Runs commands until [`Command::End`], or until all senders are dropped.
     pub fn work(mut self, commands: &mpsc::Receiver<Command>) {
         let mut desired: Option<DesiredState> = None;
         while let Ok(first) = commands.recv() {

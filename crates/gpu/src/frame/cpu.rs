@@ -27,8 +27,8 @@ pub(super) struct CpuTurn<'t> {
     pub staging: &'t mut Staging,
     /// Asked from time to time: true ends the frame.
     pub gives_up: &'t dyn Fn() -> bool,
-    /// Time that the work of the pass took so far.
-    pub worked: Duration,
+    /// Time that the work of the pass took so far; `None` if it had none.
+    pub worked: Option<Duration>,
 }
 
 /// A range of bytes of a buffer.
@@ -55,6 +55,7 @@ impl CpuTurn<'_> {
         let room: Vec<u64> = room.collect::<Result<_, ExecuteError>>()?;
         let count = room.into_iter().fold(count, u64::min);
         if count == 0 {
+            self.worked.get_or_insert_default();
             return Ok(());
         }
         let reads = call.reads.iter().map(|items| {
@@ -68,12 +69,12 @@ impl CpuTurn<'_> {
             let began = Instant::now();
             let done = call.work.work.0.run(&call.entry, read, &mut written);
             worked = began.elapsed();
-            done.map_err(|why| ExecuteError::Provider {
+            done.map_err(|why| ExecuteError::CpuWork {
                 name: call.work.name.clone(),
                 why: why.0,
             })
         })?;
-        self.worked += worked;
+        *self.worked.get_or_insert_default() += worked;
         let (target, place) = bytes(&call.writes.buffer)?;
         self.queue.write_buffer(target, place.start, &written);
         Ok(())
@@ -107,11 +108,9 @@ impl CpuTurn<'_> {
         let next = self.device.create_command_encoder(&next);
         self.queue
             .submit([std::mem::replace(encoder, next).finish()]);
-        if let Err(error) = self.wait_for(&mapped) {
-            // It may be mapped yet.
-            self.staging.0 = None;
-            return Err(error);
-        }
+        // After an error it may be mapped yet: it comes back behind `unmap` alone.
+        self.staging.0 = None;
+        self.wait_for(&mapped)?;
         let taken = {
             let failed = |_| ExecuteError::DeviceLost("items could not be copied back".to_owned());
             let views = places
@@ -122,6 +121,7 @@ impl CpuTurn<'_> {
             take(&views)
         };
         staging.unmap();
+        self.staging.0 = Some(staging);
         taken
     }
 
@@ -137,7 +137,8 @@ impl CpuTurn<'_> {
                         passes: "passes in front of work of the CPU".to_owned(),
                     });
                 }
-                Progress::UnderWay => {}
+                // Another thread may have polled.
+                Progress::UnderWay => std::thread::sleep(Duration::from_micros(50)),
                 Progress::Failed | Progress::Dropped => {
                     let why = "items could not be copied back for the CPU";
                     return Err(ExecuteError::DeviceLost(why.to_owned()));

@@ -152,7 +152,7 @@ impl Executor {
     /// returns true, the frame ends. It waits for nothing else.
     ///
     /// # Errors
-    /// Those of `encode`, except that passes may work on the CPU; [`ExecuteError::Provider`] if
+    /// Those of `encode`, except that passes may work on the CPU; [`ExecuteError::CpuWork`] if
     /// their work fails, [`ExecuteError::Unfinished`] if `gives_up` has ended the frame. A frame
     /// that failed has no report and does not count: the next one runs its passes again, from the
     /// same `.previous` contents. After `Unfinished` the GPU may never finish.
@@ -252,7 +252,7 @@ impl Executor {
             queue: &self.queue,
             staging: &mut self.staging,
             gives_up,
-            worked: Duration::ZERO,
+            worked: None,
         });
         state.encode(&self.decision, frame_in_flight, encoder, cpu.as_mut())?;
         if let Some(timer) = frame_in_flight
@@ -539,7 +539,7 @@ impl Executor {
     /// several. `None` if no texture is an output or capture of this name, or it is an import that
     /// is not set. Fetch the view anew after [`resize`](Self::resize) or another change of the
     /// plan, and in every frame if a pass also reads the resource as `.previous` (content of the
-    /// frame before).
+    /// frame before), or if it may grow (`grow`): [`encode`](Self::encode) may then replace it.
     pub fn output_view(&self, name: &str) -> Option<wgpu::TextureView> {
         let target = self.plan().readable_target(name)?;
         let dimension = match &self.plan().resource(target.id).kind {
@@ -711,6 +711,7 @@ impl Executor {
         }
         self.ping_pong = self.state.ping_pong(false);
         self.frames_in_flight.staging.clear();
+        self.staging = Staging::default();
         report.uploads = self.note_params(&before.plan, &positions);
         Ok(report)
     }

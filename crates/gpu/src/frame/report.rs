@@ -8,7 +8,9 @@ use crate::readback::Readback;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Frame<'a> {
     /// Measures the GPU and CPU time of every pass that runs; the times come in
-    /// [`FrameReport::timing`].
+    /// [`FrameReport::timing`]. GPU times need a device with `TIMESTAMP_QUERY`, those of copies,
+    /// buffer clears and work of the CPU also `TIMESTAMP_QUERY_INSIDE_ENCODERS`; without them they
+    /// are `None`.
     pub timing: bool,
     /// Counts how often the shaders of each pass run, if the device has the feature
     /// `PIPELINE_STATISTICS_QUERY`; the counts come in [`FrameReport::statistics`].

@@ -199,8 +199,7 @@ impl State {
                 counters.pass(pass.name.clone(), first);
             }
             if let Some(start) = start {
-                let worked = cpu.as_mut().map(|cpu| std::mem::take(&mut cpu.worked));
-                let worked = worked.filter(|worked| !worked.is_zero());
+                let worked = cpu.as_mut().and_then(|cpu| cpu.worked.take());
                 let time = worked.unwrap_or_else(|| start.elapsed());
                 frame_in_flight.cpu.push((pass.name.clone(), time));
             }

@@ -83,25 +83,39 @@ impl Binder<'_> {
     }
 
     fn cpu_call(&self, call: &CpuCall<Ids>) -> Result<CpuCall<Handles>, ExecuteError> {
-        let items = |items: &CpuItems<Ids>| {
+        // A provider's buffer may lack the usage.
+        let read = |target: &Target| {
+            let operand = self.operand(target, false)?;
+            match &operand {
+                GpuOperand::Buffer { buffer, .. }
+                    if !buffer.usage().contains(wgpu::BufferUsages::COPY_SRC) =>
+                {
+                    Err(ExecuteError::NotReadable {
+                        name: self.plan.resource(target.id).name.clone(),
+                        usage: "BufferUsages::COPY_SRC",
+                    })
+                }
+                _ => Ok(operand),
+            }
+        };
+        let reads = call.reads.iter().map(|items| {
             Ok(CpuItems {
-                buffer: self.operand(&items.buffer, false)?,
+                buffer: read(&items.buffer)?,
                 bytes: items.bytes,
             })
-        };
+        });
         Ok(CpuCall {
             work: NamedWork {
                 name: self.plan.resource(call.work).name.clone(),
                 work: self.memory.cpu_work(call.work)?.clone(),
             },
             entry: call.entry.clone(),
-            count: self.operand(&call.count, false)?,
-            reads: call
-                .reads
-                .iter()
-                .map(items)
-                .collect::<Result<_, ExecuteError>>()?,
-            writes: items(&call.writes)?,
+            count: read(&call.count)?,
+            reads: reads.collect::<Result<_, ExecuteError>>()?,
+            writes: CpuItems {
+                buffer: self.operand(&call.writes.buffer, false)?,
+                bytes: call.writes.bytes,
+            },
         })
     }
 

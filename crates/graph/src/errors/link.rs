@@ -39,7 +39,7 @@ mistakes! {
 
     WritesProvided { name: String, span: Span } =>
         ResourceKind("`{name}` belongs to the host and cannot be written")
-        .at(span, "declare it `var<storage, read>`");
+        .at(span, "declare it `var<storage, read>`, or name a material of the document");
 
     VertexWrites { global: String, span: Span } =>
         Feature("the vertex shader writes `{global}`, which most devices cannot")

@@ -26,6 +26,11 @@ pub(super) fn link(call: &CpuCall<Names>, scope: &mut PassScope<'_>) -> Reported
     }
     let (writes, span) = items(&call.writes, scope)?;
     scope.writable(writes.buffer.id, &span)?;
+    let resource = scope.get(writes.buffer.id);
+    if matches!(resource.kind, ResourceKind::Provided(_)) {
+        let name = resource.name.clone();
+        return Err(scope.report(LinkError::WritesProvided { name, span }));
+    }
     let usage = Usage::Buffer(wgt::BufferUsages::COPY_DST);
     // Items beyond `count` stay what they were.
     scope.access(&writes.buffer, (false, true, false), usage, &span);

@@ -119,6 +119,14 @@ impl Layouts {
                         layout: view.layout.clone(),
                         span: view.span.clone(),
                     }));
+                    let handed = self.handed.get(&id).into_iter().flatten();
+                    let other = handed.filter(|(bytes, _)| *bytes != provided.stride);
+                    errors.extend(other.map(|(needed, span)| LayoutError::Handed {
+                        name: name.clone(),
+                        have: provided.stride,
+                        needed: *needed,
+                        span: span.clone(),
+                    }));
                 }
                 (ResourceKind::Buffer(buffer), Origin::Host) => {
                     let name = resource.name.clone();

@@ -64,7 +64,7 @@ const OTHERS: usize = 3;
 /// second one is taken out of it, and settings are chosen on these; otherwise they are chosen on
 /// other views of the scene, and on generated ones where it has fewer than three. Params that a
 /// method sets stay as they are. A method whose document promises exact shadows for all casters is
-/// not searched.
+/// not searched. Values are chosen in the first of the comparison's viewports, and run in all.
 ///
 /// The work is bounded: plans and frames of a method, those of its tuned setting included, are at
 /// most ten times those of its part in the comparison.

@@ -223,6 +223,11 @@ fn what_does_not_fit_the_work_is_told() {
     };
     let text = wrong(&format!("{ADD}, bytes: 8"), &provider);
     assert!(text.contains("have 4 bytes, the CPU's 8"), "{text}");
+    let text = wrong("count: \"host.adder\", work: \"host.adder\"", &provider);
+    assert!(
+        text.contains("`host.adder` has no items for the CPU"),
+        "{text}"
+    );
     let text = wrong(ADD, &NoProvider);
     assert!(
         text.contains("`host.adder` does no work on the CPU"),

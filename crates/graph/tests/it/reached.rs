@@ -28,6 +28,18 @@ const BY_HAND: &[(&str, &str)] = &[
 /// Mistakes that no document makes, and why.
 const ELSEWHERE: &[(&str, &str)] = &[
     (
+        "LayoutError::Handed",
+        "`gpu`, `on_cpu.rs`: a kind of a host",
+    ),
+    (
+        "LinkError::NoCpuWork",
+        "`gpu`, `on_cpu.rs`: a kind of a host",
+    ),
+    (
+        "LinkError::CpuItems",
+        "`gpu`, `on_cpu.rs`: a kind of a host",
+    ),
+    (
         "OutputError::NotProven",
         "`features.rs`: a backend of the request",
     ),

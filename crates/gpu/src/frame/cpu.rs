@@ -95,7 +95,7 @@ impl CpuTurn<'_> {
             places.push(end..end + length);
             end = (end + length).next_multiple_of(wgpu::MAP_ALIGNMENT);
         }
-        let staging = self.staging.of_size(end, self.device)?;
+        let staging = self.staging.take(end, self.device)?;
         for ((buffer, bytes), place) in from.iter().zip(&places) {
             let length = bytes.end - bytes.start;
             encoder.copy_buffer_to_buffer(buffer, bytes.start, &staging, place.start, length);
@@ -109,7 +109,6 @@ impl CpuTurn<'_> {
         self.queue
             .submit([std::mem::replace(encoder, next).finish()]);
         // After an error it may be mapped yet: it comes back behind `unmap` alone.
-        self.staging.0 = None;
         self.wait_for(&mapped)?;
         let taken = {
             let failed = |_| ExecuteError::DeviceLost("items could not be copied back".to_owned());
@@ -149,15 +148,14 @@ impl CpuTurn<'_> {
 }
 
 impl Staging {
-    /// Returns a buffer of at least `size` bytes.
-    fn of_size(&mut self, size: u64, device: &wgpu::Device) -> Result<wgpu::Buffer, ExecuteError> {
-        if let Some(buffer) = self.0.as_ref().filter(|buffer| buffer.size() >= size) {
-            return Ok(buffer.clone());
+    /// Takes the buffer out if it has at least `size` bytes, or else makes one that has.
+    fn take(&mut self, size: u64, device: &wgpu::Device) -> Result<wgpu::Buffer, ExecuteError> {
+        if let Some(buffer) = self.0.take().filter(|buffer| buffer.size() >= size) {
+            return Ok(buffer);
         }
         let name = "items for the CPU";
         let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
-        let made = scoped(device, name, || buffer::make(device, name, size, usage))?;
-        Ok(self.0.insert(made).clone())
+        scoped(device, name, || buffer::make(device, name, size, usage))
     }
 }
 

@@ -19,7 +19,7 @@ pub struct PassTiming {
     pub begin: Option<Duration>,
     /// GPU time from the begin of the pass's first draw, dispatch, copy or clear to the end of its
     /// last. `None` if there are no valid timestamps, for example because the adapter has none.
-    /// Of a pass that works on the CPU, how long the GPU stands still for it.
+    /// For a pass that works on the CPU, it is the time that the GPU waits for it.
     pub gpu: Option<Duration>,
     /// CPU time that the encoding of the pass's commands took, or the work itself of a pass that
     /// works on the CPU.

@@ -5,8 +5,8 @@ use crate::support::{
     meshes,
 };
 use glam::{DAffine3, DMat3, DVec3, Vec3};
-use skiagraph_gpu::{ExecuteError, Executor, Frame, device::Gpu};
-use skiagraph_passes::{Error, How, SceneProvider};
+use skiagraph_gpu::{ExecuteError, Executor, Frame, Provider, device::Gpu};
+use skiagraph_passes::{Error, How, SceneProvider, Work};
 use skiagraph_scene::{DirectionalLight, LightKind, Movable, MoveError, PointLight, View};
 
 const VIEWPORT: [u32; 2] = [48, 32];
@@ -29,8 +29,8 @@ fn rows(count: usize) -> Vec<DAffine3> {
     (0..count).map(map).collect()
 }
 
-fn provider(parts: Movable) -> SceneProvider {
-    let view = View {
+fn view() -> View {
+    View {
         name: String::new(),
         eye: DVec3::new(7.0, 9.0, 24.0),
         direction: DVec3::new(0.0, -0.5, -1.0),
@@ -39,9 +39,12 @@ fn provider(parts: Movable) -> SceneProvider {
         near: 0.1,
         far: 60.0,
         light: None,
-    };
+    }
+}
+
+fn provider(parts: Movable) -> SceneProvider {
     let mut provider = SceneProvider::from_parts(parts, sun());
-    provider.set_camera(&view.camera(VIEWPORT));
+    provider.set_camera(&view().camera(VIEWPORT));
     provider
 }
 
@@ -139,10 +142,10 @@ fn parts_that_stand_still_cost_nothing() {
     }
 }
 
-/// A host that begins with all parts in one place has the tree of where they are, not that of where
-/// they were.
+/// A host that begins with all parts in one place has no worse a tree later: that of each part is
+/// its own, and the level above them is made of where they are.
 #[test]
-fn the_tree_of_parts_that_lay_on_each_other_is_built_anew() {
+fn the_trees_of_parts_that_lay_on_each_other_are_only_fitted() {
     let (gpu, count) = (open(), 30);
     let mut provider = provider(stones(count));
     provider
@@ -157,15 +160,140 @@ fn the_tree_of_parts_that_lay_on_each_other_is_built_anew() {
     assert_eq!(tree(&provider), Some((How::Made, 1)));
     provider.set_transforms(&rows(count)).unwrap();
     executor.refresh(&mut provider).unwrap();
-    assert_eq!(tree(&provider), Some((How::Made, 2)));
-    // From there on it is fitted.
-    let mut maps = rows(count);
-    for map in &mut maps {
-        map.translation.x += 0.5;
+    assert_eq!(tree(&provider), Some((How::Refitted, 2)));
+    let mut apart = self::provider(stones(count));
+    apart.set_transforms(&rows(count)).unwrap();
+    let mut made_apart = start(&gpu, "rt", &mut apart);
+    assert!(shown(&gpu, &mut executor) == shown(&gpu, &mut made_apart));
+    let nodes = |provider: &mut SceneProvider| {
+        let buffer = provider.build("scene.bvh_nodes", &gpu.device, &gpu.queue);
+        contents(&gpu, &buffer.unwrap())
+    };
+    assert!(nodes(&mut provider) == nodes(&mut apart));
+}
+
+/// Reads a buffer back.
+fn contents(gpu: &Gpu, buffer: &wgpu::Buffer) -> Vec<u8> {
+    let copy = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: buffer.size(),
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    encoder.copy_buffer_to_buffer(buffer, 0, &copy, 0, buffer.size());
+    gpu.queue.submit([encoder.finish()]);
+    copy.slice(..).map_async(wgpu::MapMode::Read, |_| {});
+    gpu.device
+        .poll(wgpu::PollType::wait_indefinitely())
+        .unwrap();
+    let mapped = copy.slice(..).get_mapped_range().unwrap();
+    mapped.to_vec()
+}
+
+/// Work that a change is for the provider and an executor of it.
+fn work(
+    provider: &mut SceneProvider,
+    executor: &mut Executor,
+    change: impl FnOnce(&mut SceneProvider),
+) -> Work {
+    let before = provider.work();
+    change(provider);
+    executor.refresh(provider).unwrap();
+    provider.work().since(before)
+}
+
+#[test]
+fn the_work_follows_the_parts_that_move() {
+    let (gpu, count) = (open(), 100);
+    let stone = meshes::potato(2, 0.2, 1);
+    let [positions, normals] = [stone.positions.len(), 3 * stone.triangles.len()];
+    for preset in PRESETS {
+        let mut provider = provider(stones(count));
+        let mut maps = rows(count);
+        provider.set_transforms(&maps).unwrap();
+        let mut executor = start(&gpu, preset, &mut provider);
+        for moving in [0, 1, 5, 10] {
+            for map in &mut maps[..moving] {
+                map.translation.y += 0.25;
+            }
+            let work = work(&mut provider, &mut executor, |provider| {
+                provider.set_transforms(&maps).unwrap();
+            });
+            if moving == 0 {
+                assert_eq!(work, Work::default(), "{preset}");
+                continue;
+            }
+            let moved = (moving * positions) as u64;
+            assert_eq!([work.moved, work.laid], [moved, 2 * moved], "{preset}");
+            // Items of 16 bytes, and a little of the light. Ranges near each other are one.
+            let corners = 16 * (moving * (positions + normals)) as u64;
+            let top = 2 * count as u64 - 1;
+            let nodes = work.nodes;
+            let has_tree = made(&provider)
+                .iter()
+                .any(|made| made.0 == "scene.bvh_nodes");
+            assert_eq!(nodes > top, has_tree, "{preset}: {work:?}");
+            assert!(nodes < top + 4 * moved, "{preset}: {work:?}");
+            let most = corners + 32 * nodes + 4096 + 144;
+            let least = 16 * moved + 32 * nodes.saturating_sub(moving as u64);
+            let is_so = (least..=most).contains(&work.uploaded);
+            assert!(is_so, "{preset}, {moving}: {work:?}, {least} to {most}");
+        }
+        // A light that moves is laid around all of it, and moves nothing.
+        let light = DirectionalLight::new(DVec3::new(0.5, -1.0, -0.2));
+        let work = work(&mut provider, &mut executor, |provider| {
+            provider.set_light(light.into());
+        });
+        assert_eq!([work.moved, work.nodes, work.copied], [0; 3], "{preset}");
+        assert_eq!(work.laid, (count * positions) as u64, "{preset}");
+        assert_eq!(work.uploaded, 144, "{preset}");
     }
-    provider.set_transforms(&maps).unwrap();
-    executor.refresh(&mut provider).unwrap();
-    assert_eq!(tree(&provider), Some((How::Refitted, 3)));
+}
+
+/// In each frame of a scene that moves, the presets show what they show of a mesh that never moved.
+#[test]
+fn frames_of_moving_parts_are_those_of_meshes_that_never_moved() {
+    let (gpu, count) = (open(), 60);
+    let parts = stones(count);
+    let presets = ["rt", "light_buffer", "crsm"];
+    let mut scene = provider(parts.clone());
+    scene.set_transforms(&rows(count)).unwrap();
+    let mut executors = presets.map(|preset| start(&gpu, preset, &mut scene));
+    let mut works = Vec::new();
+    let mut maps = rows(count);
+    for turn in 0..12 {
+        for index in 0..5 {
+            let part = (7 * turn + index * index) % count;
+            let angle = 0.3 * (turn + index) as f64;
+            let map = DAffine3::from_rotation_z(angle) * DAffine3::from_rotation_y(angle);
+            maps[part] = DAffine3::from_translation(maps[part].translation) * map;
+            maps[part].translation.y = (3.0 * angle).sin();
+        }
+        let before = scene.work();
+        scene.set_transforms(&maps).unwrap();
+        for executor in &mut executors {
+            executor.refresh(&mut scene).unwrap();
+        }
+        works.push(scene.work().since(before));
+        let [rt, light_buffer, crsm] = &mut executors;
+        let rays = shown(&gpu, rt);
+        assert!(shown(&gpu, light_buffer) == rays, "{turn}");
+        let still = DirectionalLight::new(sun().direction);
+        let mut alone = SceneProvider::from_mesh(parts.moved(&maps).unwrap(), still);
+        alone.set_camera(&view().camera(VIEWPORT));
+        assert!(
+            shown(&gpu, &mut start(&gpu, "rt", &mut alone)) == rays,
+            "{turn}"
+        );
+        let expected = shown(&gpu, &mut start(&gpu, "crsm", &mut alone));
+        assert!(shown(&gpu, crsm) == expected, "{turn}");
+    }
+    for of in [|work: &Work| work.uploaded, |work: &Work| work.nodes] {
+        let mut values: Vec<u64> = works.iter().map(of).collect();
+        values.sort_unstable();
+        assert!(values[11] <= 3 * values[6], "{values:?}");
+    }
 }
 
 #[test]

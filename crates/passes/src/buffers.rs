@@ -1,7 +1,8 @@
 //! Uploaded buffers by name, each with the version of its content.
 
-use crate::{error::Error, lights, names::*};
-use std::collections::BTreeMap;
+use crate::{built::Work, error::Error, lights, names::*};
+use std::{collections::BTreeMap, ops::Range};
+use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 /// Where to.
 #[derive(Clone, Copy)]
@@ -14,11 +15,18 @@ pub(crate) struct On<'a> {
 ///
 /// None is written again once it was handed out: what the queue writes comes before all that is
 /// submitted later, so a frame that was encoded with the buffer and not submitted yet would show
-/// what was set for another one. Another content is another buffer.
+/// what was set for another one. Another content is another buffer. Where only some of it is other,
+/// the GPU copies the rest from the buffer before.
 #[derive(Clone, Default)]
 pub(crate) struct Buffers {
     held: BTreeMap<String, (wgpu::Buffer, u64)>,
+    /// Bytes that were brought to the device so far.
+    pub work: Work,
 }
+
+/// Items that are written apart although others are between them: a copy costs more than so many
+/// bytes.
+const GAP: usize = 4096;
 
 impl Buffers {
     /// The buffer of that name, if what is in it is of that version.
@@ -55,18 +63,97 @@ impl Buffers {
                 limit,
             });
         }
-        let usage = usage_of(name, on.device);
-        let buffer = on.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some(name),
-            size: bytes,
-            usage: usage | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
+        let buffer = create(name, bytes, on.device);
         // Nothing that was encoded reads it yet.
         on.queue.write_buffer(&buffer, 0, content);
+        self.work.uploaded += bytes;
         self.held.insert(name.to_owned(), (buffer, version));
         Ok(())
     }
+
+    /// Returns the version of the content of the buffer of that name.
+    pub fn version(&self, name: &str) -> Option<u64> {
+        self.held.get(name).map(|(_, version)| *version)
+    }
+
+    /// Makes the buffer of that name with some items of the one that there is, and these at the
+    /// `changed` ranges: `items` appends those of a range of all `count`.
+    pub fn patch<T: bytemuck::NoUninit + bytemuck::Zeroable>(
+        &mut self,
+        name: &str,
+        (count, changed): (usize, &[Range<usize>]),
+        items: impl Fn(Range<usize>, &mut Vec<T>),
+        version: u64,
+        on: On,
+    ) -> Result<(), Error> {
+        let stride = size_of::<T>();
+        let ranges = joined(changed, GAP / stride);
+        let written: usize = ranges.iter().map(Range::len).sum();
+        let known = self.held.get(name).map(|(buffer, _)| buffer.clone());
+        let known = known.filter(|known| known.size() == (count * stride) as u64);
+        if written == 0 && known.is_some() {
+            self.still_hold(name, version);
+            return Ok(());
+        }
+        let Some(known) = known.filter(|_| 2 * written <= count) else {
+            let mut all = Vec::with_capacity(count);
+            items(0..count, &mut all);
+            return self.make(name, &all, version, on);
+        };
+        let buffer = create(name, known.size(), on.device);
+        let mut encoder = on.device.create_command_encoder(&Default::default());
+        encoder.copy_buffer_to_buffer(&known, 0, &buffer, 0, known.size());
+        let mut content = Vec::with_capacity(written);
+        for range in &ranges {
+            items(range.clone(), &mut content);
+        }
+        let staging = on.device.create_buffer_init(&BufferInitDescriptor {
+            label: Some("changed items"),
+            contents: bytemuck::cast_slice(&content),
+            usage: wgpu::BufferUsages::COPY_SRC,
+        });
+        let mut from = 0;
+        for range in ranges {
+            let [to, size] = [range.start, range.len()].map(|items| (items * stride) as u64);
+            encoder.copy_buffer_to_buffer(&staging, from, &buffer, to, size);
+            from += size;
+        }
+        self.work.uploaded += from;
+        on.queue.submit([encoder.finish()]);
+        self.work.copied += known.size();
+        self.held.insert(name.to_owned(), (buffer, version));
+        Ok(())
+    }
+}
+
+/// Ranges in ascending order that hold all of `ranges`; those with less than `gap` between them are
+/// one.
+fn joined(ranges: &[Range<usize>], gap: usize) -> Vec<Range<usize>> {
+    let mut ranges: Vec<Range<usize>> = ranges
+        .iter()
+        .filter(|range| !range.is_empty())
+        .cloned()
+        .collect();
+    ranges.sort_unstable_by_key(|range| range.start);
+    let mut joined: Vec<Range<usize>> = Vec::new();
+    for range in ranges {
+        match joined.last_mut() {
+            Some(last) if range.start < last.end + gap => last.end = last.end.max(range.end),
+            _ => joined.push(range),
+        }
+    }
+    joined
+}
+
+/// Makes a buffer as graphs and later contents need it.
+fn create(name: &str, size: u64, device: &wgpu::Device) -> wgpu::Buffer {
+    let usage = usage_of(name, device);
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(name),
+        size,
+        usage: usage | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
 }
 
 fn usage_of(name: &str, device: &wgpu::Device) -> wgpu::BufferUsages {

@@ -26,3 +26,35 @@ pub enum How {
     /// tree stayed as it was.
     Refitted,
 }
+
+/// Work that a [`SceneProvider`](crate::SceneProvider) has done since it was created, by counters
+/// that only grow. The difference between two frames is the work of one: all of it is 0 for a frame
+/// in which nothing moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Work {
+    /// Number of bytes that the CPU has written to buffers of the GPU.
+    pub uploaded: u64,
+    /// Number of bytes that the GPU has copied from a buffer to its successor, of which only some
+    /// items are other.
+    pub copied: u64,
+    /// Number of positions that were moved.
+    pub moved: u64,
+    /// Number of nodes of hierarchies whose boxes were fitted or built.
+    pub nodes: u64,
+    /// Number of positions that the boxes of lights were laid around.
+    pub laid: u64,
+}
+
+impl Work {
+    /// Returns the work that was done after `before`, an earlier value of the same provider.
+    pub fn since(self, before: Self) -> Self {
+        Self {
+            uploaded: self.uploaded - before.uploaded,
+            copied: self.copied - before.copied,
+            moved: self.moved - before.moved,
+            nodes: self.nodes - before.nodes,
+            laid: self.laid - before.laid,
+        }
+    }
+}

@@ -1,8 +1,8 @@
-//! The hierarchies over a mesh: built, and fitted again when the mesh is deformed.
+//! The hierarchies over a mesh in light spaces: built, and fitted again when the mesh is deformed.
 
 use crate::{built::How, error::Error};
 use glam::Vec3;
-use skiagraph_scene::{Bvh, BvhNode, LightSpace, LightSpaceNode, Mesh};
+use skiagraph_scene::{Bvh, LightSpace, LightSpaceNode, Mesh};
 
 /// A tree is built anew when a deformation has made rays this many times as dear as they were.
 const WORSE: f64 = 1.5;
@@ -14,7 +14,6 @@ const DIRECTIONS: usize = 4;
 /// Trees that are worth keeping, as the mesh is deformed from time to time.
 #[derive(Clone, Default)]
 pub(crate) struct Hierarchies {
-    bvh: Option<Kept>,
     /// By the directions of rays; the last one was asked for last.
     light_spaces: Vec<(Vec3, Kept)>,
 }
@@ -35,36 +34,6 @@ pub(crate) struct Tree<N> {
 }
 
 impl Hierarchies {
-    /// Returns the tree of a mesh; its topology is that of the last time, unless after
-    /// [`forget`](Self::forget).
-    pub fn bvh(&mut self, mesh: &Mesh, most: usize, keep: bool) -> Tree<BvhNode> {
-        if let Some(kept) = &mut self.bvh
-            && kept.refit(mesh)
-        {
-            return Tree {
-                nodes: kept.bvh.nodes.clone(),
-                primitives: None,
-                how: How::Refitted,
-            };
-        }
-        let mut bvh = Bvh::build(mesh).merged(most);
-        let mut nodes = bvh.nodes.clone();
-        if nodes.is_empty() {
-            // A leaf around a triangle without area, which no ray hits.
-            nodes.push(BvhNode {
-                count: 1,
-                ..BvhNode::default()
-            });
-        }
-        let primitives = Some(primitives_of(&mut bvh, keep));
-        self.bvh = (keep && !bvh.nodes.is_empty()).then(|| Kept::new(bvh));
-        Tree {
-            nodes,
-            primitives,
-            how: How::Made,
-        }
-    }
-
     /// Returns the tree of a mesh in the light space of `space`. Trees are kept for the directions
     /// that were asked for last.
     ///
@@ -117,11 +86,6 @@ impl Hierarchies {
             primitives,
             how: How::Made,
         })
-    }
-
-    /// Forgets all trees, for a mesh of another topology.
-    pub fn forget(&mut self) {
-        *self = Self::default();
     }
 }
 

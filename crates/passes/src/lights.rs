@@ -2,7 +2,7 @@
 
 use crate::uniforms::{LIGHT_KINDS, LightAreaUniform, LightUniform};
 use skiagraph_graph::{Provided, ProvidedBinding, ProvidedKind};
-use skiagraph_scene::{LightKind, Mesh, Scene};
+use skiagraph_scene::{LightKind, Scene};
 
 /// Every light as `shared/light.wgsl` has it.
 pub(crate) const LIGHTS: &str = "lights";
@@ -56,15 +56,19 @@ pub(crate) fn describe(name: &str, lights: &[LightKind]) -> Option<Provided> {
     })
 }
 
-/// The bytes of what stands behind one of these names.
-pub(crate) fn content(name: &str, lights: &[LightKind], mesh: &Mesh) -> Option<Vec<u8>> {
+/// The bytes of what stands behind one of these names; `lay` lays a light around the scene.
+pub(crate) fn content(
+    name: &str,
+    lights: &[LightKind],
+    mut lay: impl FnMut(LightKind) -> LightUniform,
+) -> Option<Vec<u8>> {
     let (list, number) = parse(name)?;
     let chosen = match number {
         Some(number) => lights.get(number..=number)?,
         None => lights,
     };
     let bytes = |light: &LightKind| match list {
-        LIGHTS => bytemuck::bytes_of(&LightUniform::new(*light, mesh)).to_vec(),
+        LIGHTS => bytemuck::bytes_of(&lay(*light)).to_vec(),
         _ => bytemuck::bytes_of(&LightAreaUniform::from(light)).to_vec(),
     };
     Some(chosen.iter().flat_map(bytes).collect())

@@ -3,17 +3,17 @@
 use crate::{
     atlas::Atlas,
     buffers::{Buffers, On, binding_limit},
-    built::{Built, How},
+    built::{Built, How, Work},
     error::Error,
     eye::Eye,
-    hierarchies::{Hierarchies, Tree},
+    geometry::{Change, Geometry, nodes_to_walk},
+    hierarchies::Tree,
     lights,
     names::*,
     ray_query,
-    shape::Shape,
     uniforms::{CameraUniform, LightAreaUniform, LightUniform, UnprojectionUniform},
 };
-use glam::{DAffine3, Vec3};
+use glam::{DAffine3, Vec3, Vec4};
 #[cfg(feature = "embree")]
 use skiagraph_gpu::CpuWork;
 use skiagraph_gpu::{Provider, ProviderError};
@@ -22,7 +22,7 @@ use skiagraph_scene::{
     Adjacency, BvhNode, Camera, Light, LightKind, LightSpace, LightSpaceNode, Mesh, Movable, Scene,
     View, packed_masks::mask_words,
 };
-use std::{sync::Arc, time::Instant};
+use std::{ops::Range, sync::Arc, time::Instant};
 
 /// Provider of a scene's resources to graphs: the buffers of one mesh, one camera and the lights,
 /// on one device. It builds each resource when a graph's pass first binds it. Primitives are
@@ -62,7 +62,9 @@ use std::{sync::Arc, time::Instant};
 ///
 /// A buffer is never written again after it was handed out. So any number of executors may be
 /// refreshed and encoded for one submission, each with a light, a camera and a mesh of its own.
-/// Setting the same value again changes nothing for an executor that has seen it.
+/// Setting the same value again changes nothing for an executor that has seen it. Where a few parts
+/// of many have moved, the next buffer gets only those from the CPU; the GPU copies the rest from
+/// the buffer before, in a submission of the provider's own.
 ///
 /// wgpu cannot bind a buffer of size zero. An array of an empty scene therefore holds one zero
 /// item, and its hierarchy one leaf around a triangle without area, which no ray hits.
@@ -77,8 +79,7 @@ pub struct SceneProvider {
     pub(crate) tlas: Option<(wgpu::Tlas, u64)>,
     #[cfg(feature = "embree")]
     embree: Option<(Arc<crate::embree::Embree>, u64)>,
-    pub(crate) hierarchies: Hierarchies,
-    pub(crate) shape: Shape,
+    pub(crate) geometry: Geometry,
     pub(crate) built: Vec<Built>,
 }
 
@@ -97,8 +98,7 @@ impl SceneProvider {
             tlas: None,
             #[cfg(feature = "embree")]
             embree: None,
-            hierarchies: Hierarchies::default(),
-            shape: Shape::default(),
+            geometry: Geometry::whole(),
             built: Vec::new(),
         }
     }
@@ -143,6 +143,16 @@ impl SceneProvider {
     /// first build. An entry describes the last build of its resource.
     pub fn built(&self) -> &[Built] {
         &self.built
+    }
+
+    /// Returns the work that this provider has done so far, by counters.
+    pub fn work(&self) -> Work {
+        let (uploads, rest) = (self.buffers.work, self.geometry.work);
+        Work {
+            uploaded: uploads.uploaded,
+            copied: uploads.copied,
+            ..rest
+        }
     }
 
     /// The buffer of that name with what is in it now.
@@ -194,9 +204,42 @@ impl SceneProvider {
         // Beyond some four million triangles the boxes of all leaves exceed what Vulkan promises
         // to bind, and so the smallest leaves are joined.
         let most = binding_limit(on.device) / size_of::<BvhNode>() as u64;
-        let (mesh, keep) = (&self.scene.mesh, self.shape.is_deformed);
-        let tree = self.hierarchies.bvh(mesh, most as usize, keep);
-        self.upload_tree([BVH_NODES, BVH_PRIMITIVES], tree, on)
+        let (version, known) = (self.version(BVH_NODES), self.buffers.version(BVH_NODES));
+        let mesh = &self.scene.mesh;
+        let fitted = self.geometry.bvh(mesh, most as usize, version, known);
+        let (tree, nodes) = (&fitted.tree, nodes_to_walk(&fitted.tree));
+        let changed = (nodes.len(), &fitted.nodes[..]);
+        let append = |range: Range<usize>, to: &mut Vec<_>| to.extend_from_slice(&nodes[range]);
+        self.buffers
+            .patch(BVH_NODES, changed, append, version, on)?;
+        let changed = (tree.primitives.len(), &fitted.primitives[..]);
+        let append = |range: Range<usize>, to: &mut Vec<_>| {
+            to.extend_from_slice(&tree.primitives[range]);
+        };
+        self.buffers
+            .patch(BVH_PRIMITIVES, changed, append, version, on)?;
+        Ok(fitted.how)
+    }
+
+    /// Uploads the positions or normals that have changed, with a fourth coordinate.
+    fn upload_corners(
+        &mut self,
+        name: &str,
+        (items, w): (&[Vec3], f32),
+        on: On,
+    ) -> Result<How, Error> {
+        let (version, known) = (self.version(name), self.buffers.version(name));
+        let (known, mesh) = (known.unwrap_or_default(), &self.scene.mesh);
+        let changed = match name {
+            POSITIONS => self.geometry.positions_since(known, mesh),
+            _ => self.geometry.normals_since(known, mesh),
+        };
+        let append = |range: Range<usize>, to: &mut Vec<Vec4>| {
+            to.extend(items[range].iter().map(|item| item.extend(w)));
+        };
+        let changed = (items.len(), &changed[..]);
+        self.buffers.patch(name, changed, append, version, on)?;
+        Ok(How::Made)
     }
 
     fn upload_tree<N: bytemuck::Pod>(
@@ -214,24 +257,23 @@ impl SceneProvider {
         Ok(tree.how)
     }
 
-    fn light_uniform(&self) -> LightUniform {
-        LightUniform::new(self.light(), &self.scene.mesh)
+    fn light_uniform(&mut self, light: LightKind) -> LightUniform {
+        self.geometry.lay(light, &self.scene.mesh)
     }
 
     fn upload_light_space(&mut self, on: On) -> Result<How, Error> {
         if self.light().directional().is_none() {
             return Err(Error::LightSpaceKind(self.light().word()));
         }
-        let light = self.light_uniform();
+        let light = self.light_uniform(self.light());
         let space = LightSpace {
             direction: light.to_light,
             centre: light.centre,
         };
         // As in the other hierarchy, leaves are joined where there are too many nodes to bind.
         let most = binding_limit(on.device) / size_of::<LightSpaceNode>() as u64;
-        let (mesh, keep) = (&self.scene.mesh, self.shape.is_deformed);
-        let trees = &mut self.hierarchies;
-        let tree = trees.light_space(space, mesh, most as usize, keep)?;
+        let mesh = &self.scene.mesh;
+        let tree = self.geometry.light_space(space, mesh, most as usize)?;
         self.upload_tree([LIGHT_SPACE_NODES, LIGHT_SPACE_PRIMITIVES], tree, on)
     }
 
@@ -239,14 +281,8 @@ impl SceneProvider {
         let scene = Arc::clone(&self.scene);
         let mesh = &scene.mesh;
         match name {
-            POSITIONS => {
-                let items: Vec<_> = mesh.positions.iter().map(|p| p.extend(1.0)).collect();
-                self.upload_items(name, &items, on)
-            }
-            NORMALS => {
-                let items: Vec<_> = mesh.normals.iter().map(|n| n.extend(0.0)).collect();
-                self.upload_items(name, &items, on)
-            }
+            POSITIONS => self.upload_corners(name, (&mesh.positions, 1.0), on),
+            NORMALS => self.upload_corners(name, (&mesh.normals, 0.0), on),
             INDICES => self.upload_items(name, mesh.triangles.as_flattened(), on),
             NORMAL_INDICES => self.upload_items(name, mesh.normal_indices.as_flattened(), on),
             ADJACENCY => self.upload_items(name, &Adjacency::new(mesh).opposite, on),
@@ -267,13 +303,16 @@ impl SceneProvider {
             }
             LIGHT => {
                 self.light().check().map_err(Error::Light)?;
-                self.upload_items(name, &[self.light_uniform()], on)
+                let light = self.light_uniform(self.light());
+                self.upload_items(name, &[light], on)
             }
             LIGHT_AREA => self.upload_items(name, &[LightAreaUniform::from(&self.light())], on),
             BVH_NODES | BVH_PRIMITIVES => self.upload_hierarchy(on),
             LIGHT_SPACE_NODES | LIGHT_SPACE_PRIMITIVES => self.upload_light_space(on),
             _ => {
-                let content = lights::content(name, self.lights(), mesh);
+                let lights = &self.versions.lights.now;
+                let lay = |light| self.geometry.lay(light, mesh);
+                let content = lights::content(name, lights, lay);
                 self.upload_items(name, &content.ok_or_else(|| unknown(name))?, on)
             }
         }
@@ -369,8 +408,7 @@ impl SceneProvider {
     pub fn set_mesh(&mut self, mesh: Mesh) {
         self.masks = mask_words(&mesh);
         Arc::make_mut(&mut self.scene).mesh = mesh;
-        self.hierarchies.forget();
-        self.shape = Shape::default();
+        self.geometry = self.geometry.replaced_by(Geometry::whole());
         self.versions.change_mesh();
     }
 
@@ -382,18 +420,7 @@ impl SceneProvider {
     pub fn set_parts(&mut self, parts: impl Into<Arc<Movable>>) {
         let parts = parts.into();
         self.set_mesh(parts.rest.clone());
-        let (count, is_joined) = (parts.parts(), parts.is_joined());
-        self.shape = Shape {
-            maps: if is_joined {
-                Vec::new()
-            } else {
-                vec![DAffine3::IDENTITY; count]
-            },
-            mirrored: vec![false; count],
-            parts: Some(parts),
-            is_unplaced: is_joined,
-            is_deformed: true,
-        };
+        self.geometry = self.geometry.replaced_by(Geometry::parted(parts));
     }
 
     /// Deforms the mesh: replaces its positions (scene units) and unit normals by as many others in
@@ -419,16 +446,11 @@ impl SceneProvider {
                 return Err(Error::NotFinite { what, index, value });
             }
         }
-        // The maps of parts, if there are any, no longer say where those are.
-        self.shape.maps.clear();
-        self.shape.is_unplaced = false;
-        if mesh.positions == positions && mesh.normals == normals {
-            return Ok(());
+        if self.geometry.deform(mesh, &positions, &normals) {
+            let mesh = &mut Arc::make_mut(&mut self.scene).mesh;
+            (mesh.positions, mesh.normals) = (positions, normals);
+            self.versions.change_shape();
         }
-        let mesh = &mut Arc::make_mut(&mut self.scene).mesh;
-        (mesh.positions, mesh.normals) = (positions, normals);
-        self.shape.is_deformed = true;
-        self.versions.change_shape();
         Ok(())
     }
 
@@ -443,29 +465,13 @@ impl SceneProvider {
     /// the number of parts, or a map is singular, not finite, or moves a position beyond f32; the
     /// error names the part. The mesh then stays as it was.
     pub fn set_transforms(&mut self, maps: &[DAffine3]) -> Result<(), Error> {
-        let parts = self.shape.parts.clone().ok_or(Error::NoParts)?;
-        parts.check_count(maps.len())?;
-        let before = &self.shape.maps;
-        let others = (0..maps.len()).filter(|&part| before.get(part) != Some(&maps[part]));
-        let moved = others.map(|part| Ok((part, parts.moved_part(part, &maps[part])?)));
-        let moved: Vec<_> = moved.collect::<Result<_, Error>>()?;
-        self.shape.maps = maps.to_vec();
-        if moved.is_empty() && !self.shape.is_unplaced {
-            return Ok(());
-        }
-        let mesh = &mut Arc::make_mut(&mut self.scene).mesh;
-        let mut is_elsewhere = std::mem::take(&mut self.shape.is_unplaced);
-        let mut is_turned = false;
-        for (part, moved) in &moved {
-            let was = &mut self.shape.mirrored[*part];
-            let change = parts.put(*part, moved, *was, mesh);
-            *was = moved.is_mirrored;
-            is_elsewhere |= change.is_elsewhere;
-            is_turned |= change.is_turned;
-        }
+        let Change {
+            is_elsewhere,
+            is_turned,
+        } = self.geometry.set_transforms(maps, &mut self.scene)?;
         if is_turned {
             // Its texture coordinates come in the order of corners.
-            self.masks = mask_words(mesh);
+            self.masks = mask_words(&self.scene.mesh);
             self.versions.change_winding();
         }
         if is_elsewhere || is_turned {
@@ -540,7 +546,7 @@ impl Provider for SceneProvider {
 
     fn missing(&self, name: &str) -> Option<String> {
         let is_of_shape = is_of_shape(name) || lights::describe(name, self.lights()).is_some();
-        (self.shape.is_unplaced && is_of_shape).then(|| {
+        (self.geometry.is_unplaced() && is_of_shape).then(|| {
             "the parts of the mesh have no places yet: call `SceneProvider::set_transforms`, then \
              `Executor::refresh`"
                 .to_owned()

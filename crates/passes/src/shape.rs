@@ -17,4 +17,6 @@ pub(crate) struct Shape {
     pub is_unplaced: bool,
     /// True if the mesh moves, so that trees are worth their memory.
     pub is_deformed: bool,
+    /// True if the mesh was deformed since its hierarchy was fitted, otherwise than by maps.
+    pub is_bent: bool,
 }

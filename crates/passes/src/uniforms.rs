@@ -20,7 +20,9 @@
 //! ```
 
 use glam::{DMat4, DVec3, Mat3, Mat4, Vec2, Vec3};
-use skiagraph_scene::{Camera, DirectionalLight, LightKind, Mesh, SpotLight, light::across};
+use skiagraph_scene::{
+    Camera, DirectionalLight, LightFit, LightKind, Mesh, SpotLight, light::across,
+};
 
 /// The struct `Camera` of `shaders/shared/camera.wgsl`: a perspective camera with reversed depth (1
 /// near, 0 far), 96 bytes. Positions and vectors are in world space, distances in scene units.
@@ -143,21 +145,32 @@ impl LightUniform {
     /// Creates the uniform of a light whose light space and bounds enclose `mesh`. An empty mesh
     /// counts as a point at the origin.
     pub fn new(light: impl Into<LightKind>, mesh: &Mesh) -> Self {
-        match light.into() {
-            LightKind::Directional(light) => Self::directional(&light, mesh),
+        let fit = |light: &DirectionalLight| light.fit(mesh.used_positions());
+        Self::around(light.into(), mesh.bounds(), fit)
+    }
+
+    /// Creates the uniform of a light whose bounds are a box, if there is one, and whose light
+    /// space is that which `fit` makes for a directional light.
+    pub(crate) fn around(
+        light: LightKind,
+        bounds: Option<(Vec3, Vec3)>,
+        fit: impl FnOnce(&DirectionalLight) -> LightFit,
+    ) -> Self {
+        let (min, max) = bounds.unwrap_or((Vec3::ZERO, Vec3::ZERO));
+        let bounds = (min.as_dvec3(), max.as_dvec3());
+        match light {
+            LightKind::Directional(light) => Self::directional(&light, bounds, fit(&light)),
             LightKind::Spot(spot) => Self {
                 to_light: -spot.direction.normalize().as_vec3(),
                 edge_cosine: spot.edge_cosine() as f32,
-                ..Self::at(spot.position, mesh).seen_by(&spot)
+                ..Self::at(spot.position, bounds).seen_by(&spot)
             },
-            LightKind::Point(point) => Self::at(point.position, mesh),
+            LightKind::Point(point) => Self::at(point.position, bounds),
         }
     }
 
     /// A light at a place.
-    fn at(position: DVec3, mesh: &Mesh) -> Self {
-        let (min, max) = mesh.bounds().unwrap_or((Vec3::ZERO, Vec3::ZERO));
-        let (min, max) = (min.as_dvec3(), max.as_dvec3());
+    fn at(position: DVec3, (min, max): (DVec3, DVec3)) -> Self {
         let rounded = position.as_vec3();
         let farthest = (position - min).abs().max((position - max).abs()).length();
         // A hair more, as of a directional light's box; and no scene is a point to divide by.
@@ -194,10 +207,7 @@ impl LightUniform {
         }
     }
 
-    fn directional(light: &DirectionalLight, mesh: &Mesh) -> Self {
-        let (min, max) = mesh.bounds().unwrap_or((Vec3::ZERO, Vec3::ZERO));
-        let fit = light.fit(mesh.used_positions());
-        let (min, max) = (min.as_dvec3(), max.as_dvec3());
+    fn directional(light: &DirectionalLight, (min, max): (DVec3, DVec3), fit: LightFit) -> Self {
         let centre = ((min + max) * 0.5).as_vec3();
         let to_relative = DMat4::from_translation(centre.as_dvec3());
         let clip_from_relative = (fit.view_projection * to_relative).as_mat4();

@@ -64,11 +64,11 @@ mod vector;
 pub mod weld;
 
 pub use adjacency::{Adjacency, NO_NEIGHBOUR};
-pub use bvh::{Bvh, BvhNode, LightSpace, LightSpaceNode};
+pub use bvh::{Bvh, BvhNode, LightSpace, LightSpaceNode, TwoLevelBvh};
 pub use camera::{Camera, LEAST_DEPTH, View};
 pub use error::SceneError;
 pub use indexed::{Indexed, IndexedError};
-pub use light::{DirectionalLight, LightFit};
+pub use light::{DirectionalLight, LightFit, Outline};
 pub use light_kind::{LIGHT_GAP, Light, LightKind, PointLight, SpotLight, Towards};
 pub use mask::Mask;
 pub use material::{Material, Surfaces};

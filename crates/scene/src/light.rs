@@ -29,6 +29,109 @@ pub struct LightFit {
     pub extent: DVec3,
 }
 
+/// Outline of points as a directional light sees them ([`DirectionalLight::outline`]): what its box
+/// is fitted to. Outlines of parts of a scene are kept, and [joined](Self::joined) when one of them
+/// has changed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outline {
+    /// Convex hull across the light, counter-clockwise.
+    hull: Vec<DVec2>,
+    nearest: f64,
+    farthest: f64,
+}
+
+impl Outline {
+    fn of_the_origin() -> Self {
+        Self {
+            hull: vec![DVec2::ZERO],
+            nearest: 0.0,
+            farthest: 0.0,
+        }
+    }
+
+    /// Returns the outline of the points of all `outlines`, which one light has made.
+    pub fn joined<'a>(outlines: impl Iterator<Item = &'a Self> + Clone) -> Self {
+        let filled = outlines.filter(|outline| !outline.hull.is_empty());
+        let within = Within::new(filled.clone().map(|outline| &outline.hull[..]));
+        let (mut places, mut nearest, mut farthest) =
+            (Vec::new(), f64::INFINITY, f64::NEG_INFINITY);
+        for outline in filled {
+            nearest = nearest.min(outline.nearest);
+            farthest = farthest.max(outline.farthest);
+            // Most outlines are far from the border.
+            if !within.contains(&outline.hull) {
+                places.extend(&outline.hull);
+            }
+        }
+        Self {
+            hull: convex_hull(places),
+            nearest,
+            farthest,
+        }
+    }
+}
+
+/// Polygon of the points that lie farthest in eight directions: what is in it is not on the hull
+/// (Akl and Toussaint, "A fast convex hull algorithm", IPL 7(5), 1978).
+struct Within {
+    corners: Vec<DVec2>,
+    /// A point so near to an edge, in areas, counts as outside.
+    margin: f64,
+}
+
+impl Within {
+    /// Directions, counter-clockwise.
+    const DIRECTIONS: [DVec2; 8] = [
+        DVec2::new(1.0, 0.0),
+        DVec2::new(1.0, 1.0),
+        DVec2::new(0.0, 1.0),
+        DVec2::new(-1.0, 1.0),
+        DVec2::new(-1.0, 0.0),
+        DVec2::new(-1.0, -1.0),
+        DVec2::new(0.0, -1.0),
+        DVec2::new(1.0, -1.0),
+    ];
+
+    fn new<'a>(hulls: impl Iterator<Item = &'a [DVec2]>) -> Self {
+        let mut farthest: [Option<DVec2>; 8] = [None; 8];
+        for &place in hulls.flatten() {
+            for (farthest, along) in farthest.iter_mut().zip(Self::DIRECTIONS) {
+                if farthest.is_none_or(|known| along.dot(known) < along.dot(place)) {
+                    *farthest = Some(place);
+                }
+            }
+        }
+        let mut corners: Vec<DVec2> = farthest.into_iter().flatten().collect();
+        corners.dedup();
+        let size = corners.iter().map(|corner| corner.abs().max_element());
+        let size = size.fold(0.0, f64::max);
+        Self {
+            corners,
+            margin: 1e-12 * size * size,
+        }
+    }
+
+    fn contains(&self, hull: &[DVec2]) -> bool {
+        let far = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        let (low, high) = hull
+            .iter()
+            .fold(far, |(low, high), p| (low.min(*p), high.max(*p)));
+        let corners = [
+            low,
+            DVec2::new(high.x, low.y),
+            high,
+            DVec2::new(low.x, high.y),
+        ];
+        let next = self.corners.iter().cycle().skip(1);
+        let mut edges = self.corners.iter().zip(next).filter(|(a, b)| a != b);
+        self.corners.len() > 2
+            && edges.all(|(a, b)| {
+                let is_left = |corner: &DVec2| (*b - *a).perp_dot(*corner - *a) > self.margin;
+                corners.iter().all(is_left)
+            })
+    }
+}
+
 impl DirectionalLight {
     /// Creates a light without extent, whose shadows are hard. `direction` is the direction in
     /// which it travels.
@@ -85,6 +188,11 @@ impl DirectionalLight {
     /// convex polygon lies on an edge of it (Freeman and Shapira, CACM 18(7), 1975). An empty list
     /// counts as one point at the origin.
     pub fn fit(&self, points: impl IntoIterator<Item = Vec3>) -> LightFit {
+        self.fit_outline(&self.outline(points))
+    }
+
+    /// Returns the outline of points in world space as the light sees them.
+    pub fn outline(&self, points: impl IntoIterator<Item = Vec3>) -> Outline {
         let forward = self.direction.normalize();
         let (right, up) = across(forward);
         let (mut places, mut nearest, mut farthest) =
@@ -95,10 +203,30 @@ impl DirectionalLight {
             (nearest, farthest) = (nearest.min(depth), farthest.max(depth));
             places.push(DVec2::new(right.dot(point), up.dot(point)));
         }
-        if places.is_empty() {
-            (places, nearest, farthest) = (vec![DVec2::ZERO], 0.0, 0.0);
+        Outline {
+            hull: convex_hull(places),
+            nearest,
+            farthest,
         }
-        let (turn, low, high) = least_rectangle(&convex_hull(places));
+    }
+
+    /// Returns the box of [`fit`](Self::fit) around the points of an outline, which this light's
+    /// [`outline`](Self::outline) has made.
+    pub fn fit_outline(&self, outline: &Outline) -> LightFit {
+        let forward = self.direction.normalize();
+        let (right, up) = across(forward);
+        let point = Outline::of_the_origin();
+        let Outline {
+            hull,
+            nearest,
+            farthest,
+        } = if outline.hull.is_empty() {
+            &point
+        } else {
+            outline
+        };
+        let (nearest, farthest) = (*nearest, *farthest);
+        let (turn, low, high) = least_rectangle(hull);
         let (right, up) = (right * turn.x + up * turn.y, up * turn.x - right * turn.y);
         let (low, high) = (low.extend(nearest), high.extend(farthest));
         let centre = (low + high) * 0.5;

@@ -2,7 +2,10 @@
 
 use crate::mesh::{Group, Mesh};
 use glam::{DAffine3, DMat3, DVec3, Vec3};
-use std::collections::{BTreeMap, HashSet};
+use std::{
+    collections::{BTreeMap, HashMap, HashSet},
+    ops::Range,
+};
 
 /// Mesh with parts that are moved independently of each other. Each part is moved by a map from
 /// positions at rest to moved positions.
@@ -24,6 +27,10 @@ struct Part {
     positions: Vec<u32>,
     /// Normals, each with the position at which it stands.
     normals: Vec<(u32, u32)>,
+    /// Positions that triangles use, where not all of them do.
+    corners: Option<Vec<u32>>,
+    /// Number of the first part of the same mesh.
+    copy_of: usize,
 }
 
 /// Part of a [`Movable`] after it was moved, as [`Movable::moved_part`] returns it, to be written
@@ -111,7 +118,9 @@ impl Movable {
     /// triangles outside it, so that moving it would tear the surface.
     pub fn new(mesh: &Mesh, parts: &[&str]) -> Result<Self, String> {
         let mut rest = mesh.clone();
-        let parts = parts.iter().map(|name| Part::cut(&mut rest, name));
+        let parts = (0..)
+            .zip(parts)
+            .map(|(part, name)| Part::cut(&mut rest, name, part));
         let parts = parts.collect::<Result<_, _>>()?;
         Ok(Self {
             rest,
@@ -126,11 +135,13 @@ impl Movable {
     pub fn joined(meshes: &[&Mesh]) -> Self {
         let mut rest = Mesh::default();
         let has_materials = meshes.iter().any(|mesh| !mesh.surfaces.of.is_empty());
-        let parts = meshes.iter().map(|mesh| {
+        let mut known: HashMap<*const Mesh, usize> = HashMap::new();
+        let parts = meshes.iter().enumerate().map(|(part, &mesh)| {
             if has_materials {
                 rest.surfaces.append(&mesh.surfaces, mesh.triangles.len());
             }
-            Part::append(&mut rest, mesh)
+            let copy_of = *known.entry(std::ptr::from_ref(mesh)).or_insert(part);
+            Part::append(&mut rest, mesh, copy_of)
         });
         let parts = parts.collect();
         Self {
@@ -143,6 +154,44 @@ impl Movable {
     /// Returns the number of parts that can be moved.
     pub fn parts(&self) -> usize {
         self.parts.len()
+    }
+
+    /// Returns the triangles of part number `part`, as primitive ids in ascending order.
+    ///
+    /// # Panics
+    /// If there is no part of that number.
+    pub fn triangles(&self, part: usize) -> &[u32] {
+        &self.parts[part].triangles
+    }
+
+    /// Returns the positions of part number `part` that its triangles use, as indices into
+    /// [`Mesh::positions`] in ascending order.
+    ///
+    /// # Panics
+    /// If there is no part of that number.
+    pub fn corners(&self, part: usize) -> &[u32] {
+        let part = &self.parts[part];
+        part.corners.as_deref().unwrap_or(&part.positions)
+    }
+
+    /// Returns the smallest ranges of [`Mesh::positions`] and [`Mesh::normals`] that hold those of
+    /// part number `part`.
+    ///
+    /// # Panics
+    /// If there is no part of that number.
+    pub fn ranges(&self, part: usize) -> [Range<usize>; 2] {
+        let part = &self.parts[part];
+        let normals = part.normals.iter().map(|(normal, _)| *normal);
+        [around(part.positions.iter().copied()), around(normals)]
+    }
+
+    /// Returns the number of the first part that is of the same mesh, if the parts were
+    /// [joined](Self::joined): the number itself if that mesh was not given before.
+    ///
+    /// # Panics
+    /// If there is no part of that number.
+    pub fn copy_of(&self, part: usize) -> usize {
+        self.parts[part].copy_of
     }
 
     /// Returns true if the parts come from [`joined`](Self::joined), each in a space of its own. In
@@ -208,7 +257,43 @@ impl Movable {
         if !map.is_finite() {
             return Err(MoveError::NotFinite { part, map: *map });
         }
-        self.bent_part(part, |place| (map.transform_point3(place), map.matrix3))
+        let Part {
+            positions, normals, ..
+        } = &self.parts[part];
+        let determinant = map.matrix3.determinant();
+        let is_singular = determinant == 0.0 || determinant.is_nan();
+        if is_singular && !positions.is_empty() {
+            return Err(MoveError::Singular { part });
+        }
+        let place = |&position: &u32| {
+            let from = self.rest.positions[position as usize];
+            let to = map.transform_point3(from.as_dvec3());
+            let place = to.as_vec3();
+            let error = MoveError::OutOfRange { part, from, to };
+            if place.is_finite() {
+                Ok(place)
+            } else {
+                Err(error)
+            }
+        };
+        let positions = positions.iter().map(place).collect::<Result<_, _>>()?;
+        let across = map.matrix3.inverse().transpose();
+        let normal = |&(normal, _): &(u32, u32)| {
+            let normal = across * self.rest.normals[normal as usize].as_dvec3();
+            let normal = normal.normalize_or_zero().as_vec3();
+            let error = MoveError::Singular { part };
+            if normal.is_finite() {
+                Ok(normal)
+            } else {
+                Err(error)
+            }
+        };
+        let normals = normals.iter().map(normal).collect::<Result<_, _>>()?;
+        Ok(MovedPart {
+            positions,
+            normals,
+            is_mirrored: determinant < 0.0,
+        })
     }
 
     fn bent_part(
@@ -311,8 +396,18 @@ impl Movable {
     }
 }
 
+/// The smallest range that holds some indices.
+fn around(indices: impl Iterator<Item = u32>) -> Range<usize> {
+    let range = indices.fold(None, |range: Option<Range<usize>>, index| {
+        let index = index as usize;
+        let known = range.unwrap_or(index..index + 1);
+        Some(known.start.min(index)..known.end.max(index + 1))
+    });
+    range.unwrap_or_default()
+}
+
 impl Part {
-    fn append(rest: &mut Mesh, mesh: &Mesh) -> Self {
+    fn append(rest: &mut Mesh, mesh: &Mesh, copy_of: usize) -> Self {
         let [first, first_position] =
             [rest.triangles.len(), rest.positions.len()].map(|n| n as u32);
         rest.positions.extend(&mesh.positions);
@@ -335,14 +430,20 @@ impl Part {
             });
             rest.normal_indices.push(own);
         }
+        let mut used: Vec<u32> = mesh.triangles.as_flattened().to_vec();
+        used.sort_unstable();
+        used.dedup();
+        used.iter_mut().for_each(|index| *index += first_position);
         Self {
             triangles: (first..rest.triangles.len() as u32).collect(),
             positions: (first_position..rest.positions.len() as u32).collect(),
             normals: at_positions(&own),
+            corners: (used.len() < mesh.positions.len()).then_some(used),
+            copy_of,
         }
     }
 
-    fn cut(mesh: &mut Mesh, name: &str) -> Result<Self, String> {
+    fn cut(mesh: &mut Mesh, name: &str, copy_of: usize) -> Result<Self, String> {
         let groups = mesh.groups.iter().filter(|group| group.name == name);
         let inside: HashSet<u32> = groups.flat_map(|group| group.triangles.clone()).collect();
         if inside.is_empty() {
@@ -390,6 +491,8 @@ impl Part {
             triangles,
             positions,
             normals: at_positions(&own),
+            corners: None,
+            copy_of,
         })
     }
 }

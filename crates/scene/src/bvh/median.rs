@@ -50,3 +50,43 @@ pub(super) fn build(triangles: &[Triangle]) -> (Vec<BvhNode>, Vec<u32>) {
     }
     (nodes, primitives)
 }
+
+/// Builds a tree over at least one box. Each is a leaf of its own, whose `first` is its number.
+pub(super) fn over_boxes(boxes: &[BvhNode]) -> Vec<BvhNode> {
+    let centre = |id: u32| {
+        let of = &boxes[id as usize];
+        Vec3::from(of.min).as_dvec3() + Vec3::from(of.max).as_dvec3()
+    };
+    let mut ids: Vec<u32> = (0..boxes.len() as u32).collect();
+    let mut nodes = vec![BvhNode::default()];
+    let mut open = vec![(0, 0..ids.len())];
+    while let Some((slot, range)) = open.pop() {
+        let ids = &mut ids[range.clone()];
+        let corners = ids.iter().map(|&id| &boxes[id as usize]);
+        let corners = corners.flat_map(|of| [Vec3::from(of.min), Vec3::from(of.max)]);
+        let (min, max) = bounds(corners).unwrap_or_default();
+        let mut node = BvhNode {
+            min: min.into(),
+            first: ids[0],
+            max: max.into(),
+            count: 1,
+        };
+        if ids.len() > 1 {
+            let far = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+            let centres = ids.iter().map(|&id| centre(id));
+            let (low, high) = centres.fold(far, |(low, high), p| (low.min(p), high.max(p)));
+            let axis = (high - low).max_position();
+            let half = ids.len() / 2;
+            ids.select_nth_unstable_by(half, |&a, &b| {
+                centre(a)[axis].total_cmp(&centre(b)[axis]).then(a.cmp(&b))
+            });
+            (node.first, node.count) = (nodes.len() as u32, 0);
+            nodes.extend([node; 2]);
+            let (start, middle, first) = (range.start, range.start + half, node.first as usize);
+            open.push((first, start..middle));
+            open.push((first + 1, middle..range.end));
+        }
+        nodes[slot] = node;
+    }
+    nodes
+}

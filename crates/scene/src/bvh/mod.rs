@@ -5,7 +5,9 @@ mod light_space;
 mod median;
 mod node;
 mod tree;
+mod two_level;
 
 pub use light_space::{LightSpace, LightSpaceNode};
 pub use node::BvhNode;
 pub use tree::{Bvh, MAX_DEPTH};
+pub use two_level::{Moved, Piece, Refit, TwoLevelBvh};

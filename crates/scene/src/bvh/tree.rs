@@ -52,11 +52,18 @@ impl Bvh {
                 Triangle { v0, v1, v2 }
             })
             .collect();
+        Self::within(&triangles, MAX_DEPTH)
+    }
+
+    /// Builds the hierarchy of a list of triangles, whose places in it are the primitive ids. It is
+    /// no deeper than `depth` unless the logarithm of their number is.
+    pub(super) fn within(triangles: &[Triangle], depth: u32) -> Self {
         if triangles.is_empty() {
             return Self::default();
         }
-        Self::by_ploc(&triangles).unwrap_or_else(|| {
-            let (nodes, primitives) = median::build(&triangles);
+        let tree = Self::by_ploc(triangles).filter(|tree| tree.depth <= depth);
+        tree.unwrap_or_else(|| {
+            let (nodes, primitives) = median::build(triangles);
             Self::new(nodes, primitives)
         })
     }
@@ -108,8 +115,9 @@ impl Bvh {
     }
 
     /// All nodes, each before its children.
-    fn order(&self) -> Vec<u32> {
-        let mut order = vec![0];
+    pub(super) fn order(&self) -> Vec<u32> {
+        let mut order = Vec::with_capacity(self.nodes.len());
+        order.extend((!self.nodes.is_empty()).then_some(0));
         let mut next = 0;
         while let Some(&index) = order.get(next) {
             let node = self.nodes[index as usize];
@@ -182,11 +190,8 @@ impl Bvh {
         let Some(root) = self.nodes.first() else {
             return 0.0;
         };
-        let cost = |node: &BvhNode| match node.count {
-            0 => BOX * area(node),
-            count => f64::from(count) * area(node),
-        };
-        self.nodes.iter().map(cost).sum::<f64>() / area(root).max(f64::MIN_POSITIVE)
+        let cost = self.nodes.iter().map(cost_of).sum::<f64>();
+        cost / area(root).max(f64::MIN_POSITIVE)
     }
 }
 
@@ -215,7 +220,15 @@ fn largest_leaf(nodes: &[BvhNode], counts: &[u32], most: usize) -> u32 {
     inner.get(staying).copied().unwrap_or(0)
 }
 
-fn area(node: &BvhNode) -> f64 {
+/// The part of a tree's cost that a node is, in its area.
+pub(super) fn cost_of(node: &BvhNode) -> f64 {
+    match node.count {
+        0 => BOX * area(node),
+        count => f64::from(count) * area(node),
+    }
+}
+
+pub(super) fn area(node: &BvhNode) -> f64 {
     let size = Vec3::from(node.max).as_dvec3() - Vec3::from(node.min).as_dvec3();
     size.x * size.y + size.y * size.z + size.z * size.x
 }

@@ -3,7 +3,10 @@
 
 use glam::Vec3;
 use proptest::prelude::*;
-use skiagraph_scene::{Bvh, LightSpace, LightSpaceNode, Mesh, bvh::MAX_DEPTH};
+use skiagraph_scene::{
+    Bvh, LightSpace, LightSpaceNode, Mesh, TwoLevelBvh,
+    bvh::{MAX_DEPTH, Moved, Piece},
+};
 
 fn mesh(triangles: &[[Vec3; 3]]) -> Mesh {
     let positions = triangles.concat();
@@ -23,6 +26,17 @@ fn checked(mesh: &Mesh) -> Bvh {
 }
 
 fn check(mesh: &Mesh, bvh: Bvh) -> Bvh {
+    let bvh = check_tree(mesh, bvh);
+    if !bvh.nodes.is_empty() {
+        for direction in [Vec3::Y, Vec3::new(2.0, -0.9, 1.4)] {
+            assert!(fits_light_space(mesh, direction, usize::MAX));
+            fits_light_space(mesh, direction, bvh.nodes.len().div_ceil(2));
+        }
+    }
+    bvh
+}
+
+fn check_tree(mesh: &Mesh, bvh: Bvh) -> Bvh {
     if mesh.triangles.is_empty() {
         assert!(bvh.nodes.is_empty() && bvh.primitives.is_empty() && bvh.depth == 0);
         return bvh;
@@ -68,10 +82,6 @@ fn check(mesh: &Mesh, bvh: Bvh) -> Bvh {
     assert_eq!(visited, bvh.nodes.len(), "unreachable nodes");
     assert_eq!(deepest, bvh.depth);
     assert!(bvh.depth <= MAX_DEPTH, "depth {}", bvh.depth);
-    for direction in [Vec3::Y, Vec3::new(2.0, -0.9, 1.4)] {
-        assert!(fits_light_space(mesh, direction, usize::MAX));
-        fits_light_space(mesh, direction, bvh.nodes.len().div_ceil(2));
-    }
     bvh
 }
 
@@ -233,6 +243,31 @@ proptest! {
 
 proptest! {
     #[test]
+    fn any_pieces_wherever_they_move(
+        count in 1usize..300,
+        parts in 1usize..40,
+        seed: u32,
+        size in prop_oneof![Just(0.0f32), Just(1.0), Just(80.0)],
+        most in prop_oneof![Just(usize::MAX), 100usize..400],
+        shifts in prop::collection::vec((0usize..40, -200f32..200.0), 0..12),
+    ) {
+        let mut mesh = mesh(&soup(count, seed, size));
+        let run = runs(count, parts);
+        let at_rest = mesh.clone();
+        let mut levels = TwoLevelBvh::build(&mesh, &at_rest, &pieces(&run), most);
+        prop_assert!(levels.nodes.len() <= most);
+        checked_levels(&mesh, &levels);
+        for (piece, by) in shifts {
+            let piece = piece % parts;
+            shift(&mut mesh, &run[piece], Vec3::new(by, -by, 1e3 * by));
+            levels.refit(&mesh, &[piece], Moved::Affinely);
+            checked_levels(&mesh, &levels);
+        }
+    }
+}
+
+proptest! {
+    #[test]
     fn a_merged_tree_is_whole_and_no_larger_than_asked(
         count in 0usize..400,
         seed in any::<u32>(),
@@ -250,5 +285,168 @@ proptest! {
             // Not far below: subtrees of equally many triangles go together.
             prop_assert!(merged.nodes.len() * 4 >= most, "{} of {most}", merged.nodes.len());
         }
+    }
+}
+
+/// Primitive ids of runs of triangles, the last of which takes what is left.
+fn runs(triangles: usize, pieces: usize) -> Vec<Vec<u32>> {
+    let end = |piece: usize| triangles * piece / pieces;
+    let run = |piece| (end(piece) as u32..end(piece + 1) as u32).collect();
+    (0..pieces).map(run).collect()
+}
+
+fn pieces(runs: &[Vec<u32>]) -> Vec<Piece<'_>> {
+    let mut pieces = Vec::new();
+    for (copy_of, triangles) in runs.iter().enumerate() {
+        pieces.push(Piece { triangles, copy_of });
+    }
+    pieces
+}
+
+/// Checks it as any tree, and returns that tree.
+fn checked_levels(mesh: &Mesh, two: &TwoLevelBvh) -> Bvh {
+    let mut deepest = 0;
+    let mut open: Vec<(u32, u32)> = (!two.nodes.is_empty())
+        .then_some((0, 1))
+        .into_iter()
+        .collect();
+    while let Some((index, level)) = open.pop() {
+        deepest = deepest.max(level);
+        let node = two.nodes[index as usize];
+        if node.count == 0 {
+            open.extend([(node.first, level + 1), (node.first + 1, level + 1)]);
+        }
+    }
+    let bvh = Bvh {
+        nodes: two.nodes.clone(),
+        primitives: two.primitives.clone(),
+        depth: deepest,
+    };
+    check_tree(mesh, bvh)
+}
+
+/// The nodes that are walked: a piece that was built anew may have fewer than its room.
+fn reachable(two: &TwoLevelBvh) -> Bvh {
+    let whole = Bvh {
+        nodes: two.nodes.clone(),
+        primitives: two.primitives.clone(),
+        depth: 0,
+    };
+    // Nothing is merged: the nodes are numbered anew.
+    whole.merged(two.nodes.len() - 1)
+}
+
+/// Shifts the triangles of a run, whose positions are its own.
+fn shift(mesh: &mut Mesh, run: &[u32], by: Vec3) {
+    for &triangle in run {
+        for corner in mesh.triangles[triangle as usize] {
+            mesh.positions[corner as usize] += by;
+        }
+    }
+}
+
+#[test]
+fn the_hierarchy_of_one_piece_is_the_tree_of_the_mesh() {
+    let mesh = mesh(&soup(500, 11, 4.0));
+    let run = runs(500, 1);
+    for most in [usize::MAX, 100, 1] {
+        let expected = Bvh::build(&mesh).merged(most);
+        let levels = TwoLevelBvh::build(&mesh, &mesh, &pieces(&run), most);
+        assert_eq!(levels.nodes, expected.nodes);
+        assert_eq!(levels.primitives, expected.primitives);
+    }
+    let none = TwoLevelBvh::build(&Mesh::default(), &Mesh::default(), &pieces(&[vec![]]), 9);
+    assert!(none.nodes.is_empty() && none.primitives.is_empty());
+}
+
+#[test]
+fn copies_have_one_tree_and_boxes_of_their_own() {
+    let stone = soup(60, 5, 9.0);
+    let at_rest = mesh(&vec![stone; 40].concat());
+    let run = runs(at_rest.triangles.len(), 40);
+    let mut moved = at_rest.clone();
+    for (index, run) in run.iter().enumerate() {
+        shift(&mut moved, run, Vec3::new(index as f32 * 300.0, 0.0, 0.0));
+    }
+    let copies: Vec<Piece> = pieces(&run)
+        .into_iter()
+        .map(|piece| Piece {
+            copy_of: 0,
+            ..piece
+        })
+        .collect();
+    let levels = TwoLevelBvh::build(&moved, &at_rest, &copies, usize::MAX);
+    let tree = checked_levels(&moved, &levels);
+    let whole = Bvh::build(&moved);
+    let [cost, least] = [tree.cost(), whole.cost()];
+    assert!(cost < 1.1 * least, "{cost} beside {least} of the whole");
+    for piece in 1..40 {
+        let [first, own] = [0, piece].map(|piece| levels.primitives_of(piece));
+        let ids = levels.primitives[own]
+            .iter()
+            .map(|id| id - 60 * piece as u32);
+        assert!(ids.eq(levels.primitives[first].iter().copied()));
+    }
+}
+
+#[test]
+fn only_the_pieces_that_move_are_fitted() {
+    let mut mesh = mesh(&soup(1_000, 3, 5.0));
+    let run = runs(1_000, 50);
+    let mut levels = TwoLevelBvh::build(&mesh, &mesh, &pieces(&run), usize::MAX);
+    checked_levels(&mesh, &levels);
+    assert_eq!(
+        levels.refit(&mesh, &[], Moved::Affinely),
+        Default::default()
+    );
+    let before = levels.clone();
+    for piece in [7, 31] {
+        shift(&mut mesh, &run[piece], Vec3::splat(40.0));
+    }
+    let work = levels.refit(&mesh, &[7, 31], Moved::Affinely);
+    checked_levels(&mesh, &levels);
+    let top: usize = levels.top().iter().map(|range| range.len()).sum();
+    assert_eq!(top, 2 * 50 - 1);
+    let own = [7, 31].map(|piece| levels.nodes_of(piece).len() + 1);
+    assert_eq!(work.nodes, top + own[0] + own[1]);
+    assert!(work.rebuilt.is_empty());
+    for piece in (0..50).filter(|piece| ![7, 31].contains(piece)) {
+        let own = levels.nodes_of(piece);
+        assert_eq!(levels.nodes[own.clone()], before.nodes[own]);
+    }
+    assert_eq!(levels.primitives, before.primitives);
+}
+
+#[test]
+fn a_piece_that_is_bent_out_of_shape_is_built_anew_alone() {
+    let mut mesh = mesh(&soup(1_200, 9, 2.0));
+    let run = runs(1_200, 3);
+    let mut levels = TwoLevelBvh::build(&mesh, &mesh, &pieces(&run), usize::MAX);
+    let before = levels.clone();
+    // Its triangles change places with each other.
+    let corners: Vec<u32> = run[1]
+        .iter()
+        .flat_map(|id| mesh.triangles[*id as usize])
+        .collect();
+    let places: Vec<Vec3> = corners
+        .iter()
+        .map(|id| mesh.positions[*id as usize])
+        .collect();
+    for (index, triangle) in places.chunks(3).enumerate() {
+        let other = (index * 7 % 400) * 3;
+        for (corner, &place) in corners[other..other + 3].iter().zip(triangle) {
+            mesh.positions[*corner as usize] = place;
+        }
+    }
+    let mut kept = levels.clone();
+    assert!(kept.refit(&mesh, &[1], Moved::Affinely).rebuilt.is_empty());
+    let cost = checked_levels(&mesh, &kept).cost();
+    assert_eq!(levels.refit(&mesh, &[1], Moved::Freely).rebuilt, [1]);
+    let rebuilt = reachable(&levels).cost();
+    assert!(rebuilt > 0.0);
+    assert!(rebuilt * 1.5 < cost, "{rebuilt} after {cost}");
+    for piece in [0, 2] {
+        let own = levels.primitives_of(piece);
+        assert_eq!(levels.primitives[own.clone()], before.primitives[own]);
     }
 }

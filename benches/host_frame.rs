@@ -1,0 +1,260 @@
+//! CPU time of an engine's frame: 300 meshes of 173,400 triangles, of which five move in each
+//! frame. Setting the transforms, `refresh`, `encode` and finishing the encoder is measured;
+//! submission and the GPU's work are not: each frame is submitted and waited for outside the clock,
+//! so that the CPU is the frame's own.
+
+use glam::{DAffine3, DVec3};
+use skiagraph_gpu::{
+    Executor, Frame,
+    device::{self, Gpu},
+};
+use skiagraph_graph::{Graph, PlanRequest};
+use skiagraph_passes::{EmbeddedSources, SceneProvider, registry};
+use skiagraph_scene::{DirectionalLight, Indexed, Mesh, Movable, View};
+use std::time::{Duration, Instant};
+
+const MESHES: usize = 300;
+/// Parts that move in each frame.
+const MOVING: usize = 5;
+const PRESETS: [&str; 2] = ["light_buffer", "rt"];
+/// Small: the CPU's work does not depend on it.
+const VIEWPORT: [u32; 2] = [32, 32];
+/// Triangles of a stone: 578, in rings of 17 between two poles.
+const RINGS: u32 = 17;
+const SIDES: u32 = 17;
+
+fn main() {
+    // `cargo bench` says `--bench`; without it the frames are only tried.
+    let measured = std::env::args().any(|argument| argument == "--bench");
+    let (frames, added) = if measured { (300, 5) } else { (3, 1) };
+    let gpu = match device::open(None) {
+        Ok(gpu) => gpu,
+        Err(error) => {
+            println!("NOTHING WAS MEASURED: {error}");
+            return;
+        }
+    };
+    let info = gpu.adapter.get_info();
+    println!(
+        "adapter: {} ({:?}, {} {}); ms of CPU, median and 99th percentile of {frames} frames",
+        info.name, info.backend, info.driver, info.driver_info
+    );
+    let stone = stone();
+    println!(
+        "{MESHES} meshes, {} triangles, {MOVING} of them move",
+        MESHES * stone.triangles.len()
+    );
+    for preset in PRESETS {
+        let mut host = Host::new(&gpu, preset, &stone);
+        // The first frames make what later ones have.
+        for turn in 0..3 {
+            host.frame(turn, MOVING);
+        }
+        for (what, moving) in [("nothing moves", 0), ("five move", MOVING)] {
+            let times: Vec<Times> = (0..frames).map(|turn| host.frame(turn, moving)).collect();
+            print(preset, what, &times);
+            host.print_work(moving);
+        }
+        let mut times: Vec<f64> = (0..added).map(|_| host.add(&stone)).collect();
+        times.sort_by(f64::total_cmp);
+        println!("{preset}, one mesh more: {:.2}", times[times.len() / 2]);
+    }
+}
+
+/// Times of a frame's steps, in milliseconds.
+#[derive(Clone, Copy)]
+struct Times {
+    set: f64,
+    refresh: f64,
+    encode: f64,
+    /// The GPU's work and the submission, for which the frame waits.
+    rest: f64,
+}
+
+fn print(preset: &str, what: &str, times: &[Times]) {
+    let quantile = |of: fn(&Times) -> f64, share: f64| {
+        let mut values: Vec<f64> = times.iter().map(of).collect();
+        values.sort_by(f64::total_cmp);
+        values[((values.len() - 1) as f64 * share) as usize]
+    };
+    let both = |of: fn(&Times) -> f64| {
+        let [median, most] = [0.5, 0.99].map(|share| quantile(of, share));
+        format!("{median:.3} ({most:.3})")
+    };
+    println!(
+        "{preset}, {what}: {}; set_transforms {}, refresh {}, encode {}; beside it submitted and \
+         waited {}",
+        both(|times| times.set + times.refresh + times.encode),
+        both(|times| times.set),
+        both(|times| times.refresh),
+        both(|times| times.encode),
+        both(|times| times.rest),
+    );
+}
+
+fn since(start: Instant) -> f64 {
+    Duration::as_secs_f64(&start.elapsed()) * 1e3
+}
+
+/// An engine with a scene of stones.
+struct Host<'a> {
+    gpu: &'a Gpu,
+    meshes: Vec<&'a Mesh>,
+    provider: SceneProvider,
+    executor: Executor,
+    places: Vec<DAffine3>,
+}
+
+impl<'a> Host<'a> {
+    fn new(gpu: &'a Gpu, preset: &str, stone: &'a Mesh) -> Self {
+        let meshes = vec![stone; MESHES];
+        let light = DirectionalLight::new(DVec3::new(0.4, -1.0, -0.3));
+        let mut provider = SceneProvider::from_parts(Movable::joined(&meshes), light);
+        let view = View {
+            name: String::new(),
+            eye: DVec3::new(30.0, 20.0, 90.0),
+            direction: DVec3::new(0.0, -0.4, -1.0),
+            up: DVec3::Y,
+            fov_y_degrees: 50.0,
+            near: 0.1,
+            far: 300.0,
+            light: None,
+        };
+        provider.set_camera(&view.camera(VIEWPORT));
+        let places: Vec<DAffine3> = (0..MESHES).map(|index| place(index, 0)).collect();
+        provider
+            .set_transforms(&places)
+            .expect("the maps are plain shifts");
+        let path = format!("pipelines/{preset}.ron");
+        let graph = Graph::load(&path, &registry(), &EmbeddedSources)
+            .unwrap_or_else(|faults| panic!("{faults}"));
+        let mut request = PlanRequest::new(VIEWPORT, &provider);
+        request.limits = gpu.device.limits();
+        request.features = gpu.device.features();
+        let plan = graph
+            .plan(&request)
+            .unwrap_or_else(|faults| panic!("{faults}"));
+        let executor = Executor::new(&gpu.device, &gpu.queue, plan, &mut provider)
+            .expect("the preset suits every device");
+        Self {
+            gpu,
+            meshes,
+            provider,
+            executor,
+            places,
+        }
+    }
+
+    /// Runs a frame in which the first parts move.
+    fn frame(&mut self, turn: usize, moving: usize) -> Times {
+        for (index, map) in self.places[..moving].iter_mut().enumerate() {
+            *map = place(index, turn + 1);
+        }
+        let descriptor = wgpu::CommandEncoderDescriptor::default();
+        let mut encoder = self.gpu.device.create_command_encoder(&descriptor);
+        let start = Instant::now();
+        self.provider
+            .set_transforms(&self.places)
+            .expect("the maps are turns and shifts");
+        let set = since(start);
+        let start = Instant::now();
+        self.executor
+            .refresh(&mut self.provider)
+            .expect("the same resources are built again");
+        let refresh = since(start);
+        let start = Instant::now();
+        self.executor
+            .encode(&mut encoder, &Frame::default())
+            .expect("the frame was encoded before");
+        let commands = encoder.finish();
+        let encode = since(start);
+        let start = Instant::now();
+        self.gpu.queue.submit([commands]);
+        self.gpu
+            .device
+            .poll(wgpu::PollType::wait_indefinitely())
+            .expect("the GPU is there");
+        Times {
+            set,
+            refresh,
+            encode,
+            rest: since(start),
+        }
+    }
+
+    /// Prints the work of one more frame, and the times of its parts.
+    fn print_work(&mut self, moving: usize) {
+        let before: Vec<_> = self.provider.built().to_vec();
+        let work = self.provider.work();
+        self.frame(1000, moving);
+        let times = |name: &str| before.iter().find(|it| it.name == name).map(|it| it.times);
+        let built = self.provider.built().iter();
+        let made = built.filter(|built| times(built.name) != Some(built.times));
+        let made = made.map(|it| format!("{} {:.3}", it.name, it.time.as_secs_f64() * 1e3));
+        let made: Vec<String> = made.collect();
+        println!(
+            "  {:?}; {}",
+            self.provider.work().since(work),
+            made.join(", ")
+        );
+    }
+
+    /// Adds a mesh to the scene; how long that took, in milliseconds.
+    fn add(&mut self, stone: &'a Mesh) -> f64 {
+        let map = place(self.places.len(), 0);
+        let start = Instant::now();
+        self.meshes.push(stone);
+        self.places.push(map);
+        self.provider.set_parts(Movable::joined(&self.meshes));
+        self.provider
+            .set_transforms(&self.places)
+            .expect("the maps are turns and shifts");
+        let provider = &self.provider;
+        let plan = self.executor.plan().with(|it| it.provider = provider);
+        self.executor
+            .replace_graph(plan.expect("it has a plan"), &mut self.provider)
+            .expect("one mesh more suits the device");
+        let time = since(start);
+        self.frame(0, 0);
+        time
+    }
+}
+
+/// The place of a part in rows, where it turns and goes up and down.
+fn place(index: usize, turn: usize) -> DAffine3 {
+    let at = DVec3::new((index % 20) as f64, 0.0, (index / 20) as f64) * 3.0;
+    let angle = 0.1 * turn as f64;
+    DAffine3::from_translation(at + DVec3::Y * angle.sin()) * DAffine3::from_rotation_y(angle)
+}
+
+/// A sphere of radius 1 with dents.
+fn stone() -> Mesh {
+    let mut positions = vec![[0.0, 1.0, 0.0], [0.0, -1.0, 0.0]];
+    for ring in 0..RINGS {
+        for side in 0..SIDES {
+            let down = (ring + 1) as f32 / (RINGS + 1) as f32 * std::f32::consts::PI;
+            let round = side as f32 / SIDES as f32 * std::f32::consts::TAU;
+            let radius = 1.0 - 0.1 * (5.0 * round).sin() * (4.0 * down).sin();
+            let [x, z] = [round.cos(), round.sin()].map(|along| along * down.sin());
+            positions.push([x, down.cos(), z].map(|along| along * radius));
+        }
+    }
+    let at = |ring: u32, side: u32| 2 + ring * SIDES + side % SIDES;
+    let mut indices = Vec::new();
+    for side in 0..SIDES {
+        indices.extend([0, at(0, side + 1), at(0, side)]);
+        indices.extend([1, at(RINGS - 1, side), at(RINGS - 1, side + 1)]);
+        for ring in 1..RINGS {
+            let [a, b] = [at(ring - 1, side), at(ring - 1, side + 1)];
+            let [c, d] = [at(ring, side), at(ring, side + 1)];
+            indices.extend([a, b, c, b, d, c]);
+        }
+    }
+    // As engines have them: smooth, one for each position.
+    let stone = Indexed {
+        positions: &positions,
+        normals: &positions,
+        indices: &indices,
+    };
+    stone.mesh().expect("its numbers are finite")
+}

@@ -1,0 +1,386 @@
+//! A hierarchy over a mesh in pieces that move by themselves: a tree for each piece, and a top
+//! level over the pieces, in one list of nodes. It is walked like any other.
+
+use super::{
+    build::measurable,
+    median,
+    node::BvhNode,
+    tree::{Bvh, MAX_DEPTH, area, cost_of},
+};
+use crate::mesh::{Mesh, bounds};
+use glam::{Vec3, Vec3A};
+use obvhs::{
+    aabb::Aabb,
+    ploc::{PlocBuilder, PlocSearchDistance, SortPrecision},
+    triangle::Triangle,
+};
+use rayon::prelude::*;
+use std::{collections::BTreeMap, ops::Range, sync::Arc};
+
+/// A piece is built anew when a deformation has made its rays this many times as dear as they were.
+const WORSE: f64 = 1.5;
+
+/// Triangles of a mesh that move together, as [`TwoLevelBvh::build`] takes them.
+#[derive(Clone, Copy, Debug)]
+pub struct Piece<'a> {
+    /// Primitive ids, each in one piece only.
+    pub triangles: &'a [u32],
+    /// Number of the piece whose mesh this is a copy of: the same triangles in the same order,
+    /// moved by an affine map. The number of the piece itself if it is a copy of none.
+    pub copy_of: usize,
+}
+
+/// Way in which pieces have moved, for [`TwoLevelBvh::refit`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Moved {
+    /// By affine maps. Triangles that were near each other still are, so the trees stay.
+    Affinely,
+    /// In any way. A tree that has become bad is built anew, that of one piece alone.
+    Freely,
+}
+
+/// Hierarchy of two levels over a mesh in pieces. Each piece has a tree of its own, in world space.
+/// The leaves of the top level are the roots of those trees. When a piece moves, its boxes are
+/// fitted and the top level is built anew; the other pieces stay as they are. The hierarchy of a
+/// single piece is that of [`Bvh::build`].
+#[derive(Clone, Debug, Default)]
+pub struct TwoLevelBvh {
+    /// Nodes: the root, the top level, the nodes of the pieces. The two children of an inner node
+    /// follow each other. Empty without triangles.
+    pub nodes: Vec<BvhNode>,
+    /// Primitive ids in the order of the leaves, each once.
+    pub primitives: Vec<u32>,
+    pieces: Vec<Subtree>,
+    /// Room of the top level's nodes but the root.
+    top: Range<usize>,
+}
+
+/// Tree of a piece. Its nodes but the root follow each other; the root is in the top level.
+#[derive(Clone, Debug)]
+struct Subtree {
+    root: BvhNode,
+    nodes: Range<usize>,
+    slots: Range<usize>,
+    /// Nodes by their numbers within the tree, each before its children.
+    order: Arc<[u32]>,
+    depth: u32,
+    /// Expected cost of a ray when the tree was built.
+    cost: f64,
+}
+
+/// Work that [`TwoLevelBvh::refit`] has done.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Refit {
+    /// Number of nodes whose boxes were fitted or built.
+    pub nodes: usize,
+    /// Pieces whose trees were built anew. Their ranges of the primitives have changed.
+    pub rebuilt: Vec<usize>,
+}
+
+impl TwoLevelBvh {
+    /// Builds the hierarchy on all cores, with at most `most` nodes if there are fewer than half as
+    /// many pieces. Trees are those of `at_rest`, the same mesh before its pieces were moved; those
+    /// of copies are built once.
+    ///
+    /// # Panics
+    /// If a piece names a triangle or a piece that there is not.
+    pub fn build(mesh: &Mesh, at_rest: &Mesh, pieces: &[Piece<'_>], most: usize) -> Self {
+        let filled = pieces.iter().filter(|piece| !piece.triangles.is_empty());
+        let count = filled.count();
+        let is_first =
+            |&piece: &usize| pieces[piece].copy_of == piece && !pieces[piece].triangles.is_empty();
+        let firsts: Vec<usize> = (0..pieces.len()).filter(is_first).collect();
+        let depth = depth_left(count);
+        let trees = firsts.par_iter().map(|&piece| {
+            let triangles = triangles(at_rest, pieces[piece].triangles);
+            (piece, Bvh::within(&triangles, depth))
+        });
+        let trees: BTreeMap<usize, Bvh> = trees.collect();
+        let trees = merged(trees, pieces, most);
+        let orders = trees
+            .iter()
+            .map(|(&piece, tree)| (piece, tree.order().into()));
+        let orders: BTreeMap<usize, Arc<[u32]>> = orders.collect();
+        let mut built = Self {
+            top: 1..(2 * count).max(2) - 1,
+            ..Self::default()
+        };
+        if count > 0 {
+            built.nodes.resize(built.top.end, BvhNode::default());
+        }
+        for piece in pieces {
+            let first = piece.copy_of;
+            let (tree, order) = match (trees.get(&first), orders.get(&first)) {
+                (Some(tree), Some(order)) if !piece.triangles.is_empty() => {
+                    (tree, Arc::clone(order))
+                }
+                _ => (&Bvh::default(), Arc::default()),
+            };
+            built.append(tree, order, piece.triangles);
+        }
+        let is_moved = !std::ptr::eq(mesh, at_rest);
+        for piece in 0..pieces.len() {
+            let cost = if is_moved {
+                built.fit(mesh, piece)
+            } else {
+                built.cost(piece)
+            };
+            built.pieces[piece].cost = cost;
+        }
+        built.build_top();
+        built
+    }
+
+    /// Appends the tree of a piece.
+    fn append(&mut self, tree: &Bvh, order: Arc<[u32]>, triangles: &[u32]) {
+        let nodes = self.nodes.len()..self.nodes.len() + tree.nodes.len().max(1) - 1;
+        let slots = self.primitives.len()..self.primitives.len() + tree.primitives.len();
+        self.nodes.resize(nodes.end, BvhNode::default());
+        self.primitives.resize(slots.end, 0);
+        self.pieces.push(Subtree {
+            root: BvhNode::default(),
+            nodes,
+            slots,
+            order: Arc::default(),
+            depth: 0,
+            cost: 0.0,
+        });
+        self.put(self.pieces.len() - 1, tree, order, triangles);
+    }
+
+    /// Writes a tree to the place of a piece, which is large enough.
+    fn put(&mut self, piece: usize, tree: &Bvh, order: Arc<[u32]>, triangles: &[u32]) {
+        let at = &mut self.pieces[piece];
+        (at.order, at.depth) = (order, tree.depth);
+        let (first_node, first_slot) = (at.nodes.start, at.slots.start);
+        let placed = tree.nodes.iter().map(|node| BvhNode {
+            first: match node.count {
+                // The children of the root are the first of its nodes.
+                0 => first_node as u32 + node.first - 1,
+                _ => first_slot as u32 + node.first,
+            },
+            ..*node
+        });
+        for (index, node) in placed.enumerate() {
+            match index {
+                0 => at.root = node,
+                _ => self.nodes[first_node + index - 1] = node,
+            }
+        }
+        for (slot, &local) in (first_slot..).zip(&tree.primitives) {
+            self.primitives[slot] = triangles[local as usize];
+        }
+    }
+
+    /// Fits the boxes of `pieces` to the mesh, in which they have moved, and builds the top level
+    /// anew.
+    ///
+    /// # Panics
+    /// If there is no piece of such a number, or the mesh has fewer triangles than the hierarchy.
+    pub fn refit(&mut self, mesh: &Mesh, pieces: &[usize], moved: Moved) -> Refit {
+        let mut work = Refit::default();
+        for &piece in pieces {
+            let cost = self.fit(mesh, piece);
+            work.nodes += self.pieces[piece].order.len();
+            if moved == Moved::Freely && cost > WORSE * self.pieces[piece].cost {
+                self.rebuild(mesh, piece);
+                work.nodes += self.pieces[piece].order.len();
+                work.rebuilt.push(piece);
+            }
+        }
+        if !pieces.is_empty() {
+            self.build_top();
+            work.nodes += self.top.len() + 1;
+        }
+        work
+    }
+
+    /// Builds the tree of a piece anew, in its place.
+    fn rebuild(&mut self, mesh: &Mesh, piece: usize) {
+        let Subtree { nodes, slots, .. } = &self.pieces[piece];
+        let most = nodes.len() + 1;
+        let mut ids = self.primitives[slots.clone()].to_vec();
+        ids.sort_unstable();
+        let filled = self.pieces.iter().filter(|piece| !piece.order.is_empty());
+        let depth = depth_left(filled.count());
+        let tree = Bvh::within(&triangles(mesh, &ids), depth).merged(most);
+        let order = tree.order().into();
+        self.put(piece, &tree, order, &ids);
+        self.pieces[piece].cost = self.cost(piece);
+    }
+
+    /// Returns the number of pieces.
+    pub fn pieces(&self) -> usize {
+        self.pieces.len()
+    }
+
+    /// Returns the root, and the range of the top level's other nodes in [`nodes`](Self::nodes):
+    /// what is written whenever a piece moves.
+    pub fn top(&self) -> [Range<usize>; 2] {
+        [0..1.min(self.nodes.len()), self.top.clone()]
+    }
+
+    /// Returns the range of a piece's nodes in [`nodes`](Self::nodes).
+    ///
+    /// # Panics
+    /// If there is no piece of that number.
+    pub fn nodes_of(&self, piece: usize) -> Range<usize> {
+        self.pieces[piece].nodes.clone()
+    }
+
+    /// Returns the range of a piece's entries in [`primitives`](Self::primitives).
+    ///
+    /// # Panics
+    /// If there is no piece of that number.
+    pub fn primitives_of(&self, piece: usize) -> Range<usize> {
+        self.pieces[piece].slots.clone()
+    }
+
+    /// Fits the boxes of a piece; its cost.
+    fn fit(&mut self, mesh: &Mesh, piece: usize) -> f64 {
+        let at = &mut self.pieces[piece];
+        let mut cost = 0.0;
+        for &index in at.order.iter().rev() {
+            let index = index as usize;
+            let node = match index {
+                0 => &at.root,
+                _ => &self.nodes[at.nodes.start + index - 1],
+            };
+            let (first, count) = (node.first as usize, node.count as usize);
+            let (min, max) = if count == 0 {
+                let [a, b] = [self.nodes[first], self.nodes[first + 1]];
+                let low = Vec3::from(a.min).min(b.min.into());
+                (low, Vec3::from(a.max).max(b.max.into()))
+            } else {
+                let primitives = self.primitives[first..first + count].iter();
+                let corners = primitives.flat_map(|&id| mesh.triangles[id as usize]);
+                let places = corners.map(|corner| mesh.positions[corner as usize]);
+                bounds(places).unwrap_or_default()
+            };
+            let node = match index {
+                0 => &mut at.root,
+                _ => &mut self.nodes[at.nodes.start + index - 1],
+            };
+            (node.min, node.max) = (min.into(), max.into());
+            cost += cost_of(node);
+        }
+        cost / area(&at.root).max(f64::MIN_POSITIVE)
+    }
+
+    /// Returns the cost of a piece's tree as it is, of a ray that enters its box.
+    fn cost(&self, piece: usize) -> f64 {
+        let at = &self.pieces[piece];
+        if at.order.is_empty() {
+            return 0.0;
+        }
+        let nodes = self.nodes[at.nodes.clone()][..at.order.len() - 1].iter();
+        let cost: f64 = nodes.chain([&at.root]).map(cost_of).sum();
+        cost / area(&at.root).max(f64::MIN_POSITIVE)
+    }
+
+    /// Builds the top level over the pieces where they are.
+    fn build_top(&mut self) {
+        let filled = |piece: &&Subtree| !piece.order.is_empty();
+        let leaves: Vec<&Subtree> = self.pieces.iter().filter(filled).collect();
+        let tree = match &leaves[..] {
+            [] => return,
+            [only] => vec![only.root],
+            _ => {
+                let roots = leaves.iter().map(|leaf| leaf.root);
+                let roots: Vec<BvhNode> = roots.collect();
+                let depths: Vec<u32> = leaves.iter().map(|leaf| leaf.depth).collect();
+                let is_shallow = |tree: &Vec<BvhNode>| deepest(tree, &depths) <= MAX_DEPTH;
+                let tree = top_by_ploc(&roots).filter(is_shallow);
+                let tree = tree.unwrap_or_else(|| median::over_boxes(&roots));
+                let place = |node: &BvhNode| match node.count {
+                    0 => BvhNode {
+                        first: self.top.start as u32 + node.first - 1,
+                        ..*node
+                    },
+                    _ => roots[node.first as usize],
+                };
+                tree.iter().map(place).collect()
+            }
+        };
+        self.nodes[0] = tree[0];
+        self.nodes[self.top.start..][..tree.len() - 1].copy_from_slice(&tree[1..]);
+    }
+}
+
+/// Trees that leave room for the top level: together they have at most `most` nodes.
+fn merged(trees: BTreeMap<usize, Bvh>, pieces: &[Piece<'_>], most: usize) -> BTreeMap<usize, Bvh> {
+    let own = |piece: &Piece<'_>| trees.get(&piece.copy_of).map_or(0, |tree| tree.nodes.len());
+    let filled = pieces.iter().filter(|piece| !piece.triangles.is_empty());
+    let (count, all) = filled.fold((0, 0), |(count, all), piece| (count + 1, all + own(piece)));
+    // A piece's root is a leaf of the top level, which has one node less beside its leaves.
+    if all + count <= most.saturating_add(1) {
+        return trees;
+    }
+    let share = (most + 1).saturating_sub(2 * count) as f64 / (all - count).max(1) as f64;
+    let merged = trees.into_iter().map(|(piece, tree)| {
+        let most = match count {
+            1 => most,
+            _ => 1 + ((tree.nodes.len() - 1) as f64 * share) as usize,
+        };
+        (piece, tree.merged(most))
+    });
+    merged.collect()
+}
+
+/// The depth that is left to the tree of each of so many pieces, below a balanced top level.
+fn depth_left(pieces: usize) -> u32 {
+    let above = usize::BITS - pieces.saturating_sub(1).leading_zeros();
+    MAX_DEPTH.saturating_sub(above).max(1)
+}
+
+fn triangles(mesh: &Mesh, ids: &[u32]) -> Vec<Triangle> {
+    let triangle = |&id: &u32| {
+        let corners = mesh.triangles[id as usize];
+        let [v0, v1, v2] = corners.map(|index| mesh.positions[index as usize].into());
+        Triangle { v0, v1, v2 }
+    };
+    ids.iter().map(triangle).collect()
+}
+
+/// Builds a tree over at least two boxes, each a leaf whose `first` is its number; `None` where
+/// that has nothing to compare.
+fn top_by_ploc(roots: &[BvhNode]) -> Option<Vec<BvhNode>> {
+    let corners = roots.iter().flat_map(|root| [root.min, root.max]);
+    measurable(bounds(corners.map(Vec3::from))).then_some(())?;
+    let boxes = roots.iter().map(|root| Aabb {
+        min: Vec3A::from(root.min),
+        max: Vec3A::from(root.max),
+    });
+    let boxes: Vec<Aabb> = boxes.collect();
+    let tree = PlocBuilder::with_capacity(boxes.len()).build(
+        PlocSearchDistance::Medium,
+        &boxes,
+        (0..boxes.len() as u32).collect(),
+        SortPrecision::U64,
+        0,
+    );
+    let node = |node: &obvhs::bvh2::node::Bvh2Node| BvhNode {
+        min: node.aabb.min.into(),
+        first: match node.prim_count {
+            0 => node.first_index,
+            _ => tree.primitive_indices[node.first_index as usize],
+        },
+        max: node.aabb.max.into(),
+        count: node.prim_count,
+    };
+    Some(tree.nodes.iter().map(node).collect())
+}
+
+/// The depth of a top level together with the trees that are its leaves.
+fn deepest(top: &[BvhNode], depths: &[u32]) -> u32 {
+    let mut deepest = 0;
+    let mut open = vec![(0u32, 0u32)];
+    while let Some((index, above)) = open.pop() {
+        let node = top[index as usize];
+        match node.count {
+            0 => open.extend([(node.first, above + 1), (node.first + 1, above + 1)]),
+            _ => deepest = deepest.max(above + depths[node.first as usize]),
+        }
+    }
+    deepest
+}

@@ -9,11 +9,13 @@ use skiagraph_gpu::{
     device::{self, Gpu},
 };
 use skiagraph_graph::{Graph, PlanRequest};
-use skiagraph_passes::{EmbeddedSources, SceneProvider, registry};
+use skiagraph_passes::{EmbeddedSources, Room, SceneProvider, Work, registry};
 use skiagraph_scene::{DirectionalLight, Indexed, Mesh, Movable, View};
 use std::time::{Duration, Instant};
 
 const MESHES: usize = 300;
+/// Meshes that there is room for besides.
+const ROOM: usize = 20;
 /// Parts that move in each frame.
 const MOVING: usize = 5;
 const PRESETS: [&str; 2] = ["light_buffer", "rt"];
@@ -26,7 +28,7 @@ const SIDES: u32 = 17;
 fn main() {
     // `cargo bench` says `--bench`; without it the frames are only tried.
     let measured = std::env::args().any(|argument| argument == "--bench");
-    let (frames, added) = if measured { (300, 5) } else { (3, 1) };
+    let (frames, added) = if measured { (1000, ROOM) } else { (3, 1) };
     let gpu = match device::open(None) {
         Ok(gpu) => gpu,
         Err(error) => {
@@ -51,13 +53,22 @@ fn main() {
             host.frame(turn, MOVING);
         }
         for (what, moving) in [("nothing moves", 0), ("five move", MOVING)] {
-            let times: Vec<Times> = (0..frames).map(|turn| host.frame(turn, moving)).collect();
+            let mut works = Vec::new();
+            let frame = |turn| {
+                let before = host.provider.work();
+                let times = host.frame(turn, moving);
+                works.push(host.provider.work().since(before));
+                times
+            };
+            let times: Vec<Times> = (0..frames).map(frame).collect();
             print(preset, what, &times);
-            host.print_work(moving);
+            print_work(&works);
+            host.print_built(moving);
         }
         let mut times: Vec<f64> = (0..added).map(|_| host.add(&stone)).collect();
         times.sort_by(f64::total_cmp);
-        println!("{preset}, one mesh more: {:.2}", times[times.len() / 2]);
+        let [median, most] = [times.len() / 2, times.len() - 1].map(|at| times[at]);
+        println!("{preset}, one mesh more: {median:.2}, {most:.2} at most");
     }
 }
 
@@ -92,6 +103,27 @@ fn print(preset: &str, what: &str, times: &[Times]) {
     );
 }
 
+/// Prints the work by counters: the median frame's, and the most of one frame.
+fn print_work(works: &[Work]) {
+    let both = |of: fn(&Work) -> u64| {
+        let mut values: Vec<u64> = works.iter().map(of).collect();
+        values.sort_unstable();
+        format!(
+            "{} ({})",
+            values[values.len() / 2],
+            values[values.len() - 1]
+        )
+    };
+    println!(
+        "  bytes uploaded {}, copied on the GPU {}; nodes {}; positions moved {}, laid around {}",
+        both(|work| work.uploaded),
+        both(|work| work.copied),
+        both(|work| work.nodes),
+        both(|work| work.moved),
+        both(|work| work.laid),
+    );
+}
+
 fn since(start: Instant) -> f64 {
     Duration::as_secs_f64(&start.elapsed()) * 1e3
 }
@@ -99,17 +131,19 @@ fn since(start: Instant) -> f64 {
 /// An engine with a scene of stones.
 struct Host<'a> {
     gpu: &'a Gpu,
-    meshes: Vec<&'a Mesh>,
     provider: SceneProvider,
     executor: Executor,
     places: Vec<DAffine3>,
 }
 
 impl<'a> Host<'a> {
-    fn new(gpu: &'a Gpu, preset: &str, stone: &'a Mesh) -> Self {
-        let meshes = vec![stone; MESHES];
+    fn new(gpu: &'a Gpu, preset: &str, stone: &Mesh) -> Self {
+        let stones = Movable::joined(&vec![stone; MESHES]);
         let light = DirectionalLight::new(DVec3::new(0.4, -1.0, -0.3));
-        let mut provider = SceneProvider::from_parts(Movable::joined(&meshes), light);
+        let mut provider = SceneProvider::from_parts(stones, light);
+        provider
+            .reserve(Room::of_copies(stone, ROOM))
+            .expect("the mesh has parts");
         let view = View {
             name: String::new(),
             eye: DVec3::new(30.0, 20.0, 90.0),
@@ -138,7 +172,6 @@ impl<'a> Host<'a> {
             .expect("the preset suits every device");
         Self {
             gpu,
-            meshes,
             provider,
             executor,
             places,
@@ -182,38 +215,31 @@ impl<'a> Host<'a> {
         }
     }
 
-    /// Prints the work of one more frame, and the times of its parts.
-    fn print_work(&mut self, moving: usize) {
+    /// Prints what one more frame builds, and how long each takes.
+    fn print_built(&mut self, moving: usize) {
         let before: Vec<_> = self.provider.built().to_vec();
-        let work = self.provider.work();
         self.frame(1000, moving);
         let times = |name: &str| before.iter().find(|it| it.name == name).map(|it| it.times);
         let built = self.provider.built().iter();
         let made = built.filter(|built| times(built.name) != Some(built.times));
         let made = made.map(|it| format!("{} {:.3}", it.name, it.time.as_secs_f64() * 1e3));
         let made: Vec<String> = made.collect();
-        println!(
-            "  {:?}; {}",
-            self.provider.work().since(work),
-            made.join(", ")
-        );
+        if !made.is_empty() {
+            println!("  of refresh, one frame: {}", made.join(", "));
+        }
     }
 
     /// Adds a mesh to the scene; how long that took, in milliseconds.
-    fn add(&mut self, stone: &'a Mesh) -> f64 {
+    fn add(&mut self, stone: &Mesh) -> f64 {
         let map = place(self.places.len(), 0);
         let start = Instant::now();
-        self.meshes.push(stone);
         self.places.push(map);
-        self.provider.set_parts(Movable::joined(&self.meshes));
         self.provider
-            .set_transforms(&self.places)
-            .expect("the maps are turns and shifts");
-        let provider = &self.provider;
-        let plan = self.executor.plan().with(|it| it.provider = provider);
+            .add_part(stone, &map)
+            .expect("the map is a shift");
         self.executor
-            .replace_graph(plan.expect("it has a plan"), &mut self.provider)
-            .expect("one mesh more suits the device");
+            .refresh(&mut self.provider)
+            .expect("there is room for it");
         let time = since(start);
         self.frame(0, 0);
         time

@@ -6,8 +6,9 @@ use crate::support::{
 };
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 use skiagraph_gpu::{ExecuteError, Executor, Frame, Provider, device::Gpu};
-use skiagraph_passes::{Error, How, SceneProvider, Work};
-use skiagraph_scene::{DirectionalLight, LightKind, Movable, MoveError, PointLight, View};
+use skiagraph_passes::{Error, How, PartId, Room, SceneProvider, Work};
+use skiagraph_reference::statistics::status;
+use skiagraph_scene::{DirectionalLight, LightKind, Mesh, Movable, MoveError, PointLight, View};
 
 const VIEWPORT: [u32; 2] = [48, 32];
 const PRESETS: [&str; 3] = ["light_buffer", "rt", "nsm"];
@@ -225,7 +226,12 @@ fn the_work_follows_the_parts_that_move() {
                 continue;
             }
             let moved = (moving * positions) as u64;
-            assert_eq!([work.moved, work.laid], [moved, 2 * moved], "{preset}");
+            assert_eq!(work.moved, moved, "{preset}");
+            // Once for the box, and for the outline where the part may reach the border.
+            assert!(
+                (moved..=2 * moved).contains(&work.laid),
+                "{preset}: {work:?}"
+            );
             // Items of 16 bytes, and a little of the light. Ranges near each other are one.
             let corners = 16 * (moving * (positions + normals)) as u64;
             let top = 2 * count as u64 - 1;
@@ -240,21 +246,25 @@ fn the_work_follows_the_parts_that_move() {
             let is_so = (least..=most).contains(&work.uploaded);
             assert!(is_so, "{preset}, {moving}: {work:?}, {least} to {most}");
         }
-        // A light that moves is laid around all of it, and moves nothing.
+        // A light that moves is laid around what may be on the border, and moves nothing.
         let light = DirectionalLight::new(DVec3::new(0.5, -1.0, -0.2));
         let work = work(&mut provider, &mut executor, |provider| {
             provider.set_light(light.into());
         });
         assert_eq!([work.moved, work.nodes, work.copied], [0; 3], "{preset}");
-        assert_eq!(work.laid, (count * positions) as u64, "{preset}");
+        assert!(
+            work.laid > 0 && work.laid < (count * positions) as u64,
+            "{preset}"
+        );
         assert_eq!(work.uploaded, 144, "{preset}");
     }
 }
 
-/// In each frame of a scene that moves, the presets show what they show of a mesh that never moved.
-#[test]
-fn frames_of_moving_parts_are_those_of_meshes_that_never_moved() {
-    let (gpu, count) = (open(), 60);
+/// Five of many parts move in each of so many frames. The exact presets answer alike in each, and
+/// in every one of some as over a mesh that never moved; no frame is more than three times the work
+/// of the median one.
+fn exact_frames(count: usize, frames: usize, compared: usize) {
+    let gpu = open();
     let parts = stones(count);
     let presets = ["rt", "light_buffer", "crsm"];
     let mut scene = provider(parts.clone());
@@ -262,7 +272,7 @@ fn frames_of_moving_parts_are_those_of_meshes_that_never_moved() {
     let mut executors = presets.map(|preset| start(&gpu, preset, &mut scene));
     let mut works = Vec::new();
     let mut maps = rows(count);
-    for turn in 0..12 {
+    for turn in 0..frames {
         for index in 0..5 {
             let part = (7 * turn + index * index) % count;
             let angle = 0.3 * (turn + index) as f64;
@@ -279,21 +289,49 @@ fn frames_of_moving_parts_are_those_of_meshes_that_never_moved() {
         let [rt, light_buffer, crsm] = &mut executors;
         let rays = shown(&gpu, rt);
         assert!(shown(&gpu, light_buffer) == rays, "{turn}");
-        let still = DirectionalLight::new(sun().direction);
-        let mut alone = SceneProvider::from_mesh(parts.moved(&maps).unwrap(), still);
+        let map = graphs::frame(&gpu, crsm, &["visibility", "status"]);
+        let [seen, status] = ["visibility", "status"].map(|name| values(&map, name));
+        let pixels = seen.iter().zip(&status).zip(&rays);
+        let wrong = pixels.filter(|((seen, status), ray)| is_certain(**status) && seen != ray);
+        assert_eq!(wrong.count(), 0, "{turn}");
+        if turn % compared != 0 {
+            continue;
+        }
+        let mut alone = SceneProvider::from_mesh(parts.moved(&maps).unwrap(), sun());
         alone.set_camera(&view().camera(VIEWPORT));
         assert!(
             shown(&gpu, &mut start(&gpu, "rt", &mut alone)) == rays,
             "{turn}"
         );
         let expected = shown(&gpu, &mut start(&gpu, "crsm", &mut alone));
-        assert!(shown(&gpu, crsm) == expected, "{turn}");
+        assert!(seen == expected, "{turn}");
     }
-    for of in [|work: &Work| work.uploaded, |work: &Work| work.nodes] {
+    for of in [
+        |work: &Work| work.uploaded,
+        |work: &Work| work.copied,
+        |work: &Work| work.nodes,
+        |work: &Work| work.laid,
+    ] {
         let mut values: Vec<u64> = works.iter().map(of).collect();
         values.sort_unstable();
-        assert!(values[11] <= 3 * values[6], "{values:?}");
+        let median = values[frames / 2];
+        assert!(values[frames - 1] <= 3 * median, "{median}, {values:?}");
     }
+}
+
+fn is_certain(status: u32) -> bool {
+    [status::CERTAIN_LIGHT, status::CERTAIN_SHADOW].contains(&status)
+}
+
+#[test]
+fn frames_of_moving_parts_are_those_of_meshes_that_never_moved() {
+    exact_frames(60, 12, 1);
+}
+
+#[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
+fn a_thousand_frames_of_moving_parts_are_exact() {
+    exact_frames(60, 1000, 100);
 }
 
 #[test]
@@ -387,4 +425,281 @@ fn a_light_of_another_kind_is_an_error_of_its_own() {
         .replace_graph(plan.unwrap(), &mut provider)
         .unwrap();
     assert!(shown(&gpu, &mut executor) != expected);
+}
+
+/// Parts that come and go: each frame is that of a mesh of those that there are.
+#[test]
+fn parts_that_are_added_and_removed_leave_the_mesh_of_the_others() {
+    let gpu = open();
+    let floor = meshes::box_over_floor(12.0, Vec3::splat(0.4));
+    let kinds = [meshes::potato(2, 0.2, 1), meshes::potato(3, 0.1, 2)];
+    let mut scene = provider(Movable::joined(&[&floor, &kinds[0], &kinds[0]]));
+    let place = |x: f64, z: f64| DAffine3::from_translation(DVec3::new(x, 1.5, z));
+    let mut there = vec![
+        (&floor, place(7.0, 6.0)),
+        (&kinds[0], place(1.0, 6.0)),
+        (&kinds[0], place(4.0, 3.0)),
+    ];
+    scene.reserve(Room::of_copies(&kinds[1], 4)).unwrap();
+    let maps: Vec<DAffine3> = there.iter().map(|of| of.1).collect();
+    scene.set_transforms(&maps).unwrap();
+    let mut handles: Vec<PartId> = scene.parts().collect();
+    let presets = ["rt", "light_buffer", "crsm"];
+    let mut executors = presets.map(|preset| start(&gpu, preset, &mut scene));
+    let mut turn = |scene: &mut SceneProvider, there: &[(&Mesh, DAffine3)], what: &str| {
+        let meshes: Vec<&Mesh> = there.iter().map(|of| of.0).collect();
+        let maps: Vec<DAffine3> = there.iter().map(|of| of.1).collect();
+        let mut alone = provider(Movable::joined(&meshes));
+        alone.set_transforms(&maps).unwrap();
+        let before = scene.work();
+        for (preset, executor) in presets.iter().zip(&mut executors) {
+            executor.refresh(scene).unwrap();
+            let expected = shown(&gpu, &mut start(&gpu, preset, &mut alone));
+            assert!(expected.contains(&0) && expected.contains(&1), "{what}");
+            assert!(shown(&gpu, executor) == expected, "{what}: {preset}");
+        }
+        scene.work().since(before)
+    };
+    turn(&mut scene, &there, "at first");
+    // One is added, mirrored, and one removed whose room the next one takes.
+    let mirrored = place(9.0, 6.0) * DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0));
+    there.push((&kinds[1], mirrored));
+    handles.push(scene.add_part(&kinds[1], &mirrored).unwrap());
+    turn(&mut scene, &there, "one is added");
+    there.remove(1);
+    let gone = handles.remove(1);
+    scene.remove_part(gone).unwrap();
+    turn(&mut scene, &there, "one is removed");
+    for index in 0..4 {
+        let map = place(3.0 + 2.0 * f64::from(index), 9.0);
+        there.push((&kinds[usize::from(index < 3)], map));
+        handles.push(scene.add_part(there.last().unwrap().0, &map).unwrap());
+        turn(&mut scene, &there, "more are added");
+    }
+    assert!(scene.parts().eq(handles.iter().copied()));
+    // They move as all others do, one by one and together.
+    there[5].1.translation.y += 1.0;
+    scene.set_transform(handles[5], &there[5].1).unwrap();
+    turn(&mut scene, &there, "the last one moves");
+    for (_, map) in &mut there {
+        map.translation.x += 0.5;
+    }
+    let maps: Vec<DAffine3> = there.iter().map(|of| of.1).collect();
+    scene.set_transforms(&maps).unwrap();
+    turn(&mut scene, &there, "all move");
+    // A branch, and a hierarchy that is built when some have come and gone already.
+    let mut branch = scene.branch();
+    branch.remove_part(handles[0]).unwrap();
+    turn(&mut scene, &there, "the branch has one less");
+    let mut later = provider(Movable::joined(&[&floor, &kinds[0]]));
+    later.reserve(Room::of_copies(&kinds[1], 2)).unwrap();
+    let first: Vec<PartId> = later.parts().collect();
+    later.remove_part(first[1]).unwrap();
+    later.add_part(&kinds[1], &there[3].1).unwrap();
+    later.set_transform(first[0], &there[0].1).unwrap();
+    let mut whole = provider(Movable::joined(&[&floor, &kinds[1]]));
+    whole.set_transforms(&[there[0].1, there[3].1]).unwrap();
+    for preset in presets {
+        let [seen, expected] =
+            [&mut later, &mut whole].map(|of| shown(&gpu, &mut start(&gpu, preset, of)));
+        assert!(seen == expected, "{preset}");
+    }
+}
+
+/// One mesh more is uploaded and gets a hierarchy; the others have both.
+#[test]
+fn a_part_that_is_added_is_work_of_its_own_size() {
+    let (gpu, count) = (open(), 100);
+    let stone = meshes::potato(2, 0.2, 1);
+    let size = [stone.positions.len(), stone.triangles.len()];
+    for preset in PRESETS {
+        let mut provider = provider(stones(count));
+        provider.reserve(Room::of_copies(&stone, 10)).unwrap();
+        provider.set_transforms(&rows(count)).unwrap();
+        let mut executor = start(&gpu, preset, &mut provider);
+        let mut added = Vec::new();
+        for map in &rows(count + 10)[count..] {
+            let work = work(&mut provider, &mut executor, |provider| {
+                added.push(provider.add_part(&stone, map).unwrap());
+            });
+            let moved = size[0] as u64;
+            assert_eq!(work.moved, moved, "{preset}");
+            assert!(
+                (moved..=2 * moved).contains(&work.laid),
+                "{preset}: {work:?}"
+            );
+            let top = 2 * (count + 10) * 32;
+            let own = 16 * (size[0] + 3 * size[1]) + 4 * 10 * size[1] + 32 * 2 * size[1];
+            let most = (top + own + 2 * 4096 + 144) as u64;
+            assert!(work.uploaded <= most, "{preset}: {work:?}, {most}");
+        }
+        let seen = shown(&gpu, &mut executor);
+        let mut whole = self::provider(stones(count + 10));
+        whole.set_transforms(&rows(count + 10)).unwrap();
+        assert!(
+            seen == shown(&gpu, &mut start(&gpu, preset, &mut whole)),
+            "{preset}"
+        );
+        // Without room the mesh grows, which is another one to plans.
+        provider
+            .add_part(&stone, &rows(count + 11)[count + 10])
+            .unwrap();
+        let error = executor.refresh(&mut provider).unwrap_err();
+        assert!(
+            matches!(error, ExecuteError::OtherThanPlanned { .. }),
+            "{error}"
+        );
+        let plan = executor.plan().with(|request| request.provider = &provider);
+        executor
+            .replace_graph(plan.unwrap(), &mut provider)
+            .unwrap();
+        let mut whole = self::provider(stones(count + 11));
+        whole.set_transforms(&rows(count + 11)).unwrap();
+        let expected = shown(&gpu, &mut start(&gpu, preset, &mut whole));
+        assert!(shown(&gpu, &mut executor) == expected, "{preset}");
+    }
+}
+
+/// The lines of docs/embedding.md, whose text `readme.rs` compares with this file.
+fn parts_of_the_document(gpu: &Gpu) -> Result<Vec<u32>, Box<dyn std::error::Error>> {
+    let (floor, stone) = (
+        meshes::box_over_floor(8.0, Vec3::splat(0.5)),
+        meshes::potato(2, 0.2, 1),
+    );
+    let light = sun();
+    let mut provider = SceneProvider::from_parts(Movable::joined(&[&floor, &stone]), light);
+    provider.reserve(Room::of_copies(&stone, 20))?;
+    provider.set_camera(&view().camera(VIEWPORT));
+    let places = &rows(2);
+    provider.set_transforms(places)?;
+    let mut executor = start(gpu, "light_buffer", &mut provider);
+    let (place, elsewhere) = (rows(5)[4], rows(6)[5]);
+    let part = provider.add_part(&stone, &place)?;
+    provider.set_transform(part, &elsewhere)?;
+    provider.remove_part(part)?;
+    executor.refresh(&mut provider)?;
+    let seen = shown(gpu, &mut executor);
+    provider.add_part(&stone, &place)?;
+    executor.refresh(&mut provider)?;
+    assert!(shown(gpu, &mut executor) != seen);
+    Ok(seen)
+}
+
+#[test]
+fn the_parts_of_the_document_come_and_go() {
+    let gpu = open();
+    let seen = parts_of_the_document(&gpu).unwrap();
+    assert!(seen.contains(&1));
+}
+
+/// A frame that was encoded shows a part that was removed before it was submitted.
+#[test]
+fn a_part_is_removed_while_frames_with_it_wait() {
+    let (gpu, count) = (open(), 12);
+    for preset in PRESETS {
+        let mut provider = provider(stones(count));
+        provider.set_transforms(&rows(count)).unwrap();
+        let mut executor = start(&gpu, preset, &mut provider);
+        let expected = shown(&gpu, &mut executor);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let frame = Frame {
+            read: &["visibility"],
+            ..Frame::default()
+        };
+        executor.encode(&mut encoder, &frame).unwrap();
+        let parts: Vec<PartId> = provider.parts().collect();
+        for part in &parts[3..] {
+            provider.remove_part(*part).unwrap();
+        }
+        executor.refresh(&mut provider).unwrap();
+        executor.encode(&mut encoder, &frame).unwrap();
+        gpu.queue.submit([encoder.finish()]);
+        let mut next = || values(&executor.finish().unwrap(), "visibility");
+        let (with, without) = (next(), next());
+        let mut few = self::provider(stones(3));
+        few.set_transforms(&rows(3)).unwrap();
+        let alone = shown(&gpu, &mut start(&gpu, preset, &mut few));
+        assert!(with == expected && without == alone, "{preset}");
+    }
+}
+
+/// Materials and masks come with the parts that have them.
+#[test]
+fn leaves_are_added_to_a_scene_without_and_with_masks() {
+    let gpu = open();
+    let floor = meshes::box_over_floor(12.0, Vec3::splat(0.4));
+    let leaves = meshes::foliage(40, 2.0, 4.0, 3);
+    let place = |x: f64| DAffine3::from_translation(DVec3::new(x, 2.0, 8.0));
+    let mut scene = provider(Movable::joined(&[&floor]));
+    scene.set_transforms(&[place(6.0)]).unwrap();
+    let mut there = vec![(&floor, place(6.0))];
+    for (mesh, at) in [(&leaves, 4.0), (&floor, 7.0), (&leaves, 9.0)] {
+        scene.add_part(mesh, &place(at)).unwrap();
+        there.push((mesh, place(at)));
+        let meshes: Vec<&Mesh> = there.iter().map(|of| of.0).collect();
+        let maps: Vec<DAffine3> = there.iter().map(|of| of.1).collect();
+        let mut whole = provider(Movable::joined(&meshes));
+        whole.set_transforms(&maps).unwrap();
+        for preset in ["rt", "light_buffer", "crsm"] {
+            let [seen, expected] =
+                [&mut scene, &mut whole].map(|of| shown(&gpu, &mut start(&gpu, preset, of)));
+            assert!(seen == expected, "{preset}, {at}");
+        }
+    }
+}
+
+#[test]
+fn parts_that_there_are_not_are_named() {
+    let stone = meshes::potato(1, 0.2, 1);
+    let mut whole = SceneProvider::from_mesh(stone.clone(), sun());
+    let error = whole.add_part(&stone, &DAffine3::IDENTITY).unwrap_err();
+    assert!(matches!(error, Error::NoParts), "{error}");
+    let error = whole.reserve(Room::of_copies(&stone, 1)).unwrap_err();
+    assert!(matches!(error, Error::NoParts), "{error}");
+
+    let mut provider = provider(stones(3));
+    let parts: Vec<PartId> = provider.parts().collect();
+    provider.set_transforms(&rows(3)).unwrap();
+    provider.remove_part(parts[1]).unwrap();
+    let map = DAffine3::IDENTITY;
+    for error in [
+        provider.remove_part(parts[1]).unwrap_err(),
+        provider.set_transform(parts[1], &map).unwrap_err(),
+    ] {
+        assert!(
+            matches!(error, Error::NoPart(part) if part == parts[1]),
+            "{error}"
+        );
+        assert!(
+            error.to_string().contains("`SceneProvider::parts`"),
+            "{error}"
+        );
+    }
+    let count = MoveError::Count { parts: 2, maps: 3 };
+    let error = provider.set_transforms(&rows(3)).unwrap_err();
+    assert!(
+        matches!(&error, Error::Move(error) if *error == count),
+        "{error}"
+    );
+    let nan = DAffine3::from_translation(DVec3::NAN);
+    for error in [
+        provider.add_part(&stone, &nan).unwrap_err(),
+        provider.set_transform(parts[2], &nan).unwrap_err(),
+    ] {
+        assert!(
+            matches!(error, Error::Move(MoveError::NotFinite { .. })),
+            "{error}"
+        );
+    }
+    let flat = DAffine3::from_scale(DVec3::new(1.0, 0.0, 1.0));
+    let error = provider.set_transform(parts[2], &flat).unwrap_err();
+    assert!(error.to_string().contains("part 1 is singular"), "{error}");
+    assert_eq!(provider.parts().count(), 2);
+    // Those of a mesh that was replaced are of it alone.
+    provider.set_parts(stones(3));
+    assert!(provider.set_transform(parts[0], &map).is_err());
+    // A mesh may begin without parts.
+    let mut none = self::provider(Movable::joined(&[]));
+    let part = none.add_part(&stone, &map).unwrap();
+    assert!(none.parts().eq([part]));
 }

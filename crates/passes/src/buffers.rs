@@ -76,6 +76,24 @@ impl Buffers {
         self.held.get(name).map(|(_, version)| *version)
     }
 
+    /// Does what [`patch`](Self::patch) does, with items that are there as a list.
+    pub fn patch_list<T: bytemuck::NoUninit + bytemuck::Zeroable>(
+        &mut self,
+        name: &str,
+        items: &[T],
+        changed: &[Range<usize>],
+        version: u64,
+        on: On,
+    ) -> Result<(), Error> {
+        let written: usize = changed.iter().map(Range::len).sum();
+        if !self.held.contains_key(name) || written >= items.len() {
+            // Without a copy of the list.
+            return self.make(name, items, version, on);
+        }
+        let append = |range: Range<usize>, to: &mut Vec<T>| to.extend_from_slice(&items[range]);
+        self.patch(name, (items.len(), changed), append, version, on)
+    }
+
     /// Makes the buffer of that name with some items of the one that there is, and these at the
     /// `changed` ranges: `items` appends those of a range of all `count`.
     pub fn patch<T: bytemuck::NoUninit + bytemuck::Zeroable>(

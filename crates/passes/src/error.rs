@@ -1,5 +1,7 @@
 //! Why a scene cannot be brought to the GPU.
 
+use crate::parts::PartId;
+
 /// Reason why a [`SceneProvider`](crate::SceneProvider) refuses a change of its scene, or cannot
 /// build a resource. An executor reports a failed build as
 /// [`ExecuteError::Provider`](skiagraph_gpu::ExecuteError::Provider) with the text of this error.
@@ -104,6 +106,15 @@ pub enum Error {
          or give it parts with `set_parts`"
     )]
     NoParts,
+    /// A part was named that the mesh does not have (any more).
+    #[error(
+        "the mesh has no part {0:?}: it was removed, or is of a mesh that was replaced; \
+         `SceneProvider::parts` lists those that there are"
+    )]
+    NoPart(
+        /// Handle of the part.
+        PartId,
+    ),
     /// A part of the mesh cannot be moved by the affine transform that was set for it, or the
     /// number of transforms is not the number of parts.
     #[error(transparent)]

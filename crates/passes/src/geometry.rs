@@ -2,34 +2,78 @@
 //! over them, so that a frame pays for those that moved.
 
 use crate::{
+    adjacencies::Adjacencies,
     built::{How, Work},
     error::Error,
     hierarchies::{Hierarchies, Tree},
     names::next_version,
     outlines::Outlines,
-    shape::Shape,
+    parts::{Free, Part, PartId, Room},
     uniforms::LightUniform,
 };
 use glam::{DAffine3, Vec3};
 use skiagraph_scene::{
-    BvhNode, LightKind, LightSpace, LightSpaceNode, Mesh, Movable, PartChange, Scene, TwoLevelBvh,
-    bvh::{Moved, Piece},
+    BvhNode, LightKind, LightSpace, LightSpaceNode, Mesh, Movable, MoveError, MovedPart, PartPlace,
+    Scene, TwoLevelBvh,
+    bvh::{self, Moved},
 };
-use std::{ops::Range, sync::Arc};
+use std::{collections::BTreeMap, ops::Range, sync::Arc};
+
+/// Number of ranges of cleared triangles that are kept apart.
+const CLEARED: usize = 256;
 
 /// Pieces of a mesh: its parts, and all that is in none of them. A mesh without parts is one piece.
 #[derive(Clone, Default)]
 pub(crate) struct Geometry {
-    shape: Shape,
-    /// Number of the version of the shape with which each piece came to where it is.
-    moved: Vec<u64>,
-    /// Triangles that are in no part, the last piece, and the positions that they use.
-    outside: Option<Arc<Outside>>,
+    pieces: Vec<Piece>,
+    /// The parts that there are, in the order in which they came.
+    parts: Vec<PartId>,
+    /// Numbers of pieces that were removed, for those that are added.
+    gone: Vec<usize>,
+    /// Triangles of parts that were removed, each with the number of that change.
+    cleared: Vec<(Range<usize>, u64)>,
+    /// Number of the change that gave the mesh its items.
+    begun: u64,
+    /// Parts that the mesh began with; `None` for a mesh without parts.
+    first: Option<Arc<Movable>>,
+    /// True if the parts are in spaces of their own and were never given places.
+    is_unplaced: bool,
+    /// True if the mesh moves, so that trees are worth their memory.
+    is_deformed: bool,
+    /// True if the mesh was deformed since its hierarchy was fitted, otherwise than by maps.
+    is_bent: bool,
+    /// Room of the mesh that no part has.
+    positions: Free,
+    normals: Free,
+    triangles: Free,
+    /// All room that was asked for.
+    room: Room,
     bvh: Option<Kept>,
     hierarchies: Hierarchies,
     outlines: Outlines,
+    adjacencies: Adjacencies,
     /// Work besides uploads.
     pub work: Work,
+}
+
+#[derive(Clone)]
+struct Piece {
+    content: Content,
+    /// Number of the change that brought it to where it is.
+    moved: u64,
+    /// Number of the change that gave its triangles their corners.
+    turned: u64,
+}
+
+#[derive(Clone)]
+enum Content {
+    /// The mesh.
+    Whole,
+    Part(Part),
+    /// Triangles that are in no part.
+    Outside(Arc<Outside>),
+    /// A part that was removed.
+    Gone,
 }
 
 #[derive(Default)]
@@ -51,47 +95,61 @@ pub(crate) struct Fitted {
     pub tree: Arc<TwoLevelBvh>,
     /// Ranges of the nodes that are others than those of a version.
     pub nodes: Vec<Range<usize>>,
-    /// Ranges of the primitives that are others than those of the last time.
+    /// Ranges of the primitives that are others than those of that version.
     pub primitives: Vec<Range<usize>>,
     pub how: How,
 }
 
-/// How a change of the places of parts has changed a mesh.
+/// How the places of parts, or parts, have changed a mesh.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Change {
+    /// Corners have moved.
     pub is_elsewhere: bool,
+    /// Triangles have other corners.
     pub is_turned: bool,
+    /// Triangles have other materials.
+    pub is_painted: bool,
+    /// The mesh has more items.
+    pub is_grown: bool,
 }
 
 impl Geometry {
     /// Creates the geometry of a mesh without parts.
     pub fn whole() -> Self {
         Self {
-            moved: vec![next_version()],
+            begun: next_version(),
+            pieces: vec![Piece::new(Content::Whole)],
             ..Self::default()
         }
     }
 
     /// Creates the geometry of a mesh in parts, which are at rest.
     pub fn parted(parts: Arc<Movable>) -> Self {
-        let (count, is_joined) = (parts.parts(), parts.is_joined());
+        let is_joined = parts.is_joined();
+        let part = |number| Part {
+            id: PartId::new(number, next_version()),
+            of: Arc::clone(&parts),
+            number,
+            at: PartPlace::default(),
+            map: (!is_joined).then_some(DAffine3::IDENTITY),
+            is_mirrored: false,
+        };
+        let begun = next_version();
+        let own: Vec<Part> = (0..parts.parts()).map(part).collect();
+        let ids = own.iter().map(|part| part.id).collect();
+        let pieces = own.into_iter().map(|part| Piece::new(Content::Part(part)));
+        let mut pieces: Vec<Piece> = pieces.collect();
         let outside = Outside::new(&parts);
-        let pieces = count + usize::from(!outside.triangles.is_empty());
+        if !outside.triangles.is_empty() {
+            pieces.push(Piece::new(Content::Outside(Arc::new(outside))));
+        }
         Self {
-            moved: vec![next_version(); pieces],
-            outside: Some(Arc::new(outside)),
-            shape: Shape {
-                maps: if is_joined {
-                    Vec::new()
-                } else {
-                    vec![DAffine3::IDENTITY; count]
-                },
-                mirrored: vec![false; count],
-                parts: Some(parts),
-                is_unplaced: is_joined,
-                is_deformed: true,
-                is_bent: false,
-            },
+            pieces,
+            parts: ids,
+            begun,
+            is_unplaced: is_joined && parts.parts() > 0,
+            first: Some(parts),
+            is_deformed: true,
             ..Self::default()
         }
     }
@@ -106,7 +164,35 @@ impl Geometry {
 
     /// True if parts are in spaces of their own and have no places yet.
     pub fn is_unplaced(&self) -> bool {
-        self.shape.is_unplaced
+        self.is_unplaced
+    }
+
+    /// The parts that there are, in the order in which they came.
+    pub fn parts(&self) -> &[PartId] {
+        &self.parts
+    }
+
+    /// The number of a part among those that there are.
+    ///
+    /// # Errors
+    /// [`Error::NoPart`] for one that was removed, or is of another mesh.
+    fn number(&self, id: PartId) -> Result<usize, Error> {
+        let number = self.parts.iter().position(|known| *known == id);
+        number.ok_or(Error::NoPart(id))
+    }
+
+    fn part(&self, id: PartId) -> Result<&Part, Error> {
+        match self.pieces.get(id.piece).map(|piece| &piece.content) {
+            Some(Content::Part(part)) if part.id == id => Ok(part),
+            _ => Err(Error::NoPart(id)),
+        }
+    }
+
+    fn part_mut(&mut self, piece: usize) -> Result<&mut Part, Error> {
+        match self.pieces.get_mut(piece).map(|piece| &mut piece.content) {
+            Some(Content::Part(part)) => Ok(part),
+            _ => Err(Error::NoParts),
+        }
     }
 
     /// Moves the parts of the scene's mesh whose maps are others than before.
@@ -118,119 +204,368 @@ impl Geometry {
         maps: &[DAffine3],
         scene: &mut Arc<Scene>,
     ) -> Result<Change, Error> {
-        let parts = self.shape.parts.clone().ok_or(Error::NoParts)?;
-        parts.check_count(maps.len())?;
-        let before = &self.shape.maps;
-        let others = (0..maps.len()).filter(|&part| before.get(part) != Some(&maps[part]));
-        let moved = others.map(|part| Ok((part, parts.moved_part(part, &maps[part])?)));
-        let moved: Vec<_> = moved.collect::<Result<_, Error>>()?;
-        if moved.is_empty() && !self.shape.is_unplaced {
-            self.shape.maps = maps.to_vec();
-            return Ok(Change::default());
+        if self.first.is_none() {
+            return Err(Error::NoParts);
         }
-        self.shape.maps = maps.to_vec();
-        let (mesh, version) = (&mut Arc::make_mut(scene).mesh, next_version());
-        let mut change = Change {
-            is_elsewhere: std::mem::take(&mut self.shape.is_unplaced),
-            is_turned: false,
-        };
-        for (part, moved) in &moved {
-            let was = &mut self.shape.mirrored[*part];
-            let PartChange {
-                is_elsewhere,
-                is_turned,
-            } = parts.put(*part, moved, *was, mesh);
-            *was = moved.is_mirrored;
-            change.is_elsewhere |= is_elsewhere;
-            change.is_turned |= is_turned;
-            if is_elsewhere {
-                self.moved[*part] = version;
-                self.work.moved += parts.ranges(*part)[0].len() as u64;
+        let [parts, given] = [self.parts.len(), maps.len()];
+        if parts != given {
+            return Err(MoveError::Count { parts, maps: given }.into());
+        }
+        let mut moved = Vec::new();
+        for (number, (&id, map)) in self.parts.iter().zip(maps).enumerate() {
+            let part = self.part(id)?;
+            if part.map != Some(*map) {
+                moved.push((id.piece, *map, part.moved(map, number)?));
             }
         }
+        self.move_parts(moved, scene)
+    }
+
+    /// Moves one part.
+    ///
+    /// # Errors
+    /// [`Error::NoPart`], [`Error::Move`].
+    pub fn set_transform(
+        &mut self,
+        id: PartId,
+        map: &DAffine3,
+        scene: &mut Arc<Scene>,
+    ) -> Result<Change, Error> {
+        let number = self.number(id)?;
+        let part = self.part(id)?;
+        if part.map == Some(*map) {
+            return Ok(Change::default());
+        }
+        let moved = part.moved(map, number)?;
+        self.move_parts(vec![(id.piece, *map, moved)], scene)
+    }
+
+    fn move_parts(
+        &mut self,
+        moved: Vec<(usize, DAffine3, MovedPart)>,
+        scene: &mut Arc<Scene>,
+    ) -> Result<Change, Error> {
+        let mut change = Change::default();
+        if moved.is_empty() && !self.is_unplaced {
+            return Ok(change);
+        }
+        let (mesh, version) = (&mut Arc::make_mut(scene).mesh, next_version());
+        for (piece, map, moved) in moved {
+            let part = self.part_mut(piece)?;
+            part.map = Some(map);
+            let was = std::mem::replace(&mut part.is_mirrored, moved.is_mirrored);
+            let put = part.of.put_at(part.number, &moved, was, mesh, part.at);
+            let positions = part.ranges()[0].len();
+            if put.is_elsewhere {
+                self.pieces[piece].moved = version;
+                self.work.moved += positions as u64;
+            }
+            if put.is_turned {
+                self.pieces[piece].turned = version;
+            }
+            change.is_elsewhere |= put.is_elsewhere;
+            change.is_turned |= put.is_turned;
+        }
+        if self.is_unplaced && self.has_places() {
+            self.is_unplaced = false;
+            change.is_elsewhere = true;
+        }
         Ok(change)
+    }
+
+    /// True if each part has a map.
+    fn has_places(&self) -> bool {
+        let mut pieces = self.pieces.iter();
+        pieces.all(|piece| match &piece.content {
+            Content::Part(part) => part.map.is_some(),
+            _ => true,
+        })
     }
 
     /// Notes that the positions and normals of `mesh` are about to be replaced by these, and
     /// returns true if they are others.
     pub fn deform(&mut self, mesh: &Mesh, positions: &[Vec3], normals: &[Vec3]) -> bool {
         // The maps of parts, if there are any, no longer say where those are.
-        self.shape.maps.clear();
-        self.shape.is_unplaced = false;
+        for piece in &mut self.pieces {
+            if let Content::Part(part) = &mut piece.content {
+                part.map = None;
+            }
+        }
+        self.is_unplaced = false;
         if mesh.positions == positions && mesh.normals == normals {
             return false;
         }
-        self.shape.is_deformed = true;
-        self.shape.is_bent = true;
+        (self.is_deformed, self.is_bent) = (true, true);
         let version = next_version();
-        for piece in 0..self.moved.len() {
-            let [places, directions] = self.ranges(piece, mesh);
+        for piece in &mut self.pieces {
+            let [places, directions] = piece.ranges(mesh);
             if mesh.positions[places.clone()] != positions[places.clone()]
                 || mesh.normals[directions.clone()] != normals[directions]
             {
-                self.moved[piece] = version;
+                piece.moved = version;
                 self.work.moved += places.len() as u64;
             }
         }
         true
     }
 
-    /// The ranges that hold the positions and normals of a piece.
-    fn ranges(&self, piece: usize, mesh: &Mesh) -> [Range<usize>; 2] {
-        match &self.shape.parts {
-            Some(parts) if piece < parts.parts() => parts.ranges(piece),
-            _ => [0..mesh.positions.len(), 0..mesh.normals.len()],
+    /// Makes room for parts in the scene's mesh, and in the hierarchy over it.
+    ///
+    /// # Errors
+    /// [`Error::NoParts`].
+    pub fn reserve(&mut self, room: Room, scene: &mut Arc<Scene>) -> Result<(), Error> {
+        if self.first.is_none() {
+            return Err(Error::NoParts);
         }
+        let mesh = &mut Arc::make_mut(scene).mesh;
+        // Triangles that no part has yet have a corner, and a normal.
+        let least = usize::from(room.triangles > 0);
+        let positions = room.positions.max(least);
+        self.positions
+            .give_back(lengthened(&mut mesh.positions, positions, Vec3::ZERO));
+        let normals = room.normals.max(least);
+        self.normals
+            .give_back(lengthened(&mut mesh.normals, normals, Vec3::Y));
+        lengthened(&mut mesh.normal_indices, room.triangles, [0; 3]);
+        self.triangles
+            .give_back(lengthened(&mut mesh.triangles, room.triangles, [0; 3]));
+        mesh.surfaces.pad(mesh.triangles.len());
+        self.begun = next_version();
+        self.room.parts += room.parts;
+        self.room.triangles += room.triangles;
+        self.adjacencies.forget();
+        if let Some(kept) = &mut self.bvh {
+            let tree = Arc::make_mut(&mut kept.tree);
+            tree.reserve(room.parts, room.triangles);
+        }
+        Ok(())
     }
 
-    /// The pieces that have moved since a version of the shape.
-    fn moved_since(&self, version: u64) -> impl Iterator<Item = usize> {
-        let pieces = self.moved.iter().enumerate();
-        pieces.filter_map(move |(piece, moved)| (*moved > version).then_some(piece))
+    /// Adds a part to the scene's mesh, which grows if it has no room for it.
+    ///
+    /// # Errors
+    /// [`Error::NoParts`], [`Error::Move`].
+    pub fn add(
+        &mut self,
+        mesh: &Mesh,
+        map: &DAffine3,
+        scene: &mut Arc<Scene>,
+    ) -> Result<(PartId, Change), Error> {
+        if self.first.is_none() {
+            return Err(Error::NoParts);
+        }
+        let of = Arc::new(Movable::joined(&[mesh]));
+        let moved = of.moved_part(0, map);
+        let moved = moved.map_err(|error| error.renumbered(self.parts.len()))?;
+        let (at, is_grown) = self.place(&of.rest, scene)?;
+        let whole = &mut Arc::make_mut(scene).mesh;
+        for (index, corners) in of.rest.triangles.iter().enumerate() {
+            let corner = |corner| at.position as u32 + corner;
+            whole.triangles[at.triangle + index] = corners.map(corner);
+            let normals = of.rest.normal_indices[index];
+            let normal = |normal| at.normal as u32 + normal;
+            whole.normal_indices[at.triangle + index] = normals.map(normal);
+        }
+        let all = whole.triangles.len();
+        let own = (at.triangle, of.rest.triangles.len());
+        whole.surfaces.put(&of.rest.surfaces, own, all);
+        of.put_at(0, &moved, false, whole, at);
+        let piece = self.gone.pop().unwrap_or(self.pieces.len());
+        let id = PartId::new(piece, next_version());
+        let part = Piece::new(Content::Part(Part {
+            id,
+            number: 0,
+            at,
+            map: Some(*map),
+            is_mirrored: moved.is_mirrored,
+            of,
+        }));
+        if let Some(kept) = &mut self.bvh {
+            let tree = Arc::make_mut(&mut kept.tree);
+            self.work.nodes += part.add_to(tree, piece) as u64;
+        }
+        if piece < self.pieces.len() {
+            self.pieces[piece] = part;
+        } else {
+            self.pieces.push(part);
+        }
+        self.parts.push(id);
+        self.work.moved += mesh.positions.len() as u64;
+        let change = Change {
+            is_elsewhere: true,
+            is_turned: true,
+            is_painted: !whole.surfaces.of.is_empty(),
+            is_grown,
+        };
+        Ok((id, change))
+    }
+
+    /// Takes room for a mesh; true if there was none, and the scene's mesh has grown by a half.
+    fn place(&mut self, rest: &Mesh, scene: &mut Arc<Scene>) -> Result<(PartPlace, bool), Error> {
+        let needed = Room::of(rest, 1);
+        let has_room = needed.positions <= self.positions.longest()
+            && needed.normals <= self.normals.longest()
+            && needed.triangles <= self.triangles.longest();
+        if !has_room {
+            let mesh = &scene.mesh;
+            let more = |needed: usize, there: usize| needed.max(there / 2);
+            let room = Room {
+                parts: 1 + self.pieces.len() / 2,
+                positions: more(needed.positions, mesh.positions.len()),
+                normals: more(needed.normals, mesh.normals.len()),
+                triangles: more(needed.triangles, mesh.triangles.len()),
+            };
+            self.reserve(room, scene)?;
+        }
+        let mut take = |free: fn(&mut Self) -> &mut Free, count: usize| free(self).take(count);
+        let at = PartPlace {
+            position: take(|it| &mut it.positions, needed.positions).unwrap_or_default(),
+            normal: take(|it| &mut it.normals, needed.normals).unwrap_or_default(),
+            triangle: take(|it| &mut it.triangles, needed.triangles).unwrap_or_default(),
+        };
+        Ok((at, !has_room))
+    }
+
+    /// Removes a part from the scene's mesh: its triangles have no area any more, and its room is
+    /// for other parts.
+    ///
+    /// # Errors
+    /// [`Error::NoPart`].
+    pub fn remove(&mut self, id: PartId, scene: &mut Arc<Scene>) -> Result<Change, Error> {
+        let number = self.number(id)?;
+        let part = self.part(id)?.clone();
+        let mesh = &mut Arc::make_mut(scene).mesh;
+        for &triangle in part.of.triangles(part.number) {
+            let triangle = part.at.triangle + triangle as usize;
+            mesh.triangles[triangle] = [0; 3];
+            mesh.normal_indices[triangle] = [0; 3];
+        }
+        // Those of a part that was cut out of a mesh may have others between them.
+        if part.of.is_joined() {
+            let [positions, normals] = part.ranges();
+            self.positions.give_back(positions);
+            self.normals.give_back(normals);
+            self.triangles.give_back(part.triangles());
+        }
+        self.pieces[id.piece] = Piece::new(Content::Gone);
+        self.parts.remove(number);
+        self.gone.push(id.piece);
+        self.clear(part.triangles());
+        if let Some(kept) = &mut self.bvh {
+            Arc::make_mut(&mut kept.tree).remove(id.piece);
+        }
+        self.is_unplaced &= !self.has_places();
+        let change = Change {
+            is_elsewhere: true,
+            is_turned: true,
+            ..Change::default()
+        };
+        Ok(change)
+    }
+
+    /// Notes that triangles were cleared.
+    fn clear(&mut self, triangles: Range<usize>) {
+        if self.cleared.len() == CLEARED {
+            // Rather one long range than ever more.
+            let ends =
+                self.cleared
+                    .drain(..)
+                    .fold(None, |ends: Option<Range<usize>>, (next, _)| {
+                        let ends = ends.unwrap_or(next.clone());
+                        Some(ends.start.min(next.start)..ends.end.max(next.end))
+                    });
+            let ends = ends.into_iter().map(|ends| (ends, next_version()));
+            self.cleared = ends.collect();
+        }
+        self.cleared.push((triangles, next_version()));
     }
 
     /// The ranges of positions that are others than in a version of the shape.
     pub fn positions_since(&self, version: u64, mesh: &Mesh) -> Vec<Range<usize>> {
-        let moved = self.moved_since(version);
-        moved
-            .map(|piece| self.ranges(piece, mesh)[0].clone())
-            .collect()
+        if version < self.begun {
+            return vec![0..mesh.positions.len()];
+        }
+        let moved = self.pieces.iter().filter(|piece| piece.moved > version);
+        moved.map(|piece| piece.ranges(mesh)[0].clone()).collect()
     }
 
     /// The ranges of normals that are others than in a version of the shape.
     pub fn normals_since(&self, version: u64, mesh: &Mesh) -> Vec<Range<usize>> {
-        let moved = self.moved_since(version);
-        moved
-            .map(|piece| self.ranges(piece, mesh)[1].clone())
-            .collect()
+        if version < self.begun {
+            return vec![0..mesh.normals.len()];
+        }
+        let moved = self.pieces.iter().filter(|piece| piece.moved > version);
+        moved.map(|piece| piece.ranges(mesh)[1].clone()).collect()
+    }
+
+    /// The ranges of triangles that have other corners than in a version of the winding.
+    pub fn triangles_since(&self, version: u64, mesh: &Mesh) -> Vec<Range<usize>> {
+        if version < self.begun {
+            return vec![0..mesh.triangles.len()];
+        }
+        let turned = self.pieces.iter().filter(|piece| piece.turned > version);
+        let turned = turned.map(|piece| piece.triangles(mesh));
+        turned.chain(self.cleared_since(version)).collect()
+    }
+
+    fn cleared_since(&self, version: u64) -> impl Iterator<Item = Range<usize>> {
+        let cleared = self
+            .cleared
+            .iter()
+            .filter(move |(_, number)| *number > version);
+        cleared.map(|(range, _)| range.clone())
+    }
+
+    /// Returns the adjacency of the mesh. `version` is that of the winding.
+    pub fn adjacency(&mut self, mesh: &Mesh, version: u64) -> Arc<Vec<u32>> {
+        let mut adjacencies = std::mem::take(&mut self.adjacencies);
+        let turned = |since: u64| {
+            let turned = self.pieces.iter().filter(|piece| piece.turned > since);
+            let turned = turned.map(|piece| piece.primitives(mesh));
+            let cleared = self.cleared_since(since);
+            // Without corners they have no neighbours; those of pieces come after.
+            let cleared = cleared.map(|range| (range.start as u32..range.end as u32).collect());
+            cleared.chain(turned).collect()
+        };
+        let turned = self.first.is_some().then_some(turned);
+        let opposite = adjacencies.get(mesh, version, turned);
+        self.adjacencies = adjacencies;
+        opposite
     }
 
     /// Returns the hierarchy of the mesh, fitted to it. `version` is that of the shape now, `known`
-    /// that of the nodes on the device.
+    /// that of the nodes and primitives on the device.
     pub fn bvh(&mut self, mesh: &Mesh, most: usize, version: u64, known: Option<u64>) -> Fitted {
         let Some(kept) = self.bvh.take() else {
             return self.build_bvh(mesh, most, version);
         };
-        let moved: Vec<usize> = self.moved_since(kept.version).collect();
-        let how = if std::mem::take(&mut self.shape.is_bent) {
+        let since = |version: u64| {
+            let pieces = self.pieces.iter().enumerate();
+            pieces.filter_map(move |(piece, of)| (of.moved > version).then_some(piece))
+        };
+        let moved: Vec<usize> = since(kept.version).collect();
+        let how = if self.is_bent {
             Moved::Freely
         } else {
             Moved::Affinely
         };
         let mut tree = kept.tree;
-        let fitted = Arc::make_mut(&mut tree);
-        let refit = fitted.refit(mesh, &moved, how);
-        self.work.nodes += refit.nodes as u64;
-        let others = self.moved_since(known.unwrap_or_default());
-        let nodes = others.map(|piece| tree.nodes_of(piece)).chain(tree.top());
-        let nodes = nodes.collect();
-        let rebuilt = refit.rebuilt.iter();
-        let primitives: Vec<_> = rebuilt.map(|&piece| tree.primitives_of(piece)).collect();
-        let how = if primitives.is_empty() {
+        let refit = Arc::make_mut(&mut tree).refit(mesh, &moved, how);
+        let others: Vec<usize> = since(known.unwrap_or_default()).collect();
+        let nodes = others.iter().map(|&piece| tree.nodes_of(piece));
+        let nodes = nodes.chain(tree.top()).collect();
+        let known = known.unwrap_or_default();
+        let turned = others.iter().copied();
+        let turned = turned.filter(|&piece| self.pieces[piece].turned > known);
+        let others = refit.rebuilt.iter().copied().chain(turned);
+        let primitives = others.map(|piece| tree.primitives_of(piece)).collect();
+        let how = if refit.rebuilt.is_empty() {
             How::Refitted
         } else {
             How::Made
         };
+        self.is_bent = false;
+        self.work.nodes += refit.nodes as u64;
         self.bvh = Some(Kept {
             tree: Arc::clone(&tree),
             version,
@@ -244,24 +579,12 @@ impl Geometry {
     }
 
     fn build_bvh(&mut self, mesh: &Mesh, most: usize, version: u64) -> Fitted {
-        self.shape.is_bent = false;
-        let tree = match (&self.shape.parts, &self.outside) {
-            (Some(parts), Some(outside)) => {
-                let own = (0..parts.parts()).map(|part| Piece {
-                    triangles: parts.triangles(part),
-                    copy_of: parts.copy_of(part),
-                });
-                let rest = self.moved.len().checked_sub(1).map(|piece| Piece {
-                    triangles: &outside.triangles,
-                    copy_of: piece,
-                });
-                let rest = rest.filter(|rest| rest.copy_of >= parts.parts());
-                let pieces: Vec<Piece> = own.chain(rest).collect();
-                TwoLevelBvh::build(mesh, &parts.rest, &pieces, most)
-            }
-            _ => {
+        self.is_bent = false;
+        let tree = match &self.first {
+            Some(first) => self.build_parts(mesh, first, most),
+            None => {
                 let triangles: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
-                let whole = Piece {
+                let whole = bvh::Piece {
                     triangles: &triangles,
                     copy_of: 0,
                 };
@@ -271,7 +594,7 @@ impl Geometry {
         let tree = Arc::new(tree);
         self.work.nodes += tree.nodes.len() as u64;
         // Only of a mesh that moves it is worth its memory.
-        self.bvh = self.shape.is_deformed.then(|| Kept {
+        self.bvh = self.is_deformed.then(|| Kept {
             tree: Arc::clone(&tree),
             version,
         });
@@ -281,6 +604,39 @@ impl Geometry {
             tree,
             how: How::Made,
         }
+    }
+
+    fn build_parts(&self, mesh: &Mesh, first: &Movable, most: usize) -> TwoLevelBvh {
+        let mut known = BTreeMap::new();
+        let mut added = Vec::new();
+        let mut begun = Vec::new();
+        for (number, piece) in self.pieces.iter().enumerate() {
+            let (triangles, copy_of) = match &piece.content {
+                Content::Part(part) if std::ptr::eq(&*part.of, first) => {
+                    let copy_of = first.copy_of(part.number);
+                    let copy_of = *known.entry(copy_of).or_insert(number);
+                    (first.triangles(part.number), copy_of)
+                }
+                Content::Outside(outside) => (&outside.triangles[..], number),
+                Content::Part(_) => {
+                    added.push(number);
+                    (&[][..], number)
+                }
+                Content::Gone | Content::Whole => (&[][..], number),
+            };
+            begun.push(bvh::Piece { triangles, copy_of });
+        }
+        let mut tree = TwoLevelBvh::build(mesh, &first.rest, &begun, most);
+        if self.room != Room::default() {
+            let left = most.saturating_sub(tree.nodes.len()) / 4;
+            let [parts, triangles] = [self.room.parts, self.room.triangles];
+            tree.reserve(parts.min(left), triangles.min(left));
+        }
+        for &piece in &added {
+            self.pieces[piece].add_to(&mut tree, piece);
+        }
+        tree.refit(mesh, &added, Moved::Affinely);
+        tree
     }
 
     /// Returns the hierarchy of the mesh in the light space of `space`.
@@ -293,7 +649,7 @@ impl Geometry {
         mesh: &Mesh,
         most: usize,
     ) -> Result<Tree<LightSpaceNode>, Error> {
-        let keep = self.shape.is_deformed;
+        let keep = self.is_deformed;
         let tree = self.hierarchies.light_space(space, mesh, most, keep)?;
         self.work.nodes += tree.nodes.len() as u64;
         Ok(tree)
@@ -302,25 +658,96 @@ impl Geometry {
     /// Returns the uniform of a light that is laid around the mesh; around parts where they are,
     /// of which only those are looked at that have moved.
     pub fn lay(&mut self, light: LightKind, mesh: &Mesh) -> LightUniform {
-        let (Some(parts), Some(outside)) = (&self.shape.parts, &self.outside) else {
+        if self.first.is_none() {
             self.work.laid += mesh.positions.len() as u64;
             return LightUniform::new(light, mesh);
-        };
-        let corners = |piece: usize| {
-            let is_part = piece < parts.parts();
-            let corners: &[u32] = if is_part {
-                parts.corners(piece)
-            } else {
-                &outside.corners
-            };
-            corners
-                .iter()
-                .map(|&corner| mesh.positions[corner as usize])
-        };
-        let (uniform, laid) = self.outlines.lay(light, &self.moved, corners);
+        }
+        let moved: Vec<u64> = self.pieces.iter().map(|piece| piece.moved).collect();
+        let corners = |piece: usize| self.pieces[piece].corners(mesh);
+        let (uniform, laid) = self.outlines.lay(light, &moved, corners);
         self.work.laid += laid;
         uniform
     }
+}
+
+impl Piece {
+    fn new(content: Content) -> Self {
+        let version = next_version();
+        Self {
+            content,
+            moved: version,
+            turned: version,
+        }
+    }
+
+    /// Adds a part to a hierarchy that was built before it came, in the place of a piece; the
+    /// number of its nodes.
+    fn add_to(&self, tree: &mut TwoLevelBvh, piece: usize) -> usize {
+        let Content::Part(part) = &self.content else {
+            return 0;
+        };
+        tree.add(piece, &part.of.rest, part.at.triangle as u32);
+        tree.nodes_of(piece).len()
+    }
+
+    /// The ranges that hold its positions and normals.
+    fn ranges(&self, mesh: &Mesh) -> [Range<usize>; 2] {
+        match &self.content {
+            Content::Part(part) => part.ranges(),
+            Content::Gone => [0..0, 0..0],
+            Content::Whole | Content::Outside(_) => {
+                [0..mesh.positions.len(), 0..mesh.normals.len()]
+            }
+        }
+    }
+
+    /// The range that holds its triangles.
+    fn triangles(&self, mesh: &Mesh) -> Range<usize> {
+        match &self.content {
+            Content::Part(part) => part.triangles(),
+            Content::Gone => 0..0,
+            Content::Whole | Content::Outside(_) => 0..mesh.triangles.len(),
+        }
+    }
+
+    /// Its primitives.
+    fn primitives(&self, mesh: &Mesh) -> Vec<u32> {
+        match &self.content {
+            Content::Part(part) => {
+                let own = part.of.triangles(part.number).iter();
+                own.map(|own| part.at.triangle as u32 + own).collect()
+            }
+            Content::Outside(outside) => outside.triangles.clone(),
+            Content::Gone => Vec::new(),
+            Content::Whole => (0..mesh.triangles.len() as u32).collect(),
+        }
+    }
+
+    /// The positions that its triangles use.
+    fn corners(&self, mesh: &Mesh) -> Vec<Vec3> {
+        let at = |corner: usize| mesh.positions[corner];
+        match &self.content {
+            Content::Part(part) => {
+                let corners = part.of.corners(part.number).iter();
+                corners
+                    .map(|&corner| at(part.at.position + corner as usize))
+                    .collect()
+            }
+            Content::Outside(outside) => {
+                let corners = outside.corners.iter();
+                corners.map(|&corner| at(corner as usize)).collect()
+            }
+            Content::Gone => Vec::new(),
+            Content::Whole => mesh.used_positions().collect(),
+        }
+    }
+}
+
+/// Lengthens a list by so many items; the range of the new ones.
+fn lengthened<T: Clone>(list: &mut Vec<T>, by: usize, item: T) -> Range<usize> {
+    let before = list.len();
+    list.resize(before + by, item);
+    before..list.len()
 }
 
 impl Outside {

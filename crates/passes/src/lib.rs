@@ -31,6 +31,7 @@
 //! - [`EmbeddedSources`] holds the documents and shaders of the presets, [`presets()`] lists the
 //!   presets.
 
+mod adjacencies;
 mod atlas;
 mod buffers;
 mod built;
@@ -44,10 +45,10 @@ mod host;
 mod lights;
 pub mod names;
 mod outlines;
+mod parts;
 mod presets;
 mod provider;
 mod ray_query;
-mod shape;
 mod trace;
 pub mod uniforms;
 
@@ -56,6 +57,7 @@ pub use built::{Built, How, Work};
 pub use error::Error;
 pub use eye::{Depth, Eye, EyeError};
 pub use host::{GpuMesh, GpuMeshError};
+pub use parts::{PartId, Room};
 pub use presets::{EmbeddedSources, Preset, presets, registry};
 pub use provider::SceneProvider;
 pub use trace::{Direction, Engine, Mode, Trace};

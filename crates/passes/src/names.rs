@@ -164,7 +164,12 @@ impl Versions {
         self.change_shape();
     }
 
-    /// Notes that triangles are wound the other way.
+    /// Notes that the surfaces of triangles have changed.
+    pub fn change_surfaces(&mut self) {
+        self.mesh = next_version();
+    }
+
+    /// Notes that triangles are wound the other way, or have other corners.
     pub fn change_winding(&mut self) {
         self.winding = next_version();
     }

@@ -19,63 +19,116 @@ struct Of<T> {
 /// Boxes and outlines of pieces, by their numbers.
 #[derive(Clone, Default)]
 pub(crate) struct Outlines {
-    boxes: Vec<Option<Of<Option<(Vec3, Vec3)>>>>,
+    boxes: Vec<Of<Option<[Vec3; 2]>>>,
     /// By the direction of the light; the last one was asked for last.
-    directions: Vec<(DVec3, Vec<Option<Of<Outline>>>)>,
+    directions: Vec<Direction>,
+}
+
+/// Outlines of pieces that a light has asked for.
+#[derive(Clone)]
+struct Direction {
+    direction: DVec3,
+    outlines: Vec<Option<Outline>>,
+    /// Outlines of the boxes of pieces that were not asked for.
+    boxes: Vec<Option<Outline>>,
+    /// Numbers of the last moves of all pieces then.
+    moved: Vec<u64>,
 }
 
 impl Outlines {
     /// Returns the uniform of a light around pieces, each with the number of its last move and
     /// its `corners`, and the number of corners that were looked at.
-    pub fn lay<C: Iterator<Item = Vec3>>(
+    pub fn lay(
         &mut self,
         light: LightKind,
         moved: &[u64],
-        corners: impl Fn(usize) -> C,
+        corners: impl Fn(usize) -> Vec<Vec3>,
     ) -> (LightUniform, u64) {
-        let mut laid = 0;
-        let count =
-            |corners: C, laid: &mut u64| corners.inspect(|_| *laid += 1).collect::<Vec<_>>();
-        fresh(&mut self.boxes, moved, |piece| {
-            bounds(count(corners(piece), &mut laid))
-        });
-        let boxes = self.boxes.iter().flatten().filter_map(|of| of.made);
-        let bounds = boxes.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+        let mut laid = self.lay_boxes(moved, &corners);
+        let boxes = &self.boxes;
+        let bounds = boxes.iter().filter_map(|of| of.made);
+        let bounds = bounds.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
         let directions = &mut self.directions;
         let fit = |sun: &DirectionalLight| {
-            let at = directions.iter().position(|known| known.0 == sun.direction);
-            let mut known = match at {
-                Some(at) => directions.remove(at),
-                None => (sun.direction, Vec::new()),
+            let mut known = take(directions, sun.direction);
+            known.forget_moved(moved);
+            let own = &mut known.boxes;
+            let loose = |piece: usize| {
+                let ends = boxes[piece].made.into_iter();
+                let outline = || sun.outline(ends.flat_map(corners_of));
+                own[piece].get_or_insert_with(outline).clone()
             };
-            fresh(&mut known.1, moved, |piece| {
-                sun.outline(count(corners(piece), &mut laid))
-            });
-            let outlines = known.1.iter().flatten().map(|of| &of.made);
-            let fit = sun.fit_outline(&Outline::joined(outlines));
-            if directions.len() == DIRECTIONS {
-                directions.remove(0);
-            }
+            let exact = |piece: usize| {
+                let corners = corners(piece);
+                laid += corners.len() as u64;
+                sun.outline(corners)
+            };
+            let outline = Outline::joined(&mut known.outlines, loose, exact);
             directions.push(known);
-            fit
+            sun.fit_outline(&outline)
         };
+        let bounds = bounds.map(|[low, high]| (low, high));
         let uniform = LightUniform::around(light, bounds, fit);
         (uniform, laid)
     }
+
+    /// Makes the boxes of pieces that have moved; the number of corners that were looked at.
+    fn lay_boxes(&mut self, moved: &[u64], corners: impl Fn(usize) -> Vec<Vec3>) -> u64 {
+        let mut laid = 0;
+        self.boxes.resize_with(moved.len(), || Of {
+            made: None,
+            moved: 0,
+        });
+        for (piece, (known, &moved)) in self.boxes.iter_mut().zip(moved).enumerate() {
+            if known.moved != moved {
+                let corners = corners(piece);
+                laid += corners.len() as u64;
+                let corners = corners.into_iter().map(|corner| [corner; 2]);
+                let made = corners.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
+                *known = Of { made, moved };
+            }
+        }
+        laid
+    }
 }
 
-/// Makes anew what was made of pieces that have moved since.
-fn fresh<T>(known: &mut Vec<Option<Of<T>>>, moved: &[u64], mut make: impl FnMut(usize) -> T) {
-    known.resize_with(moved.len(), || None);
-    for (piece, (known, &moved)) in known.iter_mut().zip(moved).enumerate() {
-        if known.as_ref().is_none_or(|known| known.moved != moved) {
-            let made = make(piece);
-            *known = Some(Of { made, moved });
+impl Direction {
+    /// Forgets the outlines of pieces that have moved since.
+    fn forget_moved(&mut self, moved: &[u64]) {
+        self.outlines.resize(moved.len(), None);
+        self.boxes.resize(moved.len(), None);
+        self.moved.resize(moved.len(), 0);
+        for (piece, (known, &moved)) in self.moved.iter_mut().zip(moved).enumerate() {
+            if *known != moved {
+                *known = moved;
+                (self.outlines[piece], self.boxes[piece]) = (None, None);
+            }
         }
     }
 }
 
-fn bounds(corners: Vec<Vec3>) -> Option<(Vec3, Vec3)> {
-    let corners = corners.into_iter().map(|corner| (corner, corner));
-    corners.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+/// Takes the outlines of a direction out of those that are kept.
+fn take(directions: &mut Vec<Direction>, direction: DVec3) -> Direction {
+    let at = directions
+        .iter()
+        .position(|known| known.direction == direction);
+    if let Some(at) = at {
+        return directions.remove(at);
+    }
+    if directions.len() == DIRECTIONS {
+        directions.remove(0);
+    }
+    Direction {
+        direction,
+        outlines: Vec::new(),
+        boxes: Vec::new(),
+        moved: Vec::new(),
+    }
+}
+
+/// The corners of a box.
+fn corners_of(ends: [Vec3; 2]) -> impl Iterator<Item = Vec3> {
+    (0..8).map(move |corner: usize| {
+        Vec3::from_array([0, 1, 2].map(|axis| ends[corner >> axis & 1][axis]))
+    })
 }

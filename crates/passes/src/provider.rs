@@ -10,6 +10,7 @@ use crate::{
     hierarchies::Tree,
     lights,
     names::*,
+    parts::{PartId, Room},
     ray_query,
     uniforms::{CameraUniform, LightAreaUniform, LightUniform, UnprojectionUniform},
 };
@@ -19,8 +20,8 @@ use skiagraph_gpu::CpuWork;
 use skiagraph_gpu::{Provider, ProviderError};
 use skiagraph_graph::{Describe, Plan, Provided, ProvidedBinding};
 use skiagraph_scene::{
-    Adjacency, BvhNode, Camera, Light, LightKind, LightSpace, LightSpaceNode, Mesh, Movable, Scene,
-    View, packed_masks::mask_words,
+    BvhNode, Camera, Light, LightKind, LightSpace, LightSpaceNode, Mesh, Movable, Scene, View,
+    packed_masks::mask_words,
 };
 use std::{ops::Range, sync::Arc, time::Instant};
 
@@ -208,16 +209,10 @@ impl SceneProvider {
         let mesh = &self.scene.mesh;
         let fitted = self.geometry.bvh(mesh, most as usize, version, known);
         let (tree, nodes) = (&fitted.tree, nodes_to_walk(&fitted.tree));
-        let changed = (nodes.len(), &fitted.nodes[..]);
-        let append = |range: Range<usize>, to: &mut Vec<_>| to.extend_from_slice(&nodes[range]);
-        self.buffers
-            .patch(BVH_NODES, changed, append, version, on)?;
-        let changed = (tree.primitives.len(), &fitted.primitives[..]);
-        let append = |range: Range<usize>, to: &mut Vec<_>| {
-            to.extend_from_slice(&tree.primitives[range]);
-        };
-        self.buffers
-            .patch(BVH_PRIMITIVES, changed, append, version, on)?;
+        let (buffers, changed) = (&mut self.buffers, &fitted.nodes);
+        buffers.patch_list(BVH_NODES, nodes, changed, version, on)?;
+        let (primitives, changed) = (&tree.primitives, &fitted.primitives);
+        buffers.patch_list(BVH_PRIMITIVES, primitives, changed, version, on)?;
         Ok(fitted.how)
     }
 
@@ -239,6 +234,20 @@ impl SceneProvider {
         };
         let changed = (items.len(), &changed[..]);
         self.buffers.patch(name, changed, append, version, on)?;
+        Ok(How::Made)
+    }
+
+    /// Uploads the numbers of those triangles that have other corners than before.
+    fn upload_triangles(&mut self, name: &str, items: &[[u32; 3]], on: On) -> Result<How, Error> {
+        let (version, known) = (self.version(name), self.buffers.version(name));
+        let mesh = &self.scene.mesh;
+        let turned = self
+            .geometry
+            .triangles_since(known.unwrap_or_default(), mesh);
+        let turned = turned.iter().map(|range| 3 * range.start..3 * range.end);
+        let (items, changed) = (items.as_flattened(), turned.collect::<Vec<_>>());
+        self.buffers
+            .patch_list(name, items, &changed, version, on)?;
         Ok(How::Made)
     }
 
@@ -283,9 +292,12 @@ impl SceneProvider {
         match name {
             POSITIONS => self.upload_corners(name, (&mesh.positions, 1.0), on),
             NORMALS => self.upload_corners(name, (&mesh.normals, 0.0), on),
-            INDICES => self.upload_items(name, mesh.triangles.as_flattened(), on),
-            NORMAL_INDICES => self.upload_items(name, mesh.normal_indices.as_flattened(), on),
-            ADJACENCY => self.upload_items(name, &Adjacency::new(mesh).opposite, on),
+            INDICES => self.upload_triangles(name, &mesh.triangles, on),
+            NORMAL_INDICES => self.upload_triangles(name, &mesh.normal_indices, on),
+            ADJACENCY => {
+                let opposite = self.geometry.adjacency(mesh, self.version(name));
+                self.upload_triangles(name, opposite.as_chunks().0, on)
+            }
             MASKS => {
                 let words = std::mem::take(&mut self.masks);
                 let done = self.upload_items(name, &words, on);
@@ -465,19 +477,86 @@ impl SceneProvider {
     /// the number of parts, or a map is singular, not finite, or moves a position beyond f32; the
     /// error names the part. The mesh then stays as it was.
     pub fn set_transforms(&mut self, maps: &[DAffine3]) -> Result<(), Error> {
-        let Change {
-            is_elsewhere,
-            is_turned,
-        } = self.geometry.set_transforms(maps, &mut self.scene)?;
-        if is_turned {
-            // Its texture coordinates come in the order of corners.
+        let change = self.geometry.set_transforms(maps, &mut self.scene)?;
+        self.note_change(change);
+        Ok(())
+    }
+
+    /// Moves one part, as [`set_transforms`](Self::set_transforms) moves all.
+    ///
+    /// # Errors
+    /// [`Error::NoPart`] for a part that the mesh does not have; [`Error::Move`] for a map that is
+    /// singular, not finite, or moves a position beyond f32. The mesh then stays as it was.
+    pub fn set_transform(&mut self, part: PartId, map: &DAffine3) -> Result<(), Error> {
+        let change = self.geometry.set_transform(part, map, &mut self.scene)?;
+        self.note_change(change);
+        Ok(())
+    }
+
+    /// Returns the handles of the mesh's parts, in the order in which
+    /// [`set_transforms`](Self::set_transforms) takes their maps: those of
+    /// [`set_parts`](Self::set_parts), then those that were added later.
+    pub fn parts(&self) -> impl Iterator<Item = PartId> {
+        self.geometry.parts().iter().copied()
+    }
+
+    /// Makes room for parts that [`add_part`](Self::add_part) adds. The numbers of positions,
+    /// triangles and other items become larger, on which plans depend (see
+    /// [`set_mesh`](Self::set_mesh)): reserve before graphs are planned.
+    ///
+    /// # Errors
+    /// [`Error::NoParts`] if the mesh has no parts.
+    pub fn reserve(&mut self, room: Room) -> Result<(), Error> {
+        self.geometry.reserve(room, &mut self.scene)?;
+        self.masks = mask_words(&self.scene.mesh);
+        self.versions.change_mesh();
+        Ok(())
+    }
+
+    /// Adds a part to a mesh in parts, and returns its handle. `map` takes it from its own space to
+    /// its place in world space. Within the [room](Self::reserve) that there is, only this mesh is
+    /// uploaded and gets a hierarchy, its primitive ids are numbers that no triangle had, or that
+    /// those of removed parts had, and plans stay. Without room the mesh grows by a half, all of it
+    /// is uploaded, and graphs must be planned anew, as after [`set_mesh`](Self::set_mesh). In a
+    /// scene with materials, those of all parts are uploaded, and a graph that reads
+    /// `scene.materials` or `scene.uvs` must be planned anew.
+    ///
+    /// # Errors
+    /// [`Error::NoParts`] if the mesh has no parts, [`Error::Move`] for a map that cannot move the
+    /// part. The mesh then stays as it was.
+    pub fn add_part(&mut self, mesh: &Mesh, map: &DAffine3) -> Result<PartId, Error> {
+        let (part, change) = self.geometry.add(mesh, map, &mut self.scene)?;
+        self.note_change(change);
+        Ok(part)
+    }
+
+    /// Removes a part. Its triangles have no area from the next
+    /// [`refresh`](skiagraph_gpu::Executor::refresh) on, and their place is for parts that are
+    /// added later. Frames that are encoded show it still.
+    ///
+    /// # Errors
+    /// [`Error::NoPart`] for a part that the mesh does not have.
+    pub fn remove_part(&mut self, part: PartId) -> Result<(), Error> {
+        let change = self.geometry.remove(part, &mut self.scene)?;
+        self.note_change(change);
+        Ok(())
+    }
+
+    fn note_change(&mut self, change: Change) {
+        if change.is_grown {
+            self.versions.change_mesh();
+        }
+        if change.is_turned || change.is_painted {
+            // Texture coordinates come in the order of corners.
             self.masks = mask_words(&self.scene.mesh);
             self.versions.change_winding();
         }
-        if is_elsewhere || is_turned {
+        if change.is_painted {
+            self.versions.change_surfaces();
+        }
+        if change.is_elsewhere || change.is_turned {
             self.versions.change_shape();
         }
-        Ok(())
     }
 }
 

@@ -1,6 +1,9 @@
 //! Directional lights and the orthographic light space of a shadow map.
 
-use crate::vector::Vector;
+use crate::{
+    outline::{Outline, convex_hull},
+    vector::Vector,
+};
 use glam::{DMat4, DVec2, DVec3, Vec3};
 use serde::Deserialize;
 
@@ -27,109 +30,6 @@ pub struct LightFit {
     /// World units per unit of light-space clip x, y and z: half the box's width, half its height,
     /// its whole depth.
     pub extent: DVec3,
-}
-
-/// Outline of points as a directional light sees them ([`DirectionalLight::outline`]): what its box
-/// is fitted to. Outlines of parts of a scene are kept, and [joined](Self::joined) when one of them
-/// has changed.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Outline {
-    /// Convex hull across the light, counter-clockwise.
-    hull: Vec<DVec2>,
-    nearest: f64,
-    farthest: f64,
-}
-
-impl Outline {
-    fn of_the_origin() -> Self {
-        Self {
-            hull: vec![DVec2::ZERO],
-            nearest: 0.0,
-            farthest: 0.0,
-        }
-    }
-
-    /// Returns the outline of the points of all `outlines`, which one light has made.
-    pub fn joined<'a>(outlines: impl Iterator<Item = &'a Self> + Clone) -> Self {
-        let filled = outlines.filter(|outline| !outline.hull.is_empty());
-        let within = Within::new(filled.clone().map(|outline| &outline.hull[..]));
-        let (mut places, mut nearest, mut farthest) =
-            (Vec::new(), f64::INFINITY, f64::NEG_INFINITY);
-        for outline in filled {
-            nearest = nearest.min(outline.nearest);
-            farthest = farthest.max(outline.farthest);
-            // Most outlines are far from the border.
-            if !within.contains(&outline.hull) {
-                places.extend(&outline.hull);
-            }
-        }
-        Self {
-            hull: convex_hull(places),
-            nearest,
-            farthest,
-        }
-    }
-}
-
-/// Polygon of the points that lie farthest in eight directions: what is in it is not on the hull
-/// (Akl and Toussaint, "A fast convex hull algorithm", IPL 7(5), 1978).
-struct Within {
-    corners: Vec<DVec2>,
-    /// A point so near to an edge, in areas, counts as outside.
-    margin: f64,
-}
-
-impl Within {
-    /// Directions, counter-clockwise.
-    const DIRECTIONS: [DVec2; 8] = [
-        DVec2::new(1.0, 0.0),
-        DVec2::new(1.0, 1.0),
-        DVec2::new(0.0, 1.0),
-        DVec2::new(-1.0, 1.0),
-        DVec2::new(-1.0, 0.0),
-        DVec2::new(-1.0, -1.0),
-        DVec2::new(0.0, -1.0),
-        DVec2::new(1.0, -1.0),
-    ];
-
-    fn new<'a>(hulls: impl Iterator<Item = &'a [DVec2]>) -> Self {
-        let mut farthest: [Option<DVec2>; 8] = [None; 8];
-        for &place in hulls.flatten() {
-            for (farthest, along) in farthest.iter_mut().zip(Self::DIRECTIONS) {
-                if farthest.is_none_or(|known| along.dot(known) < along.dot(place)) {
-                    *farthest = Some(place);
-                }
-            }
-        }
-        let mut corners: Vec<DVec2> = farthest.into_iter().flatten().collect();
-        corners.dedup();
-        let size = corners.iter().map(|corner| corner.abs().max_element());
-        let size = size.fold(0.0, f64::max);
-        Self {
-            corners,
-            margin: 1e-12 * size * size,
-        }
-    }
-
-    fn contains(&self, hull: &[DVec2]) -> bool {
-        let far = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-        let (low, high) = hull
-            .iter()
-            .fold(far, |(low, high), p| (low.min(*p), high.max(*p)));
-        let corners = [
-            low,
-            DVec2::new(high.x, low.y),
-            high,
-            DVec2::new(low.x, high.y),
-        ];
-        let next = self.corners.iter().cycle().skip(1);
-        let mut edges = self.corners.iter().zip(next).filter(|(a, b)| a != b);
-        self.corners.len() > 2
-            && edges.all(|(a, b)| {
-                let is_left = |corner: &DVec2| (*b - *a).perp_dot(*corner - *a) > self.margin;
-                corners.iter().all(is_left)
-            })
-    }
 }
 
 impl DirectionalLight {
@@ -266,30 +166,6 @@ pub fn across(forward: DVec3) -> (DVec3, DVec3) {
 pub(crate) fn onto_axes(axes: [DVec3; 3]) -> DMat4 {
     let [x, y, z] = axes.map(|axis| axis.extend(0.0));
     DMat4::from_cols(x, y, z, glam::DVec4::W).transpose()
-}
-
-/// The corners of the convex hull, counter-clockwise (Andrew's monotone chain).
-fn convex_hull(mut points: Vec<DVec2>) -> Vec<DVec2> {
-    points.sort_unstable_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
-    points.dedup();
-    let mut hull: Vec<DVec2> = Vec::new();
-    for half in 0..2 {
-        let first = hull.len();
-        for &point in &points {
-            while let [.., a, b] = hull[first..]
-                && (b - a).perp_dot(point - b) <= 0.0
-            {
-                hull.pop();
-            }
-            hull.push(point);
-        }
-        // The last point of a half is the first of the other.
-        if points.len() > 1 || half == 1 {
-            hull.pop();
-        }
-        points.reverse();
-    }
-    if hull.is_empty() { points } else { hull }
 }
 
 /// The rectangle of least area around a convex polygon: its unit x axis, and its lower and upper

@@ -67,6 +67,37 @@ impl Surfaces {
         self.of.extend(other.of.iter().map(|of| material + of));
     }
 
+    /// Gives surfaces to triangles that a mesh has got behind those that it had, so that there are
+    /// `triangles` of them: the first material. Nothing is done for a mesh without materials.
+    pub fn pad(&mut self, triangles: usize) {
+        if !self.of.is_empty() {
+            self.of.resize(triangles, 0);
+            self.uv_indices.resize(triangles, [0; 3]);
+        }
+    }
+
+    /// Gives the triangles of a mesh from `first` on the surfaces of `other`, a mesh of so many
+    /// `triangles`; `all` is the number of the triangles of the mesh. Materials and texture
+    /// coordinates are appended.
+    ///
+    /// # Panics
+    /// If `first` and `triangles` together are more than `all`.
+    pub fn put(&mut self, other: &Self, (first, triangles): (usize, usize), all: usize) {
+        if self.of.is_empty() && other.of.is_empty() {
+            return;
+        }
+        if self.of.is_empty() {
+            self.append(&Self::default(), all);
+        }
+        self.append(other, triangles);
+        for triangle in 0..triangles {
+            self.of[first + triangle] = self.of[all + triangle];
+            self.uv_indices[first + triangle] = self.uv_indices[all + triangle];
+        }
+        self.of.truncate(all);
+        self.uv_indices.truncate(all);
+    }
+
     /// Returns the material of triangle `primitive`, or `None` if it has none.
     pub fn material(&self, primitive: u32) -> Option<&Material> {
         let material = *self.of.get(primitive as usize)?;

@@ -43,6 +43,18 @@ pub struct MovedPart {
     pub is_mirrored: bool,
 }
 
+/// Place of the lists of a [`Movable`] within those of a larger mesh, for [`Movable::put_at`]: the
+/// indices of its first position, normal and triangle there.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PartPlace {
+    /// Index of the first position.
+    pub position: usize,
+    /// Index of the first normal.
+    pub normal: usize,
+    /// Primitive id of the first triangle.
+    pub triangle: usize,
+}
+
 /// Changes that [`Movable::put`] made to a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PartChange {
@@ -107,6 +119,19 @@ pub enum MoveError {
         /// Position at rest at which the part is mirrored.
         at: Vec3,
     },
+}
+
+impl MoveError {
+    /// Returns the error of the same part under another number; an error of no part as it is.
+    pub fn renumbered(self, part: usize) -> Self {
+        match self {
+            error @ Self::Count { .. } => error,
+            Self::NotFinite { map, .. } => Self::NotFinite { part, map },
+            Self::Singular { .. } => Self::Singular { part },
+            Self::OutOfRange { from, to, .. } => Self::OutOfRange { part, from, to },
+            Self::Folded { at, .. } => Self::Folded { part, at },
+        }
+    }
 }
 
 impl Movable {
@@ -357,6 +382,22 @@ impl Movable {
         was_mirrored: bool,
         mesh: &mut Mesh,
     ) -> PartChange {
+        self.put_at(part, moved, was_mirrored, mesh, PartPlace::default())
+    }
+
+    /// Writes a moved part as [`put`](Self::put) does, into a mesh that holds the positions,
+    /// normals and triangles of [`rest`](Self::rest) among others, each list from a place on.
+    ///
+    /// # Panics
+    /// If there is no part of that number, or if `mesh` is too small.
+    pub fn put_at(
+        &self,
+        part: usize,
+        moved: &MovedPart,
+        was_mirrored: bool,
+        mesh: &mut Mesh,
+        at: PartPlace,
+    ) -> PartChange {
         let part = &self.parts[part];
         let mut change = PartChange {
             is_elsewhere: false,
@@ -367,14 +408,14 @@ impl Movable {
             *place = now;
         };
         for (&position, place) in part.positions.iter().zip(&moved.positions) {
-            put(&mut mesh.positions[position as usize], *place);
+            put(&mut mesh.positions[at.position + position as usize], *place);
         }
         for (&(normal, _), direction) in part.normals.iter().zip(&moved.normals) {
-            put(&mut mesh.normals[normal as usize], *direction);
+            put(&mut mesh.normals[at.normal + normal as usize], *direction);
         }
         if change.is_turned {
             for &primitive in &part.triangles {
-                mesh.turn(primitive as usize);
+                mesh.turn(at.triangle + primitive as usize);
             }
         }
         change

@@ -53,6 +53,10 @@ pub struct TwoLevelBvh {
     pieces: Vec<Subtree>,
     /// Room of the top level's nodes but the root.
     top: Range<usize>,
+    /// Ranges of nodes that no tree has, in ascending order.
+    free: Vec<Range<usize>>,
+    /// True if there are others pieces than those that the top level was built over.
+    is_stale: bool,
 }
 
 /// Tree of a piece. Its nodes but the root follow each other; the root is in the top level.
@@ -96,7 +100,12 @@ impl TwoLevelBvh {
             (piece, Bvh::within(&triangles, depth))
         });
         let trees: BTreeMap<usize, Bvh> = trees.collect();
-        let trees = merged(trees, pieces, most);
+        let mut trees = merged(trees, pieces, most);
+        if let [only] = pieces
+            && let Some(tree) = trees.remove(&0)
+        {
+            return Self::single((mesh, at_rest), tree, only.triangles);
+        }
         let orders = trees
             .iter()
             .map(|(&piece, tree)| (piece, tree.order().into()));
@@ -118,6 +127,9 @@ impl TwoLevelBvh {
             };
             built.append(tree, order, piece.triangles);
         }
+        // Those of triangles that are in no piece yet.
+        let all = built.primitives.len().max(mesh.triangles.len());
+        built.primitives.resize(all, 0);
         let is_moved = !std::ptr::eq(mesh, at_rest);
         for piece in 0..pieces.len() {
             let cost = if is_moved {
@@ -129,6 +141,151 @@ impl TwoLevelBvh {
         }
         built.build_top();
         built
+    }
+
+    /// The tree of a single piece, in its own memory: it is the hierarchy.
+    fn single((mesh, at_rest): (&Mesh, &Mesh), tree: Bvh, triangles: &[u32]) -> Self {
+        let order: Arc<[u32]> = tree.order().into();
+        let mut primitives = tree.primitives;
+        for primitive in &mut primitives {
+            *primitive = triangles[*primitive as usize];
+        }
+        let slots = 0..primitives.len();
+        primitives.resize(slots.end.max(mesh.triangles.len()), 0);
+        let mut built = Self {
+            pieces: vec![Subtree {
+                root: tree.nodes[0],
+                nodes: 1..tree.nodes.len(),
+                slots,
+                order,
+                depth: tree.depth,
+                cost: 0.0,
+            }],
+            nodes: tree.nodes,
+            primitives,
+            top: 1..1,
+            ..Self::default()
+        };
+        built.pieces[0].cost = if std::ptr::eq(mesh, at_rest) {
+            built.cost(0)
+        } else {
+            built.fit(mesh, 0)
+        };
+        built.build_top();
+        built
+    }
+
+    /// Makes room for pieces to be [added](Self::add): so many, of so many triangles together. A
+    /// hierarchy without room grows when it must.
+    pub fn reserve(&mut self, pieces: usize, triangles: usize) {
+        let filled = self.filled();
+        self.reserve_top(filled + pieces);
+        let end = self.nodes.len() + 2 * triangles;
+        self.give_back(self.nodes.len()..end);
+        self.nodes.resize(end, BvhNode::default());
+    }
+
+    /// Makes room for the top level over so many pieces.
+    fn reserve_top(&mut self, pieces: usize) {
+        let needed = (2 * pieces).saturating_sub(2);
+        if self.nodes.is_empty() {
+            self.nodes.push(BvhNode::default());
+            self.top = 1..1;
+        }
+        if self.top.len() < needed {
+            let before = std::mem::take(&mut self.top);
+            self.give_back(before);
+            self.top = self.take(needed);
+            self.is_stale = true;
+        }
+    }
+
+    /// Takes a range of nodes that is free, or new ones.
+    fn take(&mut self, count: usize) -> Range<usize> {
+        if let Some(free) = self.free.iter_mut().find(|free| free.len() >= count) {
+            let taken = free.start..free.start + count;
+            free.start += count;
+            return taken;
+        }
+        let taken = self.nodes.len()..self.nodes.len() + count;
+        self.nodes.resize(taken.end, BvhNode::default());
+        taken
+    }
+
+    fn give_back(&mut self, range: Range<usize>) {
+        self.free.push(range);
+        self.free.sort_unstable_by_key(|free| free.start);
+        self.free.dedup_by(|next, free| {
+            let are_one = free.end == next.start;
+            if are_one {
+                free.end = next.end;
+            }
+            are_one
+        });
+        self.free.retain(|free| !free.is_empty());
+    }
+
+    /// Number of pieces that have triangles.
+    fn filled(&self) -> usize {
+        let filled = self.pieces.iter().filter(|piece| !piece.order.is_empty());
+        filled.count()
+    }
+
+    /// Adds a piece as number `piece`: that of one without triangles, such as one that was removed,
+    /// or the number of pieces that there are. Its tree is that of the triangles of `at_rest`; the
+    /// triangles of the whole mesh from `first` on are these, moved. Only this tree is built. Its
+    /// boxes are fitted by the next [`refit`](Self::refit), which must name the piece.
+    ///
+    /// # Panics
+    /// If there is a piece with triangles of that number, or no piece before it.
+    pub fn add(&mut self, piece: usize, at_rest: &Mesh, first: u32) {
+        let count = at_rest.triangles.len() as u32;
+        let ids: Vec<u32> = (0..count).collect();
+        let depth = depth_left(self.filled() + 1);
+        let tree = Bvh::within(&triangles(at_rest, &ids), depth);
+        if count > 0 {
+            self.reserve_top(self.filled() + 1);
+        }
+        let nodes = self.take(tree.nodes.len().max(1) - 1);
+        let slots = first as usize..(first + count) as usize;
+        if self.primitives.len() < slots.end {
+            self.primitives.resize(slots.end, 0);
+        }
+        let added = Subtree {
+            root: BvhNode::default(),
+            nodes,
+            slots,
+            order: Arc::default(),
+            depth: 0,
+            cost: 0.0,
+        };
+        match self.pieces.get_mut(piece) {
+            Some(before) => {
+                assert!(before.order.is_empty(), "piece {piece} has triangles");
+                *before = added;
+            }
+            None => {
+                assert_eq!(piece, self.pieces.len(), "pieces follow each other");
+                self.pieces.push(added);
+            }
+        }
+        let ids: Vec<u32> = (first..first + count).collect();
+        self.put(piece, &tree, tree.order().into(), &ids);
+        self.pieces[piece].cost = self.cost(piece);
+        self.is_stale = true;
+    }
+
+    /// Removes a piece from the next [`refit`](Self::refit) on; its number stays its own, and its
+    /// nodes are for other pieces.
+    ///
+    /// # Panics
+    /// If there is no piece of that number.
+    pub fn remove(&mut self, piece: usize) {
+        let gone = &mut self.pieces[piece];
+        (gone.order, gone.depth) = (Arc::default(), 0);
+        let nodes = std::mem::take(&mut gone.nodes);
+        self.give_back(nodes);
+        self.is_stale = true;
     }
 
     /// Appends the tree of a piece.
@@ -188,9 +345,16 @@ impl TwoLevelBvh {
                 work.rebuilt.push(piece);
             }
         }
-        if !pieces.is_empty() {
+        if !pieces.is_empty() || std::mem::take(&mut self.is_stale) {
+            let depth = depth_left(self.filled());
+            // More pieces than when they were built leave them less.
+            let deep = (0..self.pieces.len()).filter(|&piece| self.pieces[piece].depth > depth);
+            for piece in deep.collect::<Vec<_>>() {
+                self.rebuild(mesh, piece);
+                work.rebuilt.push(piece);
+            }
             self.build_top();
-            work.nodes += self.top.len() + 1;
+            work.nodes += (2 * self.filled()).max(1) - 1;
         }
         work
     }
@@ -201,8 +365,7 @@ impl TwoLevelBvh {
         let most = nodes.len() + 1;
         let mut ids = self.primitives[slots.clone()].to_vec();
         ids.sort_unstable();
-        let filled = self.pieces.iter().filter(|piece| !piece.order.is_empty());
-        let depth = depth_left(filled.count());
+        let depth = depth_left(self.filled());
         let tree = Bvh::within(&triangles(mesh, &ids), depth).merged(most);
         let order = tree.order().into();
         self.put(piece, &tree, order, &ids);
@@ -217,7 +380,11 @@ impl TwoLevelBvh {
     /// Returns the root, and the range of the top level's other nodes in [`nodes`](Self::nodes):
     /// what is written whenever a piece moves.
     pub fn top(&self) -> [Range<usize>; 2] {
-        [0..1.min(self.nodes.len()), self.top.clone()]
+        let below = (2 * self.filled()).max(2) - 2;
+        [
+            0..1.min(self.nodes.len()),
+            self.top.start..self.top.start + below,
+        ]
     }
 
     /// Returns the range of a piece's nodes in [`nodes`](Self::nodes).
@@ -283,7 +450,11 @@ impl TwoLevelBvh {
         let filled = |piece: &&Subtree| !piece.order.is_empty();
         let leaves: Vec<&Subtree> = self.pieces.iter().filter(filled).collect();
         let tree = match &leaves[..] {
-            [] => return,
+            // A box that no ray hits, as far as there is a node.
+            [] => vec![BvhNode {
+                count: 1,
+                ..BvhNode::default()
+            }],
             [only] => vec![only.root],
             _ => {
                 let roots = leaves.iter().map(|leaf| leaf.root);
@@ -302,6 +473,9 @@ impl TwoLevelBvh {
                 tree.iter().map(place).collect()
             }
         };
+        if self.nodes.is_empty() {
+            return;
+        }
         self.nodes[0] = tree[0];
         self.nodes[self.top.start..][..tree.len() - 1].copy_from_slice(&tree[1..]);
     }

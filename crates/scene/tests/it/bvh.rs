@@ -450,3 +450,102 @@ fn a_piece_that_is_bent_out_of_shape_is_built_anew_alone() {
         assert_eq!(levels.primitives[own.clone()], before.primitives[own]);
     }
 }
+
+/// A mesh of the triangles that are there, by their places in `mesh`, and the hierarchy's tree with
+/// the primitives counted among them.
+fn those(mesh: &Mesh, there: &[std::ops::Range<u32>], levels: &TwoLevelBvh) -> (Mesh, Bvh) {
+    let ids: Vec<u32> = there.iter().cloned().flatten().collect();
+    let few = Mesh {
+        positions: mesh.positions.clone(),
+        triangles: ids.iter().map(|id| mesh.triangles[*id as usize]).collect(),
+        ..Mesh::default()
+    };
+    let mut walked = Bvh::default();
+    let mut open = vec![(0, 0)];
+    walked.nodes.push(levels.nodes[0]);
+    while let Some((old, new)) = open.pop() {
+        let node = levels.nodes[old as usize];
+        let to = &mut walked.nodes;
+        if node.count == 0 {
+            let first = to.len() as u32;
+            to[new].first = first;
+            to.extend([node.first, node.first + 1].map(|child| levels.nodes[child as usize]));
+            open.extend([0, 1].map(|child| (node.first + child, (first + child) as usize)));
+            continue;
+        }
+        to[new].first = walked.primitives.len() as u32;
+        for slot in node.first..node.first + node.count {
+            let id = levels.primitives[slot as usize];
+            let place = ids.iter().position(|known| *known == id);
+            walked.primitives.push(place.expect("it is there") as u32);
+        }
+    }
+    (few, walked)
+}
+
+proptest! {
+    #[test]
+    fn pieces_come_and_go(
+        seed: u32,
+        begun in 0usize..6,
+        has_room: bool,
+        // The triangles of a piece that comes, or the one that goes.
+        changes in prop::collection::vec(prop_oneof![
+            (1usize..60).prop_map(Ok),
+            (0usize..12).prop_map(Err),
+        ], 1..16),
+    ) {
+        let mut whole = mesh(&soup(begun * 20, seed, 5.0));
+        let run = runs(begun * 20, begun.max(1));
+        let mut levels = TwoLevelBvh::build(&whole, &whole, &pieces(&run[..begun]), usize::MAX);
+        let mut there: Vec<_> = (0..begun)
+            .map(|piece| (piece, 20 * piece as u32..20 * piece as u32 + 20))
+            .collect();
+        let mut gone = vec![];
+        if has_room {
+            levels.reserve(4, 100);
+        }
+        for change in changes {
+            let mut moved = vec![];
+            match change {
+                Ok(count) => {
+                    let first = whole.triangles.len() as u32;
+                    let piece = mesh(&soup(count, seed ^ first, 9.0));
+                    let corners = whole.positions.len() as u32;
+                    whole.positions.extend(piece.positions.iter().map(|p| p + Vec3::X * 200.0));
+                    let shifted = piece.triangles.iter().map(|t| t.map(|index| corners + index));
+                    whole.triangles.extend(shifted);
+                    let number = gone.pop().unwrap_or(levels.pieces());
+                    levels.add(number, &piece, first);
+                    there.push((number, first..first + count as u32));
+                    moved.push(number);
+                }
+                Err(index) if index < there.len() => {
+                    gone.push(there.remove(index).0);
+                    levels.remove(gone[gone.len() - 1]);
+                }
+                Err(_) => {}
+            }
+            let nodes = levels.nodes.len();
+            levels.refit(&whole, &moved, Moved::Affinely);
+            prop_assert_eq!(levels.nodes.len(), nodes);
+            if there.is_empty() {
+                continue;
+            }
+            let ranges: Vec<_> = there.iter().map(|(_, range)| range.clone()).collect();
+            let (few, walked) = those(&whole, &ranges, &levels);
+            let most = few.triangles.len() * 2;
+            prop_assert!(walked.nodes.len() < most);
+            let mut open = vec![(0u32, 1u32)];
+            let mut depth = 0;
+            while let Some((index, level)) = open.pop() {
+                depth = depth.max(level);
+                let node = walked.nodes[index as usize];
+                if node.count == 0 {
+                    open.extend([(node.first, level + 1), (node.first + 1, level + 1)]);
+                }
+            }
+            check_tree(&few, Bvh { depth, ..walked });
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! Parts of a mesh as a host knows them, and the room for more of them.
+
+use glam::DAffine3;
+use skiagraph_scene::{Mesh, Movable, MoveError, MovedPart, PartPlace};
+use std::{ops::Range, sync::Arc};
+
+/// Handle of a part of a provider's mesh: of [`SceneProvider::add_part`], or in the list of
+/// [`SceneProvider::parts`]. It stays the part's own when others are added or removed.
+///
+/// [`SceneProvider::add_part`]: crate::SceneProvider::add_part
+/// [`SceneProvider::parts`]: crate::SceneProvider::parts
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct PartId {
+    pub(crate) piece: usize,
+    /// No other part of the process has it.
+    number: u64,
+}
+
+impl PartId {
+    /// Creates the handle of the part that a piece is, with a number that no other has.
+    pub(crate) fn new(piece: usize, number: u64) -> Self {
+        Self { piece, number }
+    }
+}
+
+/// Room in the buffers of a mesh for parts that are added later
+/// ([`SceneProvider::reserve`](crate::SceneProvider::reserve)). Triangles that no part has yet are
+/// drawn, and have no area.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Room {
+    /// Number of parts.
+    pub parts: usize,
+    /// Number of positions of all these parts.
+    pub positions: usize,
+    /// Number of normals: for each part one for each pair of a position and a normal that meet at a
+    /// corner.
+    pub normals: usize,
+    /// Number of triangles.
+    pub triangles: usize,
+}
+
+impl Room {
+    /// Returns the room that so many copies of a mesh need.
+    pub fn of_copies(mesh: &Mesh, copies: usize) -> Self {
+        Self::of(&Movable::joined(&[mesh]).rest, copies)
+    }
+
+    /// Returns the room of copies of a mesh whose normals are those of a part.
+    pub(crate) fn of(rest: &Mesh, copies: usize) -> Self {
+        Self {
+            parts: copies,
+            positions: copies * rest.positions.len(),
+            normals: copies * rest.normals.len(),
+            triangles: copies * rest.triangles.len(),
+        }
+    }
+}
+
+/// A part, and where it is.
+#[derive(Clone)]
+pub(crate) struct Part {
+    pub id: PartId,
+    pub of: Arc<Movable>,
+    /// Its number in `of`.
+    pub number: usize,
+    /// Where the lists of `of` begin in those of the mesh.
+    pub at: PartPlace,
+    /// Map from its place at rest; `None` for a part without a place, or if it was bent since.
+    pub map: Option<DAffine3>,
+    /// True if its triangles are wound the other way than at rest.
+    pub is_mirrored: bool,
+}
+
+impl Part {
+    /// Returns the part moved by a map, or the error of its number.
+    pub fn moved(&self, map: &DAffine3, number: usize) -> Result<MovedPart, MoveError> {
+        let moved = self.of.moved_part(self.number, map);
+        moved.map_err(|error| error.renumbered(number))
+    }
+
+    /// The ranges of the mesh that hold its positions and normals.
+    pub fn ranges(&self) -> [Range<usize>; 2] {
+        let [positions, normals] = self.of.ranges(self.number);
+        [
+            from(positions, self.at.position),
+            from(normals, self.at.normal),
+        ]
+    }
+
+    /// The range of the mesh that holds its triangles.
+    pub fn triangles(&self) -> Range<usize> {
+        let triangles = self.of.triangles(self.number);
+        let ends = triangles.first().zip(triangles.last());
+        let range = ends.map_or(0..0, |(first, last)| *first as usize..*last as usize + 1);
+        from(range, self.at.triangle)
+    }
+}
+
+fn from(range: Range<usize>, first: usize) -> Range<usize> {
+    range.start + first..range.end + first
+}
+
+/// Ranges of a list that no part has, in ascending order.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Free(Vec<Range<usize>>);
+
+impl Free {
+    /// Takes a range; `None` if no free one is so long.
+    pub fn take(&mut self, count: usize) -> Option<usize> {
+        if count == 0 {
+            return Some(0);
+        }
+        let free = self.0.iter_mut().find(|free| free.len() >= count)?;
+        let first = free.start;
+        free.start += count;
+        Some(first)
+    }
+
+    pub fn give_back(&mut self, range: Range<usize>) {
+        self.0.push(range);
+        self.0.retain(|free| !free.is_empty());
+        self.0.sort_unstable_by_key(|free| free.start);
+        self.0.dedup_by(|next, free| {
+            let are_one = free.end == next.start;
+            if are_one {
+                free.end = next.end;
+            }
+            are_one
+        });
+    }
+
+    /// The most items that one range has.
+    pub fn longest(&self) -> usize {
+        self.0.iter().map(Range::len).max().unwrap_or_default()
+    }
+}

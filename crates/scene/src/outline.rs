@@ -1,0 +1,260 @@
+//! Outlines of points as a directional light sees them: what its box is fitted to.
+
+use glam::DVec2;
+
+/// Outline of points as a directional light sees them, of
+/// [`DirectionalLight::outline`](crate::DirectionalLight::outline). Outlines of parts of a scene
+/// are kept, and [joined](Self::joined) when some of the parts have moved.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outline {
+    /// Convex hull across the light, counter-clockwise; empty for no points.
+    pub(crate) hull: Vec<DVec2>,
+    pub(crate) nearest: f64,
+    pub(crate) farthest: f64,
+}
+
+impl Outline {
+    /// The outline of one point at the origin.
+    pub(crate) fn of_the_origin() -> Self {
+        Self {
+            hull: vec![DVec2::ZERO],
+            nearest: 0.0,
+            farthest: 0.0,
+        }
+    }
+
+    /// Returns the outline of the points of parts, by outlines that one light has made. `known`
+    /// holds those of parts that are known. Of the others `loose` returns one around more than the
+    /// part, such as around its box, and `exact` its own, which is asked for and kept only if the
+    /// part may reach the border.
+    pub fn joined(
+        known: &mut [Option<Self>],
+        mut loose: impl FnMut(usize) -> Self,
+        mut exact: impl FnMut(usize) -> Self,
+    ) -> Self {
+        let unknown = known
+            .iter()
+            .enumerate()
+            .filter(|(_, known)| known.is_none());
+        let open: Vec<(usize, Self)> = unknown.map(|(part, _)| (part, loose(part))).collect();
+        for part in farthest_of(known, &open) {
+            known[part] = Some(exact(part));
+        }
+        let within = Within::new(known);
+        for (part, loose) in open {
+            if known[part].is_none() && !within.contains(&loose) {
+                known[part] = Some(exact(part));
+            }
+        }
+        let mut joined = Self {
+            hull: Vec::new(),
+            nearest: f64::INFINITY,
+            farthest: f64::NEG_INFINITY,
+        };
+        for outline in known.iter().flatten() {
+            joined.nearest = joined.nearest.min(outline.nearest);
+            joined.farthest = joined.farthest.max(outline.farthest);
+            if !within.contains(outline) {
+                joined.hull.extend(&outline.hull);
+            }
+        }
+        joined.hull = convex_hull(joined.hull);
+        joined
+    }
+}
+
+/// Directions across the light, counter-clockwise.
+const DIRECTIONS: [DVec2; 8] = [
+    DVec2::new(1.0, 0.0),
+    DVec2::new(1.0, 1.0),
+    DVec2::new(0.0, 1.0),
+    DVec2::new(-1.0, 1.0),
+    DVec2::new(-1.0, 0.0),
+    DVec2::new(-1.0, -1.0),
+    DVec2::new(0.0, -1.0),
+    DVec2::new(1.0, -1.0),
+];
+
+/// The unknown parts that may reach farthest in a direction, or along the light.
+fn farthest_of(known: &[Option<Outline>], open: &[(usize, Outline)]) -> Vec<usize> {
+    let known = known.iter().flatten().map(|outline| (None, outline));
+    let open = open.iter().map(|(part, loose)| (Some(*part), loose));
+    // The part that reaches farthest in each direction, and how far.
+    let mut most: [(Option<usize>, f64); 10] = [(None, f64::NEG_INFINITY); 10];
+    for (part, outline) in known.chain(open) {
+        for (direction, (farthest, reach)) in most.iter_mut().enumerate() {
+            let own = match DIRECTIONS.get(direction) {
+                Some(along) => {
+                    let along = outline.hull.iter().map(|place| along.dot(*place));
+                    along.fold(f64::NEG_INFINITY, f64::max)
+                }
+                None if direction == DIRECTIONS.len() => outline.farthest,
+                None => -outline.nearest,
+            };
+            if own > *reach {
+                (*farthest, *reach) = (part, own);
+            }
+        }
+    }
+    let mut parts: Vec<usize> = most.iter().filter_map(|(part, _)| *part).collect();
+    parts.sort_unstable();
+    parts.dedup();
+    parts
+}
+
+/// Polygon of the points that lie farthest in eight directions, and the depths of all: what is in
+/// it is not on the border (Akl and Toussaint, "A fast convex hull algorithm", IPL 7(5), 1978).
+struct Within {
+    corners: Vec<DVec2>,
+    /// A point so near to an edge, in areas, counts as outside.
+    margin: f64,
+    nearest: f64,
+    farthest: f64,
+}
+
+impl Within {
+    fn new(outlines: &[Option<Outline>]) -> Self {
+        let mut corners: [Option<DVec2>; 8] = [None; 8];
+        let (mut nearest, mut farthest) = (f64::INFINITY, f64::NEG_INFINITY);
+        for outline in outlines.iter().flatten() {
+            nearest = nearest.min(outline.nearest);
+            farthest = farthest.max(outline.farthest);
+            for &place in &outline.hull {
+                for (corner, along) in corners.iter_mut().zip(DIRECTIONS) {
+                    if corner.is_none_or(|known| along.dot(known) < along.dot(place)) {
+                        *corner = Some(place);
+                    }
+                }
+            }
+        }
+        let mut corners: Vec<DVec2> = corners.into_iter().flatten().collect();
+        corners.dedup();
+        let size = corners.iter().map(|corner| corner.abs().max_element());
+        let size = size.fold(0.0, f64::max);
+        Self {
+            corners,
+            margin: 1e-12 * size * size,
+            nearest,
+            farthest,
+        }
+    }
+
+    fn contains(&self, outline: &Outline) -> bool {
+        let far = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        let hull = outline.hull.iter();
+        let (low, high) = hull.fold(far, |(low, high), p| (low.min(*p), high.max(*p)));
+        let corners = [
+            low,
+            DVec2::new(high.x, low.y),
+            high,
+            DVec2::new(low.x, high.y),
+        ];
+        let next = self.corners.iter().cycle().skip(1);
+        let mut edges = self.corners.iter().zip(next).filter(|(a, b)| a != b);
+        self.corners.len() > 2
+            && self.nearest <= outline.nearest
+            && outline.farthest <= self.farthest
+            && edges.all(|(a, b)| {
+                let is_left = |corner: &DVec2| (*b - *a).perp_dot(*corner - *a) > self.margin;
+                corners.iter().all(is_left)
+            })
+    }
+}
+
+/// The corners of the convex hull, counter-clockwise (Andrew's monotone chain).
+pub(crate) fn convex_hull(mut points: Vec<DVec2>) -> Vec<DVec2> {
+    points.sort_unstable_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    points.dedup();
+    let mut hull: Vec<DVec2> = Vec::new();
+    for half in 0..2 {
+        let first = hull.len();
+        for &point in &points {
+            while let [.., a, b] = hull[first..]
+                && (b - a).perp_dot(point - b) <= 0.0
+            {
+                hull.pop();
+            }
+            hull.push(point);
+        }
+        // The last point of a half is the first of the other.
+        if points.len() > 1 || half == 1 {
+            hull.pop();
+        }
+        points.reverse();
+    }
+    if hull.is_empty() { points } else { hull }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{DirectionalLight, LightFit};
+    use glam::{DVec3, Vec3};
+
+    /// Clouds of points in rows, some of which are nothing.
+    fn clouds(count: usize) -> Vec<Vec<Vec3>> {
+        let mut state = 7u32;
+        let mut next = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) as f32 / 16_777_216.0
+        };
+        let mut point = |at: Vec3| at + Vec3::new(next(), next(), next());
+        let cloud = |index: usize| {
+            let at = Vec3::new(
+                (index % 9) as f32,
+                0.2 * (index % 5) as f32,
+                (index / 9) as f32,
+            );
+            (0..index % 40).map(|_| point(3.0 * at)).collect()
+        };
+        (0..count).map(cloud).collect()
+    }
+
+    fn loose(light: &DirectionalLight, points: &[Vec3]) -> Outline {
+        let [low, high] = [Vec3::min, Vec3::max].map(|of| points.iter().copied().reduce(of));
+        let ends = low.zip(high).map(|(low, high)| [low, high]);
+        let corners = ends.into_iter().flat_map(|ends| {
+            (0..8).map(move |corner: usize| {
+                Vec3::from_array([0, 1, 2].map(|axis| ends[corner >> axis & 1][axis]))
+            })
+        });
+        light.outline(corners)
+    }
+
+    #[test]
+    fn the_box_of_parts_is_that_of_their_points() {
+        for direction in [DVec3::NEG_Y, DVec3::new(0.4, -1.0, -0.3), DVec3::X] {
+            let light = DirectionalLight::new(direction);
+            for count in [0, 1, 3, 60, 120] {
+                let clouds = clouds(count);
+                let mut known = vec![None; count];
+                let mut asked = 0;
+                let mut joined = |known: &mut [Option<Outline>], clouds: &[Vec<Vec3>]| {
+                    let outline = Outline::joined(
+                        known,
+                        |part| loose(&light, &clouds[part]),
+                        |part| {
+                            asked += 1;
+                            light.outline(clouds[part].iter().copied())
+                        },
+                    );
+                    light.fit_outline(&outline)
+                };
+                let fit = |clouds: &[Vec<Vec3>]| -> LightFit {
+                    light.fit(clouds.iter().flatten().copied())
+                };
+                assert_eq!(joined(&mut known, &clouds), fit(&clouds), "{count}");
+                // Those inside are not asked for; nor is one twice, but for those that move.
+                let mut moved = clouds.clone();
+                for part in [0, 2, 31, 77].into_iter().filter(|part| *part < count) {
+                    moved[part]
+                        .iter_mut()
+                        .for_each(|point| *point += Vec3::splat(0.4));
+                    known[part] = None;
+                }
+                assert_eq!(joined(&mut known, &moved), fit(&moved), "{count}");
+                assert!(count < 100 || asked < 3 * count / 4, "{asked} of {count}");
+            }
+        }
+    }
+}

@@ -16,6 +16,7 @@ mod gltf_scene;
 mod hostile;
 mod materials;
 mod obj;
+mod outlines;
 mod park;
 mod polygons;
 mod scene_files;

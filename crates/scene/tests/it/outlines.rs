@@ -1,0 +1,70 @@
+//! The light's box around parts is that around all their points, of which few are looked at.
+
+use glam::{DVec3, Vec3};
+use skiagraph_scene::{DirectionalLight, LightFit, Outline};
+
+/// Clouds of points in rows, some of which are nothing.
+fn clouds(count: usize) -> Vec<Vec<Vec3>> {
+    let mut state = 7u32;
+    let mut next = || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 8) as f32 / 16_777_216.0
+    };
+    let mut point = |at: Vec3| at + Vec3::new(next(), next(), next());
+    let cloud = |index: usize| {
+        let at = Vec3::new(
+            (index % 9) as f32,
+            0.2 * (index % 5) as f32,
+            (index / 9) as f32,
+        );
+        (0..index % 40).map(|_| point(3.0 * at)).collect()
+    };
+    (0..count).map(cloud).collect()
+}
+
+fn loose(light: &DirectionalLight, points: &[Vec3]) -> Outline {
+    let [low, high] = [Vec3::min, Vec3::max].map(|of| points.iter().copied().reduce(of));
+    let ends = low.zip(high).map(|(low, high)| [low, high]);
+    let corners = ends.into_iter().flat_map(|ends| {
+        (0..8).map(move |corner: usize| {
+            Vec3::from_array([0, 1, 2].map(|axis| ends[corner >> axis & 1][axis]))
+        })
+    });
+    light.outline(corners)
+}
+
+#[test]
+fn the_box_of_parts_is_that_of_their_points() {
+    for direction in [DVec3::NEG_Y, DVec3::new(0.4, -1.0, -0.3), DVec3::X] {
+        let light = DirectionalLight::new(direction);
+        for count in [0, 1, 3, 60, 120] {
+            let clouds = clouds(count);
+            let mut known = vec![None; count];
+            let mut asked = 0;
+            let mut joined = |known: &mut [Option<Outline>], clouds: &[Vec<Vec3>]| {
+                let outline = Outline::joined(
+                    known,
+                    |part| loose(&light, &clouds[part]),
+                    |part| {
+                        asked += 1;
+                        light.outline(clouds[part].iter().copied())
+                    },
+                );
+                light.fit_outline(&outline)
+            };
+            let fit =
+                |clouds: &[Vec<Vec3>]| -> LightFit { light.fit(clouds.iter().flatten().copied()) };
+            assert_eq!(joined(&mut known, &clouds), fit(&clouds), "{count}");
+            // Those inside are not asked for; nor is one twice, but for those that move.
+            let mut moved = clouds.clone();
+            for part in [0, 2, 31, 77].into_iter().filter(|part| *part < count) {
+                moved[part]
+                    .iter_mut()
+                    .for_each(|point| *point += Vec3::splat(0.4));
+                known[part] = None;
+            }
+            assert_eq!(joined(&mut known, &moved), fit(&moved), "{count}");
+            assert!(count < 100 || asked < 3 * count / 4, "{asked} of {count}");
+        }
+    }
+}

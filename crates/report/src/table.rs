@@ -55,8 +55,8 @@ fn width(table: &Table, column: usize) -> usize {
     cells.chain([head]).filter_map(lines).max().unwrap_or(0)
 }
 
-/// How wide a cell of this column may get: of a table of words alone, the last column takes what the
-/// others leave of a line.
+/// How wide a cell of this column may get: of a table of words alone, the last column takes what
+/// the others leave of a line.
 fn room(table: &Table, column: usize) -> usize {
     let is_beside = table.words < table.heads.len();
     let is_last = column + 1 == table.heads.len();

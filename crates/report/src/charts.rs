@@ -144,8 +144,8 @@ fn titled(views: &str, light: Option<&str>, viewport: [u32; 2]) -> String {
 
 /// Builds the chart of time and memory against the number of triangles: two panels for each scene,
 /// view, light and viewport, and a line for each method and map size. The time is the GPU time of a
-/// frame without its G-buffer, in milliseconds; the memory is in MB. `viewport` (pixels) limits the chart
-/// to one viewport; `None` draws all.
+/// frame without its G-buffer, in milliseconds; the memory is in MB. `viewport` (pixels) limits the
+/// chart to one viewport; `None` draws all.
 ///
 /// # Errors
 /// If a drawn run has no GPU times.
@@ -256,11 +256,11 @@ pub fn frames_of_paths(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figu
 }
 
 /// Returns a panel for each camera path and light among `runs`, with a series for each run and a
-/// mark for the error of each frame. The error is the percentage of the pixels facing the light that are wrong
-/// outside the band (the pixels whose answer rounding decides); under a light with an extent it is
-/// the root mean square error of the shares of light. Runs of still views are skipped. All runs
-/// must have one viewport. A series is named after its method. The size of its marks is the index
-/// of the run's map size in `maps` (texels), or 0.
+/// mark for the error of each frame. The error is the percentage of the pixels facing the light
+/// that are wrong outside the band (the pixels whose answer rounding decides); under a light with
+/// an extent it is the root mean square error of the shares of light. Runs of still views are
+/// skipped. All runs must have one viewport. A series is named after its method. The size of its
+/// marks is the index of the run's map size in `maps` (texels), or 0.
 pub fn path_panels<'a>(
     runs: impl Iterator<Item = (&'a Run, &'a Measured)>,
     maps: &[u32],

@@ -15,12 +15,14 @@ pub struct GpuMesh<'a> {
     pub vertices: wgpu::BufferSlice<'a>,
     /// Distance from the start of one vertex to the start of the next, in bytes.
     pub stride: usize,
-    /// Offset of the position within a vertex, in bytes; it is three f32.
+    /// Offset of the position within a vertex, in bytes. It is three f32 in world space, or in the
+    /// space of a part for [`Movable::joined`](skiagraph_scene::Movable::joined).
     pub position: usize,
     /// Offset of the normal within a vertex, in bytes; it is three f32. `None` if vertices have
     /// none; triangles then get the normals of their planes.
     pub normal: Option<usize>,
-    /// Three indices into `vertices` for each triangle, in a buffer with the usage `COPY_SRC`.
+    /// Three indices into `vertices` for each triangle, counter-clockwise as seen from outside, in
+    /// a buffer with the usage `COPY_SRC`.
     pub indices: wgpu::BufferSlice<'a>,
     /// Type of the indices: 16 or 32 bits.
     pub format: wgpu::IndexFormat,

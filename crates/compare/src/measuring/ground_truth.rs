@@ -50,10 +50,12 @@ pub struct PrimaryVisibility {
 }
 
 impl PrimaryVisibility {
-    /// Loads the G-buffer's graph from `sources`.
+    /// Loads the G-buffer's graph, `pipelines/shared/gbuffer.ron`, with its shaders from `sources`.
+    /// [`EmbeddedSources`](skiagraph_passes::EmbeddedSources) has these files; others may replace
+    /// them.
     ///
     /// # Errors
-    /// The graph has faults, for example if a file on disk replaces the built-in one.
+    /// A file is missing or has a fault.
     pub fn load(sources: &dyn Sources) -> Result<Self, CompareError> {
         let recorded = RecordedSources::new(sources);
         let graph = Graph::load(GBUFFER, &registry(), &recorded)

@@ -366,7 +366,8 @@ impl Plan {
     }
 
     /// Returns a plan of the same graph for another viewport, width and height in pixels. This plan
-    /// stays as it is.
+    /// stays as it is. Imports keep the sizes that the request describes: if they follow the
+    /// viewport, change both by [`with`](Self::with).
     ///
     /// # Errors
     /// All mistakes of the graph with this viewport.

@@ -16,7 +16,8 @@ impl UvTransform {
         offset: Vec2::ZERO,
     };
 
-    /// The map of coordinates with v down, as meshes have them.
+    /// Maps coordinates with v down, as meshes have them, to coordinates with v down: v is turned
+    /// up, both are multiplied by the scale and moved by the offset, and v is turned down again.
     pub fn apply(&self, uv: Vec2) -> Vec2 {
         if *self == Self::IDENTITY {
             return uv;

@@ -68,7 +68,9 @@ const OPTIONS: [(&str, usize, bool); 12] = [
 ];
 
 impl TextureStatement {
-    /// Reads what follows the keyword. A word that is no option begins the file's name.
+    /// Reads the text behind a keyword of an .mtl file such as `map_Kd`. A word that is no option
+    /// begins the file's name, as does a word where an option lacks a number, which keeps its
+    /// default then. Without a name `file` is empty.
     pub fn parse(text: &str) -> Self {
         let mut statement = Self {
             file: String::new(),

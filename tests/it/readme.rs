@@ -99,6 +99,7 @@ fn the_rust_of_the_documents_is_code_that_runs() {
         "crates/gpu/tests/it/pipelines.rs",
         "crates/passes/examples/preset/shadows.rs",
         "tests/it/host.rs",
+        "tests/it/views.rs",
     ]
     .map(|path| bare(&read(path)));
     for (document, least) in [("README.md", 2), ("docs/embedding.md", 16)] {

@@ -57,4 +57,5 @@ mod splits;
 mod spot_layers;
 mod texels;
 mod trace;
+mod views;
 mod work;

@@ -14,11 +14,11 @@ const VIEWPORT: [u32; 2] = [64, 40];
 /// They take lights of all kinds.
 const PRESETS: [&str; 3] = ["rt", "light_buffer", "nsm"];
 
-fn sun() -> LightKind {
+pub(crate) fn sun() -> LightKind {
     DirectionalLight::new(DVec3::new(0.4, -1.0, -0.3)).into()
 }
 
-fn lamps() -> [LightKind; 2] {
+pub(crate) fn lamps() -> [LightKind; 2] {
     [
         LightKind::Spot(SpotLight {
             position: DVec3::new(-3.0, 6.0, 3.0),
@@ -33,7 +33,7 @@ fn lamps() -> [LightKind; 2] {
     ]
 }
 
-fn view(time: f64) -> View {
+pub(crate) fn view(time: f64) -> View {
     View {
         name: String::new(),
         eye: DVec3::new(1.0 + 2.0 * time, 6.0, 9.0),
@@ -46,18 +46,18 @@ fn view(time: f64) -> View {
     }
 }
 
-fn parts() -> Movable {
+pub(crate) fn parts() -> Movable {
     let floor = meshes::box_over_floor(8.0, Vec3::splat(0.5));
     Movable::joined(&[&floor, &meshes::potato(3, 0.2, 1)])
 }
 
-fn places(time: f64) -> [DAffine3; 2] {
+pub(crate) fn places(time: f64) -> [DAffine3; 2] {
     let at = DVec3::new(2.0 - 1.5 * time, 1.0 + 0.5 * time, 0.5 * time);
     [DAffine3::IDENTITY, DAffine3::from_translation(at)]
 }
 
 /// The parts at a time as one mesh that never moved.
-fn mesh(parts: &Movable, time: f64) -> Mesh {
+pub(crate) fn mesh(parts: &Movable, time: f64) -> Mesh {
     parts.moved(&places(time)).unwrap()
 }
 
@@ -112,7 +112,7 @@ fn alone(gpu: &Gpu, preset: &str, mesh: Mesh, light: LightKind, camera: f64) -> 
 
 /// How many pixels differ.
 #[track_caller]
-fn same(seen: &[u32], expected: &[u32], what: &str) {
+pub(crate) fn same(seen: &[u32], expected: &[u32], what: &str) {
     let wrong = seen.iter().zip(expected).filter(|(a, b)| a != b).count();
     assert_eq!(wrong, 0, "{what}: so many of {} pixels differ", seen.len());
 }

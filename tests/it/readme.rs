@@ -96,8 +96,10 @@ fn the_rust_of_the_documents_is_code_that_runs() {
         "crates/gpu/examples/embed.rs",
         "crates/gpu/examples/custom_pass.rs",
         "crates/gpu/tests/it/embedding.rs",
+        "crates/gpu/tests/it/pipelines.rs",
         "crates/passes/examples/preset/shadows.rs",
         "tests/it/host.rs",
+        "tests/it/views.rs",
     ]
     .map(|path| bare(&read(path)));
     for (document, least) in [("README.md", 2), ("docs/embedding.md", 16)] {

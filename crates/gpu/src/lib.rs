@@ -40,6 +40,7 @@ pub mod timing;
 
 pub use error::ExecuteError;
 pub use frame::{Executor, Frame, FrameReport, Prepared, Preparer, ReplanReport};
+pub use pipelines::pipelines::Pipelines;
 pub use provider::{CpuWork, Provider, ProviderError};
 pub use readback::{Content, Readback};
 pub use timing::{FrameTiming, PassStatistics, PassTiming};

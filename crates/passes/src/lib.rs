@@ -48,6 +48,7 @@ mod ray_query;
 mod shape;
 mod trace;
 pub mod uniforms;
+mod view;
 
 pub use atlas::MaterialRecord;
 pub use built::{Built, How};
@@ -57,3 +58,4 @@ pub use host::{GpuMesh, GpuMeshError};
 pub use presets::{EmbeddedSources, Preset, presets, registry};
 pub use provider::SceneProvider;
 pub use trace::{Direction, Engine, Mode, Trace};
+pub use view::SceneView;

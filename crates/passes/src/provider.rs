@@ -147,6 +147,7 @@ impl SceneProvider {
 
     /// The buffer of that name with what is in it now.
     fn buffer(&mut self, name: &str, on: On) -> Result<wgpu::Buffer, Error> {
+        self.buffers.lay_over(self.versions.shape);
         let version = self.version(name);
         if let Some(buffer) = self.buffers.get(name, version) {
             return Ok(buffer.clone());
@@ -274,7 +275,8 @@ impl SceneProvider {
             LIGHT_SPACE_NODES | LIGHT_SPACE_PRIMITIVES => self.upload_light_space(on),
             _ => {
                 let content = lights::content(name, self.lights(), mesh);
-                self.upload_items(name, &content.ok_or_else(|| unknown(name))?, on)
+                let missing = || lights::gone(name, self.lights()).unwrap_or_else(|| unknown(name));
+                self.upload_items(name, &content.ok_or_else(missing)?, on)
             }
         }
     }
@@ -336,7 +338,7 @@ impl SceneProvider {
 
     /// Returns the light that was set last: the resources `light` and `light_area` describe it.
     pub fn light(&self) -> LightKind {
-        self.versions.light.now
+        self.versions.light.light.now
     }
 
     /// Returns the index of [`light`](Self::light) in [`lights`](Self::lights); 0 if it is not in
@@ -347,9 +349,10 @@ impl SceneProvider {
         number.unwrap_or_default()
     }
 
-    /// Returns the lights that the resources `lights` and `light_areas` describe. These are all
-    /// lights of the scene in its order (its default light if it has none), or the light of a view
-    /// alone, if [`set_view`](Self::set_view) was given a view whose own light is none of these.
+    /// Returns the lights that the resources `lights` and `light_areas` describe: those of
+    /// [`set_lights`](Self::set_lights), if it was called. Otherwise these are all lights of the
+    /// scene in its order (its default light if it has none), or the light of a view alone, if
+    /// [`set_view`](Self::set_view) was given a view whose own light is none of these.
     pub fn lights(&self) -> &[LightKind] {
         &self.versions.lights.now
     }
@@ -361,6 +364,24 @@ impl SceneProvider {
     /// [`ExecuteError::OtherThanPlanned`](skiagraph_gpu::ExecuteError::OtherThanPlanned).
     pub fn set_light(&mut self, light: LightKind) {
         self.versions.set_light(light);
+    }
+
+    /// Sets the lights that the resources `lights` and `light_areas` describe, all at once;
+    /// [`light`](Self::light) stays as it is. They may be others in each frame. What a pass makes
+    /// from `lights[2]` alone is made anew only if that light has changed, or the mesh.
+    ///
+    /// A plan depends on the number of the lights and the kind of each: after a change of these,
+    /// graphs that read them must be planned anew. Until then
+    /// [`refresh`](skiagraph_gpu::Executor::refresh) fails with an error that names the light, or
+    /// the list.
+    ///
+    /// # Errors
+    /// [`Error::LightNumber`] for a light that cannot be used, [`Error::NoLights`] for an empty
+    /// list. The lights then stay as they were.
+    pub fn set_lights(&mut self, lights: &[LightKind]) -> Result<(), Error> {
+        lights::check(lights)?;
+        self.versions.set_lights(lights.to_vec());
+        Ok(())
     }
 
     /// Replaces the mesh by one without parts to move. A plan depends on the numbers of positions,
@@ -532,10 +553,8 @@ impl Describe for SceneProvider {
 
 impl Provider for SceneProvider {
     fn version(&self, name: &str) -> u64 {
-        match lights::describe(name, self.lights()) {
-            Some(_) => self.versions.of_lists(),
-            None => self.versions.get(name),
-        }
+        let of_lights = lights::version(name, &self.versions);
+        of_lights.unwrap_or_else(|| self.versions.get(name))
     }
 
     fn missing(&self, name: &str) -> Option<String> {

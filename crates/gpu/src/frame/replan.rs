@@ -15,7 +15,7 @@ use super::{
 use crate::{
     error::ExecuteError,
     memory::memory::Memory,
-    pipelines::pipelines::{Pipelines, same_pipeline},
+    pipelines::{key::same_pipeline, pipelines::Pipelines},
 };
 use skiagraph_graph::{Ids, LinkedPass, Plan, ResourceId, ResourceKind, step::Step};
 use std::collections::{BTreeMap, HashMap};
@@ -113,7 +113,7 @@ impl<'a> Reused<'a> {
     /// Creates the passes of the plan, with the input versions that they remember.
     pub fn passes(
         &self,
-        pipelines: &mut Pipelines,
+        pipelines: &Pipelines,
         device: &wgpu::Device,
     ) -> Result<Vec<GpuPass>, ExecuteError> {
         let groups = self.groups();

@@ -39,6 +39,7 @@ mod hostile;
 mod lamp_maps;
 mod layers;
 mod light_buffer;
+mod light_cone;
 mod light_space;
 mod masked;
 mod mirrored;

@@ -61,10 +61,10 @@ pub enum Error {
         /// Number of positions of the mesh.
         corners: usize,
     },
-    /// The light cannot be used, for example because a number is not finite.
+    /// A light cannot be used, for example because a number is not finite or a sun is too wide.
     #[error("{0}")]
     Light(
-        /// Reason why the light cannot be used.
+        /// Reason why the light cannot be used, with its name in the scene.
         String,
     ),
     /// A light of [`SceneProvider::set_lights`](crate::SceneProvider::set_lights) cannot be used,

@@ -215,6 +215,18 @@ impl SceneProvider {
         Ok(tree.how)
     }
 
+    /// The light, if it can be used; of the scene's lights the error names which one it is.
+    fn checked(&self, light: LightKind) -> Result<LightKind, Error> {
+        let Err(reason) = light.check() else {
+            return Ok(light);
+        };
+        let mut lights = self.scene.lights.iter();
+        // Numbers that are none equal nothing, but their mistakes do.
+        let named = lights.find(|of| of.kind.check().as_ref() == Err(&reason));
+        let named = named.and_then(|light| light.check().err());
+        Err(Error::Light(named.unwrap_or(reason)))
+    }
+
     fn light_uniform(&self) -> LightUniform {
         LightUniform::new(self.light(), &self.scene.mesh)
     }
@@ -267,13 +279,19 @@ impl SceneProvider {
                 self.upload_items(name, &[self.versions.eye.now.finite()?.unprojection], on)
             }
             LIGHT => {
-                self.light().check().map_err(Error::Light)?;
+                self.checked(self.light())?;
                 self.upload_items(name, &[self.light_uniform()], on)
             }
-            LIGHT_AREA => self.upload_items(name, &[LightAreaUniform::from(&self.light())], on),
+            LIGHT_AREA => {
+                let light = self.checked(self.light())?;
+                self.upload_items(name, &[LightAreaUniform::from(&light)], on)
+            }
             BVH_NODES | BVH_PRIMITIVES => self.upload_hierarchy(on),
             LIGHT_SPACE_NODES | LIGHT_SPACE_PRIMITIVES => self.upload_light_space(on),
             _ => {
+                for &light in self.lights() {
+                    self.checked(light)?;
+                }
                 let content = lights::content(name, self.lights(), mesh);
                 let missing = || lights::gone(name, self.lights()).unwrap_or_else(|| unknown(name));
                 self.upload_items(name, &content.ok_or_else(missing)?, on)

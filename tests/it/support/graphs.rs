@@ -30,6 +30,7 @@ impl Extended {
         }
     }
 
+    /// Adds a buffer, or replaces what a resource of the scene holds.
     pub fn add<T: bytemuck::NoUninit>(&mut self, name: &str, items: &[T]) {
         let content = bytemuck::cast_slice(items).to_vec();
         self.buffers
@@ -39,16 +40,16 @@ impl Extended {
 
 impl Describe for Extended {
     fn names(&self) -> Vec<String> {
-        self.scene
-            .names()
-            .into_iter()
-            .chain(self.buffers.keys().cloned())
-            .collect()
+        let mut names = self.scene.names();
+        names.retain(|name| !self.buffers.contains_key(name));
+        names.extend(self.buffers.keys().cloned());
+        names
     }
 
     fn describe(&self, name: &str) -> Option<Provided> {
-        let Some((content, stride)) = self.buffers.get(name) else {
-            return self.scene.describe(name);
+        let of_scene = self.scene.describe(name);
+        let Some((content, stride)) = self.buffers.get(name).filter(|_| of_scene.is_none()) else {
+            return of_scene;
         };
         Some(Provided {
             items: Some(content.len() as u64 / stride),
@@ -82,7 +83,7 @@ impl Provider for Extended {
             device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
                 label: Some(name),
                 contents: content,
-                usage: wgpu::BufferUsages::STORAGE,
+                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::UNIFORM,
             }),
         )
     }

@@ -9,7 +9,6 @@ use crate::support::{
     scenes::load,
 };
 use glam::DVec3;
-use skiagraph_gpu::Executor;
 use skiagraph_graph::{Capture, ParamValue};
 use skiagraph_reference::{
     GroundTruth, Progress, Shimmer,
@@ -54,7 +53,7 @@ fn layers(scene: &Arc<Scene>, view: &View, preset: &str, params: Params) -> Vec<
         },
     );
     let gpu = open();
-    let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, &mut provider).unwrap();
+    let mut executor = gpu.executor(plan, &mut provider).unwrap();
     let report = frame(&gpu, &mut executor, &["map_fits"]);
     let words: Vec<f32> = values(&report, "map_fits")
         .into_iter()

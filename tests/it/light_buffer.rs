@@ -102,7 +102,8 @@ impl Bench {
                 after: None,
             }));
         });
-        Executor::new(&self.gpu.device, &self.gpu.queue, plan, &mut self.provider)
+        self.gpu
+            .executor(plan, &mut self.provider)
             .unwrap_or_else(|error| panic!("{error}"))
     }
 

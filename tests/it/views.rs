@@ -178,7 +178,7 @@ fn a_light_is_laid_once_for_all_views() {
             let plan = graphs::plan("pipelines/rt.ron", provider, view.size(), |request| {
                 request.params.insert("engine".into(), engine);
             });
-            let executor = Executor::new(&gpu.device, &gpu.queue, plan, provider).unwrap();
+            let executor = gpu.executor(plan, provider).unwrap();
             views.push((view, executor));
         }
     }

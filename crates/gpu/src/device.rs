@@ -13,8 +13,8 @@
 //! # Ok::<(), device::GpuError>(())
 //! ```
 
-use crate::experimental;
-use skiagraph_graph::PartialBackend;
+use crate::{Executor, Pipelines, error::ExecuteError, experimental, provider::Provider};
+use skiagraph_graph::{PartialBackend, Plan};
 use std::{cmp::Reverse, time::Duration};
 
 /// An open wgpu device with its instance, adapter and queue.
@@ -29,6 +29,8 @@ pub struct Gpu {
     pub device: wgpu::Device,
     /// The queue that work for the device is submitted to.
     pub queue: wgpu::Queue,
+    /// Shader modules and pipelines that the executors of [`executor`](Self::executor) share.
+    pub pipelines: Pipelines,
     /// Most bytes that the textures and buffers of a graph may take together. The host passes it on
     /// as [`PlanRequest::memory_limit`](skiagraph_graph::PlanRequest::memory_limit). `None` for no
     /// limit, as [`open`] and [`open_with`] set it; wgpu does not tell how much memory a device
@@ -38,6 +40,21 @@ pub struct Gpu {
     /// [`Executor::finish_within`](crate::Executor::finish_within). `None` for no limit, as
     /// [`open`] and [`open_with`] set it.
     pub timeout: Option<Duration>,
+}
+
+impl Gpu {
+    /// Creates an executor of a plan on this device. It shares its pipelines with all others that
+    /// are created so.
+    ///
+    /// # Errors
+    /// Those of [`Executor::new`].
+    pub fn executor(
+        &self,
+        plan: Plan,
+        provider: &mut dyn Provider,
+    ) -> Result<Executor, ExecuteError> {
+        Executor::with_pipelines(&self.pipelines, &self.queue, plan, provider)
+    }
 }
 
 /// Choice of the device that [`open_with`] opens. The [`Default`] accepts any adapter of
@@ -251,6 +268,7 @@ fn device_of(
         Ok((device, queue)) => Ok(Gpu {
             instance,
             adapter,
+            pipelines: Pipelines::new(&device),
             device,
             queue,
             memory: None,

@@ -40,7 +40,7 @@ pub fn executor(
     plan: Plan,
     provider: &mut dyn Provider,
 ) -> Result<Executor, ExecuteError> {
-    Executor::new(&session.gpu.device, &session.gpu.queue, plan, provider)
+    session.gpu.executor(plan, provider)
 }
 
 /// Creates the executor of a plan, with growing buffers (those whose size depends on the frame's

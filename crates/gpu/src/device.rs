@@ -13,8 +13,8 @@
 //! # Ok::<(), device::GpuError>(())
 //! ```
 
-use crate::{Executor, Pipelines, error::ExecuteError, experimental, provider::Provider};
-use skiagraph_graph::{PartialBackend, Plan};
+use crate::{experimental, pipelines::pipelines::Pipelines};
+use skiagraph_graph::PartialBackend;
 use std::{cmp::Reverse, time::Duration};
 
 /// An open wgpu device with its instance, adapter and queue.
@@ -29,7 +29,7 @@ pub struct Gpu {
     pub device: wgpu::Device,
     /// The queue that work for the device is submitted to.
     pub queue: wgpu::Queue,
-    /// Shader modules and pipelines that the executors of [`executor`](Self::executor) share.
+    /// Shader modules and pipelines that the executors of [`executor`](Gpu::executor) share.
     pub pipelines: Pipelines,
     /// Most bytes that the textures and buffers of a graph may take together. The host passes it on
     /// as [`PlanRequest::memory_limit`](skiagraph_graph::PlanRequest::memory_limit). `None` for no
@@ -40,21 +40,6 @@ pub struct Gpu {
     /// [`Executor::finish_within`](crate::Executor::finish_within). `None` for no limit, as
     /// [`open`] and [`open_with`] set it.
     pub timeout: Option<Duration>,
-}
-
-impl Gpu {
-    /// Creates an executor of a plan on this device. It shares its pipelines with all others that
-    /// are created so.
-    ///
-    /// # Errors
-    /// Those of [`Executor::new`].
-    pub fn executor(
-        &self,
-        plan: Plan,
-        provider: &mut dyn Provider,
-    ) -> Result<Executor, ExecuteError> {
-        Executor::with_pipelines(&self.pipelines, &self.queue, plan, provider)
-    }
 }
 
 /// Choice of the device that [`open_with`] opens. The [`Default`] accepts any adapter of

@@ -17,7 +17,7 @@ use super::{
     uniform::FrameUniform,
 };
 use crate::{
-    device::partial,
+    device::{Gpu, partial},
     error::{ExecuteError, poll, wait, with_table},
     memory::{
         import::differs,
@@ -882,6 +882,21 @@ pub(super) fn list(names: &[&str]) -> String {
         "none".to_owned()
     } else {
         names.join(", ")
+    }
+}
+
+impl Gpu {
+    /// Creates an executor of a plan on this device. It shares its pipelines with all others that
+    /// are created so.
+    ///
+    /// # Errors
+    /// Those of [`Executor::new`].
+    pub fn executor(
+        &self,
+        plan: Plan,
+        provider: &mut dyn Provider,
+    ) -> Result<Executor, ExecuteError> {
+        Executor::with_pipelines(&self.pipelines, &self.queue, plan, provider)
     }
 }
 

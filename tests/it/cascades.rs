@@ -9,6 +9,7 @@ use crate::support::{
     scenes::load,
 };
 use glam::DVec3;
+use skiagraph_gpu::Executor;
 use skiagraph_graph::{Capture, ParamValue};
 use skiagraph_reference::{
     GroundTruth, Progress, Shimmer,
@@ -53,7 +54,7 @@ fn layers(scene: &Arc<Scene>, view: &View, preset: &str, params: Params) -> Vec<
         },
     );
     let gpu = open();
-    let mut executor = gpu.executor(plan, &mut provider).unwrap();
+    let mut executor = Executor::on(&gpu, plan, &mut provider).unwrap();
     let report = frame(&gpu, &mut executor, &["map_fits"]);
     let words: Vec<f32> = values(&report, "map_fits")
         .into_iter()

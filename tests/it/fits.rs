@@ -8,6 +8,7 @@ use crate::support::{
     meshes::{joined, mesh, potato},
 };
 use glam::{DVec2, DVec3, Vec3};
+use skiagraph_gpu::Executor;
 use skiagraph_graph::{Capture, ParamValue};
 use skiagraph_scene::{DirectionalLight, Scene, View};
 use std::sync::Arc;
@@ -61,7 +62,7 @@ fn map_of(scene: &Arc<Scene>, preset: &str, fit: &str, distance: f32) -> (MapFit
         });
         request.captures.extend(captures);
     });
-    let mut executor = gpu.executor(plan, &mut provider).unwrap();
+    let mut executor = Executor::on(&gpu, plan, &mut provider).unwrap();
     let report = frame(&gpu, &mut executor, &captured);
     let map = MapFit::new(&report, scene);
     let positions = report
@@ -212,7 +213,7 @@ fn a_map_over_the_receivers_follows_them() {
         let plan = plan("pipelines/nsm.ron", &provider, VIEWPORT, |request| {
             request.params.insert("fit".to_owned(), word("receivers"));
         });
-        let executor = gpu.executor(plan, &mut provider).unwrap();
+        let executor = Executor::on(&gpu, plan, &mut provider).unwrap();
         (executor, provider)
     };
     let (mut executor, mut provider) = start(&near.views[0]);

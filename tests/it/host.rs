@@ -9,7 +9,7 @@ use glam::{
     DAffine3, DMat4, DVec3, Vec3,
     dcamera::rh::{proj::directx as proj, view::look_to_mat4},
 };
-use skiagraph_gpu::{FrameReport, device::Gpu, import};
+use skiagraph_gpu::{Executor, FrameReport, device::Gpu, import};
 use skiagraph_graph::{Graph, PlanRequest};
 use skiagraph_passes::{Depth, Eye, GpuMesh, SceneProvider, registry};
 use skiagraph_reference::Oracle;
@@ -183,7 +183,7 @@ fn a_light_and_a_camera_that_are_none_are_errors() {
         let mut host = SceneProvider::from_mesh(stone.clone(), light);
         host.set_camera(&view.camera(VIEWPORT));
         let plan = graphs::plan("pipelines/light_buffer.ron", &host, VIEWPORT, |_| {});
-        let error = gpu.executor(plan, &mut host).err().unwrap();
+        let error = Executor::on(&gpu, plan, &mut host).err().unwrap();
         assert!(error.to_string().contains(expected), "{error}");
     }
 }
@@ -356,7 +356,7 @@ fn on_depth(
     let plan = graph
         .plan(&request)
         .unwrap_or_else(|error| panic!("{error}"));
-    let mut executor = gpu.executor(plan, provider).unwrap();
+    let mut executor = Executor::on(gpu, plan, provider).unwrap();
     for (name, texture) in imports {
         executor.import_texture(name, texture).unwrap();
     }

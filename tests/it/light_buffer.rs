@@ -102,9 +102,7 @@ impl Bench {
                 after: None,
             }));
         });
-        self.gpu
-            .executor(plan, &mut self.provider)
-            .unwrap_or_else(|error| panic!("{error}"))
+        Executor::on(&self.gpu, plan, &mut self.provider).unwrap_or_else(|error| panic!("{error}"))
     }
 
     /// Visibility of every pixel by rays alone.

@@ -48,7 +48,7 @@ fn provider(parts: Movable) -> SceneProvider {
 fn start(gpu: &Gpu, preset: &str, provider: &mut SceneProvider) -> Executor {
     let path = format!("pipelines/{preset}.ron");
     let plan = graphs::plan(&path, provider, VIEWPORT, |_| {});
-    gpu.executor(plan, provider).unwrap()
+    Executor::on(gpu, plan, provider).unwrap()
 }
 
 fn shown(gpu: &Gpu, executor: &mut Executor) -> Vec<u32> {

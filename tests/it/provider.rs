@@ -136,7 +136,7 @@ fn a_new_camera_renews_what_depends_on_the_camera() {
         let plan = graph
             .plan(&PlanRequest::new(viewport, provider))
             .unwrap_or_else(|errors| panic!("{errors}"));
-        gpu.executor(plan, provider).unwrap()
+        Executor::on(&gpu, plan, provider).unwrap()
     };
     let mut provider = graphs::provider(&scene, &scene.views[0], viewport);
     let mut executor = start(&mut provider);
@@ -217,7 +217,7 @@ fn a_view_with_its_own_light_is_drawn_as_its_scene_would_be_under_that_light() {
             let plan = graph
                 .plan(&request)
                 .unwrap_or_else(|errors| panic!("{errors}"));
-            gpu.executor(plan, provider).unwrap()
+            Executor::on(&gpu, plan, provider).unwrap()
         };
         let next = |executor: &mut Executor| {
             let report = graphs::frame(&gpu, executor, &["visibility", "status"]);

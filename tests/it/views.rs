@@ -178,7 +178,7 @@ fn a_light_is_laid_once_for_all_views() {
             let plan = graphs::plan("pipelines/rt.ron", provider, view.size(), |request| {
                 request.params.insert("engine".into(), engine);
             });
-            let executor = gpu.executor(plan, provider).unwrap();
+            let executor = Executor::on(&gpu, plan, provider).unwrap();
             views.push((view, executor));
         }
     }

@@ -29,7 +29,8 @@ pub struct Gpu {
     pub device: wgpu::Device,
     /// The queue that work for the device is submitted to.
     pub queue: wgpu::Queue,
-    /// Shader modules and pipelines that the executors of [`executor`](Gpu::executor) share.
+    /// Shader modules and pipelines that executors created by
+    /// [`Executor::on`](crate::Executor::on) share.
     pub pipelines: Pipelines,
     /// Most bytes that the textures and buffers of a graph may take together. The host passes it on
     /// as [`PlanRequest::memory_limit`](skiagraph_graph::PlanRequest::memory_limit). `None` for no

@@ -6,7 +6,7 @@ use crate::support::{
     graphs::{self, frame, open, shares, values},
     scenes::load,
 };
-use skiagraph_gpu::FrameReport;
+use skiagraph_gpu::{Executor, FrameReport};
 use skiagraph_graph::ParamValue;
 use skiagraph_passes::SceneProvider;
 use skiagraph_reference::{
@@ -76,8 +76,7 @@ impl Bench {
                 .extend(params.map(|(name, value)| (name.to_owned(), value)));
         });
         let gpu = open();
-        let mut executor = gpu
-            .executor(plan, &mut provider)
+        let mut executor = Executor::on(&gpu, plan, &mut provider)
             .unwrap_or_else(|error| panic!("{path}: {error}"));
         for _ in 1..frames {
             frame(&gpu, &mut executor, &[]);

@@ -259,9 +259,7 @@ pub fn open() -> Gpu {
 
 /// Runs one frame of a plan on a device.
 pub fn run_on(gpu: &Gpu, plan: Plan, provider: &mut dyn Provider, read: &[&str]) -> FrameReport {
-    let mut executor = gpu
-        .executor(plan, provider)
-        .unwrap_or_else(|error| panic!("{error}"));
+    let mut executor = Executor::on(gpu, plan, provider).unwrap_or_else(|error| panic!("{error}"));
     frame(gpu, &mut executor, read)
 }
 

@@ -40,7 +40,7 @@ pub fn executor(
     plan: Plan,
     provider: &mut dyn Provider,
 ) -> Result<Executor, ExecuteError> {
-    session.gpu.executor(plan, provider)
+    Executor::on(session.gpu, plan, provider)
 }
 
 /// Creates the executor of a plan, with growing buffers (those whose size depends on the frame's

@@ -91,6 +91,15 @@ impl Executor {
         Self::with_pipelines(&Pipelines::new(device), queue, plan, provider)
     }
 
+    /// Creates an executor of a plan on an open device. Those of one [`Gpu`] share its
+    /// [pipelines](Gpu::pipelines).
+    ///
+    /// # Errors
+    /// Those of [`new`](Self::new).
+    pub fn on(gpu: &Gpu, plan: Plan, provider: &mut dyn Provider) -> Result<Self, ExecuteError> {
+        Self::with_pipelines(&gpu.pipelines, &gpu.queue, plan, provider)
+    }
+
     /// Creates an executor as [`new`](Self::new) does, on the device of `pipelines`, which it
     /// shares: it makes only the shader modules and pipelines that are missing there. `queue` is
     /// the queue of that device.
@@ -882,21 +891,6 @@ pub(super) fn list(names: &[&str]) -> String {
         "none".to_owned()
     } else {
         names.join(", ")
-    }
-}
-
-impl Gpu {
-    /// Creates an executor of a plan on this device. It shares its pipelines with all others that
-    /// are created so.
-    ///
-    /// # Errors
-    /// Those of [`Executor::new`].
-    pub fn executor(
-        &self,
-        plan: Plan,
-        provider: &mut dyn Provider,
-    ) -> Result<Executor, ExecuteError> {
-        Executor::with_pipelines(&self.pipelines, &self.queue, plan, provider)
     }
 }
 

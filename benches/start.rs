@@ -67,10 +67,7 @@ fn turn(preset: &str) -> Option<([Times; 4], Vec<u8>)> {
 }
 
 fn open() -> Option<Gpu> {
-    let wanted = Wanted {
-        features: wgpu::Features::PIPELINE_CACHE,
-        ..Wanted::default()
-    };
+    let wanted = Wanted::default().with_features(wgpu::Features::PIPELINE_CACHE);
     let opened = device::open_with(&wanted);
     opened
         .inspect_err(|error| println!("NOTHING WAS MEASURED: {error}"))

@@ -58,5 +58,6 @@ mod splits;
 mod spot_layers;
 mod texels;
 mod trace;
+mod unit_visibility;
 mod views;
 mod work;

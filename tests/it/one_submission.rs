@@ -78,10 +78,7 @@ fn start(gpu: &Gpu, preset: &str, provider: &mut SceneProvider) -> Executor {
 /// A frame of what is set now.
 fn encode(executor: &mut Executor, provider: &mut SceneProvider, to: &mut wgpu::CommandEncoder) {
     executor.refresh(provider).unwrap();
-    let frame = Frame {
-        read: &["visibility"],
-        ..Frame::default()
-    };
+    let frame = Frame::new().with_read(&["visibility"]);
     executor.encode(to, &frame).unwrap();
 }
 
@@ -184,10 +181,7 @@ fn an_executor_that_is_not_refreshed_shows_what_it_showed() {
         provider.set_transforms(&places(2.0)).unwrap();
         let mut encoder = encoder(&gpu);
         encode(&mut moving, &mut provider, &mut encoder);
-        let frame = Frame {
-            read: &["visibility"],
-            ..Frame::default()
-        };
+        let frame = Frame::new().with_read(&["visibility"]);
         still.encode(&mut encoder, &frame).unwrap();
         gpu.queue.submit([encoder.finish()]);
         same(&seen(&mut still), &expected, preset);

@@ -10,6 +10,7 @@ use skiagraph_gpu::{Content, ExecuteError, Executor, Frame, Pipelines, device::G
 use skiagraph_graph::{Graph, ParamValue, Plan, PlanRequest};
 use skiagraph_passes::{EmbeddedSources, Error, How, SceneProvider, SceneView, registry};
 use skiagraph_scene::{Camera, DirectionalLight, LightKind, Mesh, PointLight};
+use std::{error::Error as _, iter::successors};
 
 const SIZES: [[u32; 2]; 2] = [[64, 40], [48, 48]];
 
@@ -48,13 +49,7 @@ fn sharing(pipelines: &Pipelines, gpu: &Gpu, plan: Plan, provider: &mut ScenePro
     Executor::with_pipelines(pipelines, &gpu.queue, plan, provider).unwrap()
 }
 
-const READ: Frame<'_> = Frame {
-    timing: false,
-    statistics: false,
-    all: false,
-    read: &["visibility"],
-    seconds: 0.0,
-};
+const READ: Frame<'_> = Frame::new().with_read(&["visibility"]);
 
 fn encoder(gpu: &Gpu) -> wgpu::CommandEncoder {
     gpu.device.create_command_encoder(&Default::default())
@@ -331,11 +326,14 @@ fn other_lights_than_planned_are_named() {
         "{error}"
     );
     provider.set_lights(&lights(0.0)[..3]).unwrap();
-    let error = executor.refresh(&mut provider).unwrap_err().to_string();
+    let error = executor.refresh(&mut provider).unwrap_err();
+    let mut chain = successors(error.source(), |&error| error.source());
+    let cause = chain.find_map(|cause| cause.downcast_ref::<Error>());
     assert!(
-        error.contains("`lights[3]`") && error.contains("3 lights"),
+        matches!(cause, Some(Error::LightGone { name, lights: 3 }) if name == "lights[3]"),
         "{error}"
     );
+    assert!(error.to_string().contains("`lights[3]`"), "{error}");
 
     let mut broken = lights(0.0);
     broken[1] = PointLight {

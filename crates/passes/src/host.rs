@@ -1,7 +1,7 @@
 //! Inputs of a preset from a host program's own resources.
 
 use skiagraph_scene::{Indexed, IndexedError, Mesh};
-use std::sync::mpsc;
+use std::{error::Error, sync::mpsc};
 
 /// Triangle mesh in the vertex and index buffers of a host program, which [`GpuMesh::read`] copies
 /// back to the CPU.
@@ -65,7 +65,8 @@ pub enum GpuMeshError {
         /// Content of the buffer: `vertices` or `indices`.
         what: &'static str,
         /// Reason that wgpu gives.
-        why: String,
+        #[source]
+        why: Box<dyn Error + Send + Sync>,
     },
 }
 
@@ -136,12 +137,12 @@ fn read(
     staging.map_async(wgpu::MapMode::Read, .., move |done| {
         let _ = sender.send(done); // nobody waits any more after an error below
     });
-    let failed = |why: String| GpuMeshError::Device { what, why };
+    let failed = |why| GpuMeshError::Device { what, why };
     let waited = device.poll(wgpu::PollType::wait_indefinitely());
-    waited.map_err(|error| failed(error.to_string()))?;
-    let done = receiver.recv().map_err(|error| failed(error.to_string()))?;
-    done.map_err(|error| failed(error.to_string()))?;
+    waited.map_err(|error| failed(error.into()))?;
+    let done = receiver.recv().map_err(|error| failed(error.into()))?;
+    done.map_err(|error| failed(error.into()))?;
     let mapped = staging.slice(..size).get_mapped_range();
-    let mapped = mapped.map_err(|error| failed(error.to_string()))?;
+    let mapped = mapped.map_err(|error| failed(error.into()))?;
     Ok(mapped.to_vec())
 }

@@ -591,7 +591,7 @@ impl Provider for SceneProvider {
         queue: &wgpu::Queue,
     ) -> Result<wgpu::Buffer, ProviderError> {
         let buffer = self.buffer(name, On { device, queue });
-        buffer.map_err(|why| ProviderError(why.to_string()))
+        buffer.map_err(ProviderError::from_error)
     }
 
     fn build_acceleration_structure(
@@ -600,7 +600,7 @@ impl Provider for SceneProvider {
         device: &wgpu::Device,
         queue: &wgpu::Queue,
     ) -> Result<wgpu::Tlas, ProviderError> {
-        let why = |error: Error| ProviderError(error.to_string());
+        let why = |error: Error| ProviderError::from_error(error);
         if name != TLAS {
             return Err(why(unknown(name)));
         }
@@ -623,7 +623,7 @@ impl Provider for SceneProvider {
 
     #[cfg(feature = "embree")]
     fn build_cpu_work(&mut self, name: &str) -> Result<Arc<dyn CpuWork>, ProviderError> {
-        let why = |error: Error| ProviderError(error.to_string());
+        let why = |error: Error| ProviderError::from_error(error);
         if name != EMBREE {
             return Err(why(unknown(name)));
         }

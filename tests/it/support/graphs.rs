@@ -6,7 +6,8 @@ use skiagraph_gpu::{
     device::{self, Gpu},
 };
 use skiagraph_graph::{
-    Describe, Graph, LayeredSources, Plan, PlanRequest, Provided, ProvidedBinding, Sources,
+    Describe, Graph, LayeredSources, MemorySources, Plan, PlanRequest, Provided, ProvidedBinding,
+    Sources,
 };
 use skiagraph_passes::{EmbeddedSources, SceneProvider, registry};
 use skiagraph_scene::{DirectionalLight, Mesh, Scene, View};
@@ -89,29 +90,9 @@ impl Provider for Extended {
     }
 }
 
-/// Files that are on no disk, by their paths.
-struct Files(Vec<(String, String)>);
-
-impl Sources for Files {
-    fn read(&self, path: &str) -> Result<Option<Arc<str>>, String> {
-        let file = self.0.iter().find(|(name, _)| name == path);
-        Ok(file.map(|(_, text)| text.as_str().into()))
-    }
-
-    fn list(&self, _: &str) -> Vec<String> {
-        vec![]
-    }
-}
-
 /// Paths and texts before the embedded files.
 pub fn layered(files: &[(&str, &str)]) -> LayeredSources {
-    let files = files
-        .iter()
-        .map(|&(path, text)| (path.to_owned(), text.to_owned()));
-    LayeredSources(vec![
-        Box::new(Files(files.collect())),
-        Box::new(EmbeddedSources),
-    ])
+    MemorySources::new(files.iter().copied()).over(EmbeddedSources)
 }
 
 /// Runs a document given as text once, and returns one output's bytes.
@@ -248,10 +229,7 @@ pub fn allow_ray_queries(request: &mut PlanRequest<'_>) {
 /// an adapter fails the test with the way out.
 pub fn open() -> Gpu {
     static GPU: LazyLock<Gpu> = LazyLock::new(|| {
-        let wanted = device::Wanted {
-            features: RAY_QUERY,
-            ..Default::default()
-        };
+        let wanted = device::Wanted::default().with_features(RAY_QUERY);
         device::open_with(&wanted).unwrap_or_else(|error| panic!("{error}"))
     });
     GPU.clone()
@@ -268,10 +246,7 @@ pub fn frame(gpu: &Gpu, executor: &mut Executor, read: &[&str]) -> FrameReport {
     let mut encoder = gpu
         .device
         .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    let frame = Frame {
-        read,
-        ..Frame::default()
-    };
+    let frame = Frame::new().with_read(read);
     executor.encode(&mut encoder, &frame).unwrap();
     gpu.queue.submit([encoder.finish()]);
     executor.finish().unwrap()

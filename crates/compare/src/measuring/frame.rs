@@ -220,10 +220,7 @@ pub fn read(
     executor: &mut Executor,
     names: &[&str],
 ) -> Result<Contents, ExecuteError> {
-    let frame = Frame {
-        read: names,
-        ..Frame::default()
-    };
+    let frame = Frame::new().with_read(names);
     let (report, _) = run(session, executor, &frame)?;
     Ok(contents(report.readbacks))
 }

@@ -430,7 +430,7 @@ pub fn scene_bytes(
         let built = provider.build(name, &session.gpu.device, &session.gpu.queue);
         let buffer = built.map_err(|error| ExecuteError::Provider {
             name: name.to_owned(),
-            why: error.to_string(),
+            why: error,
         })?;
         bytes += buffer.size();
     }

@@ -23,6 +23,7 @@ use std::collections::{BTreeMap, HashMap};
 /// Work that a change of an [`Executor`](super::Executor)'s plan took. Names of passes stand in the
 /// order in which the passes run, names of resources in the order of the graph document.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct ReplanReport {
     /// Names of the passes whose uniform buffer `params` was uploaded again with other values; new
     /// passes are not listed.

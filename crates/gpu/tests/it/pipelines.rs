@@ -62,10 +62,7 @@ fn sharing(pipelines: &Pipelines, plan: Plan) -> Executor {
 /// The first numbers of the outputs after a frame on a device.
 fn firsts(executor: &mut Executor, gpu: &Gpu) -> Vec<u32> {
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    let frame = Frame {
-        read: &["drawn", "image", "list"],
-        ..Frame::default()
-    };
+    let frame = Frame::new().with_read(&["drawn", "image", "list"]);
     executor.encode(&mut encoder, &frame).unwrap();
     gpu.queue.submit([encoder.finish()]);
     let report = executor.finish().unwrap();
@@ -100,6 +97,18 @@ fn a_second_executor_makes_no_pipelines() -> Result<(), ExecuteError> {
     let own = Executor::new(&GPU.device, &GPU.queue, plan(), &mut NoProvider).unwrap();
     assert_eq!((own.pipelines().made(), pipelines.made()), (3, 6));
     Ok(())
+}
+
+/// A clone is the same plan, whatever becomes of the other.
+#[test]
+fn a_plan_and_its_clone_serve_an_executor_each() {
+    let plan = plan();
+    let pipelines = Pipelines::new(&GPU.device);
+    let mut first = sharing(&pipelines, plan.clone());
+    add(&mut first, 5);
+    let mut second = sharing(&pipelines, plan);
+    assert_eq!(firsts(&mut first, &GPU), [15, 25, 5]);
+    assert_eq!(firsts(&mut second, &GPU), [11, 21, 1]);
 }
 
 /// Each part of a pipeline makes another one of it; the others are shared.
@@ -166,10 +175,7 @@ fn pipelines_without_a_user_do_not_pile_up() {
 
 /// A device with `PIPELINE_CACHE`, which Vulkan always offers.
 static CACHING: LazyLock<Gpu> = LazyLock::new(|| {
-    let wanted = Wanted {
-        features: wgpu::Features::PIPELINE_CACHE,
-        ..Wanted::default()
-    };
+    let wanted = Wanted::default().with_features(wgpu::Features::PIPELINE_CACHE);
     let gpu = device::open_with(&wanted).unwrap_or_else(|error| panic!("{error}"));
     let features = gpu.device.features();
     assert!(

@@ -34,8 +34,9 @@ use std::{
 
 /// A graph that is planned for one viewport, one set of param values and one device: the *live*
 /// passes, which an output or the host needs, in the order in which they run, and every resource
-/// with its size and usages. It holds no GPU objects.
-#[derive(Debug)]
+/// with its size and usages. It holds no GPU objects. A clone serves another executor; it shares
+/// the graph and its shaders.
+#[derive(Clone, Debug)]
 pub struct Plan(pub(super) Planned);
 
 impl Plan {

@@ -15,10 +15,8 @@ fn main() {
     // `cargo bench` says `--bench`; without it the engines are only tried.
     let measured = std::env::args().any(|argument| argument == "--bench");
     let (edge, turns) = if measured { (512, 5) } else { (48, 1) };
-    let gpu = match device::open_with(&device::Wanted {
-        features: RAY_QUERY,
-        ..Default::default()
-    }) {
+    let wanted = device::Wanted::default().with_features(RAY_QUERY);
+    let gpu = match device::open_with(&wanted) {
         Ok(gpu) => gpu,
         Err(error) => {
             println!("NOTHING WAS MEASURED: {error}");

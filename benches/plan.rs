@@ -43,10 +43,8 @@ fn of_presets(criterion: &mut Criterion) {
     let (scene, _) = scene.expect("park is built in");
     let provider: &dyn Describe = &SceneProvider::new(Arc::new(scene));
     // Some presets need what few adapters have; planning asks no adapter.
-    let request = PlanRequest {
-        features: wgpu::Features::all(),
-        ..PlanRequest::new([1920, 1080], provider)
-    };
+    let request = PlanRequest::new([1920, 1080], provider)
+        .with_device(wgpu::Limits::default(), wgpu::Features::all());
     let registry = registry();
     for preset in presets() {
         let document = (preset.path.as_str(), &registry, &EmbeddedSources as _);

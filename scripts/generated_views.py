@@ -7,6 +7,11 @@
 Eyes and the points looked at are uniform in a box around what there is to see, lights uniform over
 the upper hemisphere; every fifth one is grazing, at most 5 degrees above the horizon. A seed always
 gives the same file.
+
+With --soft the lights have extents, of all sizes alike by their logarithm: suns from 0.1 to 30
+degrees wide, and for one view in four each a spot light and a point light, with a radius of 0.0002
+to 0.02 of the box's diagonal. They are lights of the scene: view 007 is meant to be seen under
+light_007.
 """
 
 import argparse
@@ -30,6 +35,7 @@ def arguments():
     parser.add_argument("scene", choices=BOXES)
     parser.add_argument("views", type=int, metavar="N")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--soft", action="store_true")
     parser.add_argument("--out", type=Path, required=True, metavar="FILE.ron")
     return parser.parse_args()
 
@@ -50,13 +56,29 @@ def light(random_, grazing):
     return [across * math.cos(turn), -height, across * math.sin(turn)]
 
 
-def view(random_, index, box, planes):
+def soft_light(random_, index, box):
+    """A light with an extent."""
+    name = f'name: "light_{index:03}"'
+    if index % 4 < 2:
+        angle = 0.1 * 300 ** random_.random()
+        direction = vector(light(random_, index % 5 == 4))
+        return f"Directional({name}, direction: {direction}, angle_degrees: {angle:.4f})"
+    radius = math.dist(*box) * 2e-4 * 100 ** random_.random()
+    place = f"{name}, position: {vector(point(random_, box))}, radius: {radius:.5f}"
+    if index % 4 == 2:
+        return f"Point({place})"
+    axis = vector([random_.gauss(0, 1), -1, random_.gauss(0, 1)])
+    return f"Spot({place}, direction: {axis}, cone_degrees: {random_.uniform(60, 160):.2f})"
+
+
+def view(random_, index, box, planes, own_light):
     eye, target = point(random_, box), point(random_, box)
     direction = [to - at for at, to in zip(eye, target)]
+    fov = random_.uniform(20, 100)
+    lit = f", light: (direction: {vector(light(random_, index % 5 == 4))})" if own_light else ""
     return (
         f'(name: "{index:03}", eye: {vector(eye)}, direction: {vector(direction)}, '
-        f"fov_y_degrees: {random_.uniform(20, 100):.3f}, {planes}, "
-        f"light: (direction: {vector(light(random_, index % 5 == 4))}))"
+        f"fov_y_degrees: {fov:.3f}, {planes}{lit})"
     )
 
 
@@ -68,10 +90,16 @@ def main():
     planes = re.search(r"near: \S+,\s+far: [\d.]+", text)[0]
     planes = " ".join(planes.split())
     random_ = random.Random(args.seed)
-    views = [view(random_, index, BOXES[args.scene], planes) for index in range(args.views)]
+    box, own_light = BOXES[args.scene], not args.soft
+    views = [view(random_, index, box, planes, own_light) for index in range(args.views)]
+    soft = " --soft" if args.soft else ""
+    if args.soft:
+        lights = [soft_light(random_, index, box) for index in range(args.views)]
+        listed = "    lights: [\n        " + ",\n        ".join(lights) + ",\n    ],\n"
+        header = re.sub(r"^    light: [^\n]*\n", lambda _: listed, header, flags=re.MULTILINE)
     args.out.parent.mkdir(parents=True, exist_ok=True)
     args.out.write_text(
-        f"// scripts/generated_views.py {args.scene} {args.views} --seed {args.seed}\n"
+        f"// scripts/generated_views.py {args.scene} {args.views} --seed {args.seed}{soft}\n"
         f'(\n    format: 1,\n    name: "{args.scene}_{args.views}_views_of_seed_{args.seed}",\n'
         f"{header}    views: [\n        " + ",\n        ".join(views) + ",\n    ],\n)\n"
     )

@@ -18,7 +18,7 @@ import sys
 from pathlib import Path
 
 WIDTH = 100
-FOR_HOSTS = ("graph", "gpu", "passes", "compare")
+FOR_HOSTS = ("graph", "gpu", "passes", "compare", "host")
 WRITTEN_BY_TESTS = {"diagnostics.md", "reference.md"}
 ROOT = Path(__file__).resolve().parent.parent
 TOKENS = re.compile(

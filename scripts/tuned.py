@@ -28,8 +28,8 @@ PARAMS = {
     "pssm": ["cull", "slope_bias", "bias", "split_lambda", "fit_to_receivers", "normal_offset"],
     "pcf": ["cull", "fit", "radius", "slope_bias", "bias"],
 }
-# Most settings that one command compares.
-AT_ONCE = 900
+# Most settings that one command compares: each keeps its resources, for frames in turns.
+AT_ONCE = 200
 TIMES, POINTS = 1.2, 0.0005
 
 

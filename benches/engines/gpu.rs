@@ -106,10 +106,7 @@ fn executor(gpu: &Gpu, plan: Plan, provider: &mut dyn Provider) -> Executor {
 /// A frame, and how long it took from its submission to its end.
 fn frame(gpu: &Gpu, executor: &mut Executor, read: &[&str]) -> (Duration, FrameReport) {
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    let frame = Frame {
-        all: true,
-        ..Frame::default()
-    };
+    let frame = Frame::new().with_all(true);
     let done = |why| panic!("{why}");
     executor.encode(&mut encoder, &frame).unwrap_or_else(done);
     let begin = Instant::now();
@@ -118,7 +115,7 @@ fn frame(gpu: &Gpu, executor: &mut Executor, read: &[&str]) -> (Duration, FrameR
     let time = begin.elapsed();
     // Read back by a frame of its own, which is not timed.
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    let frame = Frame { read, ..frame };
+    let frame = Frame::new().with_read(read);
     executor.encode(&mut encoder, &frame).unwrap_or_else(done);
     gpu.queue.submit([encoder.finish()]);
     let report = executor.finish().unwrap_or_else(|why| panic!("{why}"));

@@ -54,7 +54,7 @@ fn layers(scene: &Arc<Scene>, view: &View, preset: &str, params: Params) -> Vec<
         },
     );
     let gpu = open();
-    let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, &mut provider).unwrap();
+    let mut executor = Executor::on(&gpu, plan, &mut provider).unwrap();
     let report = frame(&gpu, &mut executor, &["map_fits"]);
     let words: Vec<f32> = values(&report, "map_fits")
         .into_iter()

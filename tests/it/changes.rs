@@ -72,7 +72,7 @@ fn graph(preset: &str) -> Graph {
 fn start(gpu: &Gpu, graph: &Graph, provider: &mut SceneProvider) -> Executor {
     let plan = graph.plan(&PlanRequest::new(VIEWPORT, provider));
     let plan = plan.unwrap_or_else(|errors| panic!("{errors}"));
-    Executor::new(&gpu.device, &gpu.queue, plan, provider).unwrap()
+    Executor::on(gpu, plan, provider).unwrap()
 }
 
 fn next(gpu: &Gpu, executor: &mut Executor) -> FrameReport {

@@ -181,8 +181,8 @@ fn either(seed: u32) -> String {
     EITHER.replace("SEED", &seed.to_string())
 }
 
-/// The embedded files, but for what is rounded in another way.
-fn altered(seed: u32) -> LayeredSources {
+/// Paths and texts of the files in which results are rounded in another way.
+pub fn altered_files(seed: u32) -> Vec<(String, String)> {
     let mut files = vec![("shaders/shared/either.wgsl".to_owned(), either(seed))];
     for (path, replaced) in ALTERED {
         let text = EmbeddedSources.read(path).unwrap().unwrap();
@@ -193,6 +193,12 @@ fn altered(seed: u32) -> LayeredSources {
         }
         files.push((path.to_owned(), text));
     }
+    files
+}
+
+/// The embedded files, but for what is rounded in another way.
+fn altered(seed: u32) -> LayeredSources {
+    let files = altered_files(seed);
     let files: Vec<(&str, &str)> = files
         .iter()
         .map(|(path, text)| (path.as_str(), text.as_str()))

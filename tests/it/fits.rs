@@ -62,7 +62,7 @@ fn map_of(scene: &Arc<Scene>, preset: &str, fit: &str, distance: f32) -> (MapFit
         });
         request.captures.extend(captures);
     });
-    let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, &mut provider).unwrap();
+    let mut executor = Executor::on(&gpu, plan, &mut provider).unwrap();
     let report = frame(&gpu, &mut executor, &captured);
     let map = MapFit::new(&report, scene);
     let positions = report
@@ -213,7 +213,7 @@ fn a_map_over_the_receivers_follows_them() {
         let plan = plan("pipelines/nsm.ron", &provider, VIEWPORT, |request| {
             request.params.insert("fit".to_owned(), word("receivers"));
         });
-        let executor = Executor::new(&gpu.device, &gpu.queue, plan, &mut provider).unwrap();
+        let executor = Executor::on(&gpu, plan, &mut provider).unwrap();
         (executor, provider)
     };
     let (mut executor, mut provider) = start(&near.views[0]);

@@ -173,8 +173,8 @@ fn wrong(
             .extend(params.map(|(name, value)| (name.to_owned(), value)));
     });
     let gpu = open();
-    let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, &mut provider)
-        .unwrap_or_else(|error| panic!("{path}: {error}"));
+    let mut executor =
+        Executor::on(&gpu, plan, &mut provider).unwrap_or_else(|error| panic!("{path}: {error}"));
     let mut share = || {
         let report = frame(&gpu, &mut executor, &["visibility", "status"]);
         let (visibility, status) = (values(&report, "visibility"), values(&report, "status"));
@@ -350,7 +350,7 @@ fn every_probe_of_the_language_writes_what_it_says() {
             }
         });
         let output = plan.outputs()[0].name.clone();
-        let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, &mut provider)
+        let mut executor = Executor::on(&gpu, plan, &mut provider)
             .unwrap_or_else(|error| panic!("{probe}: {error}"));
         if probe == "scenetex" {
             import(&gpu, &mut executor);

@@ -183,9 +183,7 @@ fn a_light_and_a_camera_that_are_none_are_errors() {
         let mut host = SceneProvider::from_mesh(stone.clone(), light);
         host.set_camera(&view.camera(VIEWPORT));
         let plan = graphs::plan("pipelines/light_buffer.ron", &host, VIEWPORT, |_| {});
-        let error = Executor::new(&gpu.device, &gpu.queue, plan, &mut host)
-            .err()
-            .unwrap();
+        let error = Executor::on(&gpu, plan, &mut host).err().unwrap();
         assert!(error.to_string().contains(expected), "{error}");
     }
 }
@@ -358,7 +356,7 @@ fn on_depth(
     let plan = graph
         .plan(&request)
         .unwrap_or_else(|error| panic!("{error}"));
-    let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, provider).unwrap();
+    let mut executor = Executor::on(gpu, plan, provider).unwrap();
     for (name, texture) in imports {
         executor.import_texture(name, texture).unwrap();
     }

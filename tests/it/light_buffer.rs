@@ -102,8 +102,7 @@ impl Bench {
                 after: None,
             }));
         });
-        Executor::new(&self.gpu.device, &self.gpu.queue, plan, &mut self.provider)
-            .unwrap_or_else(|error| panic!("{error}"))
+        Executor::on(&self.gpu, plan, &mut self.provider).unwrap_or_else(|error| panic!("{error}"))
     }
 
     /// Visibility of every pixel by rays alone.

@@ -93,7 +93,7 @@ fn applied(time: usize) -> Mesh {
 fn start(gpu: &Gpu, preset: &str, provider: &mut SceneProvider) -> Executor {
     let path = format!("pipelines/{preset}.ron");
     let plan = graphs::plan(&path, provider, VIEWPORT, |_| {});
-    Executor::new(&gpu.device, &gpu.queue, plan, provider).unwrap()
+    Executor::on(gpu, plan, provider).unwrap()
 }
 
 fn shown(gpu: &Gpu, executor: &mut Executor) -> Vec<u32> {

@@ -8,7 +8,9 @@ use glam::{DAffine3, DMat3, DVec3, Vec3};
 use skiagraph_gpu::{ExecuteError, Executor, Frame, Provider, device::Gpu};
 use skiagraph_passes::{Error, How, PartId, Room, SceneProvider, Work};
 use skiagraph_reference::statistics::status;
-use skiagraph_scene::{DirectionalLight, LightKind, Mesh, Movable, MoveError, PointLight, View};
+use skiagraph_scene::{
+    DirectionalLight, Group, LightKind, Mesh, Movable, MoveError, PointLight, View,
+};
 
 const VIEWPORT: [u32; 2] = [48, 32];
 const PRESETS: [&str; 3] = ["light_buffer", "rt", "nsm"];
@@ -52,7 +54,7 @@ fn provider(parts: Movable) -> SceneProvider {
 fn start(gpu: &Gpu, preset: &str, provider: &mut SceneProvider) -> Executor {
     let path = format!("pipelines/{preset}.ron");
     let plan = graphs::plan(&path, provider, VIEWPORT, |_| {});
-    Executor::new(&gpu.device, &gpu.queue, plan, provider).unwrap()
+    Executor::on(gpu, plan, provider).unwrap()
 }
 
 fn shown(gpu: &Gpu, executor: &mut Executor) -> Vec<u32> {
@@ -440,7 +442,8 @@ fn parts_that_are_added_and_removed_leave_the_mesh_of_the_others() {
         (&kinds[0], place(1.0, 6.0)),
         (&kinds[0], place(4.0, 3.0)),
     ];
-    scene.reserve(Room::of_copies(&kinds[1], 4)).unwrap();
+    let room = Room::of_copies(&kinds[1], 4).and(Room::of_copies(&kinds[0], 1));
+    scene.reserve(room).unwrap();
     let maps: Vec<DAffine3> = there.iter().map(|of| of.1).collect();
     scene.set_transforms(&maps).unwrap();
     let mut handles: Vec<PartId> = scene.parts().collect();
@@ -602,10 +605,7 @@ fn a_part_is_removed_while_frames_with_it_wait() {
         let mut executor = start(&gpu, preset, &mut provider);
         let expected = shown(&gpu, &mut executor);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let frame = Frame {
-            read: &["visibility"],
-            ..Frame::default()
-        };
+        let frame = Frame::new().with_read(&["visibility"]);
         executor.encode(&mut encoder, &frame).unwrap();
         let parts: Vec<PartId> = provider.parts().collect();
         for part in &parts[3..] {
@@ -645,6 +645,56 @@ fn leaves_are_added_to_a_scene_without_and_with_masks() {
                 [&mut scene, &mut whole].map(|of| shown(&gpu, &mut start(&gpu, preset, of)));
             assert!(seen == expected, "{preset}, {at}");
         }
+    }
+}
+
+/// A part that was cut out of a mesh is removed from between the others.
+#[test]
+fn a_part_that_was_cut_out_is_removed_alone() {
+    let gpu = open();
+    let (floor, stone) = (
+        meshes::box_over_floor(8.0, Vec3::splat(0.5)),
+        meshes::potato(2, 0.2, 1),
+    );
+    let parts = Movable::joined(&[&floor, &stone, &stone, &stone]);
+    let mut whole = parts.moved(&rows(4)).unwrap();
+    // Triangles of two parts in turns.
+    let [first, second] = [
+        floor.triangles.len(),
+        floor.triangles.len() + stone.triangles.len(),
+    ];
+    let ends = [first, second, second + stone.triangles.len()];
+    for step in (1..stone.triangles.len()).step_by(2) {
+        whole.triangles.swap(ends[0] + step, ends[1] + step);
+        whole.normal_indices.swap(ends[0] + step, ends[1] + step);
+    }
+    whole.groups.clear();
+    for at in ends[0]..ends[2] {
+        let of_first = (at < ends[1]) == ((at - ends[0]) % stone.triangles.len() % 2 == 0);
+        whole.groups.push(Group {
+            name: if of_first { "first" } else { "second" }.to_owned(),
+            triangles: at as u32..at as u32 + 1,
+        });
+    }
+    let cut = Movable::new(&whole, &["first", "second"]).unwrap();
+    let mut scene = provider(cut);
+    let handles: Vec<PartId> = scene.parts().collect();
+    let mut executors =
+        ["rt", "light_buffer", "crsm"].map(|preset| (preset, start(&gpu, preset, &mut scene)));
+    scene.remove_part(handles[0]).unwrap();
+    scene
+        .set_transforms(&[DAffine3::from_translation(DVec3::Y)])
+        .unwrap();
+    let mut alone = provider(Movable::joined(&[&floor, &stone, &stone]));
+    let [_, _, second, third] = rows(4)[..] else {
+        panic!("four places");
+    };
+    let second = DAffine3::from_translation(DVec3::Y) * second;
+    alone.set_transforms(&[rows(1)[0], second, third]).unwrap();
+    for (preset, executor) in &mut executors {
+        executor.refresh(&mut scene).unwrap();
+        let expected = shown(&gpu, &mut start(&gpu, preset, &mut alone));
+        assert!(shown(&gpu, executor) == expected, "{preset}");
     }
 }
 

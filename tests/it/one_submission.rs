@@ -14,11 +14,11 @@ const VIEWPORT: [u32; 2] = [64, 40];
 /// They take lights of all kinds.
 const PRESETS: [&str; 3] = ["rt", "light_buffer", "nsm"];
 
-fn sun() -> LightKind {
+pub(crate) fn sun() -> LightKind {
     DirectionalLight::new(DVec3::new(0.4, -1.0, -0.3)).into()
 }
 
-fn lamps() -> [LightKind; 2] {
+pub(crate) fn lamps() -> [LightKind; 2] {
     [
         LightKind::Spot(SpotLight {
             position: DVec3::new(-3.0, 6.0, 3.0),
@@ -33,7 +33,7 @@ fn lamps() -> [LightKind; 2] {
     ]
 }
 
-fn view(time: f64) -> View {
+pub(crate) fn view(time: f64) -> View {
     View {
         name: String::new(),
         eye: DVec3::new(1.0 + 2.0 * time, 6.0, 9.0),
@@ -46,18 +46,18 @@ fn view(time: f64) -> View {
     }
 }
 
-fn parts() -> Movable {
+pub(crate) fn parts() -> Movable {
     let floor = meshes::box_over_floor(8.0, Vec3::splat(0.5));
     Movable::joined(&[&floor, &meshes::potato(3, 0.2, 1)])
 }
 
-fn places(time: f64) -> [DAffine3; 2] {
+pub(crate) fn places(time: f64) -> [DAffine3; 2] {
     let at = DVec3::new(2.0 - 1.5 * time, 1.0 + 0.5 * time, 0.5 * time);
     [DAffine3::IDENTITY, DAffine3::from_translation(at)]
 }
 
 /// The parts at a time as one mesh that never moved.
-fn mesh(parts: &Movable, time: f64) -> Mesh {
+pub(crate) fn mesh(parts: &Movable, time: f64) -> Mesh {
     parts.moved(&places(time)).unwrap()
 }
 
@@ -72,16 +72,13 @@ fn provider(parts: &Movable) -> SceneProvider {
 fn start(gpu: &Gpu, preset: &str, provider: &mut SceneProvider) -> Executor {
     let path = format!("pipelines/{preset}.ron");
     let plan = graphs::plan(&path, provider, VIEWPORT, |_| {});
-    Executor::new(&gpu.device, &gpu.queue, plan, provider).unwrap()
+    Executor::on(gpu, plan, provider).unwrap()
 }
 
 /// A frame of what is set now.
 fn encode(executor: &mut Executor, provider: &mut SceneProvider, to: &mut wgpu::CommandEncoder) {
     executor.refresh(provider).unwrap();
-    let frame = Frame {
-        read: &["visibility"],
-        ..Frame::default()
-    };
+    let frame = Frame::new().with_read(&["visibility"]);
     executor.encode(to, &frame).unwrap();
 }
 
@@ -112,7 +109,7 @@ fn alone(gpu: &Gpu, preset: &str, mesh: Mesh, light: LightKind, camera: f64) -> 
 
 /// How many pixels differ.
 #[track_caller]
-fn same(seen: &[u32], expected: &[u32], what: &str) {
+pub(crate) fn same(seen: &[u32], expected: &[u32], what: &str) {
     let wrong = seen.iter().zip(expected).filter(|(a, b)| a != b).count();
     assert_eq!(wrong, 0, "{what}: so many of {} pixels differ", seen.len());
 }
@@ -184,10 +181,7 @@ fn an_executor_that_is_not_refreshed_shows_what_it_showed() {
         provider.set_transforms(&places(2.0)).unwrap();
         let mut encoder = encoder(&gpu);
         encode(&mut moving, &mut provider, &mut encoder);
-        let frame = Frame {
-            read: &["visibility"],
-            ..Frame::default()
-        };
+        let frame = Frame::new().with_read(&["visibility"]);
         still.encode(&mut encoder, &frame).unwrap();
         gpu.queue.submit([encoder.finish()]);
         same(&seen(&mut still), &expected, preset);

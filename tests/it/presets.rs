@@ -354,7 +354,7 @@ fn two_graphs_share_what_the_provider_built() {
             )
         })
         .into_iter()
-        .map(|plan| Executor::new(&gpu.device, &gpu.queue, plan, &mut provider).unwrap())
+        .map(|plan| Executor::on(&gpu, plan, &mut provider).unwrap())
         .collect();
     assert_eq!(executors.len(), 2);
     let again = provider.built().iter().find(|built| built.times > 1);

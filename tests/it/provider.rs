@@ -11,7 +11,7 @@ use skiagraph_graph::{
 };
 use skiagraph_passes::{EmbeddedSources, SceneProvider, registry};
 use skiagraph_scene::{
-    DirectionalLight, LightKind, Mesh, Scene, SceneLibrary, SceneRequest, SpotLight, View,
+    DirectionalLight, Light, LightKind, Mesh, Scene, SceneLibrary, SceneRequest, SpotLight, View,
 };
 use std::sync::Arc;
 
@@ -136,7 +136,7 @@ fn a_new_camera_renews_what_depends_on_the_camera() {
         let plan = graph
             .plan(&PlanRequest::new(viewport, provider))
             .unwrap_or_else(|errors| panic!("{errors}"));
-        Executor::new(&gpu.device, &gpu.queue, plan, provider).unwrap()
+        Executor::on(&gpu, plan, provider).unwrap()
     };
     let mut provider = graphs::provider(&scene, &scene.views[0], viewport);
     let mut executor = start(&mut provider);
@@ -217,7 +217,7 @@ fn a_view_with_its_own_light_is_drawn_as_its_scene_would_be_under_that_light() {
             let plan = graph
                 .plan(&request)
                 .unwrap_or_else(|errors| panic!("{errors}"));
-            Executor::new(&gpu.device, &gpu.queue, plan, provider).unwrap()
+            Executor::on(&gpu, plan, provider).unwrap()
         };
         let next = |executor: &mut Executor| {
             let report = graphs::frame(&gpu, executor, &["visibility", "status"]);
@@ -247,6 +247,47 @@ fn a_view_with_its_own_light_is_drawn_as_its_scene_would_be_under_that_light() {
         );
         executor.refresh(&mut provider).unwrap();
         assert_ne!(next(&mut executor), expected, "{preset}: the scene's light");
+    }
+}
+
+/// A host's light is checked where it is used, alone and among all, and named.
+#[test]
+fn a_light_that_cannot_be_used_is_told_by_its_name() {
+    let gpu = open();
+    let sun = |name: &str, angle_degrees| Light {
+        name: name.into(),
+        kind: LightKind::Directional(DirectionalLight {
+            direction: DVec3::NEG_Y,
+            angle_degrees,
+        }),
+    };
+    for (angle, told) in [
+        (f64::NAN, "angle_degrees is NaN"),
+        (90.0, "angle_degrees is 90"),
+        (-1.0, "angle_degrees is -1"),
+    ] {
+        let scene = Scene {
+            name: "two".into(),
+            mesh: meshes::soup(3, 0.2, 1),
+            views: vec![],
+            lights: vec![sun("haze", angle), sun("moon", 0.5)],
+        };
+        let mut provider = SceneProvider::new(Arc::new(scene));
+        for name in ["light", "light_area", "lights", "light_areas"] {
+            let error = build(&mut provider, &gpu, name).unwrap_err();
+            let named = format!("light \"haze\": the light's {told}");
+            assert!(error.contains(&named), "{name}: {error}");
+            assert!(error.contains("less than 90"), "{name}: {error}");
+        }
+        provider.set_light(sun("moon", 0.5).kind);
+        build(&mut provider, &gpu, "light_area").unwrap();
+        // One that is not the scene's has no name.
+        provider.set_light(sun("", 100.0).kind);
+        let error = build(&mut provider, &gpu, "light").unwrap_err();
+        assert!(
+            error.contains("the light's angle_degrees is 100"),
+            "{error}"
+        );
     }
 }
 

@@ -96,7 +96,7 @@ fn a_deformed_mesh_has_a_structure_of_its_own() {
             let engine = ParamValue::Choice("ray_query".to_owned());
             request.params.insert("engine".to_owned(), engine);
         });
-        Executor::new(&gpu.device, &gpu.queue, plan, provider).unwrap()
+        Executor::on(&gpu, plan, provider).unwrap()
     };
     let visible = |executor: &mut Executor| {
         let report = frame(&gpu, executor, &["visibility"]);

@@ -61,11 +61,7 @@ fn the_method_of_the_readme_is_complete_and_runs() {
     executor
         .encode(
             &mut encoder,
-            &Frame {
-                timing: false,
-                read: &["visibility", "status"],
-                ..Frame::default()
-            },
+            &Frame::new().with_read(&["visibility", "status"]),
         )
         .unwrap();
     gpu.queue.submit([encoder.finish()]);
@@ -96,9 +92,12 @@ fn the_rust_of_the_documents_is_code_that_runs() {
         "crates/gpu/examples/embed.rs",
         "crates/gpu/examples/custom_pass.rs",
         "crates/gpu/tests/it/embedding.rs",
+        "crates/gpu/tests/it/pipelines.rs",
         "crates/passes/examples/preset/shadows.rs",
         "tests/it/host.rs",
         "tests/it/moving.rs",
+        "tests/it/unit_visibility.rs",
+        "tests/it/views.rs",
     ]
     .map(|path| bare(&read(path)));
     for (document, least) in [("README.md", 2), ("docs/embedding.md", 16)] {

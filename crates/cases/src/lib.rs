@@ -3,6 +3,13 @@
 //! Every case builds a small scene with one view named `main` and one light, with the same bits on
 //! every machine. One line of text says which error the case provokes. Some cases also tell from
 //! the geometry alone which points are lit, so that the ray tracer of the reference is tested, too.
+//!
+//! ```
+//! for case in skiagraph_cases::cases().into_iter().take(3) {
+//!     let scene = case.scene();
+//!     assert_eq!(scene.views[0].name, "main", "{}: {}", case.name, case.reason);
+//! }
+//! ```
 
 mod answer;
 mod case;

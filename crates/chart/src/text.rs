@@ -28,7 +28,7 @@ pub(crate) fn wrap(text: &str, size: f64, room: i32) -> Vec<String> {
     lines
 }
 
-/// Replaces the characters that XML cannot hold by U+FFFD.
+/// Replaces control characters, and those that XML cannot hold, by U+FFFD.
 pub(crate) fn clean(text: &str) -> String {
     let fits = |c: char| !c.is_control() && !matches!(c, '\u{fffe}' | '\u{ffff}');
     text.chars()
@@ -36,8 +36,9 @@ pub(crate) fn clean(text: &str) -> String {
         .collect()
 }
 
-/// Escapes text for XML and HTML, attributes included. Line breaks are kept as `&#10;`; characters
-/// that XML cannot hold become U+FFFD.
+/// Escapes text for XML and HTML: for content, and for attributes in double quotes (single quotes
+/// stay). A line break becomes `&#10;`; one at the end is left out. All other control characters,
+/// tabs too, and those that XML cannot hold become U+FFFD.
 pub fn xml(text: &str) -> String {
     let lines = text.lines().map(|line| {
         let line = clean(line).replace('&', "&amp;").replace('<', "&lt;");

@@ -146,14 +146,28 @@ pub fn explain(error: &ExecuteError) -> String {
     }
 }
 
+/// Iterates over the causes of an error, outermost first, without those whose text the text of the
+/// error before contains.
+pub fn causes<'e>(
+    error: &'e (dyn Error + 'static),
+) -> impl Iterator<Item = &'e (dyn Error + 'static)> {
+    let pairs = iter::successors(Some((error.source(), error.to_string())), |(cause, _)| {
+        let cause = (*cause)?;
+        Some((cause.source(), cause.to_string()))
+    });
+    pairs.filter_map(|(cause, said)| cause.filter(|cause| !said.contains(&cause.to_string())))
+}
+
 /// Returns an error and its causes in one line, separated by colons.
 pub fn with_causes(error: &(dyn Error + 'static)) -> String {
-    iter::successors(Some(error), |&error| error.source()).join(": ")
+    let causes = causes(error).map(|cause| cause.to_string());
+    iter::once(error.to_string()).chain(causes).join(": ")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use skiagraph_gpu::ProviderError;
 
     #[test]
     fn out_of_memory_comes_with_advice_and_nothing_else_does() {
@@ -164,5 +178,23 @@ mod tests {
         assert!(explain(&full).ends_with("; use a smaller viewport or map"));
         let other = ExecuteError::Readback { name: "map".into() };
         assert_eq!(explain(&other), with_causes(&other));
+    }
+
+    #[test]
+    fn a_cause_that_was_told_is_not_told_again() {
+        let why = ProviderError::from_error(io::Error::other("the disk is gone"));
+        let provider = ExecuteError::Provider {
+            name: "scene.texels".into(),
+            why,
+        };
+        let text = "the provided resource `scene.texels` could not be built: the disk is gone";
+        assert_eq!(with_causes(&provider), text);
+        let mut chain = iter::successors(provider.source(), |&error| error.source());
+        assert!(chain.any(|cause| cause.is::<io::Error>()));
+        let of_method = CompareError::Gpu {
+            graph: "rt".into(),
+            source: Box::new(provider),
+        };
+        assert_eq!(with_causes(&of_method), format!("`rt` cannot run: {text}"));
     }
 }

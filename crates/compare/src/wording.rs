@@ -38,7 +38,8 @@ pub fn percent(count: u64, whole: u64) -> String {
 }
 
 /// Returns `count` as a percentage of `whole` without the percent sign, for documents: three
-/// decimals below 1, two from 1 on. A small share is `<0.001`; a `whole` of 0 gives `–`.
+/// decimals below 1, two from 1 on. A count of 0 is `0`, another one below 0.001 percent `<0.001`;
+/// a `whole` of 0 gives `–`.
 pub fn share(count: u64, whole: u64) -> String {
     let share = count as f64 / whole as f64 * 100.0;
     match (count, whole) {

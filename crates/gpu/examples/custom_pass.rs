@@ -98,10 +98,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     request.limits = device.limits();
     let mut executor = Executor::new(&device, &queue, graph.plan(&request)?, &mut NoProvider)?;
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    let frame = Frame {
-        read: &["dim", "clear"],
-        ..Frame::default()
-    };
+    let frame = Frame::new().with_read(&["dim", "clear"]);
     executor.encode(&mut encoder, &frame)?;
     queue.submit([encoder.finish()]);
 

@@ -7,18 +7,19 @@
 //! for adapter in device::adapters() {
 //!     println!("{} on {}", adapter.name, adapter.backend);
 //! }
-//! let wanted = Wanted { adapter: Some("llvmpipe"), ..Wanted::default() };
+//! let wanted = Wanted::default().with_adapter("llvmpipe");
 //! let gpu = device::open_with(&wanted)?;
 //! println!("opened {}", gpu.adapter.get_info().name);
 //! # Ok::<(), device::GpuError>(())
 //! ```
 
-use crate::experimental;
+use crate::{experimental, pipelines::pipelines::Pipelines};
 use skiagraph_graph::PartialBackend;
 use std::{cmp::Reverse, time::Duration};
 
 /// An open wgpu device with its instance, adapter and queue.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Gpu {
     /// The wgpu instance that the adapter was found in.
     pub instance: wgpu::Instance,
@@ -29,6 +30,9 @@ pub struct Gpu {
     pub device: wgpu::Device,
     /// The queue that work for the device is submitted to.
     pub queue: wgpu::Queue,
+    /// Shader modules and pipelines that executors created by
+    /// [`Executor::on`](crate::Executor::on) share.
+    pub pipelines: Pipelines,
     /// Most bytes that the textures and buffers of a graph may take together. The host passes it on
     /// as [`PlanRequest::memory_limit`](skiagraph_graph::PlanRequest::memory_limit). `None` for no
     /// limit, as [`open`] and [`open_with`] set it; wgpu does not tell how much memory a device
@@ -44,6 +48,7 @@ pub struct Gpu {
 /// [`BACKENDS`], unless the environment variables `WGPU_ADAPTER_NAME` and `WGPU_BACKEND` say
 /// otherwise.
 #[derive(Clone, Copy, Debug, Default)]
+#[non_exhaustive]
 pub struct Wanted<'a> {
     /// Text that the adapter's name must contain; upper and lower case are the same. `None` takes
     /// the text from the environment variable `WGPU_ADAPTER_NAME`, or accepts any name if that is
@@ -57,6 +62,29 @@ pub struct Wanted<'a> {
     /// ([`Graph::features`](skiagraph_graph::Graph::features)). Experimental features of wgpu are
     /// ignored here, except `EXPERIMENTAL_RAY_QUERY`, whose use in this crate was reviewed.
     pub features: wgpu::Features,
+}
+
+impl<'a> Wanted<'a> {
+    /// Sets [`adapter`](Self::adapter).
+    #[must_use]
+    pub fn with_adapter(mut self, adapter: &'a str) -> Self {
+        self.adapter = Some(adapter);
+        self
+    }
+
+    /// Sets [`backends`](Self::backends).
+    #[must_use]
+    pub fn with_backends(mut self, backends: wgpu::Backends) -> Self {
+        self.backends = Some(backends);
+        self
+    }
+
+    /// Sets [`features`](Self::features).
+    #[must_use]
+    pub fn with_features(mut self, features: wgpu::Features) -> Self {
+        self.features = features;
+        self
+    }
 }
 
 /// The backends that [`open`] and [`open_with`] search by default: Vulkan, Metal and Direct3D 12.
@@ -251,6 +279,7 @@ fn device_of(
         Ok((device, queue)) => Ok(Gpu {
             instance,
             adapter,
+            pipelines: Pipelines::new(&device),
             device,
             queue,
             memory: None,

@@ -1,10 +1,13 @@
 //! Errors of a device, and the scopes that catch them.
 
+use crate::provider::ProviderError;
 use skiagraph_graph::{Diagnostics, Panicked, Plan, Provided, caught};
 use std::time::Duration;
 
 /// Reasons why an [`Executor`](crate::Executor) could not create the resources or pipelines of a
-/// plan, or could not encode, run or read back a frame.
+/// plan, or could not encode, run or read back a frame. The text of an error is whole; a
+/// [source](std::error::Error::source), such as the error of a provider, is a part of it for those
+/// who ask for its type.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExecuteError {
@@ -38,6 +41,7 @@ pub enum ExecuteError {
         /// document and name of the pass that was being created or encoded.
         name: String,
         /// Message and source position of the panic.
+        #[source]
         panicked: Panicked,
     },
     /// The device has too little memory for a resource or pass.
@@ -54,16 +58,18 @@ pub enum ExecuteError {
     Provider {
         /// Name of the resource that was to be built, such as `scene.positions`.
         name: String,
-        /// Text of the [`ProviderError`](crate::ProviderError).
-        why: String,
+        /// The provider's reason.
+        #[source]
+        why: ProviderError,
     },
     /// Work of a pass on the CPU failed.
     #[error("the work `{name}` on the CPU failed: {why}")]
     CpuWork {
         /// Name of the provided resource that does the work, such as `scene.embree`.
         name: String,
-        /// Text of the [`ProviderError`](crate::ProviderError).
-        why: String,
+        /// The reason that the work gives.
+        #[source]
+        why: ProviderError,
     },
     /// The [`Provider`](crate::Provider) now describes a resource in another way than when the
     /// graph was planned: with another binding, number of items, bytes per item or kind of light.
@@ -145,7 +151,7 @@ pub enum ExecuteError {
     /// The graph cannot be planned for the new viewport or param value; or the device's backend
     /// lacks part of WebGPU, and the graph document does not list it in `proven_on`.
     #[error("{0}")]
-    Plan(Box<Diagnostics>),
+    Plan(#[source] Box<Diagnostics>),
     /// The plan has no output or capture of the name that was to be read back. A capture is a
     /// content named in [`PlanRequest::captures`](skiagraph_graph::PlanRequest).
     #[error("the plan has no output `{name}`; it has {known}")]

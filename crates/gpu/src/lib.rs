@@ -13,7 +13,7 @@
 //! let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, &mut NoProvider)?;
 //!
 //! let mut encoder = gpu.device.create_command_encoder(&Default::default());
-//! executor.encode(&mut encoder, &Frame { read: &["image"], ..Frame::default() })?;
+//! executor.encode(&mut encoder, &Frame::new().with_read(&["image"]))?;
 //! gpu.queue.submit([encoder.finish()]);
 //! let image = &executor.finish()?.readbacks[0].content;
 //! println!("{:?}", image.as_f32());
@@ -40,6 +40,7 @@ pub mod timing;
 
 pub use error::ExecuteError;
 pub use frame::{Executor, Frame, FrameReport, Prepared, Preparer, ReplanReport};
+pub use pipelines::pipelines::Pipelines;
 pub use provider::{CpuWork, Provider, ProviderError};
 pub use readback::{Content, Readback};
 pub use timing::{FrameTiming, PassStatistics, PassTiming};

@@ -1,7 +1,11 @@
 //! Resources that the host builds for a graph, such as scene buffers.
 
 use skiagraph_graph::{Describe, NoProvider};
-use std::{fmt::Debug, sync::Arc};
+use std::{
+    error::Error,
+    fmt::{self, Debug},
+    sync::Arc,
+};
 
 /// Builds the resources that a graph expects from its host program: scene buffers, camera and light
 /// uniforms, acceleration structures. The supertrait [`Describe`] describes them without a device.
@@ -60,7 +64,7 @@ pub trait Provider: Describe {
         queue: &wgpu::Queue,
     ) -> Result<wgpu::Tlas, ProviderError> {
         let _ = (device, queue);
-        Err(ProviderError(format!(
+        Err(ProviderError::new(format!(
             "this provider builds no acceleration structure `{name}`"
         )))
     }
@@ -71,7 +75,7 @@ pub trait Provider: Describe {
     /// # Errors
     /// If it cannot be made. The default implementation always fails.
     fn build_cpu_work(&mut self, name: &str) -> Result<Arc<dyn CpuWork>, ProviderError> {
-        Err(ProviderError(format!(
+        Err(ProviderError::new(format!(
             "this provider has no work for the CPU `{name}`"
         )))
     }
@@ -90,14 +94,55 @@ pub trait CpuWork: Debug + Send + Sync {
     fn run(&self, entry: &str, reads: &[&[u8]], writes: &mut [u8]) -> Result<(), ProviderError>;
 }
 
-/// Reason why a [`Provider`] could not build a resource, as text for the user.
-#[derive(Clone, Debug, thiserror::Error)]
-#[error("{0}")]
-pub struct ProviderError(pub String);
+/// Reason why a [`Provider`] could not build a resource: a text for the user, and the error behind
+/// it, if there is one.
+#[derive(Clone, Debug)]
+pub struct ProviderError {
+    why: String,
+    source: Option<Arc<dyn Error + Send + Sync>>,
+}
+
+impl ProviderError {
+    /// Creates the error from a text for the user.
+    pub fn new(why: impl Into<String>) -> Self {
+        Self {
+            why: why.into(),
+            source: None,
+        }
+    }
+
+    /// Creates the error from another one, which becomes its source and lends it its text.
+    pub fn from_error(error: impl Error + Send + Sync + 'static) -> Self {
+        Self {
+            why: error.to_string(),
+            source: Some(Arc::new(error)),
+        }
+    }
+}
+
+impl fmt::Display for ProviderError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.why)
+    }
+}
+
+// By hand, since a derived one would give the `Arc` as the source.
+impl Error for ProviderError {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        let source = self.source.as_deref()?;
+        Some(source)
+    }
+}
 
 impl From<String> for ProviderError {
     fn from(why: String) -> Self {
-        Self(why)
+        Self::new(why)
+    }
+}
+
+impl From<&str> for ProviderError {
+    fn from(why: &str) -> Self {
+        Self::new(why)
     }
 }
 
@@ -108,6 +153,6 @@ impl Provider for NoProvider {
         _: &wgpu::Device,
         _: &wgpu::Queue,
     ) -> Result<wgpu::Buffer, ProviderError> {
-        Err(ProviderError(format!("`{name}` is not provided")))
+        Err(ProviderError::new(format!("`{name}` is not provided")))
     }
 }

@@ -3,6 +3,7 @@
 /// Content of an output or capture, read back to the host: an entry of
 /// [`FrameReport::readbacks`](crate::FrameReport::readbacks).
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Readback {
     /// Name of the output or capture, as in [`Frame::read`](crate::Frame::read).
     pub name: String,

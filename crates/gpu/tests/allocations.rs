@@ -243,11 +243,7 @@ static ALONE: Mutex<()> = Mutex::new(());
 fn a_steady_frame_allocates_nothing_of_ours() {
     let _alone = ALONE.lock();
     let read = ["copy", "items", "sum"];
-    let timed = Frame {
-        timing: true,
-        read: &read,
-        ..Frame::default()
-    };
+    let timed = Frame::new().with_timing(true).with_read(&read);
     let mut executor = made(&everything());
     // A self-check of the counter: a plan that is made anew allocates.
     let seen = stacks(|| {
@@ -275,11 +271,7 @@ fn a_steady_frame_allocates_nothing_of_ours() {
 #[test]
 fn a_thousand_frames_are_as_large_as_one() {
     let _alone = ALONE.lock();
-    let wanted = Frame {
-        timing: true,
-        read: &["sum"],
-        ..Frame::default()
-    };
+    let wanted = Frame::new().with_timing(true).with_read(&["sum"]);
     let mut executor = made(&everything());
     let mut after = |frames: u32| {
         for _ in 0..frames {

@@ -2,33 +2,22 @@
 //! plans them without a GPU.
 //!
 //! ```
-//! use skiagraph_graph::{Graph, NoProvider, PlanRequest, Registry, Sources};
-//! use std::sync::Arc;
+//! use skiagraph_graph::{Graph, MemorySources, NoProvider, PlanRequest, Registry};
 //!
-//! /// Store with one document and its shader; `FolderSources` reads files of a folder instead.
-//! struct Ramp;
-//!
-//! impl Sources for Ramp {
-//!     fn read(&self, path: &str) -> Result<Option<Arc<str>>, String> {
-//!         Ok(match path {
-//!             "ramp.ron" => Some(
-//!                 r#"(format: 3, materials: [Texture(name: "image", format: R32Float)],
-//!                     passes: [Fullscreen(name: "ramp", color: ["image"])], outputs: ["image"])"#,
-//!             ),
-//!             "shaders/ramp.wgsl" => Some(
-//!                 "@fragment fn fragment(@builtin(position) at: vec4<f32>) -> @location(0) f32 {
-//!                     return at.x / 64.0; }",
-//!             ),
-//!             _ => None,
-//!         }
-//!         .map(Arc::from))
-//!     }
-//!     fn list(&self, _folder: &str) -> Vec<String> {
-//!         vec![]
-//!     }
-//! }
-//!
-//! let graph = Graph::load("ramp.ron", &Registry::standard(), &Ramp)?;
+//! // `FolderSources` reads the files of a folder instead.
+//! let sources = MemorySources::new([
+//!     (
+//!         "ramp.ron",
+//!         r#"(format: 3, materials: [Texture(name: "image", format: R32Float)],
+//!             passes: [Fullscreen(name: "ramp", color: ["image"])], outputs: ["image"])"#,
+//!     ),
+//!     (
+//!         "shaders/ramp.wgsl",
+//!         "@fragment fn fragment(@builtin(position) at: vec4<f32>) -> @location(0) f32 {
+//!             return at.x / 64.0; }",
+//!     ),
+//! ]);
+//! let graph = Graph::load("ramp.ron", &Registry::standard(), &sources)?;
 //! let plan = graph.plan(&PlanRequest::new([64, 32], &NoProvider))?;
 //! assert_eq!(plan.passes()[0].name, "ramp");
 //! assert_eq!(plan.outputs()[0].size, [64, 32]);
@@ -100,4 +89,6 @@ pub use resource::{
 pub use schema::schema;
 pub use shader::{Field, Item, ItemScalar, Shader};
 pub use skiagraph_located_ron::panics::{Panicked, caught};
-pub use source::{FolderSources, LayeredSources, Located, SourceFile, SourceText, Sources, Span};
+pub use source::{
+    FolderSources, LayeredSources, Located, MemorySources, SourceFile, SourceText, Sources, Span,
+};

@@ -25,7 +25,17 @@ pub type PlanRequest<'a> = Request<&'a dyn Describe>;
 /// Settings for planning a graph: viewport, params, outputs, the device's limits and features, and
 /// imports. `P` is the type of [`provider`](Request::provider): `&dyn Describe` in a
 /// [`PlanRequest`], which callers use. A plan keeps a copy of its request with an owned provider.
+///
+/// ```
+/// use skiagraph_graph::{NoProvider, ParamValue, PlanRequest};
+///
+/// let request = PlanRequest::new([64, 32], &NoProvider)
+///     .with_param("map_size", ParamValue::U32(512))
+///     .with_memory_limit(1 << 30);
+/// assert_eq!(request.params["map_size"], ParamValue::U32(512));
+/// ```
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Request<P> {
     /// Width and height of the viewport in pixels, each at least 1. A texture without a `size` has
     /// this size.
@@ -98,6 +108,57 @@ impl<'a> PlanRequest<'a> {
             any_adapter: false,
             provider,
         }
+    }
+
+    /// Sets the [`limits`](Request::limits) and [`features`](Request::features) of the device that
+    /// will run the graph.
+    #[must_use]
+    pub fn with_device(mut self, limits: wgt::Limits, features: wgt::Features) -> Self {
+        self.limits = limits;
+        self.features = features;
+        self
+    }
+
+    /// Sets the value of the param `name` ([`params`](Request::params)).
+    #[must_use]
+    pub fn with_param(mut self, name: impl Into<String>, value: ParamValue) -> Self {
+        self.params.insert(name.into(), value);
+        self
+    }
+
+    /// Adds the description of an import for the input `name` ([`imports`](Request::imports)).
+    #[must_use]
+    pub fn with_import(mut self, name: impl Into<String>, import: Import) -> Self {
+        self.imports.insert(name.into(), import);
+        self
+    }
+
+    /// Sets the outputs to compute ([`outputs`](Request::outputs)).
+    #[must_use]
+    pub fn with_outputs<N: Into<String>>(mut self, outputs: impl IntoIterator<Item = N>) -> Self {
+        self.outputs = Some(outputs.into_iter().map(Into::into).collect());
+        self
+    }
+
+    /// Adds a capture ([`captures`](Request::captures)).
+    #[must_use]
+    pub fn with_capture(mut self, capture: Capture) -> Self {
+        self.captures.push(capture);
+        self
+    }
+
+    /// Sets [`memory_limit`](Request::memory_limit), in bytes.
+    #[must_use]
+    pub fn with_memory_limit(mut self, bytes: u64) -> Self {
+        self.memory_limit = Some(bytes);
+        self
+    }
+
+    /// Sets [`any_adapter`](Request::any_adapter).
+    #[must_use]
+    pub fn with_any_adapter(mut self, any_adapter: bool) -> Self {
+        self.any_adapter = any_adapter;
+        self
     }
 
     pub(crate) fn surroundings(&self) -> Surroundings {

@@ -20,8 +20,8 @@ impl ResourceId {
     }
 }
 
-/// A texture, buffer, sampler or acceleration structure that passes of a plan may use, or the
-/// uniform buffer `frame` ([`ResourceKind::Frame`]).
+/// A texture, buffer, sampler, acceleration structure or work for the CPU that passes of a plan may
+/// use, or the uniform buffer `frame` ([`ResourceKind::Frame`]).
 #[derive(Clone, Debug)]
 pub struct Resource {
     /// Full name of the resource: the name by which the loaded document knows it, `left.depth` for

@@ -4,6 +4,12 @@ use crate::{built::Work, error::Error, lights, names::*};
 use std::{collections::BTreeMap, ops::Range};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
+/// Number of contents that are kept of a small resource: those of views and lights that take turns.
+const SMALL: usize = 16;
+
+/// Number of contents that are kept of a hierarchy in light space: those of lights that take turns.
+const LIGHT_SPACES: usize = 4;
+
 /// Where to.
 #[derive(Clone, Copy)]
 pub(crate) struct On<'a> {
@@ -16,10 +22,14 @@ pub(crate) struct On<'a> {
 /// None is written again once it was handed out: what the queue writes comes before all that is
 /// submitted later, so a frame that was encoded with the buffer and not submitted yet would show
 /// what was set for another one. Another content is another buffer. Where only some of it is other,
-/// the GPU copies the rest from the buffer before.
+/// the GPU copies the rest from the buffer before. Of cameras and lights, the last contents are
+/// kept: views and lights that take turns find their own.
 #[derive(Clone, Default)]
 pub(crate) struct Buffers {
-    held: BTreeMap<String, (wgpu::Buffer, u64)>,
+    /// The last one was made last.
+    held: BTreeMap<String, Vec<(wgpu::Buffer, u64)>>,
+    /// Version of the mesh's shape that the lights were laid over.
+    shape: u64,
     /// Bytes that were brought to the device so far.
     pub work: Work,
 }
@@ -29,16 +39,29 @@ pub(crate) struct Buffers {
 const GAP: usize = 4096;
 
 impl Buffers {
-    /// The buffer of that name, if what is in it is of that version.
-    pub fn get(&self, name: &str, version: u64) -> Option<&wgpu::Buffer> {
-        let held = self.held.get(name).filter(|(_, of)| *of == version);
-        held.map(|(buffer, _)| buffer)
+    /// Drops what was laid over another shape of the mesh.
+    pub fn lay_over(&mut self, shape: u64) {
+        if self.shape != shape {
+            self.shape = shape;
+            let is_laid = |name: &str| {
+                matches!(name, LIGHT | LIGHT_SPACE_NODES)
+                    || lights::list_of(name) == Some(lights::LIGHTS)
+            };
+            self.held.retain(|name, _| !is_laid(name));
+        }
     }
 
-    /// Marks the content of the buffer of that name, if there is one, as being also of that
-    /// version.
+    /// The buffer of that name, if there is one whose content is of that version.
+    pub fn get(&self, name: &str, version: u64) -> Option<&wgpu::Buffer> {
+        let held = self.held.get(name)?.iter();
+        let mut held = held.filter(|(_, of)| *of == version);
+        held.next().map(|(buffer, _)| buffer)
+    }
+
+    /// Marks the content of the buffer of that name that was made last, if there is one, as being
+    /// of that version now.
     pub fn still_hold(&mut self, name: &str, version: u64) {
-        if let Some((_, of)) = self.held.get_mut(name) {
+        if let Some((_, of)) = self.held.get_mut(name).and_then(|held| held.last_mut()) {
             *of = version;
         }
     }
@@ -67,13 +90,27 @@ impl Buffers {
         // Nothing that was encoded reads it yet.
         on.queue.write_buffer(&buffer, 0, content);
         self.work.uploaded += bytes;
-        self.held.insert(name.to_owned(), (buffer, version));
+        self.hold(name, buffer, version);
         Ok(())
     }
 
-    /// Returns the version of the content of the buffer of that name.
+    /// Keeps a buffer as the last one of that name.
+    fn hold(&mut self, name: &str, buffer: wgpu::Buffer, version: u64) {
+        let held = self.held.entry(name.to_owned()).or_default();
+        if held.len() >= kept_of(name) {
+            held.remove(0);
+        }
+        held.push((buffer, version));
+    }
+
+    /// Returns the buffer of that name that was made last, with the version of its content.
+    fn last(&self, name: &str) -> Option<&(wgpu::Buffer, u64)> {
+        self.held.get(name)?.last()
+    }
+
+    /// Returns the version of the content of the buffer of that name that was made last.
     pub fn version(&self, name: &str) -> Option<u64> {
-        self.held.get(name).map(|(_, version)| *version)
+        self.last(name).map(|(_, version)| *version)
     }
 
     /// Does what [`patch`](Self::patch) does, with items that are there as a list.
@@ -107,7 +144,7 @@ impl Buffers {
         let stride = size_of::<T>();
         let ranges = joined(changed, GAP / stride);
         let written: usize = ranges.iter().map(Range::len).sum();
-        let known = self.held.get(name).map(|(buffer, _)| buffer.clone());
+        let known = self.last(name).map(|(buffer, _)| buffer.clone());
         let known = known.filter(|known| known.size() == (count * stride) as u64);
         if written == 0 && known.is_some() {
             self.still_hold(name, version);
@@ -139,7 +176,7 @@ impl Buffers {
         self.work.uploaded += from;
         on.queue.submit([encoder.finish()]);
         self.work.copied += known.size();
-        self.held.insert(name.to_owned(), (buffer, version));
+        self.hold(name, buffer, version);
         Ok(())
     }
 }
@@ -172,6 +209,16 @@ fn create(name: &str, size: u64, device: &wgpu::Device) -> wgpu::Buffer {
         usage: usage | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
     })
+}
+
+/// Number of contents of a resource that are kept.
+fn kept_of(name: &str) -> usize {
+    match name {
+        CAMERA | UNPROJECTION | LIGHT | LIGHT_AREA => SMALL,
+        LIGHT_SPACE_NODES | LIGHT_SPACE_PRIMITIVES => LIGHT_SPACES,
+        _ if lights::list_of(name).is_some() => SMALL,
+        _ => 1,
+    }
 }
 
 fn usage_of(name: &str, device: &wgpu::Device) -> wgpu::BufferUsages {

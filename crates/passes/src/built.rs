@@ -5,6 +5,7 @@ use std::time::Duration;
 /// Record of the builds of one resource by a [`SceneProvider`](crate::SceneProvider). It describes
 /// the last of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Built {
     /// Name of the resource, such as `scene.bvh_nodes`. A single light `lights[2]` is recorded as
     /// `lights`.

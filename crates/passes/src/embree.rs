@@ -151,7 +151,7 @@ impl Embree {
 impl CpuWork for Embree {
     fn run(&self, entry: &str, reads: &[&[u8]], writes: &mut [u8]) -> Result<(), ProviderError> {
         let [rays, skip @ ..] = reads else {
-            return Err(ProviderError("Embree got no rays".to_owned()));
+            return Err(ProviderError::new("Embree got no rays".to_owned()));
         };
         let any = entry.starts_with("any_hit");
         let tasks = rays

@@ -63,12 +63,33 @@ pub enum Error {
         /// Number of positions of the mesh.
         corners: usize,
     },
-    /// The light cannot be used, for example because a number is not finite.
+    /// A light cannot be used, for example because a number is not finite or a sun is too wide.
     #[error("{0}")]
     Light(
-        /// Reason why the light cannot be used.
+        /// Reason why the light cannot be used, with its name in the scene.
         String,
     ),
+    /// A light of [`SceneProvider::set_lights`](crate::SceneProvider::set_lights) cannot be used,
+    /// for example because a number is not finite.
+    #[error("`lights[{number}]`: {why}")]
+    LightNumber {
+        /// Index of the light in the list.
+        number: usize,
+        /// Reason why the light cannot be used.
+        why: String,
+    },
+    /// [`SceneProvider::set_lights`](crate::SceneProvider::set_lights) was given an empty list.
+    #[error("a scene has at least one light, but `set_lights` was given none")]
+    NoLights,
+    /// A graph reads a light that the scene no longer has, since
+    /// [`SceneProvider::set_lights`](crate::SceneProvider::set_lights) was given fewer.
+    #[error("the graph was planned with `{name}`, but {lights} lights are set now: plan it anew")]
+    LightGone {
+        /// Name of the light in documents, such as `lights[3]`.
+        name: String,
+        /// Number of lights that are set.
+        lights: usize,
+    },
     /// The camera has numbers that are infinite or NaN.
     #[error("the camera has numbers that are infinite or none: {0:?}")]
     Camera(

@@ -523,8 +523,13 @@ impl Geometry {
             let turned = self.pieces.iter().filter(|piece| piece.turned > since);
             let turned = turned.map(|piece| piece.primitives(mesh));
             let cleared = self.cleared_since(since);
-            // Without corners they have no neighbours; those of pieces come after.
-            let cleared = cleared.map(|range| (range.start as u32..range.end as u32).collect());
+            // Without an area they have no neighbours; those of pieces come after. A range may hold
+            // triangles of other parts.
+            let is_clear = |id: &u32| mesh.triangles[*id as usize] == [0; 3];
+            let cleared = cleared.map(|range| {
+                let range = range.start as u32..range.end as u32;
+                range.filter(is_clear).collect()
+            });
             cleared.chain(turned).collect()
         };
         let turned = self.first.is_some().then_some(turned);

@@ -1,7 +1,7 @@
 //! Inputs of a preset from a host program's own resources.
 
 use skiagraph_scene::{Indexed, IndexedError, Mesh};
-use std::sync::mpsc;
+use std::{error::Error, sync::mpsc};
 
 /// Triangle mesh in the vertex and index buffers of a host program, which [`GpuMesh::read`] copies
 /// back to the CPU.
@@ -15,12 +15,14 @@ pub struct GpuMesh<'a> {
     pub vertices: wgpu::BufferSlice<'a>,
     /// Distance from the start of one vertex to the start of the next, in bytes.
     pub stride: usize,
-    /// Offset of the position within a vertex, in bytes; it is three f32.
+    /// Offset of the position within a vertex, in bytes. It is three f32 in world space, or in the
+    /// space of a part for [`Movable::joined`](skiagraph_scene::Movable::joined).
     pub position: usize,
     /// Offset of the normal within a vertex, in bytes; it is three f32. `None` if vertices have
     /// none; triangles then get the normals of their planes.
     pub normal: Option<usize>,
-    /// Three indices into `vertices` for each triangle, in a buffer with the usage `COPY_SRC`.
+    /// Three indices into `vertices` for each triangle, counter-clockwise as seen from outside, in
+    /// a buffer with the usage `COPY_SRC`.
     pub indices: wgpu::BufferSlice<'a>,
     /// Type of the indices: 16 or 32 bits.
     pub format: wgpu::IndexFormat,
@@ -63,7 +65,8 @@ pub enum GpuMeshError {
         /// Content of the buffer: `vertices` or `indices`.
         what: &'static str,
         /// Reason that wgpu gives.
-        why: String,
+        #[source]
+        why: Box<dyn Error + Send + Sync>,
     },
 }
 
@@ -134,12 +137,12 @@ fn read(
     staging.map_async(wgpu::MapMode::Read, .., move |done| {
         let _ = sender.send(done); // nobody waits any more after an error below
     });
-    let failed = |why: String| GpuMeshError::Device { what, why };
+    let failed = |why| GpuMeshError::Device { what, why };
     let waited = device.poll(wgpu::PollType::wait_indefinitely());
-    waited.map_err(|error| failed(error.to_string()))?;
-    let done = receiver.recv().map_err(|error| failed(error.to_string()))?;
-    done.map_err(|error| failed(error.to_string()))?;
+    waited.map_err(|error| failed(error.into()))?;
+    let done = receiver.recv().map_err(|error| failed(error.into()))?;
+    done.map_err(|error| failed(error.into()))?;
     let mapped = staging.slice(..size).get_mapped_range();
-    let mapped = mapped.map_err(|error| failed(error.to_string()))?;
+    let mapped = mapped.map_err(|error| failed(error.into()))?;
     Ok(mapped.to_vec())
 }

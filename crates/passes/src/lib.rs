@@ -16,7 +16,7 @@
 //! let gpu = device::open(None)?;
 //! let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, &mut provider)?;
 //! let mut encoder = gpu.device.create_command_encoder(&Default::default());
-//! executor.encode(&mut encoder, &Frame { read: &["visibility"], ..Frame::default() })?;
+//! executor.encode(&mut encoder, &Frame::new().with_read(&["visibility"]))?;
 //! gpu.queue.submit([encoder.finish()]);
 //! let visibility = &executor.finish()?.readbacks[0];
 //! # let _ = visibility;
@@ -51,6 +51,7 @@ mod provider;
 mod ray_query;
 mod trace;
 pub mod uniforms;
+mod view;
 
 pub use atlas::MaterialRecord;
 pub use built::{Built, How, Work};
@@ -58,6 +59,7 @@ pub use error::Error;
 pub use eye::{Depth, Eye, EyeError};
 pub use host::{GpuMesh, GpuMeshError};
 pub use parts::{PartId, Room};
-pub use presets::{EmbeddedSources, Preset, presets, registry};
+pub use presets::{EmbeddedSources, Preset, load_unit_visibility, presets, registry};
 pub use provider::SceneProvider;
 pub use trace::{Direction, Engine, Mode, Trace};
+pub use view::SceneView;

@@ -1,6 +1,10 @@
 //! All lights of a scene, each with a name of its own: `lights[2]` in documents.
 
-use crate::uniforms::{LIGHT_KINDS, LightAreaUniform, LightUniform};
+use crate::{
+    error::Error,
+    names::Versions,
+    uniforms::{LIGHT_KINDS, LightAreaUniform, LightUniform},
+};
 use skiagraph_graph::{Provided, ProvidedBinding, ProvidedKind};
 use skiagraph_scene::{LightKind, Scene};
 
@@ -31,6 +35,42 @@ pub(crate) fn names(count: usize) -> impl Iterator<Item = String> {
     [LIGHTS, LIGHT_AREAS].into_iter().flat_map(move |list| {
         let items = (0..count).map(move |number| format!("{list}.{number}"));
         std::iter::once(list.to_owned()).chain(items)
+    })
+}
+
+/// Returns the version of the resource behind a name; `None` if it is not one of these.
+pub(crate) fn version(name: &str, versions: &Versions) -> Option<u64> {
+    let (list, number) = parse(name)?;
+    Some(match list {
+        LIGHTS => versions.of_lights(number),
+        _ => versions.of_areas(number),
+    })
+}
+
+/// Checks lights that are to be the scene's.
+///
+/// # Errors
+/// The number of the first that is none, or that there are none.
+pub(crate) fn check(lights: &[LightKind]) -> Result<(), Error> {
+    if lights.is_empty() {
+        return Err(Error::NoLights);
+    }
+    for (number, light) in lights.iter().enumerate() {
+        light
+            .check()
+            .map_err(|why| Error::LightNumber { number, why })?;
+    }
+    Ok(())
+}
+
+/// Returns the error of a name that is asked for, but of a light that the scene does not have (any
+/// more); `None` if it is not of a light.
+pub(crate) fn gone(name: &str, lights: &[LightKind]) -> Option<Error> {
+    let (list, number) = parse(name)?;
+    let number = number.filter(|number| *number >= lights.len())?;
+    Some(Error::LightGone {
+        name: format!("{list}[{number}]"),
+        lights: lights.len(),
     })
 }
 

@@ -113,19 +113,46 @@ impl<T: PartialEq> Lately<T> {
     }
 }
 
+/// A light, and the version of what is made from it and the mesh's shape together.
+#[derive(Clone, Debug)]
+pub(crate) struct Laid {
+    pub light: Lately<LightKind>,
+    over: Lately<[u64; 2]>,
+}
+
+impl Laid {
+    fn new(light: LightKind, shape: u64) -> Self {
+        let light = Lately::new(light);
+        Self {
+            over: Lately::new([light.number, shape]),
+            light,
+        }
+    }
+
+    fn set(&mut self, light: LightKind, shape: u64) {
+        self.light.set(light);
+        self.lay(shape);
+    }
+
+    fn lay(&mut self, shape: u64) {
+        self.over.set([self.light.number, shape]);
+    }
+}
+
 /// Eye and lights that the provider is set to, and a version of everything that its resources are
 /// made from: resources of equal versions have equal contents.
 #[derive(Clone, Debug)]
 pub(crate) struct Versions {
     pub eye: Lately<Eye>,
-    pub light: Lately<LightKind>,
+    pub light: Laid,
     /// All lights of the scene, or the view's own.
     pub lights: Lately<Vec<LightKind>>,
-    /// Versions of light and shape together, of resources that are made from both.
-    light_over: Lately<[u64; 2]>,
+    /// Each of them, so that one that moves changes no other.
+    each: Vec<Laid>,
+    /// Versions of all lights and the shape together.
     lights_over: Lately<[u64; 2]>,
     /// Places and normals of the mesh's corners.
-    shape: u64,
+    pub shape: u64,
     /// In which order the corners of triangles come.
     winding: u64,
     /// All else of the mesh.
@@ -134,13 +161,15 @@ pub(crate) struct Versions {
 
 impl Versions {
     pub fn new(eye: Eye, light: LightKind, lights: Vec<LightKind>) -> Self {
-        let (light, lights, shape) = (Lately::new(light), Lately::new(lights), next_version());
+        let shape = next_version();
+        let each = lights.iter().map(|light| Laid::new(*light, shape));
+        let (each, lights) = (each.collect(), Lately::new(lights));
         Self {
             eye: Lately::new(eye),
-            light_over: Lately::new([light.number, shape]),
+            light: Laid::new(light, shape),
             lights_over: Lately::new([lights.number, shape]),
-            light,
             lights,
+            each,
             shape,
             winding: next_version(),
             mesh: next_version(),
@@ -148,13 +177,20 @@ impl Versions {
     }
 
     pub fn set_light(&mut self, light: LightKind) {
-        self.light.set(light);
-        self.lay();
+        self.light.set(light, self.shape);
     }
 
     pub fn set_lights(&mut self, lights: Vec<LightKind>) {
+        self.each.truncate(lights.len());
+        for (laid, light) in self.each.iter_mut().zip(&lights) {
+            laid.set(*light, self.shape);
+        }
+        let known = self.each.len();
+        let added = lights[known..].iter();
+        self.each
+            .extend(added.map(|light| Laid::new(*light, self.shape)));
         self.lights.set(lights);
-        self.lay();
+        self.lights_over.set([self.lights.number, self.shape]);
     }
 
     /// Notes that the mesh was replaced by another mesh.
@@ -177,11 +213,10 @@ impl Versions {
     /// Notes that corners of the mesh have moved.
     pub fn change_shape(&mut self) {
         self.shape = next_version();
-        self.lay();
-    }
-
-    fn lay(&mut self) {
-        self.light_over.set([self.light.number, self.shape]);
+        self.light.lay(self.shape);
+        for laid in &mut self.each {
+            laid.lay(self.shape);
+        }
         self.lights_over.set([self.lights.number, self.shape]);
     }
 
@@ -189,17 +224,26 @@ impl Versions {
     pub fn get(&self, name: &str) -> u64 {
         match name {
             CAMERA | UNPROJECTION => self.eye.number,
-            LIGHT_AREA => self.light.number,
-            LIGHT | LIGHT_SPACE_NODES | LIGHT_SPACE_PRIMITIVES => self.light_over.number,
+            LIGHT_AREA => self.light.light.number,
+            LIGHT | LIGHT_SPACE_NODES | LIGHT_SPACE_PRIMITIVES => self.light.over.number,
             POSITIONS | NORMALS | BVH_NODES | BVH_PRIMITIVES | TLAS | EMBREE => self.shape,
             INDICES | NORMAL_INDICES | UV_INDICES | ADJACENCY | MASKS => self.winding,
             _ => self.mesh,
         }
     }
 
-    /// Returns the version of `lights` and `light_areas`, and of the lights in them.
-    pub fn of_lists(&self) -> u64 {
-        self.lights_over.number
+    /// Returns the version of `lights`, or of the light of that number in it.
+    pub fn of_lights(&self, number: Option<usize>) -> u64 {
+        let all = self.lights_over.number;
+        let laid = number.and_then(|number| self.each.get(number));
+        laid.map_or(all, |laid| laid.over.number)
+    }
+
+    /// Returns the version of `light_areas`, or of the one of that number in it, which the mesh has
+    /// no part in.
+    pub fn of_areas(&self, number: Option<usize>) -> u64 {
+        let laid = number.and_then(|number| self.each.get(number));
+        laid.map_or(self.lights.number, |laid| laid.light.number)
     }
 }
 

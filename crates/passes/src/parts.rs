@@ -27,6 +27,7 @@ impl PartId {
 /// ([`SceneProvider::reserve`](crate::SceneProvider::reserve)). Triangles that no part has yet are
 /// drawn, and have no area.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Room {
     /// Number of parts.
     pub parts: usize,
@@ -43,6 +44,16 @@ impl Room {
     /// Returns the room that so many copies of a mesh need.
     pub fn of_copies(mesh: &Mesh, copies: usize) -> Self {
         Self::of(&Movable::joined(&[mesh]).rest, copies)
+    }
+
+    /// Returns the room for the parts of both.
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            parts: self.parts + other.parts,
+            positions: self.positions + other.positions,
+            normals: self.normals + other.normals,
+            triangles: self.triangles + other.triangles,
+        }
     }
 
     /// Returns the room of copies of a mesh whose normals are those of a part.

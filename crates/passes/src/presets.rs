@@ -2,8 +2,8 @@
 
 use crate::trace::Trace;
 use include_dir::{Dir, include_dir};
-use skiagraph_graph::{Registry, Sources};
-use std::sync::Arc;
+use skiagraph_graph::{Diagnostics, Graph, Registry, Sources};
+use std::{collections::BTreeMap, sync::Arc};
 
 static PIPELINES: Dir = include_dir!("$CARGO_MANIFEST_DIR/pipelines");
 static SHADERS: Dir = include_dir!("$CARGO_MANIFEST_DIR/shaders");
@@ -78,6 +78,36 @@ pub fn presets() -> Vec<Preset> {
         .collect();
     presets.sort_by(|a, b| a.name.cmp(&b.name));
     presets
+}
+
+/// Loads the document at `path`, a shadow method, with one more output, `unit_visibility`: its
+/// `visibility` in one format, R8Unorm, whatever the method's own is. 1 is lit, 0 in shadow; each
+/// layer of `visibility` has one. It costs one pass over the picture, and none in a plan without
+/// that output ([`PlanRequest::outputs`](skiagraph_graph::PlanRequest)). `sources` must have
+/// `pipelines/shared/unit_visibility.ron`, as [`EmbeddedSources`] has.
+///
+/// ```
+/// use skiagraph_passes::{EmbeddedSources, load_unit_visibility, registry};
+///
+/// let graph = load_unit_visibility("pipelines/pcf.ron", &registry(), &EmbeddedSources)?;
+/// assert_eq!(graph.outputs()[0], "unit_visibility");
+/// # Ok::<(), skiagraph_graph::Diagnostics>(())
+/// ```
+///
+/// # Errors
+/// Those of [`Graph::load`], and mistakes of a method without a `visibility`.
+pub fn load_unit_visibility(
+    path: &str,
+    registry: &Registry,
+    sources: &dyn Sources,
+) -> Result<Graph, Diagnostics> {
+    let over = BTreeMap::from([("over".to_owned(), path.to_owned())]);
+    Graph::load_over(
+        "pipelines/shared/unit_visibility.ron",
+        registry,
+        sources,
+        &over,
+    )
 }
 
 /// Creates a registry of the standard pass kinds and [`Trace`], with which

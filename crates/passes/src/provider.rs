@@ -158,6 +158,7 @@ impl SceneProvider {
 
     /// The buffer of that name with what is in it now.
     fn buffer(&mut self, name: &str, on: On) -> Result<wgpu::Buffer, Error> {
+        self.buffers.lay_over(self.versions.shape);
         let version = self.version(name);
         if let Some(buffer) = self.buffers.get(name, version) {
             return Ok(buffer.clone());
@@ -270,6 +271,18 @@ impl SceneProvider {
         self.geometry.lay(light, &self.scene.mesh)
     }
 
+    /// The light, if it can be used; of the scene's lights the error names which one it is.
+    fn checked(&self, light: LightKind) -> Result<LightKind, Error> {
+        let Err(reason) = light.check() else {
+            return Ok(light);
+        };
+        let mut lights = self.scene.lights.iter();
+        // Numbers that are none equal nothing, but their mistakes do.
+        let named = lights.find(|of| of.kind.check().as_ref() == Err(&reason));
+        let named = named.and_then(|light| light.check().err());
+        Err(Error::Light(named.unwrap_or(reason)))
+    }
+
     fn upload_light_space(&mut self, on: On) -> Result<How, Error> {
         if self.light().directional().is_none() {
             return Err(Error::LightSpaceKind(self.light().word()));
@@ -314,18 +327,25 @@ impl SceneProvider {
                 self.upload_items(name, &[self.versions.eye.now.finite()?.unprojection], on)
             }
             LIGHT => {
-                self.light().check().map_err(Error::Light)?;
-                let light = self.light_uniform(self.light());
+                let light = self.checked(self.light())?;
+                let light = self.light_uniform(light);
                 self.upload_items(name, &[light], on)
             }
-            LIGHT_AREA => self.upload_items(name, &[LightAreaUniform::from(&self.light())], on),
+            LIGHT_AREA => {
+                let light = self.checked(self.light())?;
+                self.upload_items(name, &[LightAreaUniform::from(&light)], on)
+            }
             BVH_NODES | BVH_PRIMITIVES => self.upload_hierarchy(on),
             LIGHT_SPACE_NODES | LIGHT_SPACE_PRIMITIVES => self.upload_light_space(on),
             _ => {
+                for &light in self.lights() {
+                    self.checked(light)?;
+                }
                 let lights = &self.versions.lights.now;
                 let lay = |light| self.geometry.lay(light, mesh);
                 let content = lights::content(name, lights, lay);
-                self.upload_items(name, &content.ok_or_else(|| unknown(name))?, on)
+                let missing = || lights::gone(name, self.lights()).unwrap_or_else(|| unknown(name));
+                self.upload_items(name, &content.ok_or_else(missing)?, on)
             }
         }
     }
@@ -387,7 +407,7 @@ impl SceneProvider {
 
     /// Returns the light that was set last: the resources `light` and `light_area` describe it.
     pub fn light(&self) -> LightKind {
-        self.versions.light.now
+        self.versions.light.light.now
     }
 
     /// Returns the index of [`light`](Self::light) in [`lights`](Self::lights); 0 if it is not in
@@ -398,9 +418,10 @@ impl SceneProvider {
         number.unwrap_or_default()
     }
 
-    /// Returns the lights that the resources `lights` and `light_areas` describe. These are all
-    /// lights of the scene in its order (its default light if it has none), or the light of a view
-    /// alone, if [`set_view`](Self::set_view) was given a view whose own light is none of these.
+    /// Returns the lights that the resources `lights` and `light_areas` describe: those of
+    /// [`set_lights`](Self::set_lights), if it was called. Otherwise these are all lights of the
+    /// scene in its order (its default light if it has none), or the light of a view alone, if
+    /// [`set_view`](Self::set_view) was given a view whose own light is none of these.
     pub fn lights(&self) -> &[LightKind] {
         &self.versions.lights.now
     }
@@ -412,6 +433,24 @@ impl SceneProvider {
     /// [`ExecuteError::OtherThanPlanned`](skiagraph_gpu::ExecuteError::OtherThanPlanned).
     pub fn set_light(&mut self, light: LightKind) {
         self.versions.set_light(light);
+    }
+
+    /// Sets the lights that the resources `lights` and `light_areas` describe, all at once;
+    /// [`light`](Self::light) stays as it is. They may be others in each frame. What a pass makes
+    /// from `lights[2]` alone is made anew only if that light has changed, or the mesh.
+    ///
+    /// A plan depends on the number of the lights and the kind of each: after a change of these,
+    /// graphs that read them must be planned anew. Until then
+    /// [`refresh`](skiagraph_gpu::Executor::refresh) fails with an error that names the light, or
+    /// the list.
+    ///
+    /// # Errors
+    /// [`Error::LightNumber`] for a light that cannot be used, [`Error::NoLights`] for an empty
+    /// list. The lights then stay as they were.
+    pub fn set_lights(&mut self, lights: &[LightKind]) -> Result<(), Error> {
+        lights::check(lights)?;
+        self.versions.set_lights(lights.to_vec());
+        Ok(())
     }
 
     /// Replaces the mesh by one without parts to move. A plan depends on the numbers of positions,
@@ -617,10 +656,8 @@ impl Describe for SceneProvider {
 
 impl Provider for SceneProvider {
     fn version(&self, name: &str) -> u64 {
-        match lights::describe(name, self.lights()) {
-            Some(_) => self.versions.of_lists(),
-            None => self.versions.get(name),
-        }
+        let of_lights = lights::version(name, &self.versions);
+        of_lights.unwrap_or_else(|| self.versions.get(name))
     }
 
     fn missing(&self, name: &str) -> Option<String> {
@@ -639,7 +676,7 @@ impl Provider for SceneProvider {
         queue: &wgpu::Queue,
     ) -> Result<wgpu::Buffer, ProviderError> {
         let buffer = self.buffer(name, On { device, queue });
-        buffer.map_err(|why| ProviderError(why.to_string()))
+        buffer.map_err(ProviderError::from_error)
     }
 
     fn build_acceleration_structure(
@@ -648,7 +685,7 @@ impl Provider for SceneProvider {
         device: &wgpu::Device,
         queue: &wgpu::Queue,
     ) -> Result<wgpu::Tlas, ProviderError> {
-        let why = |error: Error| ProviderError(error.to_string());
+        let why = |error: Error| ProviderError::from_error(error);
         if name != TLAS {
             return Err(why(unknown(name)));
         }
@@ -671,7 +708,7 @@ impl Provider for SceneProvider {
 
     #[cfg(feature = "embree")]
     fn build_cpu_work(&mut self, name: &str) -> Result<Arc<dyn CpuWork>, ProviderError> {
-        let why = |error: Error| ProviderError(error.to_string());
+        let why = |error: Error| ProviderError::from_error(error);
         if name != EMBREE {
             return Err(why(unknown(name)));
         }

@@ -92,8 +92,8 @@ pub struct Oracle<'a> {
 pub struct Occlusion {
     /// True if a triangle stands in the ray's way, at any distance.
     pub blocked: bool,
-    /// True if `blocked` changes when the triangles move by the f32 rounding of their corners, seen
-    /// from the ray's origin.
+    /// True if `blocked` changes when the triangles, and the edges of their masks, move by the f32
+    /// rounding of their corners, seen from the ray's origin.
     pub indeterminate: bool,
 }
 
@@ -194,8 +194,8 @@ impl<'a> Oracle<'a> {
 
     /// Traces rays, each given by its origin and direction (any length but zero), and returns an
     /// answer for each, in their order. A ray has no end. Tracers in f32 are tested against the
-    /// result. Origin and direction count as exact, hits count at t > 0, and triangles are
-    /// two-sided.
+    /// result. Origin and direction count as exact, hits count at t > 0, triangles are two-sided,
+    /// and rays pass through the holes of their masks.
     pub fn occlusion(&self, rays: &[(Vec3, Vec3)]) -> Vec<Occlusion> {
         let exact = Uncertainty {
             segments: [DVec3::ZERO; 3],

@@ -14,8 +14,8 @@ use std::collections::BTreeSet;
 
 const TIME: &str = "GPU ms of a frame less its G-buffer";
 
-/// Builds the chart of time against error: a panel for each folder and viewport, and a mark for
-/// each method and map size. The time is the GPU time of a frame without its G-buffer, in
+/// Builds the chart of time against error: a panel for each folder, viewport and light, and a mark
+/// for each method and map size. The time is the GPU time of a frame without its G-buffer, in
 /// milliseconds. The error is the wrong pixels outside the band (the pixels whose answer rounding
 /// decides), in percent of all pixels. Marks of several views show the mean of the views. Runs
 /// whose answers are shares of light, or whose light has an extent, are not drawn. `viewport`
@@ -28,8 +28,8 @@ pub fn front(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, Compar
     let maps = maps(kept, viewport);
     let mut panels = Vec::new();
     for kept in kept {
-        for viewport in viewports(&kept.results, viewport) {
-            panels.push(front_panel(kept, viewport, &maps)?);
+        for place in places(&kept.results, viewport) {
+            panels.push(front_panel(kept, place, &maps)?);
         }
     }
     let scenes = results().map(|results| results.scene.to_string());
@@ -74,9 +74,20 @@ fn looks_of(kept: &[Kept]) -> Vec<String> {
     looks(runs.map(|run| run.preset.clone()))
 }
 
-fn front_panel(kept: &Kept, viewport: [u32; 2], maps: &[u32]) -> Result<Panel, CompareError> {
+/// Viewport in pixels, and the light where there are several.
+type Place<'a> = ([u32; 2], Option<&'a str>);
+
+/// Places with something to draw, in the order of the file.
+fn places(results: &Results, wanted: Option<[u32; 2]>) -> Vec<Place<'_>> {
+    let drawn = results.runs.iter().filter(|run| is_drawn(run, wanted));
+    unique(drawn.map(|run| (run.viewport, run.light.as_deref())))
+}
+
+fn front_panel(kept: &Kept, place: Place<'_>, maps: &[u32]) -> Result<Panel, CompareError> {
+    let (viewport, light) = place;
+    let is_here = |run: &Run| run.light.as_deref() == light;
     // A graded answer has no wrong pixels.
-    let runs = drawn(&kept.results, viewport).filter(|(run, _)| run.is_hard());
+    let runs = drawn(&kept.results, viewport).filter(|(run, _)| run.is_hard() && is_here(run));
     let runs: Vec<(&Run, &Measured)> = runs.collect();
     let mut series: Vec<Series> = Vec::new();
     let mut cells: Vec<((&str, Option<u32>), Vec<_>)> = Vec::new();
@@ -113,7 +124,11 @@ fn front_panel(kept: &Kept, viewport: [u32; 2], maps: &[u32]) -> Result<Panel, C
         _ => format!("mean of {} views", views.len()),
     };
     Ok(Panel {
-        title: format!("{}, {views}, {}", kept.results.scene.name, size(viewport)),
+        title: format!(
+            "{}, {}",
+            kept.results.scene.name,
+            titled(&views, light, viewport)
+        ),
         kind: Kind::Front,
         x: TIME.into(),
         y: "wrong pixels outside the band, % of all".into(),
@@ -121,10 +136,16 @@ fn front_panel(kept: &Kept, viewport: [u32; 2], maps: &[u32]) -> Result<Panel, C
     })
 }
 
+/// Names views, light and viewport of a panel.
+fn titled(views: &str, light: Option<&str>, viewport: [u32; 2]) -> String {
+    let light = light.map_or_else(String::new, |light| format!(", light {light}"));
+    format!("{views}{light}, {}", size(viewport))
+}
+
 /// Builds the chart of time and memory against the number of triangles: two panels for each scene,
-/// view and viewport, and a line for each method and map size. The time is the GPU time of a frame
-/// without its G-buffer, in milliseconds; the memory is in MB. `viewport` (pixels) limits the chart
-/// to one viewport; `None` draws all.
+/// view, light and viewport, and a line for each method and map size. The time is the GPU time of a
+/// frame without its G-buffer, in milliseconds; the memory is in MB. `viewport` (pixels) limits the
+/// chart to one viewport; `None` draws all.
 ///
 /// # Errors
 /// If a drawn run has no GPU times.
@@ -143,10 +164,12 @@ pub fn growth(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, Compa
     let mut panels: Vec<[Panel; 2]> = Vec::new();
     for (kept, run, measured) in runs() {
         let scene = &kept.results.scene;
-        let cell = (scene.name.as_str(), run.view.as_str(), run.viewport);
+        let light = run.light.as_deref();
+        let cell = (scene.name.as_str(), run.view.as_str(), light, run.viewport);
         let index = place(&mut cells, cell);
         if index == panels.len() {
-            let title = format!("{}, view {}, {}", scene.name, run.view, size(run.viewport));
+            let place = titled(&format!("view {}", run.view), light, run.viewport);
+            let title = format!("{}, {place}", scene.name);
             let panel = |y: &str| Panel {
                 title: title.clone(),
                 kind: Kind::Growth,
@@ -200,8 +223,8 @@ pub fn growth(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, Compa
     })
 }
 
-/// Builds the chart of errors over the frames of camera paths: a panel for each folder, path and
-/// viewport, and a line for each method and map size. The error is that of [`path_panels`].
+/// Builds the chart of errors over the frames of camera paths: a panel for each folder, path, light
+/// and viewport, and a line for each method and map size. The error is that of [`path_panels`].
 /// `viewport` (pixels) limits the chart to one viewport; `None` draws all.
 ///
 /// # Errors
@@ -232,23 +255,24 @@ pub fn frames_of_paths(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figu
     })
 }
 
-/// Returns a panel for each camera path among `runs`, with a series for each run and a mark for the
-/// error of each frame. The error is the percentage of the pixels facing the light that are wrong
-/// outside the band (the pixels whose answer rounding decides); under a light with an extent it is
-/// the root mean square error of the shares of light. Runs of still views are skipped. All runs
-/// must have one viewport. A series is named after its method. The size of its marks is the index
-/// of the run's map size in `maps` (texels), or 0.
+/// Returns a panel for each camera path and light among `runs`, with a series for each run and a
+/// mark for the error of each frame. The error is the percentage of the pixels facing the light
+/// that are wrong outside the band (the pixels whose answer rounding decides); under a light with
+/// an extent it is the root mean square error of the shares of light. Runs of still views are
+/// skipped. All runs must have one viewport. A series is named after its method. The size of its
+/// marks is the index of the run's map size in `maps` (texels), or 0.
 pub fn path_panels<'a>(
     runs: impl Iterator<Item = (&'a Run, &'a Measured)>,
     maps: &[u32],
 ) -> Vec<Panel> {
-    let mut paths: Vec<(&str, Panel)> = Vec::new();
+    let mut paths: Vec<(_, Panel)> = Vec::new();
     for (run, measured) in runs {
         let Some(sequence) = &measured.sequence else {
             continue;
         };
         let is_soft = run.area.is_some();
-        let at = match paths.iter().position(|(path, _)| *path == run.view) {
+        let place = (&run.view, run.light.as_deref());
+        let at = match paths.iter().position(|(of, _)| *of == place) {
             Some(at) => at,
             None => {
                 let y = if is_soft {
@@ -257,13 +281,13 @@ pub fn path_panels<'a>(
                     "wrong pixels, %"
                 };
                 let panel = Panel {
-                    title: format!("path {}, {}", run.view, size(run.viewport)),
+                    title: titled(&format!("path {}", run.view), place.1, run.viewport),
                     kind: Kind::Frames,
                     x: "frame".into(),
                     y: y.into(),
                     series: Vec::new(),
                 };
-                paths.push((&run.view, panel));
+                paths.push((place, panel));
                 paths.len() - 1
             }
         };
@@ -402,6 +426,23 @@ mod tests {
         );
         assert_eq!((nsm.name.as_str(), &nsm.marks[..]), ("nsm", &[mark][..]));
         assert_eq!(figure.sizes, ["map 1024²"]);
+    }
+
+    #[test]
+    fn lights_have_panels_of_their_own() {
+        let mut kept = kept();
+        let mut second = kept.results.runs[0].clone();
+        (kept.results.runs[0].light, second.light) = (Some("sun".into()), Some("lamp".into()));
+        second.measured.as_mut().unwrap().wrong.total = 6;
+        kept.results.runs.insert(1, second);
+        let figure = front(&[kept], None).unwrap();
+        let [sun, lamp] = &figure.panels[..] else {
+            panic!("{figure:?}")
+        };
+        assert_eq!(sun.title, "park, view main, light sun, 512x256");
+        assert_eq!(lamp.title, "park, view main, light lamp, 512x256");
+        let wrong = |panel: &Panel| panel.series[0].marks[0].y;
+        assert!(wrong(sun) > 0.0 && wrong(lamp) == 0.0);
     }
 
     #[test]

@@ -351,8 +351,8 @@ fn median(times: &FrameTimes, by_wall: bool) -> Option<f64> {
 }
 
 /// Combines those of `runs` in one viewport (pixels) into rows by method, setting and map size, the
-/// fastest first. Rows that could not run come last. A tuned method stands behind the one that it
-/// is a setting of.
+/// fastest first. Give it the runs under one light: it does not keep lights apart. Rows that could
+/// not run come last. A tuned method stands behind the one that it is a setting of.
 pub fn rows<'a>(runs: impl IntoIterator<Item = &'a Run>, viewport: [u32; 2]) -> Vec<Row<'a>> {
     let mut cells: Vec<(String, Vec<&Run>)> = Vec::new();
     for run in runs.into_iter().filter(|run| run.viewport == viewport) {

@@ -58,9 +58,8 @@ pub const WRONG: &str = "wrong outside band";
 pub const NOT_THERE: &str = "n/a";
 
 impl<'a> Summary<'a> {
-    /// The runs of one viewport and light.
-    /// Summarises runs of one viewport. Runs on views on which settings were chosen are left out:
-    /// no method is judged on the pictures that it was fitted to.
+    /// Summarises runs of one viewport and light. Runs on views on which settings were chosen are
+    /// left out: no method is judged on the pictures that it was fitted to.
     fn new(results: &'a Results, mut runs: Vec<&'a Run>) -> Self {
         let newest = runs.iter().map(|run| run.session.as_str()).max();
         let now = runs

@@ -11,6 +11,8 @@ pub const TERMINAL: usize = 80;
 const GAP: usize = 2;
 /// Greatest width of a column of words beside numbers. Longer words are broken between parts.
 const WORDS: usize = 40;
+/// Least width of a last column of words, where others leave less of a line.
+const NARROWEST: usize = 20;
 /// Text of a cell without a figure.
 const NONE: &str = "–";
 
@@ -53,11 +55,16 @@ fn width(table: &Table, column: usize) -> usize {
     cells.chain([head]).filter_map(lines).max().unwrap_or(0)
 }
 
-/// How wide a cell of this column may get.
+/// How wide a cell of this column may get: of a table of words alone, the last column takes what
+/// the others leave of a line.
 fn room(table: &Table, column: usize) -> usize {
     let is_beside = table.words < table.heads.len();
+    let is_last = column + 1 == table.heads.len();
     if column < table.words && is_beside {
         WORDS
+    } else if !is_beside && is_last {
+        let others = (0..column).map(|other| width(table, other) + GAP);
+        TERMINAL.saturating_sub(others.sum()).max(NARROWEST)
     } else {
         usize::MAX
     }

@@ -21,6 +21,7 @@ pub enum SceneError {
         /// Path of the file that could not be read.
         path: PathBuf,
         /// Error of the operating system, or the size limit that the file exceeds.
+        #[source]
         reason: io::Error,
     },
     /// A line of an OBJ file could not be understood.

@@ -15,11 +15,15 @@ pub struct DirectionalLight {
     /// Direction in which the light travels, of any length above 0.
     #[serde(with = "Vector")]
     pub direction: DVec3,
-    /// Angular diameter in degrees as seen from the scene: at least 0, less than 180. A light of 0
+    /// Angular diameter in degrees as seen from the scene: at least 0, less than 90. A light of 0
     /// degrees has no extent, and its shadows are hard. The sun has 0.53 degrees.
     #[serde(default)]
     pub angle_degrees: f64,
 }
+
+/// Points are spread evenly over a flat disk. At the rim of one of 90 degrees each stands for 0.35
+/// of the sky that it stands for at the centre, and of a wider one for hardly any.
+const WIDEST_DEGREES: f64 = 90.0;
 
 /// Light space of a directional light (the space of its shadow map): an orthographic box that maps
 /// to wgpu clip space. Depth z in 0..1 grows away from the light.
@@ -62,7 +66,7 @@ impl DirectionalLight {
     }
 
     /// Checks that the light's direction is finite and not zero, and that its angle is at least 0
-    /// and less than 180 degrees.
+    /// and less than 90 degrees.
     ///
     /// # Errors
     /// Sentence with the first mistake.
@@ -73,10 +77,11 @@ impl DirectionalLight {
                 self.direction
             ));
         }
-        if !(0.0..180.0).contains(&self.angle_degrees) {
+        if !(0.0..WIDEST_DEGREES).contains(&self.angle_degrees) {
             return Err(format!(
-                "the light's angle_degrees is {}; expected at least 0 and less than 180, the \
-                 angle that it takes up in the sky",
+                "the light's angle_degrees is {}; expected at least 0 and less than \
+                 {WIDEST_DEGREES}, the angle that it takes up in the sky; several lights stand \
+                 for a wider one",
                 self.angle_degrees
             ));
         }

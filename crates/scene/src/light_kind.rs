@@ -169,8 +169,8 @@ impl LightKind {
     }
 
     /// Checks that the light's parameters are within their ranges: a position of at most 1e18 in
-    /// each coordinate, a direction other than 0, an angle of less than 180 degrees, a radius of at
-    /// least 0.
+    /// each coordinate, a direction other than 0, a sun's angle of less than 90 degrees and that of
+    /// a cone of less than 180, a radius of at least 0.
     ///
     /// # Errors
     /// Sentence with the first mistake.

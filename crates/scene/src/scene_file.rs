@@ -288,7 +288,7 @@ pub(crate) enum NamedLightText {
         /// Direction in which the light travels.
         #[serde(with = "Vector")]
         direction: DVec3,
-        /// Diameter as seen from the scene: 0 to less than 180.
+        /// Diameter as seen from the scene: 0 to less than 90.
         #[serde(default)]
         angle_degrees: f64,
     },

@@ -192,13 +192,12 @@ impl Slot {
             .map(|it| it.name)
             .collect();
         let read: Vec<&str> = names.iter().map(String::as_str).collect();
-        let desired = Frame {
-            timing: how.timing,
-            statistics: true,
-            all: how.all_passes,
-            read: &read,
-            seconds: how.seconds,
-        };
+        let desired = Frame::new()
+            .with_timing(how.timing)
+            .with_statistics(true)
+            .with_all(how.all_passes)
+            .with_read(&read)
+            .with_seconds(how.seconds);
         let (report, wall) = frame::run(session, executor, &desired)?;
         Ok(snapshot(preset, executor.plan(), report, wall, how.planes))
     }

@@ -312,7 +312,8 @@ impl Viewer {
     }
 
     /// Shows the next material in the order of [`steps`](Self::steps) in the pane with this index,
-    /// or the previous one if `forward` is false.
+    /// or the previous one if `forward` is false; at the ends it stays. A pane that shows none of
+    /// them gets the first, or the last if `forward` is false. Without steps nothing changes.
     pub fn step(&mut self, index: usize, forward: bool) {
         let steps = self.steps(index);
         let at = match &self.panes[index].show {

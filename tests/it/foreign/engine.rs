@@ -76,7 +76,7 @@ impl Bench {
                 .extend(params.map(|(name, value)| (name.to_owned(), value)));
         });
         let gpu = open();
-        let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, &mut provider)
+        let mut executor = Executor::on(&gpu, plan, &mut provider)
             .unwrap_or_else(|error| panic!("{path}: {error}"));
         for _ in 1..frames {
             frame(&gpu, &mut executor, &[]);

@@ -6,7 +6,8 @@ use skiagraph_gpu::{
     device::{self, Gpu},
 };
 use skiagraph_graph::{
-    Describe, Graph, LayeredSources, Plan, PlanRequest, Provided, ProvidedBinding, Sources,
+    Describe, Graph, LayeredSources, MemorySources, Plan, PlanRequest, Provided, ProvidedBinding,
+    Sources,
 };
 use skiagraph_passes::{EmbeddedSources, SceneProvider, registry};
 use skiagraph_scene::{DirectionalLight, Mesh, Scene, View};
@@ -30,6 +31,7 @@ impl Extended {
         }
     }
 
+    /// Adds a buffer, or replaces what a resource of the scene holds.
     pub fn add<T: bytemuck::NoUninit>(&mut self, name: &str, items: &[T]) {
         let content = bytemuck::cast_slice(items).to_vec();
         self.buffers
@@ -39,16 +41,16 @@ impl Extended {
 
 impl Describe for Extended {
     fn names(&self) -> Vec<String> {
-        self.scene
-            .names()
-            .into_iter()
-            .chain(self.buffers.keys().cloned())
-            .collect()
+        let mut names = self.scene.names();
+        names.retain(|name| !self.buffers.contains_key(name));
+        names.extend(self.buffers.keys().cloned());
+        names
     }
 
     fn describe(&self, name: &str) -> Option<Provided> {
-        let Some((content, stride)) = self.buffers.get(name) else {
-            return self.scene.describe(name);
+        let of_scene = self.scene.describe(name);
+        let Some((content, stride)) = self.buffers.get(name).filter(|_| of_scene.is_none()) else {
+            return of_scene;
         };
         Some(Provided {
             items: Some(content.len() as u64 / stride),
@@ -82,35 +84,15 @@ impl Provider for Extended {
             device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
                 label: Some(name),
                 contents: content,
-                usage: wgpu::BufferUsages::STORAGE,
+                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::UNIFORM,
             }),
         )
     }
 }
 
-/// Files that are on no disk, by their paths.
-struct Files(Vec<(String, String)>);
-
-impl Sources for Files {
-    fn read(&self, path: &str) -> Result<Option<Arc<str>>, String> {
-        let file = self.0.iter().find(|(name, _)| name == path);
-        Ok(file.map(|(_, text)| text.as_str().into()))
-    }
-
-    fn list(&self, _: &str) -> Vec<String> {
-        vec![]
-    }
-}
-
 /// Paths and texts before the embedded files.
 pub fn layered(files: &[(&str, &str)]) -> LayeredSources {
-    let files = files
-        .iter()
-        .map(|&(path, text)| (path.to_owned(), text.to_owned()));
-    LayeredSources(vec![
-        Box::new(Files(files.collect())),
-        Box::new(EmbeddedSources),
-    ])
+    MemorySources::new(files.iter().copied()).over(EmbeddedSources)
 }
 
 /// Runs a document given as text once, and returns one output's bytes.
@@ -247,10 +229,7 @@ pub fn allow_ray_queries(request: &mut PlanRequest<'_>) {
 /// an adapter fails the test with the way out.
 pub fn open() -> Gpu {
     static GPU: LazyLock<Gpu> = LazyLock::new(|| {
-        let wanted = device::Wanted {
-            features: RAY_QUERY,
-            ..Default::default()
-        };
+        let wanted = device::Wanted::default().with_features(RAY_QUERY);
         device::open_with(&wanted).unwrap_or_else(|error| panic!("{error}"))
     });
     GPU.clone()
@@ -258,8 +237,7 @@ pub fn open() -> Gpu {
 
 /// Runs one frame of a plan on a device.
 pub fn run_on(gpu: &Gpu, plan: Plan, provider: &mut dyn Provider, read: &[&str]) -> FrameReport {
-    let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, provider)
-        .unwrap_or_else(|error| panic!("{error}"));
+    let mut executor = Executor::on(gpu, plan, provider).unwrap_or_else(|error| panic!("{error}"));
     frame(gpu, &mut executor, read)
 }
 
@@ -268,10 +246,7 @@ pub fn frame(gpu: &Gpu, executor: &mut Executor, read: &[&str]) -> FrameReport {
     let mut encoder = gpu
         .device
         .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    let frame = Frame {
-        read,
-        ..Frame::default()
-    };
+    let frame = Frame::new().with_read(read);
     executor.encode(&mut encoder, &frame).unwrap();
     gpu.queue.submit([encoder.finish()]);
     executor.finish().unwrap()

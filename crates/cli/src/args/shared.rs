@@ -43,12 +43,12 @@ pub struct GpuArgs {
 impl GpuArgs {
     /// Returns the request for the GPU that these arguments choose.
     pub fn request(&self) -> GpuRequest {
-        GpuRequest {
-            adapter: self.adapter.clone(),
-            backends: self.backend.map(wgpu::Backends::from),
-            memory_limit: self.memory_limit,
-            timeout: (self.timeout > 0).then(|| Duration::from_secs(self.timeout)),
-        }
+        let mut request = GpuRequest::default();
+        request.adapter.clone_from(&self.adapter);
+        request.backends = self.backend.map(wgpu::Backends::from);
+        request.memory_limit = self.memory_limit;
+        request.timeout = (self.timeout > 0).then(|| Duration::from_secs(self.timeout));
+        request
     }
 }
 

@@ -142,11 +142,7 @@ fn frame(
 ) -> Result<Contents, ExecuteError> {
     executor.refresh(provider)?;
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let request = Frame {
-        read: &names,
-        seconds,
-        ..Frame::default()
-    };
+    let request = Frame::new().with_read(&names).with_seconds(seconds);
     let (report, _) = frame::run(session, executor, &request)?;
     executor.grow(provider)?;
     Ok(frame::contents(report.readbacks))

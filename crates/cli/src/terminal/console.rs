@@ -1,12 +1,10 @@
 //! Writes to standard output and standard error, with colours.
 
 use crate::error::CliError;
-use skiagraph_compare::error::{CompareError, advice, io_advice, rendered};
+use skiagraph_compare::error::{CompareError, advice, causes, io_advice, rendered};
 use skiagraph_gpu::ExecuteError;
 use std::{
-    error::Error,
     io::{self, IsTerminal, Write},
-    iter,
     process::ExitCode,
 };
 
@@ -51,7 +49,7 @@ pub fn report(error: &CliError) -> ExitCode {
             _ => format!("{} {error}", style("error:", "1;31")),
         };
         let mut line = |line: &str| text += &format!("\n  {}", line.replace('\n', "\n  "));
-        for error in iter::successors(error.source(), |&error| error.source()) {
+        for error in causes(error) {
             line(&format!("because: {error}"));
             if let Some(way_out) = error.downcast_ref().and_then(io_advice) {
                 line(way_out);

@@ -64,10 +64,7 @@ pub fn under_other_lights(graph: &Graph) -> String {
     let viewport = [64, 64];
     let mut provider = placeholder(viewport, graph);
     let choosing = |provider: &_| {
-        let plan = graph.plan(&PlanRequest {
-            any_adapter: true,
-            ..PlanRequest::new(viewport, provider)
-        });
+        let plan = graph.plan(&PlanRequest::new(viewport, provider).with_any_adapter(true));
         plan.map_or(BTreeSet::new(), |plan| choosing(graph, &plan))
     };
     let under_first = choosing(&provider);

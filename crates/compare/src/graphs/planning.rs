@@ -130,10 +130,7 @@ fn check_under(
 ) -> Result<(Graph, Plan), Diagnostics> {
     let request = match adapter {
         Some(adapter) => adapter.clone().request(VIEWPORT, provider),
-        None => PlanRequest {
-            any_adapter: true,
-            ..PlanRequest::new(VIEWPORT, provider)
-        },
+        None => PlanRequest::new(VIEWPORT, provider).with_any_adapter(true),
     };
     Graph::check(path, registry, sources, &request)
 }

@@ -9,11 +9,9 @@
 //! use std::time::Duration;
 //!
 //! let presets = preset::load_all(&["crsm".into()], &EmbeddedSources)?;
-//! let request = GpuRequest {
-//!     adapter: Some("llvmpipe".into()),
-//!     timeout: Some(Duration::from_secs(60)),
-//!     ..GpuRequest::default()
-//! };
+//! let request = GpuRequest::default()
+//!     .with_adapter("llvmpipe")
+//!     .with_timeout(Duration::from_secs(60));
 //! let gpu = device::open(&request, preset::graphs(&presets))?;
 //! println!("{}", device::describe(&gpu, device::timestamp_trust(&gpu)));
 //! # Ok::<(), skiagraph_compare::error::CompareError>(())
@@ -31,6 +29,7 @@ use sysinfo::{CpuRefreshKind, System};
 
 /// Request for a GPU, with limits on the memory and time that a graph may take on it.
 #[derive(Clone, Debug, Default)]
+#[non_exhaustive]
 pub struct GpuRequest {
     /// Part of the adapter's name, in any case. `None` takes it from the environment variable
     /// `WGPU_ADAPTER_NAME`, or the best adapter if that is not set.
@@ -46,6 +45,36 @@ pub struct GpuRequest {
     pub timeout: Option<Duration>,
 }
 
+impl GpuRequest {
+    /// Sets [`adapter`](Self::adapter).
+    #[must_use]
+    pub fn with_adapter(mut self, adapter: impl Into<String>) -> Self {
+        self.adapter = Some(adapter.into());
+        self
+    }
+
+    /// Sets [`backends`](Self::backends).
+    #[must_use]
+    pub fn with_backends(mut self, backends: wgpu::Backends) -> Self {
+        self.backends = Some(backends);
+        self
+    }
+
+    /// Sets [`memory_limit`](Self::memory_limit), in bytes.
+    #[must_use]
+    pub fn with_memory_limit(mut self, bytes: u64) -> Self {
+        self.memory_limit = Some(bytes);
+        self
+    }
+
+    /// Sets [`timeout`](Self::timeout).
+    #[must_use]
+    pub fn with_timeout(mut self, timeout: Duration) -> Self {
+        self.timeout = Some(timeout);
+        self
+    }
+}
+
 /// Opens the requested adapter, with those features that `graphs` need or can use and that it has.
 ///
 /// # Errors
@@ -56,11 +85,9 @@ pub fn open<'a>(
 ) -> Result<Gpu, CompareError> {
     let all = |all, graph: &Graph| all | graph.features();
     let features = graphs.into_iter().fold(wgpu::Features::empty(), all);
-    let wanted = Wanted {
-        adapter: request.adapter.as_deref(),
-        backends: request.backends,
-        features,
-    };
+    let mut wanted = Wanted::default().with_features(features);
+    wanted.adapter = request.adapter.as_deref();
+    wanted.backends = request.backends;
     let mut gpu = device::open_with(&wanted)
         .map_err(|error: GpuError| CompareError::NoGpu(error.to_string()))?;
     let is_software = gpu.adapter.get_info().device_type == wgpu::DeviceType::Cpu;

@@ -40,7 +40,7 @@ pub fn executor(
     plan: Plan,
     provider: &mut dyn Provider,
 ) -> Result<Executor, ExecuteError> {
-    Executor::new(&session.gpu.device, &session.gpu.queue, plan, provider)
+    Executor::on(session.gpu, plan, provider)
 }
 
 /// Creates the executor of a plan, with growing buffers (those whose size depends on the frame's
@@ -220,10 +220,7 @@ pub fn read(
     executor: &mut Executor,
     names: &[&str],
 ) -> Result<Contents, ExecuteError> {
-    let frame = Frame {
-        read: names,
-        ..Frame::default()
-    };
+    let frame = Frame::new().with_read(names);
     let (report, _) = run(session, executor, &frame)?;
     Ok(contents(report.readbacks))
 }

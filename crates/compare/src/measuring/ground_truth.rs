@@ -29,11 +29,11 @@ use skiagraph_graph::{Graph, Plan, Sources};
 use skiagraph_passes::registry;
 use skiagraph_reference::{
     BlockerCounts, EdgeDistances, Error, Footprint, GroundTruth, GroundTruthPixels, LayerJump,
-    Oracle, OracleMode, Progress, Statistics, area,
+    Oracle, OracleMode, Progress, Receiver, Statistics, area,
     shimmer::{Seen, same_receivers},
     texels, wrong_surfaces,
 };
-use skiagraph_scene::{Camera, LightKind};
+use skiagraph_scene::{Camera, LightKind, PointLight, SpotLight};
 use std::rc::Rc;
 
 /// The graph that every comparison draws first, as far as its output `primitive` needs: which one
@@ -50,10 +50,12 @@ pub struct PrimaryVisibility {
 }
 
 impl PrimaryVisibility {
-    /// Loads the G-buffer's graph from `sources`.
+    /// Loads the G-buffer's graph, `pipelines/shared/gbuffer.ron`, with its shaders from `sources`.
+    /// [`EmbeddedSources`](skiagraph_passes::EmbeddedSources) has these files; others may replace
+    /// them.
     ///
     /// # Errors
-    /// The graph has faults, for example if a file on disk replaces the built-in one.
+    /// A file is missing or has a fault.
     pub fn load(sources: &dyn Sources) -> Result<Self, CompareError> {
         let recorded = RecordedSources::new(sources);
         let graph = Graph::load(GBUFFER, &registry(), &recorded)
@@ -200,6 +202,29 @@ impl<'a> GroundTruthView<'a> {
             skiagraph_reference::blockers(oracle, camera, light, primitives, self.mode, &pixels)
         });
         blockers.map_err(|error| CompareError::Input(format!("no blockers: {error}")))
+    }
+
+    /// Counts the pixels that face a spot or point light and show a surface no farther from its
+    /// centre than its radius. A lamp's points lie on a disk, so that a surface within its ball is
+    /// answered as if the rest of the ball were not there. 0 for a directional light and for one
+    /// without extent.
+    pub fn inside_light(&self) -> u64 {
+        let radius = match self.light {
+            LightKind::Directional(_) => return 0,
+            LightKind::Spot(SpotLight { radius, .. })
+            | LightKind::Point(PointLight { radius, .. }) => radius,
+        };
+        let classes = self.ground_truth.pixels.classes.iter().enumerate();
+        let facing = classes.filter(|(_, class)| radius > 0.0 && class.faces_light());
+        let width = self.camera.viewport[0];
+        let is_inside = |index: usize| {
+            let pixel = [index as u32 % width, index as u32 / width];
+            let (mesh, camera) = (self.oracle.mesh(), &self.camera);
+            let found = Receiver::from_pixel(mesh, &self.primitives, camera, pixel, &self.light);
+            // The oracle has found all of them before.
+            matches!(found, Ok(Some(receiver)) if receiver.towards.distance <= radius)
+        };
+        facing.filter(|(index, _)| is_inside(*index)).count() as u64
     }
 
     /// Measures how far a method's wrong pixels lie from the edges of the reference's shadows.

@@ -95,8 +95,10 @@ pub struct Prepared {
 
 impl MeasureContext<'_> {
     /// Runs and judges a method on one still view by `plan`, its plan there; [`times`](Self::times)
-    /// times it together with others. `planned` is its run with nothing measured. A method that
-    /// reuses results of earlier frames is judged once its picture repeats.
+    /// times it together with others. `planned` is its run with nothing measured. `provider` has
+    /// the context's view and light already. A method that reuses results of earlier frames runs
+    /// first until its picture repeats, at most 256 frames. Of the pictures of one period (16
+    /// pictures if none repeats) the worst is judged, and [`Steady`] has the means of all.
     ///
     /// # Errors
     /// A method that the device refuses; outputs whose size, format or values a shadow method must
@@ -428,7 +430,7 @@ pub fn scene_bytes(
         let built = provider.build(name, &session.gpu.device, &session.gpu.queue);
         let buffer = built.map_err(|error| ExecuteError::Provider {
             name: name.to_owned(),
-            why: error.to_string(),
+            why: error,
         })?;
         bytes += buffer.size();
     }

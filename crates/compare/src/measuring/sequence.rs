@@ -196,13 +196,12 @@ impl Walk<'_> {
         let before = self.provider.built().to_vec();
         self.executor.refresh(self.provider)?;
         let remade = remade(&before, self.provider.built());
-        let request = Frame {
-            timing: true,
-            statistics: false,
-            all,
-            read: &self.method.preset.judged(),
-            seconds: frames.seconds(index),
-        };
+        let read = self.method.preset.judged();
+        let request = Frame::new()
+            .with_timing(true)
+            .with_all(all)
+            .with_read(&read)
+            .with_seconds(frames.seconds(index));
         let (mut report, wall) = frame::run(session, self.executor, &request)?;
         // As a host does it: between frames, by what has arrived.
         self.executor.grow(self.provider)?;

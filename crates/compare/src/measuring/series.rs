@@ -43,10 +43,11 @@ use crate::pictures::run_pictures::{PictureFile, conditions};
 use crate::records::published::attach;
 use crate::records::results::{PROGRAM, Results, Run};
 use crate::sink::{Runs, Session, Step};
-use crate::wording::{plural, size, thousands};
+use crate::wording::{length, plural, size, thousands};
 use skiagraph_graph::Plan;
 use skiagraph_passes::SceneProvider;
 use skiagraph_reference::{Oracle, PixelCounts};
+use skiagraph_scene::{LightKind, PointLight, Scene, SpotLight};
 use std::{
     cell::{OnceCell, RefCell},
     ops::Range,
@@ -234,6 +235,10 @@ impl<'a> Series<'a> {
         };
         let own = path.own_counts();
         if let Some(text) = unlit(view.name(), &own.pixels) {
+            self.session.sink.note(&text);
+        }
+        let inside = path.truth_views.iter().map(GroundTruthView::inside_light);
+        if let Some(text) = within_lamp(view, scene, inside.sum()) {
             self.session.sink.note(&text);
         }
         let context = MeasureContext {
@@ -578,6 +583,32 @@ fn unlit(view: &str, pixels: &PixelCounts) -> Option<String> {
         _ => return None,
     };
     Some(format!("warning: view `{view}` {what}"))
+}
+
+/// Warns of surfaces within a lamp, which methods answer by a disk that is not all of it.
+fn within_lamp(view: &ViewOrPath, scene: &Scene, pixels: u64) -> Option<String> {
+    let kind = view.light(scene);
+    let (LightKind::Spot(SpotLight { radius, .. }) | LightKind::Point(PointLight { radius, .. })) =
+        kind
+    else {
+        return None;
+    };
+    let lights = view.own_light().into_iter().chain(&scene.lights);
+    let light = lights.into_iter().find(|light| light.kind == kind);
+    let light = light.map_or_else(
+        || kind.word().to_owned(),
+        |light| format!("`{}`", light.name),
+    );
+    (pixels > 0).then(|| {
+        format!(
+            "warning: view `{}` shows surfaces inside of the light {light}, in {} pixels: they \
+             are within its radius of {}, and are lit by a disk around its centre alone; make \
+             `radius` smaller, or move the light",
+            view.name(),
+            thousands(pixels),
+            length(radius)
+        )
+    })
 }
 
 /// Share of the pixels facing the light below which a view has hardly any shadow.

@@ -65,11 +65,9 @@ fn one_frame(
     if mode == FrameMode::CameraMoves && executor.plan().provided().contains(&"camera") {
         executor.touch("camera")?;
     }
-    let request = Frame {
-        timing: true,
-        all: mode == FrameMode::AllPasses,
-        ..Frame::default()
-    };
+    let request = Frame::new()
+        .with_timing(true)
+        .with_all(mode == FrameMode::AllPasses);
     let (report, wall) = frame::run(session, executor, &request)?;
     timed_frame(report, began, wall)
 }

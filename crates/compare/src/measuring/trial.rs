@@ -317,11 +317,7 @@ impl<'a> Trials<'a> {
         executor.refresh(self.provider)?;
         let growth = frame::grow(self.session, executor, self.provider)?;
         let names = set.preset.judged();
-        let request = Frame {
-            all: true,
-            read: &names,
-            ..Frame::default()
-        };
+        let request = Frame::new().with_all(true).with_read(&names);
         let (report, _) = frame::run(self.session, executor, &request)?;
         self.left = self.left.saturating_sub(1 + u64::from(growth.frames));
         let contents = frame::contents(report.readbacks);

@@ -20,7 +20,7 @@
 use crate::error::CompareError;
 use crate::files::fingerprint::Fingerprint;
 use crate::wording::unknown;
-use skiagraph_scene::{CameraPath, LightKind, Scene, View};
+use skiagraph_scene::{CameraPath, Light, LightKind, Scene, View};
 
 /// One still view or camera path of a comparison.
 #[derive(Clone, Debug)]
@@ -46,6 +46,11 @@ impl ViewOrPath {
     /// default light.
     pub fn light(&self, scene: &Scene) -> LightKind {
         scene.light_of(self.view())
+    }
+
+    /// Returns the view's or path's own light; `None` if it is lit by the scene's.
+    pub(crate) fn own_light(&self) -> Option<&Light> {
+        self.view().light.as_ref()
     }
 
     /// Returns the name of the view's or path's own light if its name ends in `@` and that name, as

@@ -467,7 +467,8 @@ impl Column {
         }
     }
 
-    /// Returns the text of a run's cell in results.csv; empty if the figure is unknown.
+    /// Returns the text of a run's cell in results.csv, not yet quoted for CSV; empty if the figure
+    /// is unknown.
     pub fn csv_cell(&self, results: &Results, run: &Run) -> String {
         match self.value(results, run) {
             Unknown => String::new(),

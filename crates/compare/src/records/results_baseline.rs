@@ -184,7 +184,10 @@ impl Baseline {
         )))
     }
 
-    /// Compares new results with the baseline.
+    /// Compares the runs of new results with the baseline, but not those of
+    /// [`others`](Results::others) in joined results: call it for each of [`Results::each`]. If no
+    /// cell is in both, the changes have no cells; [`check`](Self::check) refuses that before
+    /// anything is measured.
     ///
     /// # Errors
     /// The scene has changed: the reference counts other numbers of lit and shadowed pixels, by

@@ -34,10 +34,7 @@ fn frames(
     let (plan, mut provider) = planned(name, folder, side);
     let (mut executor, growth) = frame::settled(session, plan, &mut provider).unwrap();
     let frames = (0..count).map(|_| {
-        let frame = Frame {
-            read,
-            ..Frame::default()
-        };
+        let frame = Frame::new().with_read(read);
         let (report, _) = frame::run(session, &mut executor, &frame).unwrap();
         frame::contents(report.readbacks)
     });

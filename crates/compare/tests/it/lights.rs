@@ -119,6 +119,39 @@ fn a_light_with_extent_is_judged_by_shares() {
     }
 }
 
+/// Surfaces within a lamp's radius are lit by its disk all the same: the number is told.
+#[test]
+fn surfaces_inside_of_a_lamp_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let notes = |radius: f64, light: &str| {
+        let text = format!(
+            r#"(format: 1, name: "s", mesh: Generated("park"),
+            lights: [
+                Point(name: "bulb", position: (-14, 6, 4), radius: {radius}),
+                Spot(name: "lamp", position: (-14, 6, 4), direction: (0, -1, 0), cone_degrees: 110,
+                    radius: {radius}),
+            ],
+            views: [(name: "bench", eye: (-23, 18, 30), direction: (0.4, -0.6, -0.7),
+                fov_y_degrees: 60, near: 1, far: 400)])"#
+        );
+        let file = folder.path().join("s.ron");
+        fs::write(&file, text).unwrap();
+        let scene = scene(file.to_str().unwrap(), None);
+        let mut comparison = comparison(scene, &["rt_area"], NOWHERE.as_ref(), &[]);
+        comparison.viewports = vec![[32, 32]];
+        comparison.protocol.reference_samples = 4;
+        let (heard, _) = keep(&under(comparison, light), folder.path(), Kept::Others).unwrap();
+        heard.notes()
+    };
+    for light in ["bulb", "lamp"] {
+        let told = notes(12.0, light);
+        let named = format!("inside of the light `{light}`, in ");
+        assert!(told.contains(&named), "{told}");
+        assert!(told.contains("its radius of 12"), "{told}");
+    }
+    assert!(!notes(0.01, "bulb").contains("inside of"));
+}
+
 /// A graph that includes `rt` for each light.
 const EVERY_LIGHT: &str = r#"(
     format: 3,

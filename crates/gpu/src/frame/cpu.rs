@@ -71,7 +71,7 @@ impl CpuTurn<'_> {
             worked = began.elapsed();
             done.map_err(|why| ExecuteError::CpuWork {
                 name: call.work.name.clone(),
-                why: why.0,
+                why,
             })
         })?;
         *self.worked.get_or_insert_default() += worked;

@@ -17,7 +17,7 @@ use super::{
     uniform::FrameUniform,
 };
 use crate::{
-    device::partial,
+    device::{Gpu, partial},
     error::{ExecuteError, poll, wait, with_table},
     memory::{
         import::differs,
@@ -28,7 +28,7 @@ use crate::{
     presence::Presence,
     provider::Provider,
 };
-use skiagraph_graph::{LinkedPass, Origin, ParamValue, Plan, Resource, ResourceKind};
+use skiagraph_graph::{Origin, ParamValue, Plan, Resource, ResourceKind};
 use std::{
     sync::Arc,
     time::{Duration, Instant},
@@ -88,20 +88,44 @@ impl Executor {
         plan: Plan,
         provider: &mut dyn Provider,
     ) -> Result<Self, ExecuteError> {
+        Self::with_pipelines(&Pipelines::new(device), queue, plan, provider)
+    }
+
+    /// Creates an executor of a plan on an open device. Those of one [`Gpu`] share its
+    /// [pipelines](Gpu::pipelines).
+    ///
+    /// # Errors
+    /// Those of [`new`](Self::new).
+    pub fn on(gpu: &Gpu, plan: Plan, provider: &mut dyn Provider) -> Result<Self, ExecuteError> {
+        Self::with_pipelines(&gpu.pipelines, &gpu.queue, plan, provider)
+    }
+
+    /// Creates an executor as [`new`](Self::new) does, on the device of `pipelines`, which it
+    /// shares: it makes only the shader modules and pipelines that are missing there. `queue` is
+    /// the queue of that device.
+    ///
+    /// # Errors
+    /// Those of [`new`](Self::new).
+    pub fn with_pipelines(
+        pipelines: &Pipelines,
+        queue: &wgpu::Queue,
+        plan: Plan,
+        provider: &mut dyn Provider,
+    ) -> Result<Self, ExecuteError> {
+        let device = pipelines.device();
         let presence = Presence::new(device)?;
         check_backend(device, &plan)?;
-        let mut pipelines = Pipelines::default();
         let mut factory = ResourceFactory {
             device,
             queue,
             provider,
         };
-        let state = State::new(plan, &mut pipelines, &mut factory)?;
+        let state = State::new(plan, pipelines, &mut factory)?;
         let mut executor = Self {
             device: device.clone(),
             presence,
             queue: queue.clone(),
-            pipelines,
+            pipelines: pipelines.clone(),
             ping_pong: state.ping_pong(true),
             state,
             decision: FrameDecision::default(),
@@ -120,6 +144,12 @@ impl Executor {
     /// graph.
     pub fn plan(&self) -> &Plan {
         &self.state.plan
+    }
+
+    /// Returns the shader modules and pipelines of the executor, which others can
+    /// [share](Self::with_pipelines).
+    pub fn pipelines(&self) -> &Pipelines {
+        &self.pipelines
     }
 
     /// Encodes the passes of a frame into `encoder`, which the host then submits, and returns the
@@ -672,7 +702,7 @@ impl Executor {
         );
         let memory = memory.map_err(|error| with_table(error, &plan))?;
         let reused = Reused::new(&self.state, &plan, &memory);
-        let made = reused.passes(&mut self.pipelines, &self.device);
+        let made = reused.passes(&self.pipelines, &self.device);
         let passes = made.map_err(|error| with_table(error, &plan))?;
         let mut report = ReplanReport {
             pipelines: reused.made_pipelines(),
@@ -737,17 +767,13 @@ impl Executor {
     /// Returns a [`Preparer`], which can create the pipelines of the next plan on another thread
     /// ([`Preparer::prepare`]) while this executor draws.
     pub fn preparer(&self) -> Preparer {
-        let steps = |pass: &LinkedPass| (pass.name.value.clone(), pass.steps.clone());
         Preparer {
-            device: self.device.clone(),
             pipelines: self.pipelines.clone(),
-            known: self.plan().live().map(steps).collect(),
         }
     }
 
     /// Replaces the plan, as [`replace_graph`](Self::replace_graph) does, by one whose pipelines a
-    /// [`Preparer`] has created. If the executor's plan has changed since
-    /// [`preparer`](Self::preparer) was called, pipelines that are still missing are created now.
+    /// [`Preparer`] has created. Pipelines that are still missing are created now.
     ///
     /// # Errors
     /// Those of [`replace_graph`](Self::replace_graph). After an error the executor's plan is
@@ -757,11 +783,11 @@ impl Executor {
         prepared: Prepared,
         provider: &mut dyn Provider,
     ) -> Result<ReplanReport, ExecuteError> {
-        let Prepared { plan, pipelines } = prepared;
-        self.pipelines = pipelines;
-        let report = self.replace_graph(plan, provider);
-        self.pipelines.forget_prepared();
-        report
+        let Prepared {
+            plan,
+            pipelines: _kept,
+        } = prepared;
+        self.replace_graph(plan, provider)
     }
 
     /// Enlarges the buffers and textures declared with `grow` that were too small for a finished

@@ -40,6 +40,6 @@ impl Provider for Unchanged {
         _: &wgpu::Device,
         _: &wgpu::Queue,
     ) -> Result<wgpu::Buffer, ProviderError> {
-        Err(ProviderError(format!("`{name}` was there before")))
+        Err(ProviderError::new(format!("`{name}` was there before")))
     }
 }

@@ -94,7 +94,8 @@ impl HostChanges {
     }
 
     /// Forgets the known versions, because no live pass reads the flags. The first frame that reads
-    /// them again gets scene and light as changed.
+    /// them again gets scene and light as changed. The flag of memory, which depends on no version,
+    /// is not touched.
     pub fn forget(&mut self) {
         self.known = None;
     }

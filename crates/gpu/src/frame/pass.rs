@@ -10,7 +10,8 @@ use crate::{
     pipelines::{
         bind::{Binder, upload},
         handles::Handles,
-        pipelines::{Pipeline, Pipelines, same_pipeline},
+        key::same_pipeline,
+        pipelines::{Pipeline, Pipelines},
     },
 };
 use skiagraph_graph::{LinkedPass, Origin, Plan, ResourceId, step::Step};
@@ -20,7 +21,7 @@ use std::sync::Arc;
 pub(super) struct GpuPass {
     pub name: Arc<str>,
     /// Pipeline of each step; `None` for one without a shader.
-    pipelines: Vec<Option<Pipeline>>,
+    pipelines: Vec<Option<Arc<Pipeline>>>,
     /// Buffer of the uniform `params` of each step; `None` for steps without one.
     params: Vec<Option<wgpu::Buffer>>,
     /// The resources with two allocations that the pass uses.
@@ -50,7 +51,7 @@ impl GpuPass {
         plan: &Plan,
         at: usize,
         old: Option<(&LinkedPass, &GpuPass)>,
-        pipelines: &mut Pipelines,
+        pipelines: &Pipelines,
         device: &wgpu::Device,
     ) -> Result<Self, ExecuteError> {
         let pass = plan.pass(plan.schedule().passes[at]);
@@ -66,12 +67,10 @@ impl GpuPass {
                 .is_some_and(|(linked, _)| linked.params().nth(index) == pass.params().nth(index));
             let uniform = before.filter(|_| same);
             let uniform = uniform.and_then(|made| made.params[index].clone());
-            let made_step = || match before {
+            made.push(match before {
                 Some(made) => made.pipelines[index].clone(),
-                None => pipelines.get_or_make(device, &pass.name, (index, step)),
-            };
-            let pipeline = scoped(device, &pass.name, made_step).map_err(refused)?;
-            made.push(pipeline);
+                None => pipelines.get_or_make(&pass.name, step).map_err(refused)?,
+            });
             params.push(match uniform {
                 Some(buffer) => Some(buffer),
                 None => scoped(device, &pass.name, || upload(device, &pass.name, step))
@@ -131,7 +130,7 @@ impl GpuPass {
             let steps = pass.steps.iter().zip(&self.pipelines).zip(&self.params);
             steps
                 .map(|((step, pipeline), params)| {
-                    binder.step(&pass.name, step, pipeline.as_ref(), params.as_ref())
+                    binder.step(&pass.name, step, pipeline.as_deref(), params.as_ref())
                 })
                 .collect::<Result<Vec<_>, _>>()
         })

@@ -2,56 +2,45 @@
 //! the time. Bindings to existing memory are made later, when the plan is put in.
 
 use crate::{
-    error::{ExecuteError, named, scoped},
-    pipelines::pipelines::{Pipelines, same_pipeline},
+    error::{ExecuteError, named},
+    pipelines::pipelines::{Pipeline, Pipelines},
     presence::Presence,
 };
-use skiagraph_graph::{Ids, Plan, step::Step};
-use std::collections::HashMap;
+use skiagraph_graph::Plan;
+use std::sync::Arc;
 
 /// Creates the pipelines of an [`Executor`](super::Executor)'s next plan. It can be sent to another
 /// thread, so that the executor goes on drawing. [`Executor::preparer`](super::Executor::preparer)
 /// returns one.
 pub struct Preparer {
-    pub(super) device: wgpu::Device,
     pub(super) pipelines: Pipelines,
-    /// Steps of each pass of the executor's plan, by pass name; their pipelines exist already.
-    pub(super) known: HashMap<String, Vec<Step<Ids>>>,
 }
 
 /// A plan and its finished pipelines: the result of [`Preparer::prepare`], to be passed to
 /// [`Executor::replace`](super::Executor::replace).
 pub struct Prepared {
     pub(super) plan: Plan,
-    pub(super) pipelines: Pipelines,
+    /// Kept in use until the plan is put in.
+    pub(super) pipelines: Vec<Arc<Pipeline>>,
 }
 
 impl Preparer {
-    /// Creates those shader modules and pipelines of `plan` that the executor did not have when
-    /// [`Executor::preparer`](super::Executor::preparer) was called.
+    /// Creates those shader modules and pipelines of `plan` that the executor's
+    /// [`Pipelines`](crate::Pipelines) lack.
     ///
     /// # Errors
     /// If the device refuses a shader or pipeline, or is lost. An error about a pass names the pass
     /// and its place in the graph document.
     pub fn prepare(self, plan: Plan) -> Result<Prepared, ExecuteError> {
-        let Self {
-            device,
-            mut pipelines,
-            known,
-        } = self;
-        Presence::new(&device)?;
+        Presence::new(self.pipelines.device())?;
+        let mut pipelines = Vec::new();
         for pass in plan.live() {
-            let old = known.get(pass.name.as_str());
-            let is_new = |(at, step): (usize, _)| {
-                let before = old.and_then(|old| old.get(at));
-                let serves = before.is_some_and(|before| same_pipeline(before, step));
-                (!serves).then_some(step)
-            };
-            let steps = pass.steps.iter().enumerate().map(is_new);
-            scoped(&device, &pass.name, || {
-                pipelines.prepare(&device, &pass.name, steps);
-            })
-            .map_err(|error| named(error, &pass.name, &pass.name.span.to_string()))?;
+            for step in &pass.steps {
+                let made = self.pipelines.get_or_make(&pass.name, step);
+                let made =
+                    made.map_err(|error| named(error, &pass.name, &pass.name.span.to_string()))?;
+                pipelines.extend(made);
+            }
         }
         Ok(Prepared { plan, pipelines })
     }

@@ -15,7 +15,7 @@ use super::{
 use crate::{
     error::ExecuteError,
     memory::memory::Memory,
-    pipelines::pipelines::{Pipelines, same_pipeline},
+    pipelines::{key::same_pipeline, pipelines::Pipelines},
 };
 use skiagraph_graph::{Ids, LinkedPass, Plan, ResourceId, ResourceKind, step::Step};
 use std::collections::{BTreeMap, HashMap};
@@ -23,6 +23,7 @@ use std::collections::{BTreeMap, HashMap};
 /// Work that a change of an [`Executor`](super::Executor)'s plan took. Names of passes stand in the
 /// order in which the passes run, names of resources in the order of the graph document.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct ReplanReport {
     /// Names of the passes whose uniform buffer `params` was uploaded again with other values; new
     /// passes are not listed.
@@ -113,7 +114,7 @@ impl<'a> Reused<'a> {
     /// Creates the passes of the plan, with the input versions that they remember.
     pub fn passes(
         &self,
-        pipelines: &mut Pipelines,
+        pipelines: &Pipelines,
         device: &wgpu::Device,
     ) -> Result<Vec<GpuPass>, ExecuteError> {
         let groups = self.groups();

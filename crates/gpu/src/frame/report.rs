@@ -6,6 +6,7 @@ use crate::readback::Readback;
 /// Settings of one frame, for [`Executor::encode`](crate::Executor::encode). The [`Default`]
 /// requests no report and runs only the passes that have to run.
 #[derive(Clone, Copy, Debug, Default)]
+#[non_exhaustive]
 pub struct Frame<'a> {
     /// Measures the GPU and CPU time of every pass that runs; the times come in
     /// [`FrameReport::timing`]. GPU times need a device with `TIMESTAMP_QUERY`, those of copies,
@@ -28,9 +29,58 @@ pub struct Frame<'a> {
     pub seconds: f32,
 }
 
+impl<'a> Frame<'a> {
+    /// Creates the settings of a frame without a report, as [`Default`] does.
+    pub const fn new() -> Self {
+        Self {
+            timing: false,
+            statistics: false,
+            all: false,
+            read: &[],
+            seconds: 0.0,
+        }
+    }
+
+    /// Sets [`timing`](Self::timing).
+    #[must_use]
+    pub const fn with_timing(mut self, timing: bool) -> Self {
+        self.timing = timing;
+        self
+    }
+
+    /// Sets [`statistics`](Self::statistics).
+    #[must_use]
+    pub const fn with_statistics(mut self, statistics: bool) -> Self {
+        self.statistics = statistics;
+        self
+    }
+
+    /// Sets [`all`](Self::all).
+    #[must_use]
+    pub const fn with_all(mut self, all: bool) -> Self {
+        self.all = all;
+        self
+    }
+
+    /// Sets [`read`](Self::read).
+    #[must_use]
+    pub const fn with_read(mut self, read: &'a [&'a str]) -> Self {
+        self.read = read;
+        self
+    }
+
+    /// Sets [`seconds`](Self::seconds).
+    #[must_use]
+    pub const fn with_seconds(mut self, seconds: f32) -> Self {
+        self.seconds = seconds;
+        self
+    }
+}
+
 /// Times, statistics, skipped passes and readbacks of one frame, from
 /// [`Executor::poll`](crate::Executor::poll) or [`finish`](crate::Executor::finish).
 #[derive(Clone, Debug, Default)]
+#[non_exhaustive]
 pub struct FrameReport {
     /// Number of the frame, counted from 0: `frame.index` in the shaders, and the result of
     /// [`encode`](crate::Executor::encode). `u32::MAX` if no frame was encoded.

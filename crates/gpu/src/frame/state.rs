@@ -51,7 +51,7 @@ pub(super) struct FrameDecision {
 impl State {
     pub fn new(
         plan: Plan,
-        pipelines: &mut Pipelines,
+        pipelines: &Pipelines,
         factory: &mut ResourceFactory<'_>,
     ) -> Result<Self, ExecuteError> {
         let refused = |error| with_table(error, &plan);

@@ -11,6 +11,7 @@ use std::{cell::Cell, mem::size_of, ops::Range, sync::Arc};
 /// Number of shader runs of one pass in one frame, summed over its draws and dispatches, as the
 /// device counted them. Only the first 4096 draws and dispatches of a frame are counted.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct PassStatistics {
     /// Name of the pass, as in [`PassSummary::name`](skiagraph_graph::PassSummary::name).
     pub name: String,

@@ -7,7 +7,7 @@ use super::{
 use crate::{
     buffer,
     error::{ExecuteError, scoped},
-    provider::Provider,
+    provider::{Provider, ProviderError},
 };
 use skiagraph_graph::{
     Address, FRAME_BYTES, Filter, Origin, Plan, Provided, Resource, ResourceId, ResourceKind,
@@ -310,16 +310,16 @@ impl Memory {
                 .build(&resource.name, device, factory.queue)
                 .map(Physical::Buffer),
         })?;
-        let refused = |why: String| ExecuteError::Provider {
+        let refused = |why: ProviderError| ExecuteError::Provider {
             name: resource.name.clone(),
             why,
         };
-        let built = built.map_err(|why| refused(why.0))?;
+        let built = built.map_err(refused)?;
         if !is_copyable(&built) && is_read_as_before(id, plan) {
             return Err(refused(
                 "it is read as it was in the frame before, so it must be made with \
                  BufferUsages::COPY_SRC"
-                    .to_owned(),
+                    .into(),
             ));
         }
         // Only now: what could not be built is asked for again.

@@ -2,6 +2,7 @@
 
 pub(crate) mod bind;
 pub(crate) mod handles;
+pub(crate) mod key;
 #[expect(
     clippy::module_inception,
     reason = "the folder is named after what it makes"

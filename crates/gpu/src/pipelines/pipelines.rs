@@ -1,26 +1,67 @@
-//! Creates pipelines: one for each draw or dispatch; shaders are compiled once.
+//! Shader modules and pipelines of a device: each is made once, for all executors that share it.
 
-use super::handles::PipelineKind;
+use super::{handles::PipelineKind, key::PipelineKey};
+use crate::error::{ExecuteError, scoped};
 use naga::ShaderStage;
-use skiagraph_graph::{
-    Ids, LinkedProgram, Shader,
-    step::{ColorTarget, Dispatch, Draw, Step},
+use skiagraph_graph::{Ids, Shader, step::Step};
+use std::{
+    borrow::Cow,
+    collections::HashMap,
+    sync::{Arc, Mutex, MutexGuard, PoisonError},
 };
-use std::{borrow::Cow, collections::HashMap, sync::Arc};
 
 /// The pipeline of a draw or dispatch, with the layouts of its bind groups.
-#[derive(Clone)]
 pub(crate) struct Pipeline {
     pub kind: PipelineKind,
     pub layouts: Vec<Option<wgpu::BindGroupLayout>>,
 }
 
-/// Creates pipelines and keeps the compiled shaders.
-#[derive(Clone, Default)]
-pub(crate) struct Pipelines {
-    modules: HashMap<String, (Arc<Shader>, wgpu::ShaderModule)>,
-    /// Pipelines of the next plan that another thread has created, by pass name; one for each step.
-    prepared: HashMap<String, Vec<Option<Pipeline>>>,
+/// Number of pipelines without a user that are kept, for a plan that comes back to them.
+const UNUSED: usize = 64;
+
+/// Shader modules and pipelines on one device. Executors that are
+/// [created with](crate::Executor::with_pipelines) the same object share them: a pipeline that one
+/// of them has made costs the others nothing, also after a change of a plan. Clones are handles of
+/// the same object; threads may share it.
+///
+/// Pipelines are equal if shader text (with imports in place), entry points, `override` constants,
+/// bind group layouts, target formats and fixed-function state are. The last 64 pipelines that no
+/// executor uses any more are kept, others are dropped.
+///
+/// ```no_run
+/// use skiagraph_gpu::{Executor, Pipelines, device};
+/// use skiagraph_graph::{FolderSources, Graph, NoProvider, PlanRequest, Registry};
+///
+/// let sources = FolderSources { root: "graphs".into() };
+/// let graph = Graph::load("ramp.ron", &Registry::standard(), &sources)?;
+/// let gpu = device::open(None)?;
+/// let pipelines = Pipelines::new(&gpu.device);
+/// for viewport in [[64, 32], [128, 64]] {
+///     let plan = graph.plan(&PlanRequest::new(viewport, &NoProvider))?;
+///     // The second executor makes no pipelines.
+///     Executor::with_pipelines(&pipelines, &gpu.queue, plan, &mut NoProvider)?;
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone)]
+pub struct Pipelines(Arc<Shared>);
+
+struct Shared {
+    device: wgpu::Device,
+    cache: Option<wgpu::PipelineCache>,
+    store: Mutex<Store>,
+}
+
+#[derive(Default)]
+struct Store {
+    modules: HashMap<Arc<Shader>, wgpu::ShaderModule>,
+    /// Vertex stage of full-screen passes.
+    fullscreen: Option<wgpu::ShaderModule>,
+    /// Each with the time of its last use.
+    pipelines: HashMap<PipelineKey, (Arc<Pipeline>, u64)>,
+    /// Counts uses.
+    time: u64,
+    made: u64,
 }
 
 /// The vertex stage of a full-screen pass: one triangle over the whole target.
@@ -30,174 +71,182 @@ const FULLSCREEN: &str =
 }";
 
 impl Pipelines {
-    /// Creates pipelines of a pass for the next plan. `steps` yields every step; `None` for a step
-    /// that needs no new pipeline.
-    pub fn prepare<'s>(
-        &mut self,
-        device: &wgpu::Device,
+    /// Creates an object without pipelines for a device.
+    pub fn new(device: &wgpu::Device) -> Self {
+        Self::of(device, None)
+    }
+
+    /// Creates an object without pipelines whose pipelines are made with wgpu's pipeline cache,
+    /// which keeps a driver's compiled shaders from one run of a program to the next. The host
+    /// creates `cache` on the same device (feature `PIPELINE_CACHE`), and reads its
+    /// [`get_data`](wgpu::PipelineCache::get_data) after the executors are made.
+    ///
+    /// Old data are the business of
+    /// [`create_pipeline_cache`](wgpu::Device::create_pipeline_cache): with `fallback` wgpu takes
+    /// broken data, and those of another driver or wgpu, for none. Data of another adapter are an
+    /// error there, so keep a file for each
+    /// [`pipeline_cache_key`](wgpu::util::pipeline_cache_key). With an invalid cache, or one of
+    /// another device, executors fail to be made with
+    /// [`ExecuteError::Gpu`](crate::ExecuteError::Gpu), which names the first pass.
+    pub fn with_cache(device: &wgpu::Device, cache: wgpu::PipelineCache) -> Self {
+        Self::of(device, Some(cache))
+    }
+
+    fn of(device: &wgpu::Device, cache: Option<wgpu::PipelineCache>) -> Self {
+        Self(Arc::new(Shared {
+            device: device.clone(),
+            cache,
+            store: Mutex::default(),
+        }))
+    }
+
+    /// Returns the device that the pipelines are made on.
+    pub fn device(&self) -> &wgpu::Device {
+        &self.0.device
+    }
+
+    /// Returns the cache given to [`with_cache`](Self::with_cache).
+    pub fn cache(&self) -> Option<&wgpu::PipelineCache> {
+        self.0.cache.as_ref()
+    }
+
+    /// Returns the number of pipelines that were made so far, those that were dropped since
+    /// included.
+    pub fn made(&self) -> u64 {
+        self.store().made
+    }
+
+    /// Returns the number of pipelines that are kept now, used or not.
+    pub fn kept(&self) -> usize {
+        self.store().pipelines.len()
+    }
+
+    fn store(&self) -> MutexGuard<'_, Store> {
+        let store = self.0.store.lock();
+        store.unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Returns the pipeline of a step, which is made if there is none yet; `None` for copies and
+    /// clears. `label` names the pass. Other threads may use the object meanwhile.
+    pub(crate) fn get_or_make(
+        &self,
         label: &str,
-        steps: impl Iterator<Item = Option<&'s Step<Ids>>>,
-    ) {
-        let made = steps.map(|step| self.make(device, label, step?)).collect();
-        self.prepared.insert(label.to_owned(), made);
-    }
-
-    /// Drops the pipelines prepared for a plan that was put in or refused.
-    pub fn forget_prepared(&mut self) {
-        self.prepared.clear();
-    }
-
-    /// Returns the pipeline of the pass's step at `index`; `None` for copies and clears.
-    pub fn get_or_make(
-        &mut self,
-        device: &wgpu::Device,
-        label: &str,
-        (index, step): (usize, &Step<Ids>),
-    ) -> Option<Pipeline> {
-        let prepared = self
-            .prepared
-            .get_mut(label)
-            .and_then(|made| made.get_mut(index));
-        match prepared.and_then(Option::take) {
-            Some(made) => Some(made),
-            None => self.make(device, label, step),
-        }
-    }
-
-    fn make(&mut self, device: &wgpu::Device, label: &str, step: &Step<Ids>) -> Option<Pipeline> {
-        let program = step.program()?;
-        let module = self.module(device, &program.shader);
-        let layouts = layouts(device, label, program);
-        let bound: Vec<_> = layouts.iter().map(Option::as_ref).collect();
-        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some(label),
-            bind_group_layouts: &bound,
-            immediate_size: 0,
-        });
-        let kind = match step {
-            Step::Draw(draw) => {
-                PipelineKind::Render(render_pipeline(device, label, draw, &module, &layout))
-            }
-            _ => PipelineKind::Compute(
-                device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                    label: Some(label),
-                    layout: Some(&layout),
-                    module: &module,
-                    entry_point: program
-                        .entries
-                        .first()
-                        .map(|&entry| program.shader.entry_name(entry)),
-                    compilation_options: options(&constants(program)),
-                    cache: None,
-                }),
-            ),
+        step: &Step<Ids>,
+    ) -> Result<Option<Arc<Pipeline>>, ExecuteError> {
+        let Some(key) = PipelineKey::new(step) else {
+            return Ok(None);
         };
-        Some(Pipeline { kind, layouts })
-    }
-
-    fn module(&mut self, device: &wgpu::Device, shader: &Arc<Shader>) -> wgpu::ShaderModule {
-        let name = shader.file().to_owned();
-        match self.modules.get(&name) {
-            Some((known, module)) if known == shader => module.clone(),
-            _ => {
-                let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                    label: Some(&name),
-                    source: wgpu::ShaderSource::Naga(Cow::Owned(shader.module().clone())),
-                });
-                self.modules.insert(name, (shader.clone(), module.clone()));
-                module
-            }
+        if let Some(known) = self.store().pipeline(&key) {
+            return Ok(Some(known));
         }
-    }
-}
-
-/// True if two steps can use the same pipeline.
-pub(crate) fn same_pipeline(a: &Step<Ids>, b: &Step<Ids>) -> bool {
-    match (a, b) {
-        (Step::Draw(a), Step::Draw(b)) => {
-            let targets = |draw: &Draw<Ids>| -> Vec<_> {
-                let color =
-                    |color: &ColorTarget<Ids>| (color.target.format, color.blend, color.write);
-                draw.colors.iter().map(color).collect()
+        let device = self.device();
+        let module = self.store().modules.get(&key.shader).cloned();
+        let fullscreen = self.store().fullscreen.clone();
+        let needs_fullscreen = key.draw.as_ref().is_some_and(|draw| draw.fullscreen);
+        // The store gets nothing that the device refuses.
+        let (module, fullscreen, pipeline) = scoped(device, label, || {
+            let module = module.unwrap_or_else(|| module_of(device, &key.shader));
+            let fullscreen =
+                fullscreen.or_else(|| needs_fullscreen.then(|| fullscreen_module(device)));
+            let modules = Modules {
+                own: &module,
+                fullscreen: fullscreen.as_ref().filter(|_| needs_fullscreen),
             };
-            same_program(&a.program, &b.program)
-                && a.fullscreen == b.fullscreen
-                && a.primitive == b.primitive
-                && targets(a) == targets(b)
-                && a.canvas.is_some() == b.canvas.is_some()
-                && depth_stencil(a) == depth_stencil(b)
-                && samples(a) == samples(b)
-        }
-        (
-            Step::Dispatch(Dispatch { program: a, .. }),
-            Step::Dispatch(Dispatch { program: b, .. }),
-        ) => same_program(a, b),
-        _ => false,
+            let pipeline = make(device, label, &key, modules, self.cache());
+            (module, fullscreen, Arc::new(pipeline))
+        })?;
+        let mut store = self.store();
+        store.modules.insert(Arc::clone(&key.shader), module);
+        store.fullscreen = fullscreen;
+        store.insert(key, &pipeline);
+        Ok(Some(pipeline))
     }
 }
 
-/// Depth and stencil of a draw, as its pipeline has them.
-fn depth_stencil(draw: &Draw<Ids>) -> Option<wgpu::DepthStencilState> {
-    let target = draw.depth.as_ref().map(|depth| &depth.target);
-    let target = target.or(draw.stencil.as_ref().map(|stencil| &stencil.target))?;
-    let depth = draw.depth.as_ref();
-    let has_depth = target.format.has_depth_aspect();
-    Some(wgpu::DepthStencilState {
-        format: target.format,
-        // An aspect that no field names is left alone.
-        depth_write_enabled: has_depth.then_some(depth.is_some_and(|depth| depth.write)),
-        depth_compare: has_depth
-            .then_some(depth.map_or(wgpu::CompareFunction::Always, |depth| depth.compare)),
-        stencil: draw
-            .stencil
-            .as_ref()
-            .map(|stencil| stencil.state.clone())
-            .unwrap_or_default(),
-        bias: depth.map(|depth| depth.bias).unwrap_or_default(),
+impl Store {
+    fn pipeline(&mut self, key: &PipelineKey) -> Option<Arc<Pipeline>> {
+        self.time += 1;
+        let (pipeline, used) = self.pipelines.get_mut(key)?;
+        *used = self.time;
+        Some(Arc::clone(pipeline))
+    }
+
+    fn insert(&mut self, key: PipelineKey, pipeline: &Arc<Pipeline>) {
+        self.made += 1;
+        self.time += 1;
+        self.pipelines
+            .insert(key, (Arc::clone(pipeline), self.time));
+        let held = self.pipelines.values();
+        let unused = held.filter(|(pipeline, _)| Arc::strong_count(pipeline) == 1);
+        let mut unused: Vec<u64> = unused.map(|(_, used)| *used).collect();
+        let Some(surplus) = unused.len().checked_sub(UNUSED).filter(|it| *it > 0) else {
+            return;
+        };
+        unused.sort_unstable();
+        unused.truncate(surplus);
+        self.pipelines
+            .retain(|_, (_, used)| unused.binary_search(used).is_err());
+        let shaders: Vec<_> = self
+            .pipelines
+            .keys()
+            .map(|key| key.shader.clone())
+            .collect();
+        self.modules.retain(|shader, _| shaders.contains(shader));
+    }
+}
+
+/// Shader modules that a pipeline is made from.
+struct Modules<'a> {
+    own: &'a wgpu::ShaderModule,
+    /// Module of the vertex stage of a full-screen pass; `None` for other passes.
+    fullscreen: Option<&'a wgpu::ShaderModule>,
+}
+
+fn module_of(device: &wgpu::Device, shader: &Shader) -> wgpu::ShaderModule {
+    device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(shader.file()),
+        source: wgpu::ShaderSource::Naga(Cow::Owned(shader.module().clone())),
     })
 }
 
-/// Samples of the attachments, which all have as many.
-fn samples(draw: &Draw<Ids>) -> u32 {
-    let colors = draw.colors.iter().map(|color| color.target.samples);
-    let depth = draw.depth.iter().map(|depth| depth.target.samples);
-    let stencil = draw.stencil.iter().map(|stencil| stencil.target.samples);
-    colors.chain(depth).chain(stencil).next().unwrap_or(1)
+fn fullscreen_module(device: &wgpu::Device) -> wgpu::ShaderModule {
+    device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("fullscreen"),
+        source: wgpu::ShaderSource::Wgsl(Cow::Borrowed(FULLSCREEN)),
+    })
 }
 
-fn same_program(a: &LinkedProgram, b: &LinkedProgram) -> bool {
-    let slots = |program: &LinkedProgram| -> Vec<_> {
-        let bindings = program.bindings.iter();
-        bindings
-            .map(|bound| (bound.group, bound.binding, bound.ty, bound.visibility))
-            .collect()
-    };
-    a.shader == b.shader
-        && a.entries == b.entries
-        && a.constants == b.constants
-        && slots(a) == slots(b)
-}
-
-fn render_pipeline(
+fn make(
     device: &wgpu::Device,
     label: &str,
-    draw: &Draw<Ids>,
-    module: &wgpu::ShaderModule,
-    layout: &wgpu::PipelineLayout,
-) -> wgpu::RenderPipeline {
-    let program = &draw.program;
-    let constants = constants(program);
-    let entry = |stage: ShaderStage| {
-        let entry = program.entry(stage)?;
-        Some(program.shader.entry_name(entry))
-    };
-    let fullscreen = draw.fullscreen.then(|| {
-        device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("fullscreen"),
-            source: wgpu::ShaderSource::Wgsl(Cow::Borrowed(FULLSCREEN)),
-        })
+    key: &PipelineKey,
+    modules: Modules<'_>,
+    cache: Option<&wgpu::PipelineCache>,
+) -> Pipeline {
+    let layouts = layouts(device, label, key);
+    let bound: Vec<_> = layouts.iter().map(Option::as_ref).collect();
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(label),
+        bind_group_layouts: &bound,
+        immediate_size: 0,
     });
-    let vertex = match &fullscreen {
+    let constants = key.constants();
+    let compilation_options = options(&constants);
+    let Some(draw) = &key.draw else {
+        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(label),
+            layout: Some(&layout),
+            module: modules.own,
+            entry_point: key.entry(ShaderStage::Compute),
+            compilation_options,
+            cache,
+        });
+        return Pipeline {
+            kind: PipelineKind::Compute(pipeline),
+            layouts,
+        };
+    };
+    let vertex = match modules.fullscreen {
         Some(module) => wgpu::VertexState {
             module,
             entry_point: Some("fullscreen"),
@@ -205,61 +254,55 @@ fn render_pipeline(
             buffers: &[],
         },
         None => wgpu::VertexState {
-            module,
-            entry_point: entry(ShaderStage::Vertex),
-            compilation_options: options(&constants),
+            module: modules.own,
+            entry_point: key.entry(ShaderStage::Vertex),
+            compilation_options: compilation_options.clone(),
             buffers: &[],
         },
     };
-    let colors = draw.colors.iter().map(|color| wgpu::ColorTargetState {
-        format: color.target.format,
-        blend: color.blend,
-        write_mask: color.write,
-    });
-    let canvas = draw.canvas.iter().map(|canvas| wgpu::ColorTargetState {
-        format: canvas.format,
-        blend: None,
-        write_mask: wgpu::ColorWrites::empty(),
-    });
-    let targets: Vec<Option<wgpu::ColorTargetState>> = colors.chain(canvas).map(Some).collect();
-    let fragment = entry(ShaderStage::Fragment).map(|name| wgpu::FragmentState {
-        module,
-        entry_point: Some(name),
-        compilation_options: options(&constants),
-        targets: &targets,
-    });
-    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+    let targets: Vec<_> = draw.colors.iter().cloned().map(Some).collect();
+    let fragment = key
+        .entry(ShaderStage::Fragment)
+        .map(|name| wgpu::FragmentState {
+            module: modules.own,
+            entry_point: Some(name),
+            compilation_options,
+            targets: &targets,
+        });
+    let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(label),
-        layout: Some(layout),
+        layout: Some(&layout),
         vertex,
         primitive: draw.primitive,
-        depth_stencil: depth_stencil(draw),
+        depth_stencil: draw.depth_stencil.clone(),
         multisample: wgpu::MultisampleState {
-            count: samples(draw),
+            count: draw.samples,
             ..wgpu::MultisampleState::default()
         },
         fragment,
         multiview_mask: None,
-        cache: None,
-    })
+        cache,
+    });
+    Pipeline {
+        kind: PipelineKind::Render(pipeline),
+        layouts,
+    }
 }
 
 /// The layouts of a program's bind groups; groups without a binding have none.
 fn layouts(
     device: &wgpu::Device,
     label: &str,
-    program: &LinkedProgram,
+    key: &PipelineKey,
 ) -> Vec<Option<wgpu::BindGroupLayout>> {
-    let groups = program.bindings.iter().map(|binding| binding.group + 1);
+    let groups = key.bindings.iter().map(|slot| slot.group + 1);
     let layout = |group: u32| {
-        let entries: Vec<wgpu::BindGroupLayoutEntry> = program
-            .bindings
-            .iter()
-            .filter(|binding| binding.group == group)
-            .map(|binding| wgpu::BindGroupLayoutEntry {
-                binding: binding.binding,
-                visibility: binding.visibility,
-                ty: binding.ty,
+        let slots = key.bindings.iter().filter(|slot| slot.group == group);
+        let entries: Vec<wgpu::BindGroupLayoutEntry> = slots
+            .map(|slot| wgpu::BindGroupLayoutEntry {
+                binding: slot.binding,
+                visibility: slot.visibility,
+                ty: slot.ty,
                 count: None,
             })
             .collect();
@@ -273,17 +316,19 @@ fn layouts(
     (0..groups.max().unwrap_or(0)).map(layout).collect()
 }
 
-fn constants(program: &LinkedProgram) -> Vec<(&str, f64)> {
-    program
-        .constants
-        .iter()
-        .map(|(name, value)| (name.as_str(), *value))
-        .collect()
-}
-
 fn options<'a>(constants: &'a [(&'a str, f64)]) -> wgpu::PipelineCompilationOptions<'a> {
     wgpu::PipelineCompilationOptions {
         constants,
         ..wgpu::PipelineCompilationOptions::default()
+    }
+}
+
+impl std::fmt::Debug for Pipelines {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let store = self.store();
+        f.debug_struct("Pipelines")
+            .field("made", &store.made)
+            .field("kept", &store.pipelines.len())
+            .finish_non_exhaustive()
     }
 }

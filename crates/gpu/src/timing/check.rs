@@ -65,10 +65,7 @@ pub fn check(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Trust, Execut
         for _ in 0..FRAMES {
             let mut encoder =
                 device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            let frame = Frame {
-                timing: true,
-                ..Frame::default()
-            };
+            let frame = Frame::new().with_timing(true);
             executor.encode(&mut encoder, &frame)?;
             let start = Instant::now();
             queue.submit([encoder.finish()]);

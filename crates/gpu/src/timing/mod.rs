@@ -8,7 +8,7 @@
 //!     println!("no GPU times: {reason}");
 //! }
 //! let mut encoder = gpu.device.create_command_encoder(&Default::default());
-//! executor.encode(&mut encoder, &Frame { timing: true, ..Frame::default() })?;
+//! executor.encode(&mut encoder, &Frame::new().with_timing(true))?;
 //! gpu.queue.submit([encoder.finish()]);
 //! for pass in executor.finish()?.timing.into_iter().flat_map(|frame| frame.passes) {
 //!     println!("{}: {:?} on the GPU, {:?} on the CPU", pass.name, pass.gpu, pass.cpu);

@@ -149,11 +149,10 @@ fn a_param_costs_what_follows_from_it() {
             .set_param(name, value.clone(), &mut NoProvider)
             .unwrap_or_else(|error| panic!("{error}"));
         let names = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
-        let expected = ReplanReport {
-            uploads: names(uploads),
-            pipelines: names(pipelines),
-            resources: names(resources),
-        };
+        let mut expected = ReplanReport::default();
+        expected.uploads = names(uploads);
+        expected.pipelines = names(pipelines);
+        expected.resources = names(resources);
         assert_eq!(report, expected, "{name} = {value}");
         assert_eq!(executor.plan().param(name), Some(&value));
         let values = numbers(&mut executor, "image");
@@ -268,10 +267,8 @@ fn an_edited_shader_keeps_what_was_there() {
     assert_eq!(numbers(&mut executor, "total"), [2]);
     let plan = planned(&counter("10u"), &request(&NoProvider));
     let report = executor.replace_graph(plan, &mut NoProvider).unwrap();
-    let only = ReplanReport {
-        pipelines: vec!["count".to_owned()],
-        ..ReplanReport::default()
-    };
+    let mut only = ReplanReport::default();
+    only.pipelines.push("count".to_owned());
     assert_eq!(report, only);
     assert_eq!(numbers(&mut executor, "total"), [12]);
 }
@@ -281,11 +278,7 @@ fn an_edited_shader_keeps_what_was_there() {
 fn a_frame_that_was_encoded_before_a_change_is_reported_after_it() {
     let mut executor = executor(&params(), &request(&NoProvider));
     let mut encoder = encoder();
-    let timed = Frame {
-        timing: true,
-        read: &["image"],
-        ..Frame::default()
-    };
+    let timed = Frame::new().with_timing(true).with_read(&["image"]);
     executor.encode(&mut encoder, &timed).unwrap();
     GPU.queue.submit([encoder.finish()]);
     let plan = planned(&counter("1u"), &request(&NoProvider));

@@ -155,10 +155,10 @@ impl Provider for Number {
         _: &wgpu::Queue,
     ) -> Result<wgpu::Buffer, ProviderError> {
         if name == "host.unused" {
-            return Err(ProviderError("nobody should ask for it".to_owned()));
+            return Err(ProviderError::new("nobody should ask for it".to_owned()));
         }
         if !self.is_there {
-            return Err(ProviderError("it is still loading".to_owned()));
+            return Err(ProviderError::new("it is still loading".to_owned()));
         }
         self.built += 1;
         Ok(buffer(
@@ -264,11 +264,7 @@ fn lose_the_device(before: bool) {
     executor.import_texture("image", &image).unwrap();
     executor.import_buffer("more", &more).unwrap();
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    let read = Frame {
-        read: &["sum"],
-        timing: true,
-        ..Frame::default()
-    };
+    let read = Frame::new().with_read(&["sum"]).with_timing(true);
     executor.encode(&mut encoder, &read).unwrap();
     gpu.queue.submit([encoder.finish()]);
     // It is asked what the frame brings before the loss in one run, after it in the other.
@@ -367,11 +363,7 @@ fn a_host_that_does_not_wait() {
     let mut executor = Executor::new(&GPU.device, &GPU.queue, plan, &mut provider).unwrap();
     let mut seen = Vec::new();
     let mut show = |report: FrameReport| seen.push(report.index);
-    let wanted = Frame {
-        timing: true,
-        read: &["copy"],
-        ..Frame::default()
-    };
+    let wanted = Frame::new().with_timing(true).with_read(&["copy"]);
     for _ in 0..10 {
         if executor.under_way() >= AHEAD {
             show(executor.finish().unwrap()); // the only call that waits

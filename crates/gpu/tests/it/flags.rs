@@ -56,7 +56,7 @@ impl Provider for Versions {
         _: &wgpu::Queue,
     ) -> Result<wgpu::Buffer, ProviderError> {
         if self.version(name) == u64::MAX {
-            return Err(ProviderError("it cannot be built".to_owned()));
+            return Err(ProviderError::new("it cannot be built".to_owned()));
         }
         Ok(device.create_buffer(&wgpu::BufferDescriptor {
             label: None,

@@ -129,11 +129,7 @@ fn frames_in_flight_bring_what_is_theirs_and_nobody_waits() {
     let mut longest = Duration::ZERO;
     let mut expected = Vec::new();
     for at in 0..5 {
-        let wanted = Frame {
-            timing: at != 1,
-            read: &["number"],
-            ..Frame::default()
-        };
+        let wanted = Frame::new().with_timing(at != 1).with_read(&["number"]);
         let (index, took) = submit(&mut executor, &wanted);
         expected.push((index, wanted.timing));
         let polling = Instant::now();
@@ -178,11 +174,7 @@ fn frames_in_flight_bring_what_is_theirs_and_nobody_waits() {
 #[test]
 fn frames_in_flight_are_waited_for_one_by_one() {
     let mut executor = made(&slow());
-    let wanted = Frame {
-        timing: true,
-        read: &["number"],
-        ..Frame::default()
-    };
+    let wanted = Frame::new().with_timing(true).with_read(&["number"]);
     // All are encoded before the first is submitted, and one of them asks for nothing.
     let mut submissions = Vec::new();
     for at in 0..4 {
@@ -211,11 +203,7 @@ fn frames_in_flight_are_waited_for_one_by_one() {
 #[test]
 fn frames_that_were_dropped_bring_nothing() {
     let mut executor = made(&slow());
-    let wanted = Frame {
-        timing: true,
-        read: &["number"],
-        ..Frame::default()
-    };
+    let wanted = Frame::new().with_timing(true).with_read(&["number"]);
     let mut submitted = Vec::new();
     for _ in 0..3 {
         let mut dropped = encoder();
@@ -236,11 +224,7 @@ fn frames_that_were_dropped_bring_nothing() {
 #[test]
 fn what_is_under_way_outlives_a_change_of_the_plan() {
     let mut executor = made(&image());
-    let wanted = Frame {
-        timing: true,
-        read: &["image"],
-        ..Frame::default()
-    };
+    let wanted = Frame::new().with_timing(true).with_read(&["image"]);
     submit(&mut executor, &wanted);
     let resized = executor.resize([3, 2], &mut NoProvider);
     resized.unwrap_or_else(|error| panic!("{error}"));

@@ -172,11 +172,7 @@ fn what_did_not_change_is_not_made_again() {
         .unwrap_or_else(|error| panic!("{error}"));
     let step =
         |executor: &mut Executor, all: bool, what: &str, values: [u32; 2], skipped: &[&str]| {
-            let read = Frame {
-                all,
-                read: &["d", "e"],
-                ..Frame::default()
-            };
+            let read = Frame::new().with_all(all).with_read(&["d", "e"]);
             let report = submit(executor, &read);
             assert_eq!([0, 1].map(|at| words(&report, at)[0]), values, "{what}");
             assert_eq!(report.skipped, skipped, "{what}");

@@ -102,10 +102,8 @@ fn a_buffer_grows_to_what_a_frame_needs() {
     shows(&mut executor, 10, 4);
     let report = grown(&mut executor);
     // The pipelines stay, and so does all other memory.
-    let only_items = ReplanReport {
-        resources: vec!["items".to_owned()],
-        ..ReplanReport::default()
-    };
+    let mut only_items = ReplanReport::default();
+    only_items.resources.push("items".to_owned());
     assert_eq!(report, only_items);
     for _ in 0..3 {
         // A quarter more than the frame needed.
@@ -137,10 +135,7 @@ fn frames_make_buffers_grow_by_themselves() {
     frame(&mut executor, &[]);
     let mut encoder = encoder();
     for read in [&[][..], &["items"]] {
-        let frame = Frame {
-            read,
-            ..Frame::default()
-        };
+        let frame = Frame::new().with_read(read);
         executor.encode(&mut encoder, &frame).unwrap();
     }
     GPU.queue.submit([encoder.finish()]);
@@ -442,11 +437,7 @@ fn patterns_and_times_are_not_disturbed() {
     set(&mut executor, "wanted", ParamValue::U32(10));
     frame(&mut executor, &[]);
     grown(&mut executor);
-    let timed = Frame {
-        timing: true,
-        read: &["items"],
-        ..Frame::default()
-    };
+    let timed = Frame::new().with_timing(true).with_read(&["items"]);
     let report = submit(&mut executor, &timed);
     let mut expected = numbered(10, 12);
     expected[10..].fill(u32::MAX);
@@ -494,7 +485,7 @@ impl Provider for Wanted {
         queue: &wgpu::Queue,
     ) -> Result<wgpu::Buffer, ProviderError> {
         if !self.is_there {
-            return Err(ProviderError("it is still loading".to_owned()));
+            return Err(ProviderError::new("it is still loading".to_owned()));
         }
         let buffer = device.create_buffer(&wgpu::BufferDescriptor {
             label: None,

@@ -38,11 +38,7 @@ fn shaders_know_the_number_and_the_time_of_the_frame() {
     for run in ["", "run: OnChange,"] {
         let mut executor = executor(&clock(run), &request(&NoProvider));
         for (index, seconds) in [0.0, 0.5, 0.25, -3.0].into_iter().enumerate() {
-            let now = Frame {
-                seconds,
-                read: &["told"],
-                ..Frame::default()
-            };
+            let now = Frame::new().with_seconds(seconds).with_read(&["told"]);
             let report = submit(&mut executor, &now);
             assert_eq!(words(&report, 0), [index as u32, f32::to_bits(seconds)]);
         }

@@ -185,10 +185,7 @@ fn an_import_is_read_back_if_it_was_made_for_that() {
         request.imports.insert("image".to_owned(), described);
         let mut executor = executor(&files, &request);
         executor.import_texture("image", &image).unwrap();
-        let read = Frame {
-            read: &["image"],
-            ..Frame::default()
-        };
+        let read = Frame::new().with_read(&["image"]);
         match executor.encode(&mut encoder(), &read) {
             Ok(_) => assert!(is_readable),
             Err(error) => {

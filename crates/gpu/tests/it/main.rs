@@ -33,6 +33,7 @@ mod imports;
 mod keep;
 mod memory;
 mod on_cpu;
+mod pipelines;
 mod provided;
 mod readback;
 mod refusals;

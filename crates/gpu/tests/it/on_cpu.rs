@@ -68,7 +68,7 @@ impl Provider for Given {
         _: &wgpu::Device,
         _: &wgpu::Queue,
     ) -> Result<wgpu::Buffer, ProviderError> {
-        Err(ProviderError(format!("`{name}` is not a buffer")))
+        Err(ProviderError::new(format!("`{name}` is not a buffer")))
     }
 
     fn build_cpu_work(&mut self, _: &str) -> Result<Arc<dyn CpuWork>, ProviderError> {
@@ -84,7 +84,7 @@ impl CpuWork for Adder {
         assert_eq!((entry, reads.len()), ("add", 1));
         assert_eq!(reads[0].len(), writes.len());
         if self.0 == 0 {
-            return Err(ProviderError("adds nothing".to_owned()));
+            return Err(ProviderError::new("adds nothing".to_owned()));
         }
         for (from, to) in reads[0].chunks(4).zip(writes.chunks_mut(4)) {
             let number = u32::from_ne_bytes(from.try_into().unwrap());
@@ -136,11 +136,7 @@ fn executor(provider: &mut Given) -> Executor {
 }
 
 fn doubled(executor: &mut Executor) -> Vec<u32> {
-    let frame = Frame {
-        read: &["doubled"],
-        timing: true,
-        ..Frame::default()
-    };
+    let frame = Frame::new().with_read(&["doubled"]).with_timing(true);
     let submitted = executor.submit(&frame, &|| false);
     submitted.unwrap_or_else(|error| panic!("{error}"));
     let report = executor.finish().unwrap();
@@ -200,10 +196,7 @@ fn a_frame_without_such_work_is_submitted_as_well() {
     let plan: Plan = right(graph(&files).plan(&request(&NoProvider)));
     let mut executor = Executor::new(&GPU.device, &GPU.queue, plan, &mut NoProvider).unwrap();
     let asked = Cell::new(0);
-    let frame = Frame {
-        read: &["out"],
-        ..Frame::default()
-    };
+    let frame = Frame::new().with_read(&["out"]);
     let index = executor.submit(&frame, &|| {
         asked.set(asked.get() + 1);
         true

@@ -104,13 +104,7 @@ fn start(provider: &mut Given) -> Executor {
     Executor::new(&GPU.device, &GPU.queue, plan, provider).unwrap_or_else(|error| panic!("{error}"))
 }
 
-const READ: Frame<'_> = Frame {
-    timing: false,
-    statistics: false,
-    all: false,
-    read: &["seen", "seen_before"],
-    seconds: 0.0,
-};
+const READ: Frame<'_> = Frame::new().with_read(&["seen", "seen_before"]);
 
 /// The two numbers of the oldest frame.
 fn seen(executor: &mut Executor) -> [u32; 2] {

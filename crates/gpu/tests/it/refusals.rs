@@ -8,10 +8,7 @@ use skiagraph_graph::{Describe, NoProvider, Provided, ProvidedBinding};
 #[test]
 fn an_output_that_the_plan_does_not_have() {
     let mut executor = made(&image());
-    let wanted = Frame {
-        read: &["imgae"],
-        ..Frame::default()
-    };
+    let wanted = Frame::new().with_read(&["imgae"]);
     let error = executor
         .encode(&mut encoder(), &wanted)
         .expect_err("there is none");

@@ -191,11 +191,7 @@ fn runs(plan: Plan) -> Result<bool, TestCaseError> {
     let failed = |error: skiagraph_gpu::ExecuteError| TestCaseError::fail(error.to_string());
     for _ in 0..2 {
         let mut encoder = encoder();
-        let frame = Frame {
-            timing: true,
-            read: &read,
-            ..Frame::default()
-        };
+        let frame = Frame::new().with_timing(true).with_read(&read);
         executor.encode(&mut encoder, &frame).map_err(failed)?;
         GPU.queue.submit([encoder.finish()]);
         let report = executor.finish().map_err(failed)?;

@@ -397,11 +397,7 @@ fn calls_out_of_turn_are_no_panics() {
     executor.finish().unwrap_or_else(|error| panic!("{error}"));
     let read = ["n"];
     for timing in [false, true] {
-        let wanted = Frame {
-            timing,
-            read: &read,
-            ..Frame::default()
-        };
+        let wanted = Frame::new().with_timing(timing).with_read(&read);
         let mut commands = encoder();
         executor
             .encode(&mut commands, &wanted)

@@ -95,10 +95,7 @@ fn a_frame_that_is_not_done_in_time_is_waited_for_again() {
     );
     let mut executor = made(&files);
     let mut commands = encoder();
-    let wanted = Frame {
-        read: &["sums"],
-        ..Frame::default()
-    };
+    let wanted = Frame::new().with_read(&["sums"]);
     executor
         .encode(&mut commands, &wanted)
         .unwrap_or_else(|error| panic!("{error}"));
@@ -146,10 +143,7 @@ fn runs_of_shaders_are_counted_by_pass() {
     let mut executor = made(&files);
     for statistics in [true, false, true, true] {
         let mut encoder = encoder();
-        let wanted = Frame {
-            statistics,
-            ..Frame::default()
-        };
+        let wanted = Frame::new().with_statistics(statistics);
         let encoded = executor.encode(&mut encoder, &wanted);
         encoded.unwrap_or_else(|error| panic!("{error}"));
         GPU.queue.submit([encoder.finish()]);

@@ -332,7 +332,8 @@ impl<'a> PassScope<'a> {
     }
 
     /// Returns the words of the `Choice` param that a shader finds under the WGSL identifier
-    /// `name`, in the order of their numbers; `None` for any other param or name.
+    /// `name`; `None` for any other param or name. The shader sees the index of the chosen word in
+    /// this slice, from 0.
     pub fn words(&self, name: &str) -> Option<&[Name]> {
         match &self.param(name)?.param.ty {
             ParamType::Choice(words) => Some(words),

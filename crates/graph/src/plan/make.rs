@@ -44,7 +44,7 @@ use std::{
 };
 
 /// Content of a [`Plan`](super::plan::Plan).
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Planned {
     pub graph: Arc<Loaded>,
     pub request: Request<Described>,
@@ -63,6 +63,7 @@ pub(super) struct Planned {
 
 /// A pass that a plan does not run because nothing needs its results, with the reason.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct CulledPass {
     /// Full name of the pass ([`LinkedPass::name`]), with the names of the groups and includes
     /// around it in front: `blur.x`.

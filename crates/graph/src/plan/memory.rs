@@ -14,6 +14,7 @@ const ROWS: usize = 12;
 /// Memory that one texture or buffer of the graph takes on the device; the host's resources have no
 /// entry.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct MemoryEntry {
     /// Full name of the material, or of a buffer or texture that only one pass uses
     /// ([`Resource::name`]).

@@ -34,8 +34,9 @@ use std::{
 
 /// A graph that is planned for one viewport, one set of param values and one device: the *live*
 /// passes, which an output or the host needs, in the order in which they run, and every resource
-/// with its size and usages. It holds no GPU objects.
-#[derive(Debug)]
+/// with its size and usages. It holds no GPU objects. A clone serves another executor; it shares
+/// the graph and its shaders.
+#[derive(Clone, Debug)]
 pub struct Plan(pub(super) Planned);
 
 impl Plan {
@@ -366,7 +367,8 @@ impl Plan {
     }
 
     /// Returns a plan of the same graph for another viewport, width and height in pixels. This plan
-    /// stays as it is.
+    /// stays as it is. Imports keep the sizes that the request describes: if they follow the
+    /// viewport, change both by [`with`](Self::with).
     ///
     /// # Errors
     /// All mistakes of the graph with this viewport.

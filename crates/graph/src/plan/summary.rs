@@ -22,6 +22,7 @@ pub struct PassSummary {
 /// Name, format and size of an output or capture ([`Capture`](crate::Capture)) that can be read
 /// back after a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct OutputSummary {
     /// Name of the output, or of the capture ([`Capture::name`](crate::Capture::name)), by which it
     /// is read back.

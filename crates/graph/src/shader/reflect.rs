@@ -25,6 +25,7 @@ use naga::{
 };
 use std::{
     collections::{BTreeSet, HashMap},
+    hash::{DefaultHasher, Hash, Hasher},
     sync::{Arc, Mutex, PoisonError},
 };
 
@@ -37,6 +38,8 @@ pub struct Shader {
     pub(crate) module: naga::Module,
     info: ModuleInfo,
     layouter: Layouter,
+    /// Hash of the text with imports in place.
+    digest: u64,
     /// Footprints of entry points with the values of their overrides, as far as they were asked
     /// for.
     footprints: Mutex<HashMap<Specialisation, Result<Arc<Footprint>, ShaderError>>>,
@@ -57,6 +60,12 @@ impl PartialEq for Shader {
 }
 
 impl Eq for Shader {}
+
+impl Hash for Shader {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        state.write_u64(self.digest);
+    }
+}
 
 /// A resource global of a shader, with its use by some of the shader's entry points together.
 #[derive(Clone, Debug)]
@@ -87,7 +96,10 @@ impl Shader {
     pub(crate) fn new(source: Expanded) -> Result<Self, ShaderError> {
         guard::check(&source)?;
         let (module, info, layouter) = compiled(&source)?;
+        let mut digest = DefaultHasher::new();
+        source.text.hash(&mut digest);
         Ok(Self {
+            digest: digest.finish(),
             source,
             module,
             info,

@@ -92,8 +92,10 @@ impl Shaders {
         (folder, name.value.clone())
     }
 
-    /// Adds to `around` that the module `is` replaces the module `of`. Does nothing if one of the
-    /// two was not found.
+    /// Sets in `around` that the module `is` replaces the module `of`, instead of an older
+    /// replacement of `of`. Replacements of an included document count more than those of the
+    /// document around it, so they are set later. Does nothing if one of the two was not found when
+    /// the shaders were loaded (which was reported), or is named nowhere in their documents.
     pub fn replace(&self, around: &mut Replaced, of: &Located<String>, is: &Located<String>) {
         // One that is not there was reported.
         if let (Some(of), Some(is)) = (self.module(of), self.module(is)) {

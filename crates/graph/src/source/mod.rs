@@ -5,4 +5,4 @@ pub(crate) mod sources;
 
 pub(crate) use skiagraph_located_ron::span;
 pub use skiagraph_located_ron::span::{Located, SourceFile, SourceText, Span};
-pub use sources::{FolderSources, LayeredSources, Sources};
+pub use sources::{FolderSources, LayeredSources, MemorySources, Sources};

@@ -1,7 +1,12 @@
 //! Stores that documents, shaders and pictures are read from.
 
 use crate::picture::Picture;
-use std::{io::Read, path::PathBuf, sync::Arc};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    io::Read,
+    path::PathBuf,
+    sync::Arc,
+};
 
 /// A store of RON documents, WGSL files and pictures: a folder, embedded files, or a host's own.
 ///
@@ -108,6 +113,84 @@ impl Sources for FolderSources {
             .collect();
         names.sort();
         names
+    }
+}
+
+/// A store of files in memory: texts and decoded pictures by their paths.
+///
+/// ```
+/// use skiagraph_graph::{Graph, MemorySources, Registry, Sources};
+///
+/// let sources = MemorySources::new([
+///     (
+///         "ramp.ron",
+///         r#"(format: 3, materials: [Texture(name: "image", format: R32Float)],
+///             passes: [Fullscreen(name: "ramp", color: ["image"])], outputs: ["image"])"#,
+///     ),
+///     ("shaders/ramp.wgsl", "@fragment fn fragment() -> @location(0) f32 { return 0.5; }"),
+/// ]);
+/// assert_eq!(sources.list("shaders"), ["ramp.wgsl"]);
+/// Graph::load("ramp.ron", &Registry::standard(), &sources)?;
+/// # Ok::<(), skiagraph_graph::Diagnostics>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct MemorySources {
+    texts: BTreeMap<String, Arc<str>>,
+    pictures: BTreeMap<String, Picture>,
+}
+
+impl MemorySources {
+    /// Creates a store of documents and shaders: pairs of path and text. Of two pairs with one path
+    /// the last counts.
+    pub fn new<P: Into<String>, T: Into<Arc<str>>>(
+        files: impl IntoIterator<Item = (P, T)>,
+    ) -> Self {
+        let files = files.into_iter();
+        Self {
+            texts: files
+                .map(|(path, text)| (path.into(), text.into()))
+                .collect(),
+            pictures: BTreeMap::new(),
+        }
+    }
+
+    /// Adds a document or shader, or replaces the one at this path.
+    #[must_use]
+    pub fn with(mut self, path: impl Into<String>, text: impl Into<Arc<str>>) -> Self {
+        self.texts.insert(path.into(), text.into());
+        self
+    }
+
+    /// Adds a decoded picture, or replaces the one at this path.
+    #[must_use]
+    pub fn with_picture(mut self, path: impl Into<String>, picture: Picture) -> Self {
+        self.pictures.insert(path.into(), picture);
+        self
+    }
+
+    /// Returns a store that takes from `below`, such as the presets, each file that this one lacks.
+    pub fn over(self, below: impl Sources + 'static) -> LayeredSources {
+        LayeredSources(vec![Box::new(self), Box::new(below)])
+    }
+}
+
+impl Sources for MemorySources {
+    fn read(&self, path: &str) -> Result<Option<Arc<str>>, String> {
+        Ok(self.texts.get(path).cloned())
+    }
+
+    fn list(&self, folder: &str) -> Vec<String> {
+        let inside = |path: &String| {
+            let (of, name) = path.rsplit_once('/').unwrap_or(("", path));
+            (of == folder).then(|| name.to_owned())
+        };
+        let paths = self.texts.keys().chain(self.pictures.keys());
+        let names: BTreeSet<String> = paths.filter_map(inside).collect();
+        names.into_iter().collect()
+    }
+
+    fn picture(&self, path: &str) -> Result<Option<Picture>, String> {
+        Ok(self.pictures.get(path).cloned())
     }
 }
 

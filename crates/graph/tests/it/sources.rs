@@ -2,7 +2,7 @@
 //! cannot be read.
 
 use crate::support::Files;
-use skiagraph_graph::{FolderSources, LayeredSources, Sources};
+use skiagraph_graph::{FolderSources, LayeredSources, MemorySources, Picture, Sources};
 
 #[test]
 fn a_folder() {
@@ -112,4 +112,25 @@ fn pictures_come_from_the_first_layer_that_has_one() {
     );
     let torn = layers.picture("torn.png").err();
     assert_eq!(torn.as_deref(), Some("this program decodes no pictures"));
+}
+
+/// Texts and pictures in memory, before another store.
+#[test]
+fn files_in_memory_come_before_those_below() {
+    let picture = Picture {
+        size: [1, 1],
+        texels: [[0, 0, 0, u16::MAX]].into(),
+    };
+    let below = MemorySources::new([("shaders/a.wgsl", "below"), ("shaders/b.wgsl", "below")]);
+    let memory = MemorySources::new([("shaders/a.wgsl".to_owned(), "first".to_owned())])
+        .with("shaders/a.wgsl", "above")
+        .with_picture("leaf.png", picture.clone());
+    assert_eq!(memory.list(""), ["leaf.png"]);
+    let sources = memory.over(below);
+    let read = |path: &str| sources.read(path).unwrap();
+    assert_eq!(read("shaders/a.wgsl").as_deref(), Some("above"));
+    assert_eq!(read("shaders/b.wgsl").as_deref(), Some("below"));
+    assert_eq!(read("shaders"), None);
+    assert_eq!(sources.list("shaders"), ["a.wgsl", "b.wgsl"]);
+    assert_eq!(sources.picture("leaf.png").unwrap(), Some(picture));
 }

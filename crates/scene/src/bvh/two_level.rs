@@ -14,6 +14,7 @@ use obvhs::{
     ploc::{PlocBuilder, PlocSearchDistance, SortPrecision},
     triangle::Triangle,
 };
+#[cfg(feature = "rayon")]
 use rayon::prelude::*;
 use std::{collections::BTreeMap, ops::Range, sync::Arc};
 
@@ -95,7 +96,11 @@ impl TwoLevelBvh {
             |&piece: &usize| pieces[piece].copy_of == piece && !pieces[piece].triangles.is_empty();
         let firsts: Vec<usize> = (0..pieces.len()).filter(is_first).collect();
         let depth = depth_left(count);
-        let trees = firsts.par_iter().map(|&piece| {
+        #[cfg(feature = "rayon")]
+        let firsts = firsts.into_par_iter();
+        #[cfg(not(feature = "rayon"))]
+        let firsts = firsts.into_iter();
+        let trees = firsts.map(|piece| {
             let triangles = triangles(at_rest, pieces[piece].triangles);
             (piece, Bvh::within(&triangles, depth))
         });

@@ -16,7 +16,8 @@ impl UvTransform {
         offset: Vec2::ZERO,
     };
 
-    /// The map of coordinates with v down, as meshes have them.
+    /// Maps coordinates with v down, as meshes have them, to coordinates with v down: v is turned
+    /// up, both are multiplied by the scale and moved by the offset, and v is turned down again.
     pub fn apply(&self, uv: Vec2) -> Vec2 {
         if *self == Self::IDENTITY {
             return uv;
@@ -67,7 +68,9 @@ const OPTIONS: [(&str, usize, bool); 12] = [
 ];
 
 impl TextureStatement {
-    /// Reads what follows the keyword. A word that is no option begins the file's name.
+    /// Reads the text behind a keyword of an .mtl file such as `map_Kd`. A word that is no option
+    /// begins the file's name, as does a word where an option lacks a number, which keeps its
+    /// default then. Without a name `file` is empty.
     pub fn parse(text: &str) -> Self {
         let mut statement = Self {
             file: String::new(),

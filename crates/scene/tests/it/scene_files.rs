@@ -122,12 +122,16 @@ fn broken_files_are_explained_with_line_and_column() {
         values are needed here, not 2");
     assert_snapshot!(error("(0, -1, 0)", "(0, 0, 0)"), @"garden.ron:5:12: the \
         light's direction [0, 0, 0] must be finite and longer than 0");
-    assert_snapshot!(error("(0, -1, 0)", "(0, -1, 0), angle_degrees: 180"), @"garden.ron:5:12: the \
-        light's angle_degrees is 180; expected at least 0 and less than 180, the angle that \
-        it takes up in the sky");
+    assert_snapshot!(error("(0, -1, 0)", "(0, -1, 0), angle_degrees: 90"), @"garden.ron:5:12: the \
+        light's angle_degrees is 90; expected at least 0 and less than 90, the angle that \
+        it takes up in the sky; several lights stand for a wider one");
     assert_snapshot!(own_light("direction: (0, 1, 0), angle_degrees: -1"), @"garden.ron:7:9: view \
-        \"a\": the light's angle_degrees is -1; expected at least 0 and less than 180, the \
-        angle that it takes up in the sky");
+        \"a\": the light's angle_degrees is -1; expected at least 0 and less than 90, the \
+        angle that it takes up in the sky; several lights stand for a wider one");
+    let sun = "lights: [Directional(name: \"sun\", direction: (0, -1, 0), angle_degrees: NaN)]";
+    assert_snapshot!(error("light: (direction: (0, -1, 0))", sun), @"garden.ron:5:14: light \
+        \"sun\": the light's angle_degrees is NaN; expected at least 0 and less than 90, the \
+        angle that it takes up in the sky; several lights stand for a wider one");
     assert_snapshot!(error("direction: (0, 0, 1)", "direction: (0, NaN, 1)"),
         @"garden.ron:7:9: view \
         \"a\": direction [0, NaN, 1] and up [0, 1, 0] must be finite and longer than 0");

@@ -13,11 +13,8 @@ use std::sync::LazyLock;
 /// A device with all that the adapter has of what graphs may ask for.
 pub static GPU: LazyLock<Gpu> = LazyLock::new(|| {
     let wanted = wgpu::Features::VERTEX_WRITABLE_STORAGE;
-    device::open_with(&device::Wanted {
-        features: wanted,
-        ..Default::default()
-    })
-    .unwrap_or_else(|error| panic!("{error}"))
+    device::open_with(&device::Wanted::default().with_features(wanted))
+        .unwrap_or_else(|error| panic!("{error}"))
 });
 
 /// Writes the param `value` into its only target.
@@ -58,11 +55,7 @@ impl Running {
     /// A frame at this time.
     pub fn frame_at(&mut self, seconds: f32, read: &[&str]) -> FrameReport {
         let mut encoder = GPU.device.create_command_encoder(&Default::default());
-        let frame = Frame {
-            read,
-            seconds,
-            ..Frame::default()
-        };
+        let frame = Frame::new().with_read(read).with_seconds(seconds);
         let finished = self.0.encode(&mut encoder, &frame).and_then(|_| {
             GPU.queue.submit([encoder.finish()]);
             self.0.finish()

@@ -42,10 +42,7 @@ pub fn encoder() -> wgpu::CommandEncoder {
 
 /// A frame that is submitted and waited for.
 pub fn frame(executor: &mut Executor, read: &[&str]) -> FrameReport {
-    let frame = Frame {
-        read,
-        ..Frame::default()
-    };
+    let frame = Frame::new().with_read(read);
     submit(executor, &frame)
 }
 

@@ -64,7 +64,7 @@ impl Provider for Triangle {
             "lights" => (0..3u32)
                 .flat_map(|light| (10 + light).to_ne_bytes().repeat(64))
                 .collect(),
-            _ => return Err(ProviderError(format!("there is no `{name}`"))),
+            _ => return Err(ProviderError::new(format!("there is no `{name}`"))),
         };
         let described = self.describe(name).expect("what is built is described");
         let copied = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
@@ -113,11 +113,7 @@ pub fn encoder() -> wgpu::CommandEncoder {
 /// A frame that is submitted and waited for.
 pub fn frame(executor: &mut Executor, timing: bool, read: &[&str]) -> FrameReport {
     let mut encoder = encoder();
-    let frame = Frame {
-        timing,
-        read,
-        ..Frame::default()
-    };
+    let frame = Frame::new().with_timing(timing).with_read(read);
     executor
         .encode(&mut encoder, &frame)
         .unwrap_or_else(|error| panic!("{error}"));

@@ -1,0 +1,82 @@
+//! One crate for a program that draws with Skiagraph: it brings the graph, the executor, the
+//! presets and scenes, each as a module, and the very versions of wgpu, naga and glam that they
+//! use. A program that names no other crate of these cannot mix versions.
+//!
+//! ```no_run
+//! use skiagraph_host::{
+//!     EmbeddedSources, Executor, Eye, Frame, Graph, Pipelines, PlanRequest, SceneProvider,
+//!     SceneView, matrix, passes::Depth, registry, scene::{DirectionalLight, Indexed}, wgpu,
+//! };
+//!
+//! # fn frame(
+//! #     device: &wgpu::Device,
+//! #     queue: &wgpu::Queue,
+//! #     encoder: &mut wgpu::CommandEncoder,
+//! #     (positions, indices): (&[[f32; 3]], &[u32]),
+//! #     (view, projection): ([[f64; 4]; 4], [[f64; 4]; 4]),
+//! # ) -> Result<wgpu::TextureView, Box<dyn std::error::Error>> {
+//! let mesh = Indexed { positions, normals: &[], indices }.mesh()?;
+//! let sun = DirectionalLight::new([0.3, -1.0, 0.2].into());
+//! let mut provider = SceneProvider::from_mesh(mesh, sun);
+//! let eye = Eye::new(matrix(view), matrix(projection), Depth::Reversed)?;
+//! let view = SceneView::new([1280, 720], &eye, sun);
+//!
+//! let graph = Graph::load("pipelines/light_buffer.ron", &registry(), &EmbeddedSources)?;
+//! let request = PlanRequest::new(view.size(), view.apply(&mut provider))
+//!     .with_device(device.limits(), device.features());
+//! let plan = graph.plan(&request)?;
+//! let pipelines = Pipelines::new(device);
+//! let mut executor = Executor::with_pipelines(&pipelines, queue, plan, &mut provider)?;
+//!
+//! view.refresh(&mut executor, &mut provider)?;
+//! executor.encode(encoder, &Frame::new())?;
+//! let visibility = executor.output_view("visibility");
+//! # visibility.ok_or_else(|| "the preset has no visibility".into())
+//! # }
+//! ```
+//!
+//! The names that a host needs first stand here; all others are in the modules. Matrices and
+//! vectors cross as arrays, whatever library for them the program has: vectors by
+//! `[x, y, z].into()`, matrices by [`matrix`] and [`transform`].
+
+pub use glam;
+pub use naga;
+pub use skiagraph_gpu as gpu;
+pub use skiagraph_graph as graph;
+pub use skiagraph_passes as passes;
+pub use skiagraph_scene as scene;
+pub use wgpu;
+
+pub use skiagraph_gpu::{ExecuteError, Executor, Frame, FrameReport, Pipelines, Provider};
+pub use skiagraph_graph::{
+    Diagnostics, Graph, Import, MemorySources, ParamValue, Plan, PlanRequest, Registry, Sources,
+};
+pub use skiagraph_passes::{
+    EmbeddedSources, Eye, SceneProvider, SceneView, load_unit_visibility, presets, registry,
+};
+
+/// Returns a matrix of four columns, as WGSL and glam have them, for
+/// [`Eye::new`](skiagraph_passes::Eye::new).
+///
+/// ```
+/// let [x, y, z] = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
+/// let moved = [x, y, z, [5.0, 6.0, 7.0, 1.0]];
+/// assert_eq!(skiagraph_host::matrix(moved).w_axis.x, 5.0);
+/// ```
+pub fn matrix(columns: [[f64; 4]; 4]) -> glam::DMat4 {
+    glam::DMat4::from_cols_array_2d(&columns)
+}
+
+/// Returns the affine map of a matrix of four columns, for
+/// [`SceneProvider::set_transforms`](skiagraph_passes::SceneProvider::set_transforms). The last row
+/// of the matrix must be 0, 0, 0, 1; it is not looked at.
+///
+/// ```
+/// let [x, y, z] = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
+/// let moved = [x, y, z, [5.0, 6.0, 7.0, 1.0]];
+/// assert_eq!(skiagraph_host::transform(moved).translation.x, 5.0);
+/// ```
+pub fn transform(columns: [[f64; 4]; 4]) -> glam::DAffine3 {
+    let [x, y, z, w] = columns.map(|[x, y, z, _]| [x, y, z]);
+    glam::DAffine3::from_cols_array_2d(&[x, y, z, w])
+}

@@ -257,11 +257,6 @@ impl Describe for SmallScene {
             "camera" => (1, 64, ProvidedBinding::Uniform),
             _ => return None,
         };
-        Some(Provided {
-            items: Some(items),
-            stride,
-            binding,
-            kind: None,
-        })
+        Some(Provided::new(binding, Some(items), stride))
     }
 }

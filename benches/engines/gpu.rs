@@ -40,12 +40,11 @@ impl Describe for Given<'_> {
         let Some((content, stride)) = self.content(name) else {
             return self.scene.describe(name);
         };
-        Some(Provided {
-            items: Some(content.len() as u64 / stride),
+        Some(Provided::new(
+            ProvidedBinding::Storage,
+            Some(content.len() as u64 / stride),
             stride,
-            binding: ProvidedBinding::Storage,
-            kind: None,
-        })
+        ))
     }
 }
 

@@ -132,12 +132,7 @@ impl Describe for Scene {
             "light" => (1, 64, ProvidedBinding::Uniform),
             _ => return None,
         };
-        Some(Provided {
-            items: Some(items),
-            stride,
-            binding,
-            kind: None,
-        })
+        Some(Provided::new(binding, Some(items), stride))
     }
 }
 

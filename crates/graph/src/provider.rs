@@ -23,7 +23,15 @@ pub trait Describe {
 
 /// Description of a buffer, an acceleration structure or work for the CPU that the host makes and a
 /// graph only reads, as [`Describe::describe`] returns it.
+///
+/// ```
+/// use skiagraph_graph::{Provided, ProvidedBinding};
+///
+/// let light = Provided::new(ProvidedBinding::Uniform, Some(1), 64);
+/// assert_eq!((light.stride, light.kind), (64, None));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Provided {
     /// Number of items of the buffer; `None` if it is not known before the buffer is built, and for
     /// an acceleration structure.
@@ -47,6 +55,24 @@ impl Provided {
         binding: ProvidedBinding::AccelerationStructure,
         kind: None,
     };
+
+    /// Describes a buffer of items of `stride` bytes, without a kind. `items` is `None` if their
+    /// number is not known before the buffer is built.
+    pub const fn new(binding: ProvidedBinding, items: Option<u64>, stride: u64) -> Self {
+        Self {
+            items,
+            stride,
+            binding,
+            kind: None,
+        }
+    }
+
+    /// Sets [`kind`](Self::kind).
+    #[must_use]
+    pub const fn with_kind(mut self, kind: ProvidedKind) -> Self {
+        self.kind = Some(kind);
+        self
+    }
 
     /// Description of work for the CPU, which a [`CpuCall`](crate::step::CpuCall) calls and no
     /// shader can bind.

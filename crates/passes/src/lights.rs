@@ -85,15 +85,12 @@ pub(crate) fn describe(name: &str, lights: &[LightKind]) -> Option<Provided> {
         Some(number) => Some(provided_kind(lights.get(number)?)).filter(|_| list == LIGHTS),
         None => None,
     };
-    Some(Provided {
-        items: Some(number.map_or(lights.len() as u64, |_| 1)),
-        stride: bytes as u64,
-        binding: match number {
-            Some(_) => ProvidedBinding::Uniform,
-            None => ProvidedBinding::Storage,
-        },
-        kind,
-    })
+    let (binding, items) = match number {
+        Some(_) => (ProvidedBinding::Uniform, 1),
+        None => (ProvidedBinding::Storage, lights.len() as u64),
+    };
+    let provided = Provided::new(binding, Some(items), bytes as u64);
+    Some(kind.map_or(provided, |kind| provided.with_kind(kind)))
 }
 
 /// The bytes of what stands behind one of these names; `lay` lays a light around the scene.

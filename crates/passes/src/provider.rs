@@ -617,12 +617,11 @@ impl Describe for SceneProvider {
         let mesh = &self.scene.mesh;
         let corners = 3 * mesh.triangles.len();
         let bound = |binding, items: Option<usize>, stride: usize| {
-            Some(Provided {
-                items: items.map(|items| items as u64),
-                stride: stride as u64,
+            Some(Provided::new(
                 binding,
-                kind: None,
-            })
+                items.map(|items| items as u64),
+                stride as u64,
+            ))
         };
         let array = |items, stride| bound(ProvidedBinding::Storage, items, stride);
         let uniform = |bytes| bound(ProvidedBinding::Uniform, Some(1), bytes);
@@ -644,10 +643,8 @@ impl Describe for SceneProvider {
             TEXELS => array(None, 4),
             CAMERA => uniform(size_of::<CameraUniform>()),
             UNPROJECTION => uniform(size_of::<UnprojectionUniform>()),
-            LIGHT => uniform(size_of::<LightUniform>()).map(|light| Provided {
-                kind: Some(lights::provided_kind(&self.light())),
-                ..light
-            }),
+            LIGHT => uniform(size_of::<LightUniform>())
+                .map(|light| light.with_kind(lights::provided_kind(&self.light()))),
             LIGHT_AREA => uniform(size_of::<LightAreaUniform>()),
             name => lights::describe(name, self.lights()),
         }

@@ -1,6 +1,31 @@
 //! Shows shadow methods in a window, side by side and beside the ground truth. One thread runs the
 //! methods, another traces the reference, and the window shows their results. The logic is in
 //! `state.rs`, which uses no window toolkit.
+//!
+//! ```no_run
+//! use skiagraph_compare::{measuring::device::GpuRequest, sink::Silent};
+//! use skiagraph_scene::{SceneLibrary, SceneRequest};
+//! use skiagraph_viewer::{Opening, open};
+//!
+//! let opening = Opening {
+//!     methods: vec!["nsm".into(), "light_buffer".into()],
+//!     params: vec![],
+//!     map_size: None,
+//!     size: [640, 480],
+//!     scene: "park".into(),
+//!     load_scene: Box::new(|name| {
+//!         let request = SceneRequest {
+//!             argument: name.to_owned(),
+//!             obj: None,
+//!         };
+//!         let (scene, _) = SceneLibrary::default().load(&request)?;
+//!         Ok((scene, vec![]))
+//!     }),
+//!     gpu: GpuRequest::default(),
+//! };
+//! open(opening, &Silent)?;
+//! # Ok::<(), skiagraph_compare::error::CompareError>(())
+//! ```
 
 mod desired_state;
 mod drawn;

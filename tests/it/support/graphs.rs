@@ -52,12 +52,11 @@ impl Describe for Extended {
         let Some((content, stride)) = self.buffers.get(name).filter(|_| of_scene.is_none()) else {
             return of_scene;
         };
-        Some(Provided {
-            items: Some(content.len() as u64 / stride),
-            stride: *stride,
-            binding: ProvidedBinding::Storage,
-            kind: None,
-        })
+        Some(Provided::new(
+            ProvidedBinding::Storage,
+            Some(content.len() as u64 / stride),
+            *stride,
+        ))
     }
 }
 

@@ -134,12 +134,7 @@ impl Describe for Number {
 
     fn describe(&self, name: &str) -> Option<Provided> {
         let known = self.names().iter().any(|known| known == name);
-        known.then_some(Provided {
-            items: Some(1),
-            stride: 4,
-            binding: ProvidedBinding::Storage,
-            kind: None,
-        })
+        known.then_some(Provided::new(ProvidedBinding::Storage, Some(1), 4))
     }
 }
 

@@ -35,12 +35,9 @@ impl Describe for Versions {
     }
 
     fn describe(&self, name: &str) -> Option<Provided> {
-        self.0.contains_key(name).then_some(Provided {
-            items: Some(1),
-            stride: 4,
-            binding: ProvidedBinding::Storage,
-            kind: None,
-        })
+        self.0
+            .contains_key(name)
+            .then_some(Provided::new(ProvidedBinding::Storage, Some(1), 4))
     }
 }
 

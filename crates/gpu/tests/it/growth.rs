@@ -464,12 +464,7 @@ impl Describe for Wanted {
     }
 
     fn describe(&self, name: &str) -> Option<Provided> {
-        (name == "host.wanted").then_some(Provided {
-            items: Some(1),
-            stride: 4,
-            binding: ProvidedBinding::Storage,
-            kind: None,
-        })
+        (name == "host.wanted").then_some(Provided::new(ProvidedBinding::Storage, Some(1), 4))
     }
 }
 

@@ -119,12 +119,7 @@ impl Describe for Number {
     }
 
     fn describe(&self, name: &str) -> Option<Provided> {
-        (name == "host.number").then_some(Provided {
-            items: Some(1),
-            stride: 4,
-            binding: ProvidedBinding::Storage,
-            kind: None,
-        })
+        (name == "host.number").then_some(Provided::new(ProvidedBinding::Storage, Some(1), 4))
     }
 }
 

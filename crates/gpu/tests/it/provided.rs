@@ -23,15 +23,12 @@ impl Describe for Given {
     }
 
     fn describe(&self, name: &str) -> Option<Provided> {
-        (name == "host.value").then_some(Provided {
-            items: Some(self.items),
-            stride: 4,
-            binding: ProvidedBinding::Storage,
-            kind: Some(ProvidedKind {
+        (name == "host.value").then_some(
+            Provided::new(ProvidedBinding::Storage, Some(self.items), 4).with_kind(ProvidedKind {
                 words: &KIND,
                 number: self.kind,
             }),
-        })
+        )
     }
 }
 

@@ -61,12 +61,7 @@ impl Describe for Broken {
     }
 
     fn describe(&self, name: &str) -> Option<Provided> {
-        (name == "items").then_some(Provided {
-            items: Some(4),
-            stride: 4,
-            binding: ProvidedBinding::Storage,
-            kind: None,
-        })
+        (name == "items").then_some(Provided::new(ProvidedBinding::Storage, Some(4), 4))
     }
 }
 

@@ -48,12 +48,11 @@ impl Describe for Updated {
     }
 
     fn describe(&self, name: &str) -> Option<Provided> {
-        (name == "host.value").then_some(Provided {
-            items: Some(self.items),
-            stride: 4,
-            binding: ProvidedBinding::Storage,
-            kind: None,
-        })
+        (name == "host.value").then_some(Provided::new(
+            ProvidedBinding::Storage,
+            Some(self.items),
+            4,
+        ))
     }
 }
 

@@ -111,21 +111,11 @@ impl Describe for Triangle {
                     words: &["directional", "spot"],
                     number: 1,
                 };
-                return Some(Provided {
-                    items: Some(1),
-                    stride: 256,
-                    binding: ProvidedBinding::Uniform,
-                    kind: Some(kind),
-                });
+                return Some(Provided::new(ProvidedBinding::Uniform, Some(1), 256).with_kind(kind));
             }
             _ => return None,
         };
-        Some(Provided {
-            items,
-            stride,
-            binding,
-            kind: None,
-        })
+        Some(Provided::new(binding, items, stride))
     }
 }
 

@@ -121,7 +121,7 @@ class Runs:
         self.program, self.size, self.folder = args.program.resolve(), args.size, folder
 
     def run(self, graph, cell, samples, *sets):
-        """The bytes of `visibility`, and of `status`."""
+        """The pixels of `visibility`, as bits, and of `status`."""
         scene, view, light = cell
         files = [self.folder / f"{name}.bin" for name in ("visibility", "status")]
         command = [self.program, "run", graph, "--scene", scene, "--view", view, "--size", self.size]
@@ -138,7 +138,7 @@ class Runs:
 
 
 def words(content):
-    """Four bytes each, as bits; a status may be of one byte."""
+    """Numbers of four bytes each."""
     return struct.unpack(f"<{len(content) // 4}I", content)
 
 
@@ -178,7 +178,7 @@ def main():
     lists, runs = write_lists(folder), Runs(args, folder)
     cells = [] if args.generated and not args.few else list(scenes(folder, args.foliage, args.few))
     cells += generated(folder, args.generated)
-    failed, compared, soft = 0, 0, 0
+    failed, penumbrae = 0, []
     for cell in cells:
         for samples in map(int, args.samples.split(",")):
             scene, view, light = cell
@@ -188,10 +188,14 @@ def main():
             began = time.monotonic()
             faults, penumbra, line = judge(runs, lists, cell, samples)
             failed += len(faults)
-            compared, soft = compared + 1, soft + penumbra
+            penumbrae.append(penumbra)
             print(f"{'FAILED' if faults else 'equal '} {name}: {'; '.join([*faults, line])} "
                   f"({time.monotonic() - began:.0f} s)", flush=True)
-    print(f"{compared} cells of {args.size}, {soft:,} pixels in penumbra, {failed} faults")
+    soft = sum(map(bool, penumbrae))
+    print(
+        f"{len(penumbrae)} cells of {args.size}, {soft} of them with penumbra, "
+        f"{sum(penumbrae):,} pixels; {failed} faults"
+    )
     sys.exit(1 if failed or soft == 0 else 0)
 
 

@@ -8,10 +8,9 @@ Eyes and the points looked at are uniform in a box around what there is to see, 
 the upper hemisphere; every fifth one is grazing, at most 5 degrees above the horizon. A seed always
 gives the same file.
 
-With --soft the lights have extents, of all sizes alike by their logarithm: suns from 0.1 to 30
-degrees wide, and for one view in four each a spot light and a point light, with a radius of 0.0002
-to 0.02 of the box's diagonal. They are lights of the scene: view 007 is meant to be seen under
-light_007.
+With --soft the lights have extents, their sizes uniform by logarithm: two suns from 0.1 to 30
+degrees wide, a point light and a spot light with radii of 0.0002 to 0.02 of the box's diagonal, and
+so on in turn. They are lights of the scene: view 007 is to be seen under light_007.
 """
 
 import argparse

@@ -15,6 +15,9 @@ var<storage, read> estimate: array<u32, 3>;
 var<storage, read_write> texels: array<Texel>;
 // The workgroups of `bin`: none where rays are chosen.
 var<storage, read_write> bin_groups: array<u32, 3>;
+// Draws of a full-screen triangle, or of none: vertices, instances, the first of each.
+var<storage, read_write> test_call: array<u32, 4>;
+var<storage, read_write> leave_call: array<u32, 4>;
 
 // As long as a ray takes: to make an entry, to walk over one, and to test 64 samples of one, fewer
 // where there are fewer.
@@ -33,7 +36,11 @@ fn main() {
     if lists > f32(params.samples) && light_area.radius > 0.0 {
         texels[arrayLength(&texels) - 1u].length = LIST_LACKS;
         bin_groups = array(0u, 0u, 0u);
+        test_call = array(0u, 0u, 0u, 0u);
+        leave_call = array(3u, 1u, 0u, 0u);
         return;
     }
+    test_call = array(3u, 1u, 0u, 0u);
+    leave_call = array(0u, 0u, 0u, 0u);
     bin_groups = groups_for(arrayLength(&scene_indices) / 3u);
 }

@@ -8,15 +8,15 @@
 #import "shared/light_cone.wgsl"
 #import "shared/ray_triangle.wgsl"
 #import "shared/strata.wgsl"
+#import "shared/whole_target.wgsl"
 
 override samples: u32 = 64u;
 // The turn's first.
 override first_sample: u32 = 0u;
 
-// Rounds of a thread's loops after which it begins no more; with the last candidate's samples and
-// the points 128 more. llvmpipe ends loops after 65,535 rounds of the threads that run in step,
-// sixteen of them at most.
-const MOST_ROUNDS: u32 = 3900u;
+// A thread's rounds after which it looks for no other candidate: docs/light_buffer_area.md has why
+// sixteen threads in step then stay below 65,535, after which llvmpipe ends loops.
+const MOST_ROUNDS: u32 = 3200u;
 const TOO_MANY: u32 = 0xffffffffu;
 // Wider lights than the bounds hold for: of more than 126 degrees.
 const WIDEST: f32 = 2.0;
@@ -87,82 +87,143 @@ fn whole_answer(pixel_status: u32) -> Answer {
     return Answer(f32(initial_visibility(pixel_status)), pixel_status);
 }
 
-// Returns how many samples of the turn no caster of the list hides.
+// A turn's samples, four in each item, as `seen_point` has them.
+struct Points {
+    x: array<vec4<f32>, 16>,
+    y: array<vec4<f32>, 16>,
+}
+
+// A thread's way through its list.
+struct Walk {
+    // The next entry.
+    number: u32,
+    rounds: u32,
+    // True from when it first had no room for a candidate, and other threads went on.
+    has_waited: bool,
+    // Samples that no caster hides so far, one bit each.
+    lit: vec2<u32>,
+    // Candidates that the tracer's own test decides, the latest first, and for which samples.
+    unsure: vec4<u32>,
+    low: vec4<u32>,
+    high: vec4<u32>,
+}
+
+// Returns how many samples of the turn no caster of the list hides. Threads run in step, and some
+// adapters run what any of them could need: so few samples ask the tracer's test, they wait until
+// there are four candidates of that kind.
 fn lit_samples(asking: Asking, asked: Asked) -> u32 {
+    let all_lit = vec2(bits_below(asking.count), bits_below(max(asking.count, 32u) - 32u));
+    let none = vec4(NO_PRIMITIVE);
+    var walk = Walk(asked.head, 0u, false, all_lit, none, vec4(0u), vec4(0u));
+    var candidate = next_candidate(asking, asked, &walk);
     let sight = sight_of(asking.receiver, asked.t_min);
-    var xs: array<vec4<f32>, 16>;
-    var ys: array<vec4<f32>, 16>;
-    var is_ready = false;
-    var lit = vec2(bits_below(asking.count), bits_below(max(asking.count, 32u) - 32u));
-    var number = asked.head;
-    var rounds = 0u;
-    while any(lit != vec2(0u)) && number != LIST_END && rounds < MOST_ROUNDS {
-        // Threads that run in step look for a candidate together, then test it together.
-        var candidate = NO_PRIMITIVE;
-        while candidate == NO_PRIMITIVE && number != LIST_END && rounds < MOST_ROUNDS {
-            let entry = entries[number - 1u];
-            number = entry.x;
-            let may_hit = (entry.y != asking.own) & may_shade(asked, entry.zw);
-            candidate = select(NO_PRIMITIVE, entry.y, may_hit);
-            rounds += 1u;
+    var points: Points;
+    let needed = select(asking.count, 0u, candidate == NO_PRIMITIVE);
+    for (var i = 0u; i < needed; i++) {
+        let point = seen_point(sight, sample_point(asking, i));
+        points.x[i / 4u][i % 4u] = point.x;
+        points.y[i / 4u][i % 4u] = point.y;
+    }
+    loop {
+        while candidate != NO_PRIMITIVE && any(walk.lit != vec2(0u))
+            && walk.unsure.w == NO_PRIMITIVE {
+            test(sight, candidate, &points, &walk);
+            candidate = next_candidate(asking, asked, &walk);
         }
-        rounds += 1u;
-        if candidate == NO_PRIMITIVE {
-            continue;
+        ask_tracer(asking, asked.t_min, &points, &walk);
+        if candidate == NO_PRIMITIVE || all(walk.lit == vec2(0u)) {
+            break;
         }
-        let cone = cone_of(sight, candidate);
-        if cone.is_beside {
-            continue;
+        walk.has_waited = true;
+        walk.rounds += 3u;
+    }
+    let is_done = walk.number == LIST_END || all(walk.lit == vec2(0u));
+    return select(TOO_MANY, countOneBits(walk.lit.x) + countOneBits(walk.lit.y), is_done);
+}
+
+// Returns the next caster that may be before the receiver; NO_PRIMITIVE at the end of the list, or
+// of the thread's rounds.
+fn next_candidate(asking: Asking, asked: Asked, walk: ptr<function, Walk>) -> u32 {
+    var candidate = NO_PRIMITIVE;
+    while candidate == NO_PRIMITIVE && (*walk).number != LIST_END && (*walk).rounds < MOST_ROUNDS {
+        let entry = entries[(*walk).number - 1u];
+        (*walk).number = entry.x;
+        let may_hit = (entry.y != asking.own) & may_shade(asked, entry.zw);
+        candidate = select(NO_PRIMITIVE, entry.y, may_hit);
+        // As long as no thread waits a round tests a candidate of each.
+        (*walk).rounds += select(1u, select(0u, 2u, (*walk).has_waited), may_hit);
+    }
+    return candidate;
+}
+
+// Takes away the samples that the candidate certainly hides, and keeps it if others are unsure.
+fn test(
+    sight: Sight,
+    candidate: u32,
+    points: ptr<function, Points>,
+    walk: ptr<function, Walk>,
+) {
+    let cone = cone_of(sight, candidate);
+    // Samples that are certainly hidden, if the cone is clear, and that perhaps are. Unrolled, so
+    // that none is looked up by a number that is not known beforehand.
+    var low = vec2(0u);
+    var high = vec2(0u);
+    if samples > 0u { low |= sides_of(cone, (*points).x[0], (*points).y[0]) << vec2(0u); }
+    if samples > 4u { low |= sides_of(cone, (*points).x[1], (*points).y[1]) << vec2(4u); }
+    if samples > 8u { low |= sides_of(cone, (*points).x[2], (*points).y[2]) << vec2(8u); }
+    if samples > 12u { low |= sides_of(cone, (*points).x[3], (*points).y[3]) << vec2(12u); }
+    if samples > 16u { low |= sides_of(cone, (*points).x[4], (*points).y[4]) << vec2(16u); }
+    if samples > 20u { low |= sides_of(cone, (*points).x[5], (*points).y[5]) << vec2(20u); }
+    if samples > 24u { low |= sides_of(cone, (*points).x[6], (*points).y[6]) << vec2(24u); }
+    if samples > 28u { low |= sides_of(cone, (*points).x[7], (*points).y[7]) << vec2(28u); }
+    if samples > 32u { high |= sides_of(cone, (*points).x[8], (*points).y[8]) << vec2(0u); }
+    if samples > 36u { high |= sides_of(cone, (*points).x[9], (*points).y[9]) << vec2(4u); }
+    if samples > 40u { high |= sides_of(cone, (*points).x[10], (*points).y[10]) << vec2(8u); }
+    if samples > 44u { high |= sides_of(cone, (*points).x[11], (*points).y[11]) << vec2(12u); }
+    if samples > 48u { high |= sides_of(cone, (*points).x[12], (*points).y[12]) << vec2(16u); }
+    if samples > 52u { high |= sides_of(cone, (*points).x[13], (*points).y[13]) << vec2(20u); }
+    if samples > 56u { high |= sides_of(cone, (*points).x[14], (*points).y[14]) << vec2(24u); }
+    if samples > 60u { high |= sides_of(cone, (*points).x[15], (*points).y[15]) << vec2(28u); }
+    // Where a mask has holes the tracer finds them.
+    let is_clear = cone.is_clear && !is_masked(candidate);
+    let certain = select(vec2(0u), vec2(low.x, high.x), is_clear && !cone.is_beside);
+    (*walk).lit &= ~certain;
+    let unsure = (*walk).lit & vec2(low.y, high.y);
+    if any(unsure != vec2(0u)) && !cone.is_beside {
+        (*walk).unsure = vec4(candidate, (*walk).unsure.xyz);
+        (*walk).low = vec4(unsure.x, (*walk).low.xyz);
+        (*walk).high = vec4(unsure.y, (*walk).high.xyz);
+    }
+}
+
+// Asks the tracer's own test about all samples that are unsure, one in each round.
+fn ask_tracer(
+    asking: Asking,
+    t_min: f32,
+    points: ptr<function, Points>,
+    walk: ptr<function, Walk>,
+) {
+    while (*walk).unsure.x != NO_PRIMITIVE {
+        let unsure = (*walk).lit & vec2((*walk).low.x, (*walk).high.x);
+        let bit = first_bit(unsure);
+        let i = first_number(bit) % 64u;
+        var point = vec2((*points).x[i / 4u][i % 4u], (*points).y[i / 4u][i % 4u]);
+        if light_kind == LIGHT_SPOT {
+            point = sample_point(asking, i);
         }
-        if !is_ready {
-            is_ready = true;
-            for (var i = 0u; i < asking.count; i++) {
-                let point = seen_point(sight, sample_point(asking, i));
-                xs[i / 4u][i % 4u] = point.x;
-                ys[i / 4u][i % 4u] = point.y;
-            }
+        if hides(asking.receiver, t_min, (*walk).unsure.x, point) {
+            (*walk).lit &= ~bit;
         }
-        // Samples that are certainly hidden, if the cone is clear, and that perhaps are. Unrolled,
-        // so that none is looked up by a number that is not known beforehand.
-        var low = vec2(0u);
-        var high = vec2(0u);
-        if samples > 0u { low |= sides_of(cone, xs[0], ys[0]) << vec2(0u); }
-        if samples > 4u { low |= sides_of(cone, xs[1], ys[1]) << vec2(4u); }
-        if samples > 8u { low |= sides_of(cone, xs[2], ys[2]) << vec2(8u); }
-        if samples > 12u { low |= sides_of(cone, xs[3], ys[3]) << vec2(12u); }
-        if samples > 16u { low |= sides_of(cone, xs[4], ys[4]) << vec2(16u); }
-        if samples > 20u { low |= sides_of(cone, xs[5], ys[5]) << vec2(20u); }
-        if samples > 24u { low |= sides_of(cone, xs[6], ys[6]) << vec2(24u); }
-        if samples > 28u { low |= sides_of(cone, xs[7], ys[7]) << vec2(28u); }
-        if samples > 32u { high |= sides_of(cone, xs[8], ys[8]) << vec2(0u); }
-        if samples > 36u { high |= sides_of(cone, xs[9], ys[9]) << vec2(4u); }
-        if samples > 40u { high |= sides_of(cone, xs[10], ys[10]) << vec2(8u); }
-        if samples > 44u { high |= sides_of(cone, xs[11], ys[11]) << vec2(12u); }
-        if samples > 48u { high |= sides_of(cone, xs[12], ys[12]) << vec2(16u); }
-        if samples > 52u { high |= sides_of(cone, xs[13], ys[13]) << vec2(20u); }
-        if samples > 56u { high |= sides_of(cone, xs[14], ys[14]) << vec2(24u); }
-        if samples > 60u { high |= sides_of(cone, xs[15], ys[15]) << vec2(28u); }
-        // Where a mask has holes the tracer finds them.
-        let is_clear = cone.is_clear && !is_masked(candidate);
-        let certain = select(vec2(0u), vec2(low.x, high.x), is_clear);
-        lit &= ~certain;
-        var unsure = lit & vec2(low.y, high.y);
-        while any(unsure != vec2(0u)) {
-            let bit = first_bit(unsure);
-            unsure &= ~bit;
-            rounds += 1u;
-            let i = first_number(bit);
-            var point = vec2(xs[i / 4u][i % 4u], ys[i / 4u][i % 4u]);
-            if light_kind == LIGHT_SPOT {
-                point = sample_point(asking, i);
-            }
-            if hides(asking.receiver, asked.t_min, candidate, point) {
-                lit &= ~bit;
-            }
+        let left = unsure & ~bit;
+        (*walk).low.x = left.x;
+        (*walk).high.x = left.y;
+        (*walk).rounds += 1u;
+        if all(left == vec2(0u)) {
+            (*walk).unsure = vec4((*walk).unsure.yzw, NO_PRIMITIVE);
+            (*walk).low = vec4((*walk).low.yzw, 0u);
+            (*walk).high = vec4((*walk).high.yzw, 0u);
         }
     }
-    let is_done = number == LIST_END || all(lit == vec2(0u));
-    return select(TOO_MANY, countOneBits(lit.x) + countOneBits(lit.y), is_done);
 }
 
 // As aim_samples.wgsl has it, of the unit disk.

@@ -5,13 +5,19 @@
 fn stratum_point(index: u32, count: u32, jitter: vec2<f32>) -> vec2<f32> {
     let columns = u32(round(sqrt(f32(count))));
     // The column that begins at or before the part: part c * count / columns is its first.
-    let column = ((index + 1u) * columns + count - 1u) / count - 1u;
-    let first = column * count / columns;
-    let rows = (column + 1u) * count / columns - first;
+    let column = quotient((index + 1u) * columns + count - 1u, count) - 1u;
+    let first = quotient(column * count, columns);
+    let rows = quotient((column + 1u) * count, columns) - first;
     return vec2(
         (f32(first) + jitter.x * f32(rows)) / f32(count),
         (f32(index - first) + jitter.y) / f32(rows),
     );
+}
+
+// a / b of numbers below 2^20, to the bit: with the half it is farther from any whole number than a
+// division errs. Some adapters divide integers one by one.
+fn quotient(a: u32, b: u32) -> u32 {
+    return u32((f32(a) + 0.5) / f32(b));
 }
 
 // From the unit square to the unit disk; parts of equal area stay so. Shirley, Chiu, "A Low
@@ -22,12 +28,11 @@ fn disk_point(square: vec2<f32>) -> vec2<f32> {
     if all(at == vec2(0.0)) {
         return at;
     }
-    if abs(at.x) > abs(at.y) {
-        let angle = QUARTER * (at.y / at.x);
-        return at.x * vec2(cos(angle), sin(angle));
-    }
-    let angle = 2.0 * QUARTER - QUARTER * (at.x / at.y);
-    return at.y * vec2(cos(angle), sin(angle));
+    let is_wide = abs(at.x) > abs(at.y);
+    let radius = select(at.y, at.x, is_wide);
+    let angle = QUARTER * (select(at.x, at.y, is_wide) / radius);
+    let point = radius * vec2(cos(angle), sin(angle));
+    return select(point.yx, point, is_wide);
 }
 
 // Two numbers in 0..1, others for every pixel and sample: pcg3d of Jarzynski, Olano, "Hash

@@ -47,6 +47,7 @@ pub mod measuring;
 pub mod own_camera;
 pub mod own_scene;
 pub mod pictures;
+pub mod quantities;
 pub mod records;
 pub mod sink;
 pub mod size;

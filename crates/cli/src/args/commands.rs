@@ -2,12 +2,13 @@
 
 use crate::args::{
     shared::{MethodArgs, SceneArgs},
-    values::{bytes, frames, gate, milliseconds, percent, texels},
+    values::{frames, gate, texels},
 };
 use clap::{ArgAction, Args, ValueEnum};
 use skiagraph_compare::graphs::argument::Assignment;
 use skiagraph_compare::measuring::ground_truth::REFERENCE_SAMPLES;
 use skiagraph_compare::pictures::{data::DataFormat, save::Save};
+use skiagraph_compare::quantities::{bytes, milliseconds, percent};
 use skiagraph_compare::records::published_row::PublishedFile;
 use skiagraph_compare::size::Size;
 use skiagraph_reference::OracleMode;

@@ -23,6 +23,7 @@
 use crate::error::CompareError;
 use crate::files::json::to_text;
 use crate::files::write::{check_folder, write_whole};
+use crate::foreign::elsewhere::elsewhere;
 use crate::foreign::factor::{Factor, Reading};
 use crate::foreign::raster::Raster;
 use crate::foreign::surfaces::{by_depth, ids};
@@ -34,9 +35,11 @@ use crate::measuring::ground_truth::{
     GroundTruthView, PrimaryVisibility, REFERENCE_SAMPLES, heard, own_counts,
 };
 use crate::measuring::view_or_path::ViewOrPath;
-use crate::pictures::run_pictures::{PictureFile, PicturePlace, draw_pictures, write_pictures};
+use crate::pictures::run_pictures::{
+    PictureFile, PicturePlace, check_stems, draw_pictures, write_pictures,
+};
 use crate::records::judged_pictures::{JudgedPicture, JudgedPictures};
-use crate::records::results::{Answer, AreaReference, PROGRAM};
+use crate::records::results::{Answer, AreaReference, Images, PROGRAM};
 use crate::sink::{Session, Sink, Step};
 use crate::wording::{percent, size, thousands};
 use skiagraph_passes::{EmbeddedSources, SceneProvider};
@@ -139,6 +142,10 @@ pub fn judge(
     gpu: &GpuRequest,
     sink: &dyn Sink,
 ) -> Result<Judged, CompareError> {
+    if judging.draws {
+        let owner = |path: &PathBuf| (stem(path), format!("`{}`", path.display()));
+        check_stems(judging.pictures.iter().map(owner))?;
+    }
     let factors = factors(judging)?;
     let Some(viewport) = factors.first().map(|factor| factor.size) else {
         return Err(CompareError::Request("no picture to judge".into()));
@@ -186,8 +193,13 @@ pub fn judge(
     };
     let mut files: Vec<PictureFile> = Vec::new();
     let mut taken = BTreeSet::new();
-    for factor in factors {
-        let (picture, drawn) = one(judging, factor, &truth, &judged_truth)?;
+    for factor in &factors {
+        let (mut picture, drawn) = one(judging, factor, &truth, &judged_truth)?;
+        if picture.rank.is_none() {
+            let found = elsewhere((&factor.shares, viewport), &scene, view, sink)?;
+            let text = |options| format!("it agrees with another view or light: {options}");
+            picture.warnings.extend(found.map(text));
+        }
         record.pictures.push(picture);
         files.extend(
             drawn
@@ -357,7 +369,7 @@ fn check_ids(raster: &Raster, hidden: u64) -> Result<(), CompareError> {
 /// Judges one picture.
 fn one(
     judging: &Judging,
-    factor: Factor,
+    factor: &Factor,
     truth: &Truth,
     judged_truth: &GroundTruth,
 ) -> Result<(JudgedPicture, Vec<PictureFile>), CompareError> {
@@ -378,7 +390,7 @@ fn one(
     let of_own = Statistics::judged(&outputs.visibility, &outputs.status, own).map_err(told)?;
     wrong.in_band = of_own.wrong.in_band;
     let mut warnings = factor.warnings.clone();
-    warnings.extend(black(&factor, &is_judged));
+    warnings.extend(black(factor, &is_judged));
     let suspect = Suspect {
         size: factor.size,
         shares: &factor.shares,
@@ -390,22 +402,12 @@ fn one(
     warnings.extend(suspicions.texts);
     let has_blockers = judgement.is_hard && wrong.certain > 0;
     let blockers = has_blockers.then(|| truth.view.blockers_of(&outputs, pixels));
-    let (mut images, mut files) = (None, Vec::new());
-    if judging.draws {
-        let name = PathBuf::from(&factor.file);
-        let name = name
-            .file_stem()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .into_owned();
-        let place = PicturePlace {
-            stem: name,
-            view: "truth",
-            frame: None,
-        };
-        let (drawn, pictures) = draw_pictures(&place, judged_truth, (&outputs, &judgement), None)?;
-        (images, files) = (Some(drawn), pictures);
-    }
+    let (images, files) = if judging.draws {
+        let (images, files) = draw(factor, judged_truth, (&outputs, &judgement))?;
+        (Some(images), files)
+    } else {
+        Default::default()
+    };
     let picture = JudgedPicture {
         answer: if outputs.shares.is_some() {
             Answer::Graded
@@ -421,10 +423,34 @@ fn one(
         wrong_blockers: blockers.transpose()?,
         warnings,
         images,
-        file: factor.file,
-        format: factor.format,
+        file: factor.file.clone(),
+        format: factor.format.clone(),
     };
     Ok((picture, files))
+}
+
+/// Beginning of the names of the pictures that are drawn of a file.
+fn stem(path: &Path) -> String {
+    let stem = path.file_stem().unwrap_or_default();
+    stem.to_string_lossy().into_owned()
+}
+
+/// Draws the errors of a picture, and the scene with its shadows.
+fn draw(
+    factor: &Factor,
+    judged_truth: &GroundTruth,
+    answers: (&Outputs, &Judgement),
+) -> Result<(Images, Vec<PictureFile>), CompareError> {
+    let place = PicturePlace {
+        stem: stem(Path::new(&factor.file)),
+        view: "truth",
+        frame: None,
+    };
+    let (mut images, mut files) = draw_pictures(&place, judged_truth, answers, None)?;
+    // No picture has a status of its own.
+    let uncertain = images.uncertain.take();
+    files.retain(|file| Some(&file.name) != uncertain.as_ref());
+    Ok((images, files))
 }
 
 /// That pixels which face the light are black without shadows, too: they have no quotient.

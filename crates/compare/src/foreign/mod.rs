@@ -16,6 +16,7 @@
 
 pub mod conventions;
 mod decoded;
+mod elsewhere;
 mod exr_file;
 pub mod factor;
 pub mod judging;

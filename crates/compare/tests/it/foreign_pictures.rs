@@ -232,8 +232,20 @@ fn what_is_written_as_truth_judges_pictures() {
         assert_eq!(camera["viewport"], serde_json::json!(SIZE));
         assert_eq!(camera["projections"].as_array().unwrap().len(), 16);
     }
-    // Ids upside down are those of another camera.
-    let ids = Raster::read(&folder.path().join("npy/ids.npy")).unwrap();
+}
+
+#[test]
+fn ids_of_another_camera_are_told() {
+    let scene = park();
+    let folder = tempfile::tempdir().unwrap();
+    let (view, gpu, out) = (scene.views[0].clone(), GpuRequest::default(), folder.path());
+    let request = TruthRequest {
+        format: DataFormat::Npy,
+        ..TruthRequest::new(SIZE)
+    };
+    write_truth(&request, (*scene).clone(), &view, out, &gpu, &Silent).unwrap();
+    // Upside down.
+    let ids = Raster::read(&out.join("ids.npy")).unwrap();
     let rows = ids.values.chunks_exact(SIZE[0] as usize).rev().flatten();
     let turned: Vec<u32> = rows.map(|id| *id as u32).collect();
     let array = Array::of_pixels(SIZE, Values::U32(turned));
@@ -243,7 +255,7 @@ fn what_is_written_as_truth_judges_pictures() {
         &scene,
         &Judging {
             surfaces: Surfaces::Ids(turned),
-            ..judging(vec![file])
+            ..judging(vec![out.join("visibility.npy")])
         },
     );
     let told = told.unwrap_err();
@@ -330,7 +342,8 @@ fn a_picture_of_another_camera_is_told_and_has_no_rank() {
     let folder = tempfile::tempdir().unwrap();
     let file = write(&folder, "rt.png", &rt.shares);
     let own = judged(&Arc::new(scene.clone()), &judging(vec![file.clone()])).unwrap();
-    scene.views.remove(0);
+    scene.views.rotate_left(1);
+    let right = scene.views.last().unwrap().name.clone();
     let other = judged(&Arc::new(scene), &judging(vec![file])).unwrap();
     assert_eq!(own.pictures[0].warnings, Vec::<String>::new());
     let told = &other.pictures[0].warnings[0];
@@ -340,6 +353,8 @@ fn a_picture_of_another_camera_is_told_and_has_no_rank() {
         "{told}"
     );
     assert_eq!(other.pictures[0].rank, None);
+    let found = &other.pictures[0].warnings[1];
+    assert!(found.contains(&format!("--view {right}")), "{found}");
 }
 
 #[test]

@@ -47,6 +47,8 @@ fn main() -> ExitCode {
         Command::Completions(args) => commands::completions::completions(args),
         Command::Profile(args) => commands::profile::profile(args, gpu),
         Command::Stress(args) => commands::stress::stress(args, gpu),
+        Command::Judge(args) => commands::judge::judge(args, gpu),
+        Command::Truth(args) => commands::judge::truth(args, gpu),
         Command::Check(args) => commands::check::check(args, gpu),
         Command::Graph(args) => commands::graph::graph(args),
         Command::Presets(args) => commands::presets::presets(args),

@@ -35,18 +35,21 @@
 //! - [`measuring`]: runs methods, times them and judges their pictures.
 //! - [`records`]: holds measurements as plain data, and reads and writes their files.
 //! - [`pictures`]: writes texels as pictures.
+//! - [`foreign`]: judges pictures of other renderers.
 //! - [`files`]: writes, locks and watches files.
 
 pub mod comparison;
 pub mod default_view;
 pub mod error;
 pub mod files;
+pub mod foreign;
 pub mod graphs;
 pub mod lists;
 pub mod measuring;
 pub mod own_camera;
 pub mod own_scene;
 pub mod pictures;
+pub mod quantities;
 pub mod records;
 pub mod sink;
 pub mod size;

@@ -2,7 +2,7 @@
 
 use crate::{
     error::Error,
-    ground_truth::{AreaVisibility, Class, GroundTruth, GroundTruthPixels},
+    ground_truth::{Answer, AreaVisibility, Class, GroundTruth, GroundTruthPixels},
     oracle::{Oracle, OracleMode},
     pixels::Progress,
     ray::Ray,
@@ -117,21 +117,9 @@ pub fn ground_truth(
         return Ok(GroundTruth { pixels, area: None });
     }
     oracle.check_offset(mode)?;
-    let strata = Strata::new(samples.div_ceil(2).max(2));
+    let strata = strata(samples);
     let answer = |receiver: &Receiver, pixel: [u32; 2], stack: &mut Vec<u32>| {
-        // Answer for the light's centre, for indeterminate pixels.
-        let mut answer = oracle.answer(receiver, mode, stack);
-        if answer.class == Class::FacingAway {
-            return (answer, [0.0; 2]);
-        }
-        let emitter = Emitter::seen_from(&light, receiver);
-        let of = share(oracle, &emitter, &strata, receiver, mode, pixel, stack);
-        answer.class = if of[0] < 0.5 {
-            Class::Shadow
-        } else {
-            Class::Lit
-        };
-        (answer, of)
+        answered(oracle, &light, &strata, (receiver, pixel), mode, stack)
     };
     let of = (oracle.mesh, camera, &light);
     let (pixels, shares) = GroundTruthPixels::answered(of, primitives, progress, answer)?;
@@ -142,6 +130,36 @@ pub fn ground_truth(
     };
     let area = Some(area);
     Ok(GroundTruth { pixels, area })
+}
+
+/// The places in each half of so many samples.
+pub(crate) fn strata(samples: u32) -> Strata {
+    Strata::new(samples.div_ceil(2).max(2))
+}
+
+/// The answer for the receiver of a pixel under a light with an extent; the share that it sees, and
+/// its standard error.
+pub(crate) fn answered(
+    oracle: &Oracle<'_>,
+    light: &LightKind,
+    strata: &Strata,
+    (receiver, pixel): (&Receiver, [u32; 2]),
+    mode: OracleMode,
+    stack: &mut Vec<u32>,
+) -> (Answer, [f64; 2]) {
+    // Answer for the light's centre, for indeterminate pixels.
+    let mut answer = oracle.answer(receiver, mode, stack);
+    if answer.class == Class::FacingAway {
+        return (answer, [0.0; 2]);
+    }
+    let emitter = Emitter::seen_from(light, receiver);
+    let of = share(oracle, &emitter, strata, receiver, mode, pixel, stack);
+    answer.class = if of[0] < 0.5 {
+        Class::Shadow
+    } else {
+        Class::Lit
+    };
+    (answer, of)
 }
 
 /// Those that could stand in the light's cone; `None` if they are many, or the receiver is

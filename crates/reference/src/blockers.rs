@@ -8,6 +8,7 @@
 use crate::{
     error::Error,
     oracle::{Oracle, OracleMode},
+    pixels::{BACKGROUND, Progress, check_pixel_count, per_pixel},
     receiver::Receiver,
 };
 use glam::DVec3;
@@ -65,6 +66,45 @@ pub fn blockers(
         open_part: count(Some(Blocker::OpenPart)),
         closed_part: count(Some(Blocker::ClosedPart)),
         none: count(None),
+    })
+}
+
+/// Finds the caster that is nearest to each receiver on its ray to the light's centre: the
+/// primitive id of a triangle, or [`BACKGROUND`] where none stands in the way, where the receiver
+/// faces away from the light, and in the background. The result has an entry for each pixel, row by
+/// row from the top left. The arguments are those of [`Oracle::shade`].
+///
+/// # Errors
+/// [`Error::PixelCount`], [`Error::UnknownPrimitive`], [`Error::Interrupted`].
+pub fn nearest_blockers(
+    oracle: &Oracle<'_>,
+    camera: &Camera,
+    light: impl Into<LightKind>,
+    primitives: &[u32],
+    mode: OracleMode,
+    progress: Progress,
+) -> Result<Vec<u32>, Error> {
+    check_pixel_count("primitives", camera.viewport, primitives.len())?;
+    let light = light.into();
+    per_pixel(camera.viewport, progress, |x, y, stack| {
+        let receiver = Receiver::from_pixel(oracle.mesh, primitives, camera, [x, y], &light)?;
+        let receiver = receiver.filter(|it| it.n_dot_l > 0.0 && !it.outside_cone);
+        let Some(receiver) = receiver else {
+            return Ok(BACKGROUND);
+        };
+        let (origin, way, passed) = mode.ray(&receiver);
+        let ray = oracle.tree.ray(origin, &way, 0.0);
+        let mut nearest = (f64::INFINITY, BACKGROUND);
+        oracle.tree.walk(&ray, stack, |caster, _| {
+            if let Some(hit) = caster.hit(&ray).filter(|hit| ray.reaches(hit.t))
+                && caster.primitive != passed
+                && (hit.t, caster.primitive) < nearest
+            {
+                nearest = (hit.t, caster.primitive);
+            }
+            ControlFlow::Continue(())
+        });
+        Ok(nearest.1)
     })
 }
 

@@ -29,6 +29,7 @@
 //! ```
 
 pub mod area;
+pub mod attribution;
 pub mod blockers;
 mod contact;
 pub mod edge;
@@ -55,7 +56,8 @@ mod tree;
 mod visible;
 
 pub use area::ground_truth;
-pub use blockers::{BlockerCounts, blockers};
+pub use attribution::unattributable;
+pub use blockers::{BlockerCounts, blockers, nearest_blockers};
 pub use edge::{Distances, EdgeDistances};
 pub use error::Error;
 pub use graded::{Graded, Invalid, JudgedPixels, OffBy, SoftErrors};
@@ -69,4 +71,4 @@ pub use shimmer::Shimmer;
 pub use sight::{Sight, sights};
 pub use statistics::{CertainCounts, ClassSplit, PixelCounts, Split, Statistics, WrongCounts};
 pub use texels::{Footprint, Quantiles, TexelsPerPixel};
-pub use visible::wrong_surfaces;
+pub use visible::{Candidate, candidates, wrong_surfaces};

@@ -1,4 +1,4 @@
-//! Which primitive each pixel sees, and whether a G-buffer says so.
+//! Finds the primitives that each pixel may show, and checks those of a G-buffer.
 
 use crate::{
     error::Error,
@@ -6,10 +6,10 @@ use crate::{
     oracle::Oracle,
     pixels::{BACKGROUND, Progress, check_pixel_count, per_pixel, shown},
     ray::{Corners, Ray},
-    tree::Caster,
+    tree::{Caster, Cone},
 };
 use glam::{DVec3, Vec3};
-use skiagraph_scene::Camera;
+use skiagraph_scene::{Camera, mask::Asked};
 use std::ops::ControlFlow;
 
 /// How far from a pixel's centre its sample may count as lying, in pixels: a step of the grid to
@@ -53,6 +53,54 @@ pub fn wrong_surfaces(
         Ok(is_wrong(oracle, &sample, shown, stack))
     })?;
     Ok(wrong.into_iter().filter(|&is_wrong| is_wrong).count() as u64)
+}
+
+/// A surface that a renderer may show at a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Candidate {
+    /// Primitive id (index of a triangle of the mesh), or [`BACKGROUND`].
+    pub primitive: u32,
+    /// Least and greatest distance along the viewing direction, in scene units, at which the pixel
+    /// may show the surface; from minus to plus infinity for a surface that is seen edge-on.
+    pub distances: [f64; 2],
+}
+
+/// Finds, for each pixel, the surfaces that a renderer may show there whose sample lies anywhere
+/// within a sixteenth of a pixel from the pixel's centre, and whose depths are rounded as those of
+/// a rasteriser: they touch that square, and at one of its corners or its centre no surface surely
+/// hides them. The result has a list for each pixel, row by row from the top left; none is empty.
+///
+/// # Errors
+/// [`Error::Interrupted`] if the caller stops the run.
+pub fn candidates(
+    oracle: &Oracle<'_>,
+    camera: &Camera,
+    progress: Progress,
+) -> Result<Vec<Vec<Candidate>>, Error> {
+    let max_distance = oracle.tree.max_distance(camera.eye);
+    per_pixel(camera.viewport, progress, |x, y, stack| {
+        let direction = camera.pixel_direction(x, y);
+        let sample = Sample::new(camera, direction, max_distance);
+        let (mut found, mut nearest) = (Vec::new(), [f64::INFINITY; 5]);
+        let mut visit = |caster: Caster<'_>| {
+            found.extend(sample.candidate(&caster));
+            for (nearest, end) in nearest.iter_mut().zip(sample.hides_from(&caster)) {
+                *nearest = nearest.min(end);
+            }
+            ControlFlow::Continue(())
+        };
+        let cone = sample.cone();
+        oracle.tree.within(camera.eye, &cone, stack, &mut visit);
+        let end = nearest.into_iter().fold(0.0, f64::max);
+        found.retain(|of| of.distances[0] <= end);
+        if end > camera.far * (1.0 - 16.0 * F32_ROUNDING) {
+            found.push(Candidate {
+                primitive: BACKGROUND,
+                distances: [camera.far, f64::INFINITY],
+            });
+        }
+        Ok(found)
+    })
 }
 
 /// Returns true if no rasteriser may show this primitive at the sample.
@@ -111,20 +159,75 @@ impl<'a> Sample<'a> {
             .any(|side| (0..3).all(|edge| edges.iter().any(|edges| side * edges[edge] >= 0.0)))
     }
 
+    /// The narrowest cone around the square.
+    fn cone(&self) -> Cone {
+        let [axis, corners @ ..] = self.directions.map(DVec3::normalize);
+        let sines = corners.map(|corner| axis.cross(corner).length());
+        let sin = sines.into_iter().fold(0.0, f64::max);
+        Cone {
+            axis,
+            sin,
+            cos: (1.0 - sin * sin).sqrt(),
+        }
+    }
+
+    /// The triangle as a candidate, if it may be seen in the square while nothing hides it.
+    fn candidate(&self, caster: &Caster<'_>) -> Option<Candidate> {
+        let edges = self.edges(&caster.corners);
+        let is_seen = caster.double_sided || edges.iter().any(|of| of.iter().sum::<f64>() > 0.0);
+        if !is_seen || !self.may_touch(&caster.corners) || self.is_cut_out(caster) {
+            return None;
+        }
+        let distances = self.distances(&caster.corners);
+        let is_between = distances[1] >= self.camera.near && distances[0] <= self.camera.far;
+        is_between.then_some(Candidate {
+            primitive: caster.primitive,
+            distances,
+        })
+    }
+
     /// The least distance along the view at which a rasteriser may put a triangle's plane; minus
     /// infinity for one that is all but edge-on.
     fn least_distance(&self, corners: &Corners) -> f64 {
+        self.distances(corners)[0]
+    }
+
+    /// The least and the greatest distance along the view at which a rasteriser may put a
+    /// triangle's plane; infinite for one that is all but edge-on.
+    fn distances(&self, corners: &Corners) -> [f64; 2] {
         let [a, b, c] = self.relative(corners);
         let normal = (b - a).cross(c - a);
-        let mut least = f64::INFINITY;
+        let [mut least, mut greatest] = [f64::INFINITY, 0.0f64];
         for direction in self.directions {
             let distance = normal.dot(a) / normal.dot(direction);
             if distance.is_nan() || distance <= 0.0 {
-                return f64::NEG_INFINITY;
+                return [f64::NEG_INFINITY, f64::INFINITY];
             }
-            least = least.min(distance);
+            [least, greatest] = [least.min(distance), greatest.max(distance)];
         }
-        least - self.distance_error(corners, least)
+        [
+            least - self.distance_error(corners, least),
+            greatest + self.distance_error(corners, greatest),
+        ]
+    }
+
+    /// The distances behind which this triangle hides what is at the centre and at each corner.
+    fn hides_from(&self, caster: &Caster<'_>) -> [f64; 5] {
+        let hits = self.rays.each_ref().map(|ray| caster.hit(ray));
+        if hits.iter().all(Option::is_none) || self.mask_may_flip(caster) {
+            return [f64::INFINITY; 5];
+        }
+        hits.map(|hit| match hit {
+            Some(hit) if hit.front || caster.double_sided => {
+                let error = self.distance_error(&caster.corners, hit.t);
+                if hit.t - error > self.camera.near {
+                    hit.t + error
+                } else {
+                    f64::INFINITY
+                }
+            }
+            _ => f64::INFINITY,
+        })
     }
 
     /// Returns true if a rasteriser shows this triangle, or something before it, at a sample
@@ -149,14 +252,24 @@ impl<'a> Sample<'a> {
 
     /// Returns true if a triangle's mask says different things within the square.
     fn mask_may_flip(&self, caster: &Caster<'_>) -> bool {
-        caster.masked.as_ref().is_some_and(|masked| {
-            let [centre, corners @ ..] = self.edges(&caster.corners);
-            let spread = |edge: usize| {
-                let off = corners.iter().map(|of| (of[edge] - centre[edge]).abs());
-                off.fold(0.0, f64::max)
-            };
-            masked.ask(centre, [0, 1, 2].map(spread)).flips
-        })
+        self.masked(caster).is_some_and(|asked| asked.flips)
+    }
+
+    /// Returns true if a triangle's mask leaves nothing of it within the square.
+    fn is_cut_out(&self, caster: &Caster<'_>) -> bool {
+        self.masked(caster)
+            .is_some_and(|asked| !asked.flips && !asked.opaque)
+    }
+
+    /// Asks a triangle's mask, if it has one, over the whole square.
+    fn masked(&self, caster: &Caster<'_>) -> Option<Asked> {
+        let masked = caster.masked.as_ref()?;
+        let [centre, corners @ ..] = self.edges(&caster.corners);
+        let spread = |edge: usize| {
+            let off = corners.iter().map(|of| (of[edge] - centre[edge]).abs());
+            off.fold(0.0, f64::max)
+        };
+        Some(masked.ask(centre, [0, 1, 2].map(spread)))
     }
 
     /// The edge functions of each ray.

@@ -1,14 +1,17 @@
-//! Conditions under which `compare` fails, for continuous integration: `nsm: wrong > 0.1%`.
+//! Conditions under which `compare` or `judge` fails, for continuous integration:
+//! `nsm: wrong > 0.1%`.
 
 use crate::summary::{Row, by_wall};
 use crate::summary_table::summaries;
+use skiagraph_compare::records::judged_pictures::{JudgedPicture, JudgedPictures};
 use skiagraph_compare::records::results::Results;
-use skiagraph_compare::wording::{bytes, ms, size};
+use skiagraph_compare::wording::{bytes, ms, size, unknown};
+use std::path::Path;
 
 /// Upper limit for one figure of a method, beyond which `compare --fail-if` fails.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gate {
-    /// Name of the method with its setting, for example `crsm@n=1`.
+    /// Name of the method with its setting, for example `crsm@n=1`; of `judge`, of a picture.
     pub method: String,
     /// The figure that is limited.
     pub figure: Figure,
@@ -104,6 +107,52 @@ impl Gate {
             }
         }
         lines
+    }
+
+    /// Checks that the limit is of one of these pictures, and of a figure that pictures have. Its
+    /// `method` is the path of a picture, or its file name without the ending.
+    ///
+    /// # Errors
+    /// Text that names the picture or the figure.
+    pub fn check_pictures(&self, files: &[String]) -> Result<(), String> {
+        let (name, word) = (&self.method, self.figure.word());
+        if matches!(self.figure, Figure::Frame | Figure::Memory) {
+            return Err(format!(
+                "--fail-if: a picture has no {word}; expected wrong, rmse or flip"
+            ));
+        }
+        if files.iter().any(|file| self.is_of(file)) {
+            return Ok(());
+        }
+        let stems = files
+            .iter()
+            .filter_map(|file| Path::new(file).file_stem()?.to_str());
+        let what = format!("--fail-if: `{name}` is not judged");
+        Err(unknown(&what, name, "pictures", &stems.collect::<Vec<_>>()))
+    }
+
+    /// Returns a line of text for each judged picture that is beyond this limit, which
+    /// [`check_pictures`](Self::check_pictures) accepts. Wrong pixels and RMSE are those outside
+    /// the band and attributable.
+    pub fn picture_failures(&self, judged: &JudgedPictures) -> Vec<String> {
+        let facing = judged.pixels.facing_light.max(1) as f64;
+        let pictures = judged.pictures.iter().filter(|of| self.is_of(&of.file));
+        let line = |of: &JudgedPicture| {
+            let value = match self.figure {
+                Figure::Wrong => 100.0 * of.wrong_attributable() as f64 / facing,
+                Figure::Rmse => of.graded.rmse_outside_band,
+                _ => of.graded.flip,
+            };
+            let (word, text) = (self.figure.word(), |value| self.figure.text(value));
+            let (value, most) = (value > self.most).then(|| (text(value), text(self.most)))?;
+            Some(format!("`{}`: {word} {value} is more than {most}", of.file))
+        };
+        pictures.filter_map(line).collect()
+    }
+
+    fn is_of(&self, file: &str) -> bool {
+        let stem = Path::new(file).file_stem();
+        file == self.method || stem.is_some_and(|stem| *stem == *self.method)
     }
 }
 

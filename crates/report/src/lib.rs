@@ -15,6 +15,7 @@ pub mod charts;
 pub mod gate;
 pub mod graded;
 pub mod html;
+pub mod judged_text;
 pub mod language;
 pub mod looks;
 pub mod markdown;

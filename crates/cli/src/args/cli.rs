@@ -4,8 +4,9 @@
 
 use crate::args::{
     commands::{
-        ChartArgs, CheckArgs, CompareArgs, CompletionsArgs, GraphArgs, MergeArgs, NewArgs,
-        PresetsArgs, ProfileArgs, ReportArgs, RunArgs, SchemaArgs, ShowArgs, StressArgs, ViewArgs,
+        ChartArgs, CheckArgs, CompareArgs, CompletionsArgs, GraphArgs, JudgeArgs, MergeArgs,
+        NewArgs, PresetsArgs, ProfileArgs, ReportArgs, RunArgs, SchemaArgs, ShowArgs, StressArgs,
+        TruthArgs, ViewArgs,
     },
     shared::GpuArgs,
 };
@@ -107,6 +108,19 @@ pub enum Command {
         judged on open casters with cull=none."
     )]
     Stress(StressArgs),
+    /// Judge pictures that another renderer made of a known scene and camera as methods are judged:
+    /// wrong pixels, soft errors, distance from edges.
+    #[command(
+        after_help = "Examples:\n  skiagraph judge factor.exr --scene park --view bench_side\n  \
+        skiagraph judge shadowed.exr --unshadowed unshadowed.exr --depth depth.exr --out judged\n\n\
+        docs/judge.md says how to bring an engine's picture."
+    )]
+    Judge(JudgeArgs),
+    /// Write the truth of a view as arrays, for other programs that judge: shares of light, ids,
+    /// depths, blockers, and the camera's matrices in the conventions of engines.
+    #[command(after_help = "Example:\n  \
+        skiagraph truth --scene park --view bench_side --size 640x480 --out truth")]
+    Truth(TruthArgs),
     /// Check graphs and their shaders. Needs no GPU: needs beyond WebGPU's default limits and
     /// features are warnings. With --adapter or --backend the graphs must run on that GPU, and
     /// needs that it does not meet are errors.

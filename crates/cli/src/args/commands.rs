@@ -2,12 +2,14 @@
 
 use crate::args::{
     shared::{MethodArgs, SceneArgs},
-    values::{bytes, frames, gate, milliseconds, percent, texels},
+    values::{frames, gate, texels},
 };
 use clap::{ArgAction, Args, ValueEnum};
+use skiagraph_compare::foreign::factor::Reading;
 use skiagraph_compare::graphs::argument::Assignment;
 use skiagraph_compare::measuring::ground_truth::REFERENCE_SAMPLES;
 use skiagraph_compare::pictures::{data::DataFormat, save::Save};
+use skiagraph_compare::quantities::{bytes, milliseconds, percent};
 use skiagraph_compare::records::published_row::PublishedFile;
 use skiagraph_compare::size::Size;
 use skiagraph_reference::OracleMode;
@@ -404,17 +406,84 @@ pub struct StressArgs {
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Format of the matrix on standard output.
-    #[arg(long, value_enum, default_value_t = StressFormat::Table)]
-    pub format: StressFormat,
+    #[arg(long, value_enum, default_value_t = RecordFormat::Table)]
+    pub format: RecordFormat,
 }
 
-/// Formats of the matrix on standard output.
+/// Formats of what was judged, on standard output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum StressFormat {
+pub enum RecordFormat {
     /// Text for a terminal.
     Table,
-    /// The content of stress.json.
+    /// The content of stress.json or judge.json.
     Json,
+}
+
+/// Arguments of `skiagraph truth`.
+#[derive(Args, Debug)]
+pub struct TruthArgs {
+    /// The scene and the place that it is seen from.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Viewport size in pixels.
+    #[arg(long, value_name = "WxH", default_value = "1024x1024")]
+    pub size: Size,
+    /// Shadow rays of the reference: `exact` or `offset:LENGTH`.
+    #[arg(long, default_value = "exact", value_name = "MODE")]
+    pub oracle: OracleMode,
+    /// Shadow rays per pixel that the reference traces to a light with an extent.
+    #[arg(long, value_name = "N", default_value_t = REFERENCE_SAMPLES,
+          value_parser = clap::value_parser!(u32).range(4..=1_048_576))]
+    pub reference_samples: u32,
+    /// Format of the arrays.
+    #[arg(long, value_name = "npy|exr", default_value = "exr")]
+    pub data: DataFormat,
+    /// Folder for the arrays and camera.json.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+/// Arguments of `skiagraph judge`.
+#[derive(Args, Debug)]
+pub struct JudgeArgs {
+    /// Pictures of one size (PNG, EXR or NPY) that another renderer made of the view: the light
+    /// factor, 0 in shadow to 1 in light; with --unshadowed, the shaded picture.
+    #[arg(value_name = "PICTURE", required = true)]
+    pub pictures: Vec<PathBuf>,
+    /// The scene and the place that it is seen from.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// The shaded picture without shadows: the factor is the quotient of both.
+    #[arg(long, value_name = "PICTURE")]
+    pub unshadowed: Option<PathBuf>,
+    /// Read pictures as `flipped` (the lowest row first), `srgb` (encoded), `inverted` (1 is
+    /// shadow): one or several, separated by commas.
+    #[arg(long, value_name = "WORD,…")]
+    pub read_as: Option<Reading>,
+    /// The triangle that each pixel shows, as `truth` writes it: nothing is unattributable then,
+    /// and no GPU is needed.
+    #[arg(long, value_name = "FILE", conflicts_with = "depth")]
+    pub ids: Option<PathBuf>,
+    /// The depth that each pixel shows: it tells surfaces within 1/16 of a pixel apart.
+    #[arg(long, value_name = "FILE")]
+    pub depth: Option<PathBuf>,
+    /// Shadow rays of the reference: `exact` or `offset:LENGTH`.
+    #[arg(long, default_value = "exact", value_name = "MODE")]
+    pub oracle: OracleMode,
+    /// Shadow rays per pixel that the reference traces to a light with an extent.
+    #[arg(long, value_name = "N", default_value_t = REFERENCE_SAMPLES,
+          value_parser = clap::value_parser!(u32).range(4..=1_048_576))]
+    pub reference_samples: u32,
+    /// End with exit code 4 if a figure of a picture is greater, by its file name without ending:
+    /// `engine: wrong > 0.1%`, `rmse > 0.05`, `flip > 0.02`. May be repeated.
+    #[arg(long, value_name = "PICTURE: FIGURE > VALUE", value_parser = gate)]
+    pub fail_if: Vec<Gate>,
+    /// Folder for judge.json and pictures of the errors.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Format of the figures on standard output.
+    #[arg(long, value_enum, default_value_t = RecordFormat::Table)]
+    pub format: RecordFormat,
 }
 
 /// Arguments of `skiagraph check`.

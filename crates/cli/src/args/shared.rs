@@ -11,6 +11,7 @@ use skiagraph_compare::graphs::preset::Preset;
 use skiagraph_compare::measuring::device::GpuRequest;
 use skiagraph_compare::own_camera::OwnCamera;
 use skiagraph_compare::own_scene::MeshSceneOptions;
+use skiagraph_compare::quantities::{bytes, degrees, direction, positive, vector};
 use skiagraph_compare::size::Size;
 use skiagraph_graph::Sources;
 use skiagraph_scene::{Concave, MaterialUse, MeshFileOptions, QuadDiagonal};
@@ -31,7 +32,7 @@ pub struct GpuArgs {
     /// Most memory for the textures and buffers of a graph: 512MiB, 2GiB, or bytes. A graph that
     /// needs more is refused, with a table of the largest. Without it: on a software adapter the
     /// machine's free memory, else no limit.
-    #[arg(long, global = true, value_name = "SIZE", value_parser = values::bytes)]
+    #[arg(long, global = true, value_name = "SIZE", value_parser = bytes)]
     pub memory_limit: Option<u64>,
     /// Seconds after which an unfinished frame is given up, and the device with it: a shader may
     /// never end. 0 waits for ever.
@@ -92,11 +93,11 @@ pub struct SceneArgs {
     pub view: Option<String>,
     /// Eye position, instead of the view's. Without it, for a mesh without cameras: inside the mesh
     /// if its surfaces surround the camera, else where all of it is seen.
-    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     pub eye: Option<DVec3>,
     /// Direction in which the eye looks, instead of the view's. Without it, for a mesh without
     /// cameras: to the mesh's middle.
-    #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
     pub look: Option<DVec3>,
     /// A light of the scene, or `all`: each view under each. Without it: the scene's first light,
     /// or all if `compare` has a graph with a layer of `visibility` for each. Three numbers are the
@@ -105,17 +106,17 @@ pub struct SceneArgs {
           allow_hyphen_values = true)]
     pub light: Option<LightArgument>,
     /// Up direction, instead of the view's. Without it, for a mesh: 0,1,0.
-    #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
     pub up: Option<DVec3>,
     /// Vertical field of view in degrees, instead of the view's. Without it, for a mesh: 60.
-    #[arg(long, value_name = "DEGREES", value_parser = values::degrees)]
+    #[arg(long, value_name = "DEGREES", value_parser = degrees)]
     pub fov: Option<f64>,
     /// Near plane distance in scene units. Without it, with --eye or for a mesh: 1/10,000 of --far.
-    #[arg(long, value_name = "LENGTH", value_parser = values::positive)]
+    #[arg(long, value_name = "LENGTH", value_parser = positive)]
     pub near: Option<f64>,
     /// Far plane distance in scene units. Without it, with --eye or for a mesh: just behind the
     /// mesh.
-    #[arg(long, value_name = "LENGTH", value_parser = values::positive)]
+    #[arg(long, value_name = "LENGTH", value_parser = positive)]
     pub far: Option<f64>,
     /// Add a ground below a mesh that has no floor: a square slab just below its lowest point.
     #[arg(long)]

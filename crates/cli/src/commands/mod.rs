@@ -6,6 +6,7 @@ pub mod compare;
 pub mod completions;
 pub mod doctor;
 pub mod graph;
+pub mod judge;
 pub mod merge;
 pub mod new;
 pub mod presets;

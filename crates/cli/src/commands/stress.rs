@@ -1,6 +1,6 @@
 //! `skiagraph stress`: runs methods on hard cases and checks that each keeps its guarantee.
 
-use crate::args::commands::{StressArgs, StressFormat};
+use crate::args::commands::{RecordFormat, StressArgs};
 use crate::args::shared::GpuArgs;
 use crate::error::CliError;
 use crate::terminal::console::print;
@@ -140,10 +140,10 @@ fn finish(
     let done = report.cases.len();
     if done > 0 {
         match args.format {
-            StressFormat::Table => print(&stress_matrix::render(report, &|column, case, set| {
+            RecordFormat::Table => print(&stress_matrix::render(report, &|column, case, set| {
                 command_for(args, column, case, set)
             }))?,
-            StressFormat::Json => print(&to_text(report))?,
+            RecordFormat::Json => print(&to_text(report))?,
         }
     }
     if let Err(CliError::Interrupted { .. }) = outcome {

@@ -9,7 +9,7 @@ const LIT: &str = include_str!("support/lit.ron");
 
 /// The commands, and the kind of file that stands where `FILE` does, with the most MiB that it may
 /// have and the way out.
-const COMMANDS: [(&str, &str, &str, [&str; 3]); 6] = [
+const COMMANDS: [(&str, &str, &str, [&str; 3]); 7] = [
     (
         "compare lit.ron --size 16x16 --beside P:FILE",
         "published.csv",
@@ -58,6 +58,16 @@ const COMMANDS: [(&str, &str, &str, [&str; 3]); 6] = [
             "an .obj file",
             "2048",
             "split it, or leave groups out of it",
+        ],
+    ),
+    (
+        "judge FILE",
+        "factor.exr",
+        "factor.exr: ",
+        [
+            "a picture",
+            "1024",
+            "render it in fewer pixels, or save one channel",
         ],
     ),
     (

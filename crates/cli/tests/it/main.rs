@@ -9,6 +9,7 @@ mod command_line;
 mod endless_files;
 mod faults;
 mod foreign_files;
+mod judge;
 mod new;
 mod on_a_gpu;
 mod own_scene;

@@ -260,6 +260,19 @@ impl Outputs {
         })
     }
 
+    /// Takes shares of light, 0 to 1, as the outputs of a frame without a status, as
+    /// [`decode`](Self::decode) does. They are a hard answer if each is 0 or 1.
+    pub fn from_shares(shares: Vec<f32>, truth: &GroundTruthPixels) -> Self {
+        let is_hard = shares.iter().all(|share| matches!(share, 0.0 | 1.0));
+        let visibility: Vec<u32> = shares.iter().map(|&it| u32::from(it >= 0.5)).collect();
+        Self {
+            status: certain(&visibility, truth),
+            visibility,
+            shares: (!is_hard).then_some(shares),
+            rays: None,
+        }
+    }
+
     /// Returns the share of light that each pixel shows, 0 to 1: the method's shares, or exactly 0
     /// or 1 if it answers only 0 or 1.
     pub fn shown(&self) -> Cow<'_, [f32]> {

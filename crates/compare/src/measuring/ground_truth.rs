@@ -29,7 +29,7 @@ use skiagraph_graph::{Graph, Plan, Sources};
 use skiagraph_passes::registry;
 use skiagraph_reference::{
     BlockerCounts, EdgeDistances, Error, Footprint, GroundTruth, GroundTruthPixels, LayerJump,
-    Oracle, OracleMode, Progress, Receiver, Statistics, area,
+    Oracle, OracleMode, Progress, Receiver, Statistics, area, nearest_blockers,
     shimmer::{Seen, same_receivers},
     texels, wrong_surfaces,
 };
@@ -193,9 +193,17 @@ impl<'a> GroundTruthView<'a> {
     /// # Errors
     /// Outputs of another size than the reference.
     pub fn blockers(&self, outputs: &Outputs) -> Result<BlockerCounts, CompareError> {
+        self.blockers_of(outputs, &self.ground_truth.pixels)
+    }
+
+    /// Counts as [`blockers`](Self::blockers) does, with the answers `truth` for these pixels.
+    pub(crate) fn blockers_of(
+        &self,
+        outputs: &Outputs,
+        truth: &GroundTruthPixels,
+    ) -> Result<BlockerCounts, CompareError> {
         let (visibility, status) = (&outputs.visibility, &outputs.status);
-        let pixels =
-            Statistics::certain_wrong_pixels(visibility, status, &self.ground_truth.pixels);
+        let pixels = Statistics::certain_wrong_pixels(visibility, status, truth);
         let (camera, light, primitives) = (&self.camera, &self.light, &self.primitives);
         let blockers = pixels.and_then(|pixels| {
             let oracle = &self.oracle;
@@ -227,13 +235,39 @@ impl<'a> GroundTruthView<'a> {
         facing.filter(|(index, _)| is_inside(*index)).count() as u64
     }
 
+    /// Finds the caster nearest to each pixel's receiver on its ray to the light's centre, as
+    /// [`nearest_blockers`] does.
+    ///
+    /// # Errors
+    /// An early end.
+    pub fn nearest_blockers(&self, progress: Progress) -> Result<Vec<u32>, CompareError> {
+        let (camera, primitives) = (&self.camera, &self.primitives);
+        let found = nearest_blockers(
+            &self.oracle,
+            camera,
+            self.light,
+            primitives,
+            self.mode,
+            progress,
+        );
+        found.map_err(|_| CompareError::interrupted())
+    }
+
     /// Measures how far a method's wrong pixels lie from the edges of the reference's shadows.
     ///
     /// # Errors
     /// Outputs of another size than the reference.
     pub fn edges(&self, outputs: &Outputs) -> Result<EdgeDistances, CompareError> {
+        self.edges_of(outputs, &self.ground_truth.pixels)
+    }
+
+    /// Measures as [`edges`](Self::edges) does, with the answers `truth` for these pixels.
+    pub(crate) fn edges_of(
+        &self,
+        outputs: &Outputs,
+        truth: &GroundTruthPixels,
+    ) -> Result<EdgeDistances, CompareError> {
         let (visibility, status) = (&outputs.visibility, &outputs.status);
-        let truth = &self.ground_truth.pixels;
         let edges = EdgeDistances::measured(self.seen(), visibility, status, truth);
         edges.map_err(|error| CompareError::Input(format!("no distances from edges: {error}")))
     }

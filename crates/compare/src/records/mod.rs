@@ -25,6 +25,7 @@ pub mod budgets;
 pub mod check;
 pub mod columns;
 pub mod hint;
+pub mod judged_pictures;
 pub mod profile;
 pub mod published;
 pub mod published_row;

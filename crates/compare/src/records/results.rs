@@ -365,10 +365,11 @@ impl Promise {
 }
 
 /// Kind of a method's answers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Answer {
     /// Answers 0 and 1: the output `visibility` is a texture of integers.
+    #[default]
     Hard,
     /// Answers that are shares of light, 0 to 1: the output `visibility` is a texture of floats or
     /// normalised integers.

@@ -9,6 +9,7 @@ mod diagnostics;
 mod dissertation;
 mod engine;
 mod foreign_files;
+mod foreign_pictures;
 mod frames;
 mod hard_cases;
 mod judging;

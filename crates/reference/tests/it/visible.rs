@@ -1,8 +1,13 @@
 //! Pixels of a G-buffer that show a surface which is not seen there are counted, and no others.
 
 use glam::DVec3;
-use skiagraph_reference::{BACKGROUND, Oracle, OracleMode, Progress, wrong_surfaces};
-use skiagraph_scene::{Camera, Indexed, Mesh, Scene, SceneLibrary, SceneRequest, View};
+use skiagraph_reference::{
+    BACKGROUND, Candidate, Class, Oracle, OracleMode, Progress, candidates, ground_truth,
+    unattributable, wrong_surfaces,
+};
+use skiagraph_scene::{
+    Camera, DirectionalLight, Indexed, LightKind, Mesh, Scene, SceneLibrary, SceneRequest, View,
+};
 
 const VIEWPORT: [u32; 2] = [64, 64];
 
@@ -140,4 +145,55 @@ fn a_rasterisers_grid_is_allowed_for() {
         // A pixel further is no rounding.
         assert!(counted(1.0) > 100, "{}", view.name);
     }
+}
+
+#[test]
+fn surfaces_that_meet_in_a_pixel_are_candidates_and_hidden_ones_are_not() {
+    let mesh = plate_over_floor(1.0);
+    let camera = far_above(0.1);
+    let oracle = Oracle::new(&mesh);
+    let lists = candidates(&oracle, &camera, Progress::default()).unwrap();
+    let seen = seen(&mesh, &camera);
+    for (list, id) in lists.iter().zip(&seen) {
+        let own = list.iter().find(|of| of.primitive == *id);
+        let [least, greatest] = own.expect("what is seen may be seen").distances;
+        assert!(
+            least < greatest && greatest - least < 0.1,
+            "{least} {greatest}"
+        );
+        // Two triangles of the floor hide together what is behind their edge.
+        let is_behind = list.iter().any(|of| of.primitive == BACKGROUND);
+        assert!(!is_behind, "the floor fills the picture");
+    }
+    let meets = |list: &&Vec<Candidate>| {
+        let of_plates = list.iter().filter(|of| of_plate(of.primitive)).count();
+        of_plates > 0 && of_plates < list.len()
+    };
+    // A rim of about 96 pixels, an eighth of which has the edge near its centre.
+    let rim = lists.iter().filter(meets).count();
+    assert!((4..48).contains(&rim), "{rim}");
+    let alone = lists.iter().filter(|list| list.len() == 1).count();
+    assert!(alone * 10 > lists.len() * 9, "{alone}");
+    // Truth differs at the rim alone: plate and floor are lit, what faces away is not seen.
+    let light: LightKind = DirectionalLight::new(DVec3::new(0.3, -1.0, 0.1)).into();
+    let how = (OracleMode::Exact, 4);
+    let truth = ground_truth(&oracle, &camera, light, &seen, how, Progress::default()).unwrap();
+    let seen_under = (&camera, &light);
+    let open = unattributable(
+        &oracle,
+        seen_under,
+        &lists,
+        &truth,
+        how,
+        Progress::default(),
+    );
+    let open = open.unwrap();
+    let shadow = truth
+        .pixels
+        .classes
+        .iter()
+        .filter(|class| **class == Class::Shadow)
+        .count();
+    let open = open.iter().filter(|is_open| **is_open).count();
+    assert!(open <= rim && shadow > 0, "{open} of {rim}, {shadow}");
 }

@@ -1,0 +1,73 @@
+//! Looks for the view or light of a scene that a foreign picture agrees with, if it does not agree
+//! with the one that it was held against.
+
+use crate::error::CompareError;
+use crate::measuring::ground_truth::heard;
+use crate::sink::{Sink, Step};
+use skiagraph_reference::{Oracle, OracleMode};
+use skiagraph_scene::{Scene, View};
+
+/// Most pairs of a view and a light that are tried.
+const MOST: usize = 16;
+
+/// Share of the error of a picture of one grey that a picture may have at most to be recognised.
+const RECOGNISED: f64 = 0.25;
+
+/// Returns the options that name the view and the light of the scene with which shares of light
+/// agree best, if they agree well with any but `view`.
+///
+/// # Errors
+/// [`CompareError::Interrupted`].
+pub(crate) fn elsewhere(
+    (shares, viewport): (&[f32], [u32; 2]),
+    scene: &Scene,
+    view: &View,
+    sink: &dyn Sink,
+) -> Result<Option<String>, CompareError> {
+    let others = scene.views.iter().flat_map(|other| {
+        let lights = scene.lights_of(other).into_iter();
+        lights.map(move |light| (other, light))
+    });
+    let seen = |of: &View| (of.eye, of.direction, of.fov_y_degrees);
+    let own = (seen(view), scene.light_of(view));
+    let others = others.filter(|(other, light)| (seen(other), light.kind) != own);
+    let others: Vec<_> = others.take(MOST).collect();
+    let step = Step::begin(sink, "other views and lights", others.len() as u64, "views");
+    let oracle = Oracle::new(&scene.mesh);
+    let mut best: Option<(f64, String)> = None;
+    for (index, (other, light)) in others.iter().enumerate() {
+        let camera = other.camera(viewport);
+        let progress = heard(sink, &|_| ());
+        let truth = oracle.primary(&camera, progress).and_then(|primitives| {
+            let mode = OracleMode::Exact;
+            oracle.shade(&camera, light.kind, &primitives, mode, progress)
+        });
+        let truth = truth.map_err(|_| CompareError::interrupted())?;
+        let right = truth.shares();
+        let facing = truth.classes.iter().map(|class| class.faces_light());
+        let pairs = shares.iter().zip(&right).zip(facing);
+        let pairs = pairs.filter(|(_, faces_light)| *faces_light);
+        let (mut count, mut lit, mut squares) = (0.0, 0.0, 0.0);
+        for ((shown, right), _) in pairs {
+            let off = f64::from(shown - right);
+            squares += if off.is_finite() {
+                off.powi(2).min(1.0)
+            } else {
+                1.0
+            };
+            lit += f64::from(*right);
+            count += 1.0;
+        }
+        let mean = lit / f64::max(count, 1.0);
+        let share = squares / f64::max(count * mean * (1.0 - mean), f64::MIN_POSITIVE);
+        if share < best.as_ref().map_or(RECOGNISED, |(least, _)| *least) {
+            let lights = scene.lights_of(other).len();
+            let light = (lights > 1).then(|| format!(" --light {}", light.name));
+            let options = format!("--view {}{}", other.name, light.unwrap_or_default());
+            best = Some((share, options));
+        }
+        step.set_done(index as u64 + 1);
+    }
+    step.end();
+    Ok(best.map(|(_, options)| options))
+}

@@ -1,0 +1,150 @@
+//! Decodes OpenEXR pictures.
+
+use crate::foreign::decoded::{Decoded, FLOAT, HALF, checked, guarded};
+use exr::meta::{MetaData, header::Header};
+use exr::prelude::{FlatSamples, ReadChannels, ReadLayers, Vec2};
+use std::io::Cursor;
+
+/// Decodes the only layer of a picture: its channel Y, its channels R, G and B, or its only one;
+/// with A as alpha.
+///
+/// # Errors
+/// The reason, as the rest of a message that begins with the file.
+pub(crate) fn decode(bytes: &[u8]) -> Result<Decoded, String> {
+    let told = |why: exr::error::Error| format!("it cannot be decoded: {why}; save it anew");
+    let meta = guarded("exr", || {
+        MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(told)
+    })?;
+    let [header] = &meta.headers[..] else {
+        return Err(format!("it has {} layers; save one", meta.headers.len()));
+    };
+    let size = header.layer_size;
+    let count = header.channels.list.len() as u64;
+    let size = checked([size.x() as u64, size.y() as u64], count)?;
+    check_window(header)?;
+    let names = header.channels.list.iter().map(|of| of.name.to_string());
+    let names: Vec<String> = names.collect();
+    let chosen = channels(&names)?;
+    let picture = guarded("exr", || {
+        let reader = exr::prelude::read().no_deep_data();
+        let reader = reader.largest_resolution_level().all_channels();
+        let reader = reader.first_valid_layer().all_attributes();
+        reader.from_buffered(Cursor::new(bytes)).map_err(told)
+    })?;
+    let list = &picture.layer_data.channel_data.list;
+    let find = |name: &&String| list.iter().find(|of| of.name.to_string() == **name);
+    let found: Vec<_> = chosen.iter().filter_map(find).collect();
+    let pixels = size[0] as usize * size[1] as usize;
+    if found.iter().any(|of| of.sample_data.len() != pixels) {
+        return Err("a channel has fewer pixels than the picture; save all at full size".into());
+    }
+    let mut values = Vec::with_capacity(pixels * found.len());
+    for pixel in 0..pixels {
+        values.extend(found.iter().map(|of| number(&of.sample_data, pixel)));
+    }
+    let kind = match found.first().map(|of| &of.sample_data) {
+        Some(FlatSamples::F16(_)) => "half",
+        Some(FlatSamples::U32(_)) => "uint",
+        _ => "float",
+    };
+    Ok(Decoded {
+        size,
+        channels: found.len(),
+        has_alpha: chosen.last().is_some_and(|name| last_part(name) == "A") && found.len() > 1,
+        values,
+        whole: None,
+        precision: if kind == "half" { HALF } else { FLOAT },
+        format: format!("EXR, {kind}"),
+    })
+}
+
+fn number(samples: &FlatSamples, pixel: usize) -> f64 {
+    match samples {
+        FlatSamples::F16(all) => all[pixel].into(),
+        FlatSamples::F32(all) => all[pixel].into(),
+        FlatSamples::U32(all) => all[pixel].into(),
+    }
+}
+
+/// Refuses a picture whose data do not fill it: pixels would be counted from another corner.
+fn check_window(header: &Header) -> Result<(), String> {
+    if header.deep {
+        return Err("its pixels are deep (several samples each); save it flat".into());
+    }
+    let shown = header.shared_attributes.display_window;
+    let (position, size) = (header.own_attributes.layer_position, header.layer_size);
+    if shown.position == position && shown.size == size {
+        return Ok(());
+    }
+    let text = |Vec2(x, y): Vec2<i32>| format!("({x}, {y})");
+    Err(format!(
+        "its data window ({}x{} from {}) is not its display window ({}x{} from {}): save the whole \
+         picture, not cropped",
+        size.x(),
+        size.y(),
+        text(position),
+        shown.size.x(),
+        shown.size.y(),
+        text(shown.position)
+    ))
+}
+
+/// The name of a channel without those of layers before it.
+fn last_part(name: &str) -> &str {
+    name.rsplit('.').next().unwrap_or(name)
+}
+
+/// The channels that are read, of these.
+fn channels(names: &[String]) -> Result<Vec<&String>, String> {
+    let of = |wanted: &str| {
+        let mut found = names.iter().filter(|name| last_part(name) == wanted);
+        found.next().filter(|_| found.next().is_none())
+    };
+    let all = |wanted: &[&str]| {
+        wanted
+            .iter()
+            .map(|name| of(name))
+            .collect::<Option<Vec<_>>>()
+    };
+    let alone = || <[&String; 1]>::try_from(names.iter().collect::<Vec<_>>()).ok();
+    let colours = all(&["Y"])
+        .or_else(|| all(&["R", "G", "B"]))
+        .or_else(|| all(&["R"]));
+    let mut chosen = match (colours, alone()) {
+        (Some(chosen), _) => chosen,
+        (None, Some([only])) => return Ok(vec![only]),
+        (None, None) => {
+            return Err(format!(
+                "its channels are {}; expected one channel, Y, or R, G and B once: save one layer",
+                names.join(", ")
+            ));
+        }
+    };
+    chosen.extend(of("A"));
+    Ok(chosen)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn channels_are_found_by_their_last_name() {
+        let chosen = |names: &[&str]| {
+            let names: Vec<String> = names.iter().map(ToString::to_string).collect();
+            channels(&names).map(|found| found.into_iter().cloned().collect::<Vec<_>>().join(" "))
+        };
+        assert_eq!(chosen(&["Y"]).unwrap(), "Y");
+        assert_eq!(chosen(&["shadow"]).unwrap(), "shadow");
+        assert_eq!(chosen(&["A", "B", "G", "R"]).unwrap(), "R G B A");
+        assert_eq!(
+            chosen(&["L.Combined.B", "L.Combined.G", "L.Combined.R"]).unwrap(),
+            "L.Combined.R L.Combined.G L.Combined.B"
+        );
+        let told = chosen(&["a.R", "b.R", "b.G"]).unwrap_err();
+        assert!(
+            told.contains("a.R, b.R, b.G") && told.contains("save one layer"),
+            "{told}"
+        );
+    }
+}

@@ -1,0 +1,493 @@
+//! Judges pictures that another renderer made of a view, against the truth that methods are judged
+//! against.
+//!
+//! ```no_run
+//! use skiagraph_compare::foreign::judging::{Judging, Surfaces, judge};
+//! use skiagraph_compare::{measuring::device::GpuRequest, sink::Silent};
+//! use skiagraph_scene::{SceneLibrary, SceneRequest};
+//!
+//! let request = SceneRequest { argument: "park".into(), obj: None };
+//! let (scene, _) = SceneLibrary::default().load(&request)?;
+//! let view = scene.views[0].clone();
+//! let judging = Judging {
+//!     pictures: vec!["shadowed.exr".into()],
+//!     unshadowed: Some("unshadowed.exr".into()),
+//!     surfaces: Surfaces::Depth("depth.exr".into()),
+//!     ..Judging::default()
+//! };
+//! let judged = judge(&judging, scene, &view, &GpuRequest::default(), &Silent)?;
+//! println!("{} pixels are unattributable", judged.record.unattributable);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use crate::error::CompareError;
+use crate::files::json::to_text;
+use crate::files::write::{check_folder, write_whole};
+use crate::foreign::elsewhere::elsewhere;
+use crate::foreign::factor::{Factor, Reading};
+use crate::foreign::raster::Raster;
+use crate::foreign::surfaces::{by_depth, ids};
+use crate::foreign::suspicions::Suspect;
+use crate::graphs::ground_truth::Judgement;
+use crate::graphs::shadow_method::Outputs;
+use crate::measuring::device::{self, GpuRequest};
+use crate::measuring::ground_truth::{
+    GroundTruthView, PrimaryVisibility, REFERENCE_SAMPLES, heard, own_counts,
+};
+use crate::measuring::view_or_path::ViewOrPath;
+use crate::pictures::run_pictures::{
+    PictureFile, PicturePlace, check_stems, draw_pictures, write_pictures,
+};
+use crate::records::judged_pictures::{JudgedPicture, JudgedPictures};
+use crate::records::results::{Answer, AreaReference, Images, PROGRAM};
+use crate::sink::{Session, Sink, Step};
+use crate::wording::{percent, size, thousands};
+use skiagraph_passes::{EmbeddedSources, SceneProvider};
+use skiagraph_reference::{
+    Candidate, GroundTruth, Oracle, OracleMode, Statistics, candidates, unattributable,
+};
+use skiagraph_scene::{LightKind, Scene, View};
+use std::{
+    collections::BTreeSet,
+    path::{Path, PathBuf},
+    rc::Rc,
+    sync::Arc,
+};
+
+/// Source of the surface that each pixel shows.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Surfaces {
+    /// This program's G-buffer. Pixels may show other surfaces within a sixteenth of a pixel.
+    #[default]
+    Rasterised,
+    /// A file with the id of each pixel's triangle: nothing is left open, and no GPU is needed.
+    Ids(PathBuf),
+    /// A file with the depth of each pixel, in one of the forms of
+    /// [`DepthForm`](crate::foreign::surfaces::DepthForm).
+    Depth(PathBuf),
+}
+
+/// Pictures of one view, and how they are judged.
+#[derive(Clone, Debug)]
+pub struct Judging {
+    /// Files of the pictures, all of one size: PNG, OpenEXR or NPY.
+    pub pictures: Vec<PathBuf>,
+    /// File of the same picture without shadows; with it the factor is the quotient of both. `None`
+    /// if pictures are the factor themselves.
+    pub unshadowed: Option<PathBuf>,
+    /// Ways in which pictures are read differently from how they lie in their files.
+    pub reading: Reading,
+    /// Source of the surface that each pixel shows.
+    pub surfaces: Surfaces,
+    /// Mode of the reference's shadow rays.
+    pub oracle: OracleMode,
+    /// Number of shadow rays from a pixel to a light with an extent.
+    pub reference_samples: u32,
+    /// True to draw pictures of the errors.
+    pub draws: bool,
+}
+
+impl Default for Judging {
+    fn default() -> Self {
+        Self {
+            pictures: Vec::new(),
+            unshadowed: None,
+            reading: Reading::default(),
+            surfaces: Surfaces::default(),
+            oracle: OracleMode::Exact,
+            reference_samples: REFERENCE_SAMPLES,
+            draws: false,
+        }
+    }
+}
+
+/// Result of [`judge`].
+pub struct Judged {
+    /// The figures, as `judge.json` holds them.
+    pub record: JudgedPictures,
+    /// Pictures that were drawn, each once.
+    pub files: Vec<PictureFile>,
+}
+
+impl Judged {
+    /// Writes `judge.json` and the pictures into a folder, which is made if it is missing.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn write(&self, folder: &Path) -> Result<(), CompareError> {
+        check_folder(folder)?;
+        write_pictures(folder, &self.files)?;
+        write_whole(&folder.join("judge.json"), to_text(&self.record).as_bytes())
+    }
+}
+
+/// Truth of a view, with the pixels at which it is not unique.
+pub(crate) struct Truth<'a> {
+    pub(crate) view: GroundTruthView<'a>,
+    /// True where the truth is not unique.
+    pub(crate) unattributable: Vec<bool>,
+    /// Word for the source of the surfaces.
+    pub(crate) surfaces: &'static str,
+}
+
+/// Judges pictures of a view of a scene. A GPU is opened unless ids are given.
+///
+/// # Errors
+/// A file that cannot be read or is not such a picture; pictures of different sizes; ids or depths
+/// that are not those of the scene under this camera; no GPU; an early end.
+pub fn judge(
+    judging: &Judging,
+    scene: Scene,
+    view: &View,
+    gpu: &GpuRequest,
+    sink: &dyn Sink,
+) -> Result<Judged, CompareError> {
+    if judging.draws {
+        let owner = |path: &PathBuf| (stem(path), format!("`{}`", path.display()));
+        check_stems(judging.pictures.iter().map(owner))?;
+    }
+    let factors = factors(judging)?;
+    let Some(viewport) = factors.first().map(|factor| factor.size) else {
+        return Err(CompareError::Request("no picture to judge".into()));
+    };
+    let named = match &judging.surfaces {
+        Surfaces::Rasterised => None,
+        Surfaces::Ids(file) | Surfaces::Depth(file) => Some(Raster::read(file)?),
+    };
+    if let Some(named) = named.as_ref().filter(|named| named.size != viewport) {
+        return Err(other_size(&factors[0], &named.file, named.size));
+    }
+    let scene = Arc::new(scene);
+    let how = (judging.oracle, judging.reference_samples);
+    let named = named.map(|raster| match &judging.surfaces {
+        Surfaces::Ids(_) => Named::Ids(raster),
+        _ => Named::Depth(raster),
+    });
+    let truth = truth((&scene, view, viewport), named, how, gpu, sink)?;
+    let ground_truth = &truth.view.ground_truth;
+    // Pixels that are not judged are kept apart as those of the band are.
+    let mut judged_truth = ground_truth.clone();
+    let apart = judged_truth.pixels.indeterminate.iter_mut();
+    for (apart, is_open) in apart.zip(&truth.unattributable) {
+        *apart |= is_open;
+    }
+    let own = own_counts(&ground_truth.pixels);
+    let area = ground_truth.area.as_ref();
+    let mut record = JudgedPictures {
+        schema: 1,
+        program: PROGRAM.into(),
+        scene: (&*scene).into(),
+        view: view.name.clone(),
+        light: ViewOrPath::Still(view.clone())
+            .one_of_lights()
+            .map(Into::into),
+        viewport,
+        oracle: judging.oracle.to_string(),
+        pixels: own.pixels,
+        band: own.band,
+        wrong_surface: truth.view.wrong_surfaces,
+        area: area.map(|area| AreaReference::new(area, &ground_truth.pixels)),
+        surfaces: truth.surfaces.into(),
+        unattributable: truth.unattributable.iter().filter(|it| **it).count() as u64,
+        pictures: Vec::new(),
+    };
+    let mut files: Vec<PictureFile> = Vec::new();
+    let mut taken = BTreeSet::new();
+    for factor in &factors {
+        let (mut picture, drawn) = one(judging, factor, &truth, &judged_truth)?;
+        if picture.rank.is_none() {
+            let found = elsewhere((&factor.shares, viewport), &scene, view, sink)?;
+            let text = |options| format!("it agrees with another view or light: {options}");
+            picture.warnings.extend(found.map(text));
+        }
+        record.pictures.push(picture);
+        files.extend(
+            drawn
+                .into_iter()
+                .filter(|file| taken.insert(file.name.clone())),
+        );
+    }
+    rank(&mut record);
+    Ok(Judged { record, files })
+}
+
+fn other_size(factor: &Factor, file: &str, other: [u32; 2]) -> CompareError {
+    CompareError::Input(format!(
+        "{} has {} pixels, and {file} has {}: render both in one size",
+        factor.file,
+        size(factor.size),
+        size(other)
+    ))
+}
+
+/// Reads the pictures, which are of one size.
+fn factors(judging: &Judging) -> Result<Vec<Factor>, CompareError> {
+    let unshadowed = judging
+        .unshadowed
+        .as_deref()
+        .map(Raster::read)
+        .transpose()?;
+    let read = |path: &PathBuf| Factor::read(path, unshadowed.as_ref(), judging.reading);
+    let factors: Vec<Factor> = judging
+        .pictures
+        .iter()
+        .map(read)
+        .collect::<Result<_, _>>()?;
+    match factors.iter().find(|it| it.size != factors[0].size) {
+        Some(other) => Err(other_size(&factors[0], &other.file, other.size)),
+        None => Ok(factors),
+    }
+}
+
+/// Surfaces as another renderer names them.
+pub(crate) enum Named {
+    Ids(Raster),
+    Depth(Raster),
+}
+
+/// Finds the truth of a view, and the pixels at which it is not unique.
+pub(crate) fn truth<'a>(
+    (scene, view, viewport): (&'a Arc<Scene>, &View, [u32; 2]),
+    named: Option<Named>,
+    how: (OracleMode, u32),
+    gpu: &GpuRequest,
+    sink: &dyn Sink,
+) -> Result<Truth<'a>, CompareError> {
+    let (camera, light) = (view.camera(viewport), scene.light_of(view));
+    let step = Step::begin(sink, &format!("hierarchy of {}", scene.name), 1, "steps");
+    let oracle = Rc::new(Oracle::new(&scene.mesh));
+    step.end();
+    let what = format!("{} {}", view.name, size(viewport));
+    let traced = |primitives: Vec<u32>| {
+        let heard = (&*what, sink);
+        GroundTruthView::new(oracle.clone(), camera, light, primitives, how, heard)
+    };
+    if let Some(Named::Ids(raster)) = &named {
+        let primitives = ids(raster, scene.mesh.triangles.len())?;
+        let unattributable = vec![false; primitives.len()];
+        let view = traced(primitives)?;
+        check_ids(raster, view.wrong_surfaces)?;
+        return Ok(Truth {
+            view,
+            unattributable,
+            surfaces: "ids",
+        });
+    }
+    let rasterised = rasterised(scene, view, viewport, gpu, sink)?;
+    let rows = u64::from(viewport[1]);
+    let step = Step::begin(sink, &format!("surfaces, {what}"), rows, "rows");
+    let rows_done = |rows| step.set_done(rows);
+    let found = candidates(&oracle, &camera, heard(sink, &rows_done));
+    let mut found = found.map_err(|_| CompareError::interrupted())?;
+    step.end();
+    let (primitives, surfaces) = match &named {
+        Some(Named::Depth(raster)) => {
+            let of = by_depth(raster, &camera, &mut found, &rasterised)?;
+            let depths = format!("{}: read as {}", raster.file, of.form.text());
+            sink.note(&if of.astray > 0 {
+                let astray = thousands(of.astray);
+                format!("{depths}; {astray} depths are those of no surface that is seen there")
+            } else {
+                depths
+            });
+            (of.primitives, "depth")
+        }
+        _ => (rasterised, "rasterised"),
+    };
+    let view = traced(primitives)?;
+    let unattributable = open_pixels(
+        &oracle,
+        (&camera, &light),
+        &found,
+        &view,
+        how,
+        (&what, sink),
+    )?;
+    Ok(Truth {
+        view,
+        unattributable,
+        surfaces,
+    })
+}
+
+/// The pixels at which the truth is not unique.
+fn open_pixels(
+    oracle: &Oracle,
+    (camera, light): (&skiagraph_scene::Camera, &LightKind),
+    found: &[Vec<Candidate>],
+    view: &GroundTruthView,
+    how: (OracleMode, u32),
+    (what, sink): (&str, &dyn Sink),
+) -> Result<Vec<bool>, CompareError> {
+    let rows = u64::from(camera.viewport[1]);
+    let step = Step::begin(
+        sink,
+        &format!("unattributable pixels, {what}"),
+        rows,
+        "rows",
+    );
+    let rows_done = |rows| step.set_done(rows);
+    let (seen, progress) = ((camera, light), heard(sink, &rows_done));
+    let open = unattributable(oracle, seen, found, &view.ground_truth, how, progress);
+    let open = open.map_err(|_| CompareError::interrupted())?;
+    step.end();
+    Ok(open)
+}
+
+/// The surfaces that every method's G-buffer shows.
+fn rasterised(
+    scene: &Arc<Scene>,
+    view: &View,
+    viewport: [u32; 2],
+    gpu: &GpuRequest,
+    sink: &dyn Sink,
+) -> Result<Vec<u32>, CompareError> {
+    let gpu = device::open(gpu, [])?;
+    let mut provider = SceneProvider::new(scene.clone());
+    provider.set_view(view, viewport);
+    let primary = PrimaryVisibility::load(&EmbeddedSources)?;
+    primary.ids(Session::new(&gpu, sink), viewport, &mut provider)
+}
+
+/// Share of the pixels whose id may be that of a hidden surface.
+const MOST_HIDDEN: f64 = 0.01;
+
+fn check_ids(raster: &Raster, hidden: u64) -> Result<(), CompareError> {
+    let all = raster.values.len() as u64;
+    if hidden as f64 <= MOST_HIDDEN * all as f64 {
+        return Ok(());
+    }
+    Err(CompareError::Input(format!(
+        "{}: at {} of the pixels it names a surface that the camera does not see there: it is of \
+         another camera, upside down, or its triangles are counted in another order than those of \
+         the scene's mesh; compare it with the ids that `skiagraph truth` writes",
+        raster.file,
+        percent(hidden, all)
+    )))
+}
+
+/// Judges one picture.
+fn one(
+    judging: &Judging,
+    factor: &Factor,
+    truth: &Truth,
+    judged_truth: &GroundTruth,
+) -> Result<(JudgedPicture, Vec<PictureFile>), CompareError> {
+    let told = |error: skiagraph_reference::Error| {
+        CompareError::Input(format!("{}: {error}", factor.file))
+    };
+    let (own, pixels) = (&truth.view.ground_truth.pixels, &judged_truth.pixels);
+    let outputs = Outputs::from_shares(factor.shares.clone(), own);
+    let judgement = Judgement::new(&outputs, judged_truth).map_err(told)?;
+    let mut wrong = judgement.counts.wrong;
+    let is_judged: Vec<bool> = pixels
+        .classes
+        .iter()
+        .zip(&pixels.indeterminate)
+        .map(|(class, apart)| class.faces_light() && !apart)
+        .collect();
+    let apart = wrong.in_band;
+    let of_own = Statistics::judged(&outputs.visibility, &outputs.status, own).map_err(told)?;
+    wrong.in_band = of_own.wrong.in_band;
+    let mut warnings = factor.warnings.clone();
+    warnings.extend(black(factor, &is_judged));
+    let suspect = Suspect {
+        size: factor.size,
+        shares: &factor.shares,
+        truth: judged_truth,
+        is_judged: &is_judged,
+        is_integer: factor.is_integer,
+    };
+    let suspicions = suspect.suspicions();
+    warnings.extend(suspicions.texts);
+    let has_blockers = judgement.is_hard && wrong.certain > 0;
+    let blockers = has_blockers.then(|| truth.view.blockers_of(&outputs, pixels));
+    let (images, files) = if judging.draws {
+        let (images, files) = draw(factor, judged_truth, (&outputs, &judgement))?;
+        (Some(images), files)
+    } else {
+        Default::default()
+    };
+    let picture = JudgedPicture {
+        answer: if outputs.shares.is_some() {
+            Answer::Graded
+        } else {
+            Answer::Hard
+        },
+        // Given below, to those that agree.
+        rank: (!suspicions.is_another).then_some(0),
+        wrong_unattributable: apart.saturating_sub(wrong.in_band),
+        wrong,
+        graded: judgement.graded,
+        edges: truth.view.edges_of(&outputs, pixels)?,
+        wrong_blockers: blockers.transpose()?,
+        warnings,
+        images,
+        file: factor.file.clone(),
+        format: factor.format.clone(),
+    };
+    Ok((picture, files))
+}
+
+/// Beginning of the names of the pictures that are drawn of a file.
+fn stem(path: &Path) -> String {
+    let stem = path.file_stem().unwrap_or_default();
+    stem.to_string_lossy().into_owned()
+}
+
+/// Draws the errors of a picture, and the scene with its shadows.
+fn draw(
+    factor: &Factor,
+    judged_truth: &GroundTruth,
+    answers: (&Outputs, &Judgement),
+) -> Result<(Images, Vec<PictureFile>), CompareError> {
+    let place = PicturePlace {
+        stem: stem(Path::new(&factor.file)),
+        view: "truth",
+        frame: None,
+    };
+    let (mut images, mut files) = draw_pictures(&place, judged_truth, answers, None)?;
+    // No picture has a status of its own.
+    let uncertain = images.uncertain.take();
+    files.retain(|file| Some(&file.name) != uncertain.as_ref());
+    Ok((images, files))
+}
+
+/// That pixels which face the light are black without shadows, too: they have no quotient.
+fn black(factor: &Factor, is_judged: &[bool]) -> Option<String> {
+    let mut pixels = factor.is_black.iter().zip(is_judged);
+    let count = pixels
+        .by_ref()
+        .filter(|(black, judged)| **black && **judged)
+        .count();
+    (count > 0).then(|| {
+        format!(
+            "{} pixels that face the light are black in the picture without shadows, and count as \
+             in shadow: give all surfaces a colour above 0",
+            thousands(count as u64)
+        )
+    })
+}
+
+/// Ranks the pictures that agree with the truth at all, if their surfaces are known.
+fn rank(record: &mut JudgedPictures) {
+    let (is_open, is_area) = (!record.is_attributable(), record.area.is_some());
+    let figure = |of: &JudgedPicture| {
+        if is_area {
+            of.graded.rmse_outside_band
+        } else {
+            of.wrong_attributable() as f64
+        }
+    };
+    let ranked: Vec<f64> = record
+        .pictures
+        .iter()
+        .filter(|of| of.rank.is_some())
+        .map(figure)
+        .collect();
+    for picture in &mut record.pictures {
+        let own = figure(picture);
+        let before = ranked.iter().filter(|other| **other < own).count() as u32;
+        picture.rank = picture.rank.filter(|_| !is_open).map(|_| before + 1);
+    }
+}

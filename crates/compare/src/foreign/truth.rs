@@ -1,0 +1,148 @@
+//! Writes the truth of a view as arrays, with the camera's matrices, so that other programs judge.
+//!
+//! ```no_run
+//! use skiagraph_compare::foreign::truth::{TruthRequest, write_truth};
+//! use skiagraph_compare::{measuring::device::GpuRequest, sink::Silent};
+//! use skiagraph_scene::{SceneLibrary, SceneRequest};
+//! use std::path::Path;
+//!
+//! let request = SceneRequest { argument: "park".into(), obj: None };
+//! let (scene, _) = SceneLibrary::default().load(&request)?;
+//! let (view, gpu) = (scene.views[0].clone(), GpuRequest::default());
+//! let what = TruthRequest::new([640, 480]);
+//! for line in write_truth(&what, scene, &view, Path::new("truth"), &gpu, &Silent)? {
+//!     println!("{line}");
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use crate::error::CompareError;
+use crate::files::json::to_text;
+use crate::files::write::{check_folder, write_whole};
+use crate::foreign::conventions::CameraRecord;
+use crate::foreign::judging::truth;
+use crate::measuring::device::GpuRequest;
+use crate::measuring::ground_truth::{REFERENCE_SAMPLES, heard};
+use crate::pictures::data::{Array, DataFormat, Values};
+use crate::sink::{Sink, Step};
+use skiagraph_reference::{OracleMode, Receiver, shimmer::Seen};
+use skiagraph_scene::{LightKind, Scene, View};
+use std::{path::Path, sync::Arc};
+
+/// Size, oracle and format of the truth that is written.
+#[derive(Clone, Copy, Debug)]
+pub struct TruthRequest {
+    /// Width and height in pixels.
+    pub viewport: [u32; 2],
+    /// Mode of the reference's shadow rays.
+    pub oracle: OracleMode,
+    /// Number of shadow rays from a pixel to a light with an extent.
+    pub reference_samples: u32,
+    /// Format of the arrays.
+    pub format: DataFormat,
+}
+
+impl TruthRequest {
+    /// Requests the truth in a size as OpenEXR, by the exact oracle.
+    pub fn new(viewport: [u32; 2]) -> Self {
+        Self {
+            viewport,
+            oracle: OracleMode::Exact,
+            reference_samples: REFERENCE_SAMPLES,
+            format: DataFormat::Exr,
+        }
+    }
+}
+
+/// Writes the arrays and `camera.json` into a folder, which is made if it is missing. Returns a
+/// line for each file with its meaning.
+///
+/// # Errors
+/// A scene without a truth, no GPU, an early end, a file that cannot be written.
+pub fn write_truth(
+    request: &TruthRequest,
+    scene: Scene,
+    view: &View,
+    folder: &Path,
+    gpu: &GpuRequest,
+    sink: &dyn Sink,
+) -> Result<Vec<String>, CompareError> {
+    check_folder(folder)?;
+    let (viewport, scene) = (request.viewport, Arc::new(scene));
+    let how = (request.oracle, request.reference_samples);
+    let found = truth((&scene, view, viewport), None, how, gpu, sink)?;
+    let (ground_truth, seen) = (&found.view.ground_truth, found.view.seen());
+    let pixels = &ground_truth.pixels;
+    let light = scene.light_of(view);
+    let rows = viewport[1].into();
+    let step = Step::begin(sink, &format!("blockers, {}", view.name), rows, "rows");
+    let rows_done = |rows| step.set_done(rows);
+    let blockers = found.view.nearest_blockers(heard(sink, &rows_done))?;
+    step.end();
+    let mut arrays = vec![
+        (
+            "visibility",
+            Values::F32(ground_truth.shares().into_owned()),
+            "share of the light that each pixel sees, 0 to 1",
+        ),
+        (
+            "status",
+            Values::U8(pixels.status()),
+            "0 background, 1 facing away, 2 lit, 3 in shadow",
+        ),
+        (
+            "indeterminate",
+            Values::Bool(pixels.indeterminate.clone()),
+            "1 where the answer hangs on the rounding of f32: the band",
+        ),
+        (
+            "unattributable",
+            Values::Bool(found.unattributable.clone()),
+            "1 where surfaces within 1/16 of a pixel have other answers",
+        ),
+        (
+            "ids",
+            Values::U32(seen.primitives.to_vec()),
+            "triangle that each pixel shows, 4294967295 for none; judge --ids",
+        ),
+        (
+            "depth",
+            Values::F32(depths(seen, &light)?),
+            "distance along the view in scene units, infinite for none; judge --depth",
+        ),
+        (
+            "blockers",
+            Values::U32(blockers),
+            "triangle nearest to the surface on its way to the light, 4294967295 for none",
+        ),
+    ];
+    if let Some(area) = &ground_truth.area {
+        let errors = Values::F32(area.standard_errors.clone());
+        arrays.push(("standard_error", errors, "standard error of visibility"));
+    }
+    let mut lines = Vec::new();
+    for (name, values, meaning) in arrays {
+        let file = format!("{name}.{}", request.format.extension());
+        let bytes = Array::of_pixels(viewport, values).encode(request.format);
+        let bytes = bytes.map_err(|why| CompareError::Input(format!("{file} {why}")))?;
+        write_whole(&folder.join(&file), &bytes)?;
+        lines.push(format!("{file}: {meaning}"));
+    }
+    let camera = to_text(&CameraRecord::new(&scene, view, viewport));
+    write_whole(&folder.join("camera.json"), camera.as_bytes())?;
+    lines.push("camera.json: camera, light, and matrices in the conventions of engines".into());
+    Ok(lines)
+}
+
+/// Distance along the view of what each pixel shows.
+fn depths(seen: Seen, light: &LightKind) -> Result<Vec<f32>, CompareError> {
+    let (camera, width) = (seen.camera, seen.camera.viewport[0]);
+    let depth = |pixel: u32| {
+        let place = [pixel % width, pixel / width];
+        let receiver = Receiver::from_pixel(seen.mesh, seen.primitives, camera, place, light);
+        let receiver = receiver.map_err(|error| CompareError::Input(error.to_string()))?;
+        let distance = |it: Receiver| camera.forward.dot(it.position - camera.eye) as f32;
+        Ok(receiver.map_or(f32::INFINITY, distance))
+    };
+    (0..seen.primitives.len() as u32).map(depth).collect()
+}

@@ -1,0 +1,106 @@
+//! The schema of `judge.json`, version 1: pictures of other renderers, judged. Scripts rely on it:
+//! extend it, rename nothing.
+//!
+//! ```
+//! use skiagraph_compare::records::judged_pictures::JudgedPicture;
+//!
+//! let picture = JudgedPicture { wrong_unattributable: 3, ..JudgedPicture::default() };
+//! assert_eq!(picture.wrong_attributable(), 0);
+//! ```
+
+use crate::records::results::{Answer, AreaReference, Images, Scene};
+use serde::{Deserialize, Serialize};
+use skiagraph_reference::{BlockerCounts, EdgeDistances, Graded, PixelCounts, WrongCounts};
+
+/// Share of the pixels facing the light that may be unattributable in a picture with a rank.
+pub const MOST_UNATTRIBUTABLE: f64 = 0.01;
+
+/// Content of `judge.json`: pictures of one view of a scene, with the truth that they were held
+/// against.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct JudgedPictures {
+    /// Version of this schema: 1.
+    pub schema: u32,
+    /// The program that judged, `skiagraph 0.1.0`.
+    pub program: String,
+    /// The scene that the pictures show.
+    pub scene: Scene,
+    /// Name of the view.
+    pub view: String,
+    /// Name of the light, where the view has several; absent elsewhere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub light: Option<String>,
+    /// Width and height of the pictures in pixels.
+    pub viewport: [u32; 2],
+    /// Mode of the reference's shadow rays: `exact`, or `offset:LENGTH` in scene units.
+    pub oracle: String,
+    /// Numbers of pixels by the reference's answer.
+    pub pixels: PixelCounts,
+    /// Number of pixels facing the light whose answer flips within the rounding error of receiver
+    /// and casters: the band.
+    pub band: u64,
+    /// Number of pixels whose surface is hidden behind another one by more than rounding.
+    pub wrong_surface: u64,
+    /// Sampling of the reference for a light with an extent; absent for other lights.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub area: Option<AreaReference>,
+    /// Source of the surface that each pixel shows: `rasterised` by this program, `ids` or `depth`
+    /// of the other renderer.
+    pub surfaces: String,
+    /// Number of pixels facing the light, outside the band, whose truth is not unique among the
+    /// surfaces that they may show.
+    pub unattributable: u64,
+    /// The pictures, in the order of the command.
+    pub pictures: Vec<JudgedPicture>,
+}
+
+/// A picture of another renderer, judged.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct JudgedPicture {
+    /// Path of the file, as it was given.
+    pub file: String,
+    /// Format of the file: `PNG, 8 bits, grey`.
+    pub format: String,
+    /// Kind of the answers: `hard` if all are 0 and 1.
+    pub answer: Answer,
+    /// Rank among the pictures, 1 for the best: by wrong pixels, under a light with an extent by
+    /// `rmse_outside_band`. Null if more than 1 % of the pixels facing the light are
+    /// unattributable, or the picture hardly agrees with the truth.
+    pub rank: Option<u32>,
+    /// Numbers of pixels on which picture and reference disagree; of shares, one half or more
+    /// counts as lit. Unattributable ones are included.
+    pub wrong: WrongCounts,
+    /// Pixels of `wrong.total` that are unattributable; none of them is in the band.
+    pub wrong_unattributable: u64,
+    /// Errors of the shares of light, over all pixels facing the light; `rmse_outside_band` and
+    /// `soft` without those that are unattributable.
+    pub graded: Graded,
+    /// Distances of the wrong pixels, outside the band and attributable, from the edges of the
+    /// reference's shadows.
+    pub edges: EdgeDistances,
+    /// Wrong pixels, outside the band and attributable, by the caster that blocks their light;
+    /// absent if there are none, or if answers are graded.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wrong_blockers: Option<BlockerCounts>,
+    /// Warnings: what was left out of the file, and mistakes that are suspected.
+    pub warnings: Vec<String>,
+    /// File names of the pictures that were drawn of it; absent without a folder.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub images: Option<Images>,
+}
+
+impl JudgedPictures {
+    /// True if so few pixels are unattributable that pictures have ranks.
+    pub fn is_attributable(&self) -> bool {
+        let facing = self.pixels.facing_light as f64;
+        self.unattributable as f64 <= MOST_UNATTRIBUTABLE * facing
+    }
+}
+
+impl JudgedPicture {
+    /// Returns the number of wrong pixels outside the band whose surface is known.
+    pub fn wrong_attributable(&self) -> u64 {
+        let apart = self.wrong.in_band + self.wrong_unattributable;
+        self.wrong.total.saturating_sub(apart)
+    }
+}

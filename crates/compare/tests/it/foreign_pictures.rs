@@ -1,0 +1,408 @@
+//! Pictures of other renderers: methods' own, judged back as foreign ones, and pictures with
+//! mistakes.
+
+use crate::support::{NOWHERE, comparison, gpu, park, scene};
+use image::{GrayImage, ImageFormat, RgbImage};
+use skiagraph_compare::{
+    foreign::{
+        factor::linear,
+        judging::{Judging, Surfaces, judge},
+        raster::Raster,
+        truth::{TruthRequest, write_truth},
+    },
+    graphs::preset::SHIPPED,
+    measuring::{device::GpuRequest, resume::Kept, series::Series},
+    pictures::data::{Array, DataFormat, Values},
+    records::{
+        judged_pictures::JudgedPictures,
+        results::{Answer, Measured},
+    },
+    sink::{Session, Silent},
+};
+use skiagraph_reference::WrongCounts;
+use skiagraph_scene::Scene;
+use std::{fs, path::PathBuf, sync::Arc};
+use tempfile::TempDir;
+
+const SIZE: [u32; 2] = [80, 64];
+
+/// Rays per pixel to a light with an extent.
+const SAMPLES: u32 = 16;
+
+/// A method's measurements, and the shares that it shows.
+struct Shown {
+    name: String,
+    measured: Measured,
+    shares: Vec<f32>,
+}
+
+/// Methods on the first view of a scene, with maps of this side.
+fn shown(scene: &Arc<Scene>, methods: &[&str], map: u32) -> Vec<Shown> {
+    let folder = tempfile::tempdir().unwrap();
+    let mut compared = comparison(scene.clone(), methods, NOWHERE.as_ref(), &[map]);
+    compared.viewports = vec![SIZE];
+    compared.protocol.reference_samples = SAMPLES;
+    compared.protocol.data = Some(DataFormat::Npy);
+    let session = Session::new(gpu(), &Silent);
+    let mut series = Series::new(&compared, session, Some((folder.path(), Kept::Nothing))).unwrap();
+    series.measure(0, 0).unwrap();
+    let files: Vec<PathBuf> = fs::read_dir(folder.path())
+        .unwrap()
+        .map(|file| file.unwrap().path())
+        .collect();
+    let runs = series.results.runs.iter().map(|run| {
+        let is_own = |file: &&PathBuf| {
+            let name = file.file_name().unwrap().to_str().unwrap();
+            name.starts_with(&format!("{}-", run.preset)) && name.ends_with("-visibility.npy")
+        };
+        let values = Raster::read(files.iter().find(is_own).unwrap())
+            .unwrap()
+            .values;
+        Shown {
+            name: run.preset.clone(),
+            measured: run.measured.clone().unwrap(),
+            shares: values.iter().map(|value| *value as f32).collect(),
+        }
+    });
+    runs.collect()
+}
+
+/// Writes shares in the format of the name: PNG of 8 bits, NPY or EXR.
+fn write(folder: &TempDir, name: &str, shares: &[f32]) -> PathBuf {
+    let file = folder.path().join(name);
+    match file
+        .extension()
+        .unwrap()
+        .to_str()
+        .unwrap()
+        .parse::<DataFormat>()
+    {
+        Ok(format) => {
+            let array = Array::of_pixels(SIZE, Values::F32(shares.to_vec()));
+            fs::write(&file, array.encode(format).unwrap()).unwrap();
+        }
+        Err(_) => {
+            let bytes = shares.iter().map(|share| (share * 255.0).round() as u8);
+            let grey = GrayImage::from_raw(SIZE[0], SIZE[1], bytes.collect()).unwrap();
+            grey.save_with_format(&file, ImageFormat::Png).unwrap();
+        }
+    }
+    file
+}
+
+fn judging(pictures: Vec<PathBuf>) -> Judging {
+    Judging {
+        pictures,
+        reference_samples: SAMPLES,
+        ..Judging::default()
+    }
+}
+
+/// Judges pictures of the first view of a scene.
+fn judged(scene: &Arc<Scene>, judging: &Judging) -> Result<JudgedPictures, String> {
+    let (scene, view) = ((**scene).clone(), scene.views[0].clone());
+    let judged = judge(judging, scene, &view, &GpuRequest::default(), &Silent);
+    judged
+        .map(|of| of.record)
+        .map_err(|error| error.to_string())
+}
+
+/// Holds the figures of pictures against the methods' own measurements.
+fn check_judged_back(scene: &Arc<Scene>, methods: &[Shown]) {
+    let folder = tempfile::tempdir().unwrap();
+    for extension in ["png", "npy", "exr"] {
+        let file = |of: &Shown| write(&folder, &format!("{}.{extension}", of.name), &of.shares);
+        let files = methods.iter().map(file).collect();
+        let record = judged(scene, &judging(files)).unwrap();
+        for (picture, own) in record.pictures.iter().zip(methods) {
+            let (name, measured) = (format!("{}.{extension}", own.name), &own.measured);
+            assert_eq!(picture.warnings, Vec::<String>::new(), "{name}");
+            let outside = |total: u64, in_band: u64| total - in_band;
+            let wrong = outside(picture.wrong.total, picture.wrong.in_band);
+            let is_hard = picture.answer == Answer::Hard;
+            if is_hard || extension != "png" {
+                assert_eq!(wrong, measured.wrong_outside_band(), "{name}");
+                assert_eq!(picture.graded.rmse, measured.graded.rmse, "{name}");
+                assert_eq!(picture.graded.off, measured.graded.off, "{name}");
+                assert_eq!(picture.graded.flip, measured.graded.flip, "{name}");
+            }
+            let off = (picture.graded.rmse - measured.graded.rmse).abs();
+            assert!(off <= 1.0 / 255.0, "{name}: {off}");
+            assert!(picture.wrong_unattributable <= wrong, "{name}");
+            assert_eq!(
+                picture.wrong_attributable(),
+                wrong - picture.wrong_unattributable
+            );
+        }
+        assert!(record.unattributable > 0, "silhouettes");
+    }
+}
+
+#[test]
+fn the_default_presets_are_judged_back_to_the_pixel() {
+    let scene = park();
+    let methods = shown(&scene, &SHIPPED, 512);
+    assert_eq!(methods.len(), SHIPPED.len());
+    let graded = methods
+        .iter()
+        .filter(|of| of.measured.answer == Answer::Graded);
+    assert!(graded.count() >= 2, "pcf and vsm");
+    check_judged_back(&scene, &methods);
+}
+
+#[test]
+fn soft_shadows_are_judged_back() {
+    let scene = scene("park_soft", None);
+    let methods = shown(&scene, &["rt_area", "hybrid_pcf_area"], 512);
+    check_judged_back(&scene, &methods);
+}
+
+/// The truth of a view that is written is the truth that pictures are held against; with its ids
+/// nothing is open, with its depths hardly anything.
+#[test]
+fn what_is_written_as_truth_judges_pictures() {
+    let scene = park();
+    let nsm = shown(&scene, &["nsm"], 512).remove(0);
+    let folder = tempfile::tempdir().unwrap();
+    let file = write(&folder, "nsm.exr", &nsm.shares);
+    let open = judged(&scene, &judging(vec![file.clone()])).unwrap();
+    for format in [DataFormat::Npy, DataFormat::Exr] {
+        let out = folder.path().join(format.extension());
+        let request = TruthRequest {
+            format,
+            ..TruthRequest::new(SIZE)
+        };
+        let (view, gpu) = (scene.views[0].clone(), GpuRequest::default());
+        let lines = write_truth(&request, (*scene).clone(), &view, &out, &gpu, &Silent).unwrap();
+        let read = |name: &str| {
+            let file = format!("{name}.{}", format.extension());
+            assert!(
+                lines.iter().any(|line| line.starts_with(&file)),
+                "{lines:?}"
+            );
+            Raster::read(&out.join(file)).unwrap()
+        };
+        let count = |name: &str, of: f64| {
+            let values = read(name).values;
+            values.into_iter().filter(|value| *value == of).count() as u64
+        };
+        assert_eq!(count("status", 2.0), open.pixels.lit);
+        assert_eq!(count("status", 3.0), open.pixels.shadow);
+        assert_eq!(count("visibility", 1.0), open.pixels.lit);
+        assert_eq!(count("unattributable", 1.0), open.unattributable);
+        // Pixels in shadow have a blocker, and no others.
+        let (status, blockers) = (read("status").values, read("blockers").values);
+        let is_blocked = blockers.iter().map(|of| *of != f64::from(u32::MAX));
+        let pairs = is_blocked.zip(&status);
+        assert!(
+            pairs
+                .clone()
+                .all(|(blocked, status)| blocked == (*status == 3.0))
+        );
+        // A picture that is the truth has nothing wrong.
+        let truth = out.join(format!("visibility.{}", format.extension()));
+        let ids = out.join(format!("ids.{}", format.extension()));
+        let by_ids = Judging {
+            surfaces: Surfaces::Ids(ids),
+            ..judging(vec![truth, file.clone()])
+        };
+        let by_ids = judged(&scene, &by_ids).unwrap();
+        assert_eq!((by_ids.unattributable, &*by_ids.surfaces), (0, "ids"));
+        assert_eq!(by_ids.pictures[0].wrong.total, 0);
+        assert_eq!(by_ids.pictures[0].rank, Some(1));
+        let (one, other) = (by_ids.pictures[1].wrong, open.pictures[0].wrong);
+        let counts = |of: WrongCounts| [of.lit, of.shadow, of.total, of.in_band];
+        assert_eq!(counts(one), counts(other));
+        let by_depth = Judging {
+            surfaces: Surfaces::Depth(out.join(format!("depth.{}", format.extension()))),
+            ..judging(vec![file.clone()])
+        };
+        let by_depth = judged(&scene, &by_depth).unwrap();
+        assert!(
+            by_depth.unattributable < open.unattributable,
+            "{}",
+            by_depth.unattributable
+        );
+        // But for pixels whose rasterised triangle only touches the pixel.
+        let differ = by_depth.pixels.lit.abs_diff(open.pixels.lit)
+            + by_depth.pixels.shadow.abs_diff(open.pixels.shadow);
+        assert!(differ <= 4, "{differ}");
+        let camera = fs::read_to_string(out.join("camera.json")).unwrap();
+        let camera: serde_json::Value = serde_json::from_str(&camera).unwrap();
+        assert_eq!(camera["viewport"], serde_json::json!(SIZE));
+        assert_eq!(camera["projections"].as_array().unwrap().len(), 16);
+    }
+}
+
+#[test]
+fn ids_of_another_camera_are_told() {
+    let scene = park();
+    let folder = tempfile::tempdir().unwrap();
+    let (view, gpu, out) = (scene.views[0].clone(), GpuRequest::default(), folder.path());
+    let request = TruthRequest {
+        format: DataFormat::Npy,
+        ..TruthRequest::new(SIZE)
+    };
+    write_truth(&request, (*scene).clone(), &view, out, &gpu, &Silent).unwrap();
+    // Upside down.
+    let ids = Raster::read(&out.join("ids.npy")).unwrap();
+    let rows = ids.values.chunks_exact(SIZE[0] as usize).rev().flatten();
+    let turned: Vec<u32> = rows.map(|id| *id as u32).collect();
+    let array = Array::of_pixels(SIZE, Values::U32(turned));
+    let turned = folder.path().join("turned.npy");
+    fs::write(&turned, array.encode(DataFormat::Npy).unwrap()).unwrap();
+    let told = judged(
+        &scene,
+        &Judging {
+            surfaces: Surfaces::Ids(turned),
+            ..judging(vec![out.join("visibility.npy")])
+        },
+    );
+    let told = told.unwrap_err();
+    assert!(
+        told.contains("a surface that the camera does not see there"),
+        "{told}"
+    );
+}
+
+/// Judges what is made of the shares of a method, and returns the warnings.
+fn warned(scene: &Arc<Scene>, name: &str, shares: &[f32]) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    let file = write(&folder, name, shares);
+    let record = judged(scene, &judging(vec![file])).unwrap();
+    record.pictures[0].warnings.join("\n")
+}
+
+#[test]
+fn a_picture_that_is_read_wrongly_is_told_with_the_way_out() {
+    let scene = park();
+    let rt = shown(&scene, &["rt"], 64).remove(0);
+    let soft = crate::support::scene("park_soft", None);
+    let rt_area = shown(&soft, &["rt_area"], 64).remove(0);
+    let width = SIZE[0] as usize;
+    let flipped: Vec<f32> = rt
+        .shares
+        .chunks_exact(width)
+        .rev()
+        .flatten()
+        .copied()
+        .collect();
+    let mirrored = rt.shares.chunks_exact(width);
+    let mirrored: Vec<f32> = mirrored.flat_map(|row| row.iter().rev().copied()).collect();
+    let inverted: Vec<f32> = rt.shares.iter().map(|share| 1.0 - share).collect();
+    let encoded = |share: &f32| {
+        // The share whose linear value this is.
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..40 {
+            let middle = (low + high) * 0.5;
+            if linear(middle) < f64::from(*share) {
+                low = middle
+            } else {
+                high = middle
+            }
+        }
+        high as f32
+    };
+    let encoded: Vec<f32> = rt_area.shares.iter().map(encoded).collect();
+    let dim: Vec<f32> = rt.shares.iter().map(|share| 0.3 + 0.7 * share).collect();
+    let bytes: Vec<f32> = rt.shares.iter().map(|share| share * 255.0).collect();
+    for (name, shares, expected) in [
+        ("flipped.png", &flipped, "--read-as flipped"),
+        ("mirrored.exr", &mirrored, "left for right"),
+        ("inverted.npy", &inverted, "--read-as inverted"),
+        ("ambient.exr", &dim, "ambient light"),
+        ("bytes.npy", &bytes, "its numbers reach 255"),
+    ] {
+        let told = warned(&scene, name, shares);
+        assert!(told.contains(expected), "{name}: {told}");
+    }
+    let told = warned(&soft, "encoded.png", &encoded);
+    assert!(told.contains("--read-as srgb"), "{told}");
+    assert_eq!(warned(&soft, "linear.png", &rt_area.shares), "");
+    assert_eq!(warned(&scene, "rt.png", &rt.shares), "");
+    // The way out is one.
+    let folder = tempfile::tempdir().unwrap();
+    let right = Judging {
+        reading: "flipped".parse().unwrap(),
+        ..judging(vec![write(&folder, "flipped.png", &flipped)])
+    };
+    let record = judged(&scene, &right).unwrap();
+    assert_eq!(record.pictures[0].warnings, Vec::<String>::new());
+    let wrong = record.pictures[0].wrong;
+    assert_eq!(
+        wrong.total - wrong.in_band,
+        rt.measured.wrong_outside_band()
+    );
+}
+
+#[test]
+fn a_picture_of_another_camera_is_told_and_has_no_rank() {
+    let mut scene = (*park()).clone();
+    let rt = shown(&Arc::new(scene.clone()), &["rt"], 64).remove(0);
+    let folder = tempfile::tempdir().unwrap();
+    let file = write(&folder, "rt.png", &rt.shares);
+    let own = judged(&Arc::new(scene.clone()), &judging(vec![file.clone()])).unwrap();
+    scene.views.rotate_left(1);
+    let right = scene.views.last().unwrap().name.clone();
+    let other = judged(&Arc::new(scene), &judging(vec![file])).unwrap();
+    assert_eq!(own.pictures[0].warnings, Vec::<String>::new());
+    let told = &other.pictures[0].warnings[0];
+    assert!(told.contains("it hardly agrees with the truth"), "{told}");
+    assert!(
+        told.contains("--view") && told.contains("skiagraph truth"),
+        "{told}"
+    );
+    assert_eq!(other.pictures[0].rank, None);
+    let found = &other.pictures[0].warnings[1];
+    assert!(found.contains(&format!("--view {right}")), "{found}");
+}
+
+#[test]
+fn files_that_are_no_factor_of_this_size_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = park();
+    let at = |name: &str| folder.path().join(name);
+    let shares = vec![1.0; (SIZE[0] * SIZE[1]) as usize];
+    let factor = write(&folder, "factor.exr", &shares);
+    let colours = RgbImage::from_fn(8, 8, |x, _| image::Rgb([x as u8, 0, 9]));
+    colours.save(at("colours.png")).unwrap();
+    GrayImage::new(8, 8).save(at("small.png")).unwrap();
+    fs::write(at("text.png"), "no picture").unwrap();
+    fs::write(at("photo.jpg"), b"\xff\xd8\xff\xe0\0\x10JFIF\0").unwrap();
+    let png = fs::read(at("small.png")).unwrap();
+    fs::write(at("cut.png"), &png[..40]).unwrap();
+    let mut exr = fs::read(&factor).unwrap();
+    let window = exr.windows(10).position(|at| at == b"dataWindow").unwrap();
+    exr[window + 10 + 1 + 5 + 1 + 4 + 8..][..4].copy_from_slice(&2_000_000_000i32.to_le_bytes());
+    fs::write(at("absurd.exr"), &exr).unwrap();
+    let told = |judging: Judging| judged(&scene, &judging).unwrap_err();
+    for (name, expected) in [
+        ("colours.png", "--unshadowed"),
+        ("text.png", "its first bytes are not those of a picture"),
+        ("photo.jpg", "it is a JPEG"),
+        ("cut.png", "it cannot be decoded"),
+        ("absurd.exr", "absurd.exr: "),
+        ("missing.npy", "missing.npy: "),
+    ] {
+        let told = told(judging(vec![at(name)]));
+        assert!(told.contains(expected), "{name}: {told}");
+    }
+    let both = told(judging(vec![factor.clone(), at("small.png")]));
+    assert!(
+        both.contains("has 80x64 pixels, and") && both.contains("has 8x8"),
+        "{both}"
+    );
+    let unshadowed = told(Judging {
+        unshadowed: Some(at("small.png")),
+        ..judging(vec![factor.clone()])
+    });
+    assert!(
+        unshadowed.contains("render both in one size"),
+        "{unshadowed}"
+    );
+    let ids = told(Judging {
+        surfaces: Surfaces::Ids(at("small.png")),
+        ..judging(vec![factor])
+    });
+    assert!(ids.contains("render both in one size"), "{ids}");
+}

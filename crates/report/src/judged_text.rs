@@ -1,0 +1,295 @@
+//! Judged pictures of other renderers as a table and sentences for a terminal.
+
+use crate::graded::area_reference;
+use crate::notes::wrong_surface;
+use crate::table::{TERMINAL, terminal, wrapped};
+use itertools::Itertools;
+use skiagraph_compare::records::judged_pictures::{
+    JudgedPicture, JudgedPictures, MOST_UNATTRIBUTABLE,
+};
+use skiagraph_compare::records::results::Answer;
+use skiagraph_compare::records::table::Table;
+use skiagraph_compare::wording::{percent, size, thousands};
+
+/// Returns heading, table, verdict and notes of judged pictures as text. `is_broken` breaks
+/// sentences into lines of 80 characters, as a terminal needs; otherwise each is a line.
+pub fn text(of: &JudgedPictures, is_broken: bool) -> String {
+    let broken = |line: String| {
+        if is_broken {
+            wrapped(&line, TERMINAL)
+        } else {
+            line
+        }
+    };
+    let mut lines: Vec<String> = heading(of).into_iter().map(broken).collect();
+    lines.push(format!("\n{}\n", terminal(&table(of))));
+    let verdicts = of.pictures.iter().map(|picture| verdict(of, picture));
+    lines.extend(verdicts.chain(notes(of)).map(broken));
+    lines.join("\n") + "\n"
+}
+
+fn heading(of: &JudgedPictures) -> Vec<String> {
+    let pixels = &of.pixels;
+    let surfaces = match &*of.surfaces {
+        "ids" => "by the ids given",
+        "depth" => "by the depths given",
+        _ => "as rasterised here, or any other within 1/16 of a pixel",
+    };
+    let under = of.light.as_ref().map(|light| format!(" under {light}"));
+    let mut lines = vec![
+        format!(
+            "{} · view {}{} · {}",
+            of.scene,
+            of.view,
+            under.unwrap_or_default(),
+            size(of.viewport)
+        ),
+        format!(
+            "facing the light (PFL) {} = lit {} + shadow {} · facing away {} · background {}",
+            thousands(pixels.facing_light),
+            thousands(pixels.lit),
+            thousands(pixels.shadow),
+            thousands(pixels.facing_away),
+            thousands(pixels.background)
+        ),
+        match &of.area {
+            Some(area) => area_reference(area, of.band),
+            None => format!(
+                "in the band, where the answer hangs on rounding: {} ({} of PFL)",
+                thousands(of.band),
+                percent(of.band, pixels.facing_light)
+            ),
+        },
+        format!(
+            "unattributable: {} ({} of PFL) · surfaces: {surfaces}",
+            thousands(of.unattributable),
+            percent(of.unattributable, pixels.facing_light)
+        ),
+    ];
+    if of.wrong_surface > 0 {
+        let all = pixels.background + pixels.facing_away + pixels.facing_light;
+        lines.push(format!("warning: {}", wrong_surface(of.wrong_surface, all)));
+    }
+    lines
+}
+
+fn table(of: &JudgedPictures) -> Table {
+    let heads = [
+        "picture",
+        "rank",
+        "wrong",
+        "wrong %",
+        "wrongly lit",
+        "wrongly in shadow",
+        "wrong in band",
+        "wrong unattributable",
+        "RMSE",
+        "FLIP",
+        "px from edge",
+        "light in umbra",
+        "dark in light",
+        "penumbra RMSE",
+        "off > 1/16",
+    ];
+    let soft = |picture: &JudgedPicture, figure: f64| {
+        if of.area.is_some() || picture.answer == Answer::Graded {
+            format!("{figure:.5}")
+        } else {
+            "–".into()
+        }
+    };
+    let row = |picture: &JudgedPicture| {
+        let (graded, wrong) = (&picture.graded, &picture.wrong);
+        let edges = picture.edges.all();
+        vec![
+            picture.file.clone(),
+            picture.rank.map_or("–".into(), |rank| rank.to_string()),
+            thousands(picture.wrong_attributable()),
+            percent(picture.wrong_attributable(), of.pixels.facing_light),
+            thousands(wrong.lit),
+            thousands(wrong.shadow),
+            thousands(wrong.in_band),
+            thousands(picture.wrong_unattributable),
+            format!("{:.5}", graded.rmse_outside_band),
+            format!("{:.5}", graded.flip),
+            if edges.count > 0 {
+                format!("{:.2}", edges.mean_pixels)
+            } else {
+                "–".into()
+            },
+            soft(picture, graded.soft.light_in_umbra),
+            soft(picture, graded.soft.dark_in_light),
+            soft(picture, graded.soft.penumbra_rmse),
+            soft(
+                picture,
+                graded.off.over_1_16 as f64 / of.pixels.facing_light.max(1) as f64,
+            ),
+        ]
+    };
+    Table::new(heads, 1, of.pictures.iter().map(row))
+}
+
+fn verdict(of: &JudgedPictures, picture: &JudgedPicture) -> String {
+    let (wrong, facing) = (picture.wrong_attributable(), of.pixels.facing_light);
+    let mut text = format!(
+        "{} ({}): {} of the {} pixels that face the light are wrong ({})",
+        picture.file,
+        picture.format,
+        thousands(wrong),
+        thousands(facing),
+        percent(wrong, facing)
+    );
+    if of.area.is_some() {
+        text += &format!(
+            ", cut at one half; RMSE {:.5}",
+            picture.graded.rmse_outside_band
+        );
+    }
+    if let Some(blockers) = picture.wrong_blockers {
+        let counts = [
+            ("an open part of the mesh", blockers.open_part),
+            ("a closed part", blockers.closed_part),
+            ("nothing", blockers.none),
+        ];
+        text += &format!("; what blocks their light: {}", counted(counts));
+    }
+    text
+}
+
+fn notes(of: &JudgedPictures) -> Vec<String> {
+    let mut notes = Vec::new();
+    for picture in &of.pictures {
+        let invalid = picture.graded.invalid;
+        let counts = [
+            ("NaN", invalid.nan),
+            ("infinite", invalid.infinite),
+            ("outside 0 to 1", invalid.outside),
+        ];
+        if invalid.total() > 0 {
+            notes.push(format!(
+                "warning: {}: the factor is not a share of light at pixels that face it: {}",
+                picture.file,
+                counted(counts)
+            ));
+        }
+        let warnings = picture.warnings.iter();
+        notes.extend(warnings.map(|text| format!("warning: {}: {text}", picture.file)));
+    }
+    if !of.is_attributable() {
+        notes.push(format!(
+            "no rank: {} of the pixels are unattributable, more than {:.0} %: the truth differs \
+             between surfaces that they may show. Give the surfaces with --ids or --depth, or \
+             render in more pixels",
+            percent(of.unattributable, of.pixels.facing_light),
+            MOST_UNATTRIBUTABLE * 100.0
+        ));
+    }
+    notes.push(
+        "wrong: outside the band and attributable; of shares, one half or more counts as lit. \
+         Wrongly lit and wrongly in shadow count all. RMSE is over the same pixels as wrong"
+            .into(),
+    );
+    notes
+}
+
+/// The counts that are not 0, each behind its name.
+fn counted<'a>(counts: impl IntoIterator<Item = (&'a str, u64)>) -> String {
+    let counts = counts.into_iter().filter(|(_, count)| *count > 0);
+    let mut counts = counts.map(|(what, count)| format!("{what} {}", thousands(count)));
+    counts.join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use skiagraph_compare::records::results::{OpenParts, Scene};
+    use skiagraph_reference::{BlockerCounts, Graded, Invalid, PixelCounts, WrongCounts};
+
+    fn judged() -> JudgedPictures {
+        let picture = JudgedPicture {
+            file: "engine.exr".into(),
+            format: "EXR, half, grey".into(),
+            answer: Answer::Graded,
+            rank: Some(1),
+            wrong: WrongCounts {
+                lit: 40,
+                shadow: 70,
+                total: 110,
+                certain: 90,
+                in_band: 6,
+            },
+            wrong_unattributable: 4,
+            graded: Graded {
+                rmse_outside_band: 0.0125,
+                invalid: Invalid {
+                    nan: 2,
+                    ..Invalid::default()
+                },
+                ..Graded::default()
+            },
+            wrong_blockers: Some(BlockerCounts {
+                open_part: 60,
+                closed_part: 0,
+                none: 40,
+            }),
+            warnings: vec!["alpha is not read".into()],
+            ..JudgedPicture::default()
+        };
+        let hard = JudgedPicture {
+            file: "other.png".into(),
+            format: "PNG, 8 bits, grey".into(),
+            answer: Answer::Hard,
+            rank: Some(2),
+            warnings: Vec::new(),
+            graded: Graded::default(),
+            wrong_blockers: None,
+            ..picture.clone()
+        };
+        JudgedPictures {
+            schema: 1,
+            program: "skiagraph".into(),
+            scene: Scene {
+                name: "park".into(),
+                triangles: 55_000,
+                parts: OpenParts {
+                    all: 40,
+                    open: 12,
+                    open_triangles: 5_000,
+                },
+            },
+            view: "main".into(),
+            light: None,
+            viewport: [512, 256],
+            oracle: "exact".into(),
+            pixels: PixelCounts {
+                background: 72,
+                facing_away: 31_000,
+                facing_light: 100_000,
+                lit: 60_000,
+                shadow: 40_000,
+            },
+            band: 12,
+            wrong_surface: 0,
+            area: None,
+            surfaces: "rasterised".into(),
+            unattributable: 123,
+            pictures: vec![picture, hard],
+        }
+    }
+
+    #[test]
+    fn a_table_tells_what_is_wrong_and_what_is_open() {
+        insta::assert_snapshot!(text(&judged(), true));
+    }
+
+    #[test]
+    fn a_picture_that_cannot_be_attributed_has_no_rank_and_says_why() {
+        let mut judged = judged();
+        judged.unattributable = 1_001;
+        let text = text(&judged, false);
+        assert!(
+            text.contains("no rank: 1.001 % of the pixels are unattributable"),
+            "{text}"
+        );
+    }
+}

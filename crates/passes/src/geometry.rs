@@ -483,7 +483,7 @@ impl Geometry {
     /// The ranges of positions that are others than in a version of the shape.
     pub fn positions_since(&self, version: u64, mesh: &Mesh) -> Vec<Range<usize>> {
         if version < self.begun {
-            return vec![0..mesh.positions.len()];
+            return whole(mesh.positions.len());
         }
         let moved = self.pieces.iter().filter(|piece| piece.moved > version);
         moved.map(|piece| piece.ranges(mesh)[0].clone()).collect()
@@ -492,7 +492,7 @@ impl Geometry {
     /// The ranges of normals that are others than in a version of the shape.
     pub fn normals_since(&self, version: u64, mesh: &Mesh) -> Vec<Range<usize>> {
         if version < self.begun {
-            return vec![0..mesh.normals.len()];
+            return whole(mesh.normals.len());
         }
         let moved = self.pieces.iter().filter(|piece| piece.moved > version);
         moved.map(|piece| piece.ranges(mesh)[1].clone()).collect()
@@ -501,7 +501,7 @@ impl Geometry {
     /// The ranges of triangles that have other corners than in a version of the winding.
     pub fn triangles_since(&self, version: u64, mesh: &Mesh) -> Vec<Range<usize>> {
         if version < self.begun {
-            return vec![0..mesh.triangles.len()];
+            return whole(mesh.triangles.len());
         }
         let turned = self.pieces.iter().filter(|piece| piece.turned > version);
         let turned = turned.map(|piece| piece.triangles(mesh));
@@ -604,8 +604,8 @@ impl Geometry {
             version,
         });
         Fitted {
-            nodes: vec![0..tree.nodes.len()],
-            primitives: vec![0..tree.primitives.len()],
+            nodes: whole(tree.nodes.len()),
+            primitives: whole(tree.primitives.len()),
             tree,
             how: How::Made,
         }
@@ -788,4 +788,9 @@ pub(crate) fn nodes_to_walk(tree: &TwoLevelBvh) -> &[BvhNode] {
     } else {
         &tree.nodes
     }
+}
+
+/// One range of this many items, as a list.
+fn whole(count: usize) -> Vec<Range<usize>> {
+    std::iter::once(0..count).collect()
 }

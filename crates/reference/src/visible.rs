@@ -179,7 +179,10 @@ impl<'a> Sample<'a> {
     fn candidate(&self, caster: &Caster<'_>) -> Option<Candidate> {
         let edges = self.edges(&caster.corners);
         let is_seen = caster.double_sided || edges.iter().any(|of| of.iter().sum::<f64>() > 0.0);
-        if !is_seen || !self.may_touch(&caster.corners) || self.is_cut_out(caster) {
+        if !is_seen || self.is_beside(&caster.corners) || !self.may_touch(&caster.corners) {
+            return None;
+        }
+        if self.is_cut_out(caster) {
             return None;
         }
         let distances = self.distances(&caster.corners);
@@ -187,6 +190,31 @@ impl<'a> Sample<'a> {
         is_between.then_some(Candidate {
             primitive: caster.primitive,
             distances,
+        })
+    }
+
+    /// Returns true if a triangle lies behind the eye, or its box in the picture beside the square.
+    fn is_beside(&self, corners: &Corners) -> bool {
+        let camera = self.camera;
+        let relative = self.relative(corners);
+        let depths = relative.map(|corner| camera.forward.dot(corner));
+        if depths.iter().any(|depth| *depth <= 0.0) {
+            return depths.iter().all(|depth| *depth <= 0.0);
+        }
+        [camera.right, camera.up].into_iter().any(|axis| {
+            let bounds = |values: &[f64]| {
+                let (least, greatest) = (f64::INFINITY, f64::NEG_INFINITY);
+                values
+                    .iter()
+                    .fold([least, greatest], |[least, greatest], value| {
+                        [least.min(*value), greatest.max(*value)]
+                    })
+            };
+            let square = bounds(&self.directions.map(|direction| axis.dot(direction)));
+            let places: [f64; 3] = std::array::from_fn(|at| axis.dot(relative[at]) / depths[at]);
+            let [least, greatest] = bounds(&places);
+            let room = F32_ROUNDING * (least.abs() + greatest.abs());
+            least - room > square[1] || greatest + room < square[0]
         })
     }
 

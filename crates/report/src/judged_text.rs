@@ -167,7 +167,8 @@ fn notes(of: &JudgedPictures) -> Vec<String> {
         ];
         if invalid.total() > 0 {
             notes.push(format!(
-                "warning: {}: at pixels that face the light the factor is not a share of 0 to 1: {}",
+                "warning: {}: at pixels that face the light the factor is not a share of 0 to 1: \
+                 {}",
                 picture.file,
                 counted(counts)
             ));

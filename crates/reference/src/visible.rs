@@ -6,7 +6,7 @@ use crate::{
     oracle::Oracle,
     pixels::{BACKGROUND, Progress, check_pixel_count, per_pixel, shown},
     ray::{Corners, Ray},
-    tree::{Caster, Cone},
+    tree::Caster,
 };
 use glam::{DVec3, Vec3};
 use skiagraph_scene::{Camera, mask::Asked};
@@ -23,6 +23,9 @@ const CORNER_ROUNDINGS: f64 = 8.0;
 /// Roundings of a depth that is interpolated from a triangle's corners, in units of the greatest
 /// depth that it has in the picture.
 const DEPTH_ROUNDINGS: f64 = 8.0;
+
+/// How much farther than what hides them surfaces are looked for: far more than rounding.
+const ROOM: f64 = 1.001;
 
 /// Counts the pixels of a G-buffer that show a wrong primitive: one behind another surface or
 /// beside the pixel, or the background although there is a surface. `primitives` holds one
@@ -82,15 +85,21 @@ pub fn candidates(
         let direction = camera.pixel_direction(x, y);
         let sample = Sample::new(camera, direction, max_distance);
         let (mut found, mut nearest) = (Vec::new(), [f64::INFINITY; 5]);
-        let mut visit = |caster: Caster<'_>| {
-            found.extend(sample.candidate(&caster));
-            for (nearest, end) in nearest.iter_mut().zip(sample.hides_from(&caster)) {
+        let ray = Ray::new(
+            camera.eye,
+            direction,
+            max_distance,
+            sample.reach(max_distance),
+        );
+        oracle.tree.walk(&ray, stack, |caster, t_max| {
+            found.extend(sample.candidate(caster));
+            for (nearest, end) in nearest.iter_mut().zip(sample.hides_from(caster)) {
                 *nearest = nearest.min(end);
             }
+            let end = nearest.iter().copied().fold(0.0, f64::max);
+            *t_max = t_max.min(end * ROOM);
             ControlFlow::Continue(())
-        };
-        let cone = sample.cone();
-        oracle.tree.within(camera.eye, &cone, stack, &mut visit);
+        });
         let end = nearest.into_iter().fold(0.0, f64::max);
         found.retain(|of| of.distances[0] <= end);
         if end > camera.far * (1.0 - 16.0 * F32_ROUNDING) {
@@ -159,23 +168,21 @@ impl<'a> Sample<'a> {
             .any(|side| (0..3).all(|edge| edges.iter().any(|edges| side * edges[edge] >= 0.0)))
     }
 
-    /// The narrowest cone around the square.
-    fn cone(&self) -> Cone {
+    /// Greatest distance from the centre's ray of a place so far away that the square shows.
+    fn reach(&self, distance: f64) -> f64 {
         let [axis, corners @ ..] = self.directions.map(DVec3::normalize);
         let sines = corners.map(|corner| axis.cross(corner).length());
-        let sin = sines.into_iter().fold(0.0, f64::max);
-        Cone {
-            axis,
-            sin,
-            cos: (1.0 - sin * sin).sqrt(),
-        }
+        sines.into_iter().fold(0.0, f64::max) * distance
     }
 
     /// The triangle as a candidate, if it may be seen in the square while nothing hides it.
     fn candidate(&self, caster: &Caster<'_>) -> Option<Candidate> {
         let edges = self.edges(&caster.corners);
         let is_seen = caster.double_sided || edges.iter().any(|of| of.iter().sum::<f64>() > 0.0);
-        if !is_seen || !self.may_touch(&caster.corners) || self.is_cut_out(caster) {
+        if !is_seen || self.is_beside(&caster.corners) || !self.may_touch(&caster.corners) {
+            return None;
+        }
+        if self.is_cut_out(caster) {
             return None;
         }
         let distances = self.distances(&caster.corners);
@@ -183,6 +190,31 @@ impl<'a> Sample<'a> {
         is_between.then_some(Candidate {
             primitive: caster.primitive,
             distances,
+        })
+    }
+
+    /// Returns true if a triangle lies behind the eye, or its box in the picture beside the square.
+    fn is_beside(&self, corners: &Corners) -> bool {
+        let camera = self.camera;
+        let relative = self.relative(corners);
+        let depths = relative.map(|corner| camera.forward.dot(corner));
+        if depths.iter().any(|depth| *depth <= 0.0) {
+            return depths.iter().all(|depth| *depth <= 0.0);
+        }
+        [camera.right, camera.up].into_iter().any(|axis| {
+            let bounds = |values: &[f64]| {
+                let (least, greatest) = (f64::INFINITY, f64::NEG_INFINITY);
+                values
+                    .iter()
+                    .fold([least, greatest], |[least, greatest], value| {
+                        [least.min(*value), greatest.max(*value)]
+                    })
+            };
+            let square = bounds(&self.directions.map(|direction| axis.dot(direction)));
+            let places: [f64; 3] = std::array::from_fn(|at| axis.dot(relative[at]) / depths[at]);
+            let [least, greatest] = bounds(&places);
+            let room = F32_ROUNDING * (least.abs() + greatest.abs());
+            least - room > square[1] || greatest + room < square[0]
         })
     }
 

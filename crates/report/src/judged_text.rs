@@ -167,7 +167,8 @@ fn notes(of: &JudgedPictures) -> Vec<String> {
         ];
         if invalid.total() > 0 {
             notes.push(format!(
-                "warning: {}: the factor is not a share of light at pixels that face it: {}",
+                "warning: {}: at pixels that face the light the factor is not a share of 0 to 1: \
+                 {}",
                 picture.file,
                 counted(counts)
             ));

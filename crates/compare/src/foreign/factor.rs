@@ -96,11 +96,7 @@ impl Factor {
                 check_size(&raster, other)?;
                 let whole = self::light(other, reading)?;
                 for (light, whole) in light.iter_mut().zip(&whole) {
-                    *light = if *whole > 0.0 {
-                        (*light / whole).min(1.0)
-                    } else {
-                        0.0
-                    };
+                    *light = quotient(*light, *whole);
                 }
                 is_black = whole.iter().map(|whole| *whole <= 0.0).collect();
             }
@@ -117,6 +113,15 @@ impl Factor {
             is_black,
             warnings: raster.warnings,
         })
+    }
+}
+
+/// Light divided by that of the picture without shadows; NaN stays NaN.
+fn quotient(light: f64, whole: f64) -> f64 {
+    match light / whole {
+        _ if whole <= 0.0 => 0.0,
+        share if share > 1.0 => 1.0,
+        share => share,
     }
 }
 

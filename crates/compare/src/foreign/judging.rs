@@ -41,7 +41,7 @@ use crate::pictures::run_pictures::{
 use crate::records::judged_pictures::{JudgedPicture, JudgedPictures};
 use crate::records::results::{Answer, AreaReference, Images, PROGRAM};
 use crate::sink::{Session, Sink, Step};
-use crate::wording::{percent, size, thousands};
+use crate::wording::{percent, plural, size, thousands};
 use skiagraph_passes::{EmbeddedSources, SceneProvider};
 use skiagraph_reference::{
     Candidate, GroundTruth, Oracle, OracleMode, Statistics, candidates, unattributable,
@@ -462,9 +462,9 @@ fn black(factor: &Factor, is_judged: &[bool]) -> Option<String> {
         .count();
     (count > 0).then(|| {
         format!(
-            "{} pixels that face the light are black in the picture without shadows, and count as \
-             in shadow: give all surfaces a colour above 0",
-            thousands(count as u64)
+            "{} facing the light, black in the picture without shadows, too: no quotient there, \
+             and it counts as shadow; give all surfaces a colour above 0",
+            plural(count, "pixel")
         )
     })
 }

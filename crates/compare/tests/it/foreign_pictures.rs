@@ -2,7 +2,7 @@
 //! mistakes.
 
 use crate::support::{NOWHERE, comparison, gpu, park, scene};
-use image::{GrayImage, ImageFormat, RgbImage};
+use image::{GrayImage, ImageBuffer, ImageFormat, Luma, RgbImage, Rgba, RgbaImage};
 use skiagraph_compare::{
     foreign::{
         factor::linear,
@@ -332,6 +332,79 @@ fn a_picture_that_is_read_wrongly_is_told_with_the_way_out() {
     assert_eq!(
         wrong.total - wrong.in_band,
         rt.measured.wrong_outside_band()
+    );
+}
+
+#[test]
+fn bits_alpha_quotients_and_numbers_that_are_none() {
+    let scene = park();
+    let rt = shown(&scene, &["rt"], 64).remove(0);
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let [width, height] = SIZE;
+    let pixel = |x: u32, y: u32| rt.shares[(x + y * width) as usize];
+    let bits = ImageBuffer::from_fn(width, height, |x, y| {
+        Luma([(pixel(x, y) * 65_535.0).round() as u16])
+    });
+    bits.save(at("bits.png")).unwrap();
+    let alpha = RgbaImage::from_fn(width, height, |x, y| {
+        let grey = (pixel(x, y) * 255.0) as u8;
+        Rgba([grey, grey, grey, if x + y == 7 { 128 } else { 255 }])
+    });
+    alpha.save(at("alpha.png")).unwrap();
+    let mut none = rt.shares.clone();
+    let lit = none.iter_mut().filter(|share| **share == 1.0);
+    lit.take(5).for_each(|share| *share = f32::NAN);
+    let none = write(&folder, "none.exr", &none);
+    let record = judged(
+        &scene,
+        &judging(vec![at("bits.png"), at("alpha.png"), none]),
+    )
+    .unwrap();
+    let [bits, alpha, none] = &record.pictures[..] else {
+        panic!("three pictures")
+    };
+    assert_eq!(
+        (&*bits.format, &*alpha.format),
+        ("PNG, 16 bits, grey", "PNG, 8 bits, grey")
+    );
+    assert_eq!(bits.wrong, alpha.wrong);
+    let outside = bits.wrong.total - bits.wrong.in_band;
+    assert_eq!(outside, rt.measured.wrong_outside_band());
+    assert!(bits.warnings.is_empty(), "{:?}", bits.warnings);
+    let told = &alpha.warnings[0];
+    assert!(
+        told.contains("alpha is not read, and 8 pixels are not opaque"),
+        "{told}"
+    );
+    assert_eq!((none.graded.invalid.nan, none.answer), (5, Answer::Graded));
+    assert!(none.wrong.shadow >= 5, "{:?}", none.wrong);
+    // Half of the surfaces are darker, and one pixel that is lit is black.
+    let mut colour: Vec<f32> = (0..rt.shares.len())
+        .map(|at| 0.25 + (at % 2) as f32 / 4.0)
+        .collect();
+    let lit = (0..colour.len())
+        .rev()
+        .find(|at| rt.shares[*at] == 1.0)
+        .unwrap();
+    colour[lit] = 0.0;
+    let shaded: Vec<f32> = rt
+        .shares
+        .iter()
+        .zip(&colour)
+        .map(|(one, of)| one * of)
+        .collect();
+    let quotient = Judging {
+        unshadowed: Some(write(&folder, "whole.exr", &colour)),
+        ..judging(vec![write(&folder, "shaded.exr", &shaded)])
+    };
+    let record = judged(&scene, &quotient).unwrap();
+    let picture = &record.pictures[0];
+    assert_eq!(picture.wrong.shadow, bits.wrong.shadow + 1);
+    let told = &picture.warnings[0];
+    assert!(
+        told.contains("1 pixel facing the light, black in the picture"),
+        "{told}"
     );
 }
 

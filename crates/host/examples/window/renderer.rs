@@ -189,7 +189,7 @@ pub fn texture(
         size: wgpu::Extent3d {
             width,
             height,
-            depth_or_array_layers: 1,
+            ..Default::default()
         },
         mip_level_count: 1,
         sample_count: 1,

@@ -70,8 +70,12 @@ impl Shadows {
     }
 }
 
+/// Wider than the real one, which has half a degree. Presets of hard shadows take its centre.
 fn sun(moment: &Moment) -> DirectionalLight {
-    DirectionalLight::new(-moment.to_sun)
+    DirectionalLight {
+        direction: -moment.to_sun,
+        angle_degrees: 3.0,
+    }
 }
 
 fn eye(moment: &Moment) -> Result<Eye, Failed> {

@@ -8,6 +8,7 @@ use winit::{
     dpi::PhysicalSize,
     event::WindowEvent,
     event_loop::{ActiveEventLoop, EventLoop, OwnedDisplayHandle},
+    keyboard::{Key, NamedKey},
     window::{Window, WindowId},
 };
 
@@ -139,6 +140,11 @@ impl ApplicationHandler for App {
         };
         match event {
             WindowEvent::CloseRequested => events.exit(),
+            WindowEvent::KeyboardInput { event, .. }
+                if event.logical_key == Key::Named(NamedKey::Escape) =>
+            {
+                events.exit();
+            }
             WindowEvent::Resized(size) => shown.resize(size),
             WindowEvent::Occluded(false) => shown.window.request_redraw(),
             WindowEvent::RedrawRequested => {

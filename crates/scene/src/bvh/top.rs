@@ -128,9 +128,9 @@ fn by_area(ids: &mut [u32], boxes: &[BvhNode], centres: &[DVec3]) -> Option<usiz
             above[bin] = right.cost();
         }
         let mut left = Bin::default();
-        for bin in 1..bins {
+        for (bin, above) in above.iter().enumerate().take(bins).skip(1) {
             left = left.with(filled[bin - 1]);
-            let cost = left.cost() + above[bin];
+            let cost = left.cost() + above;
             if best.is_none_or(|(least, ..)| cost < least) {
                 best = Some((cost, axis, bin));
             }

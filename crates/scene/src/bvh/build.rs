@@ -9,6 +9,8 @@ use obvhs::{
     ploc::PlocBuilder,
     triangle::Triangle,
 };
+#[cfg(feature = "rayon")]
+use std::sync::LazyLock;
 
 /// Where half the surface of the scene's box overflows, the surface area heuristic has nothing to
 /// compare; nor has it of no box.
@@ -26,6 +28,29 @@ pub(super) fn measurable(bounds: Option<(Vec3, Vec3)>) -> bool {
 /// build in a third of the time for as many boxes; half a second for Sponza on two cores is little
 /// beside its import.
 pub(super) fn ploc(triangles: &[Triangle]) -> Bvh2 {
+    #[cfg(feature = "rayon")]
+    if triangles.len() < FEW
+        && let Some(alone) = &*ALONE
+    {
+        return alone.install(|| on_these_threads(triangles));
+    }
+    on_these_threads(triangles)
+}
+
+/// Trees of fewer triangles are built by one thread: a part that is added to a scene is built in a
+/// frame, and with other work beside it, each of the many steps would wait for the other threads
+/// to be woken.
+#[cfg(feature = "rayon")]
+const FEW: usize = 8192;
+
+/// A pool of one thread; none where the system gives no thread.
+#[cfg(feature = "rayon")]
+static ALONE: LazyLock<Option<rayon::ThreadPool>> = LazyLock::new(|| {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1);
+    pool.build().ok()
+});
+
+fn on_these_threads(triangles: &[Triangle]) -> Bvh2 {
     let params = BvhBuildParams {
         collapse_traversal_cost: 1.5,
         ..BvhBuildParams::slow_build()

@@ -4,6 +4,7 @@ mod build;
 mod light_space;
 mod median;
 mod node;
+mod top;
 mod tree;
 mod two_level;
 

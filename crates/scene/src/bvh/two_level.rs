@@ -2,18 +2,13 @@
 //! level over the pieces, in one list of nodes. It is walked like any other.
 
 use super::{
-    build::measurable,
-    median,
     node::BvhNode,
+    top::{Split, over_boxes},
     tree::{Bvh, MAX_DEPTH, area, cost_of},
 };
 use crate::mesh::{Mesh, bounds};
-use glam::{Vec3, Vec3A};
-use obvhs::{
-    aabb::Aabb,
-    ploc::{PlocBuilder, PlocSearchDistance, SortPrecision},
-    triangle::Triangle,
-};
+use glam::Vec3;
+use obvhs::triangle::Triangle;
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
 use std::{collections::BTreeMap, ops::Range, sync::Arc};
@@ -465,9 +460,12 @@ impl TwoLevelBvh {
                 let roots = leaves.iter().map(|leaf| leaf.root);
                 let roots: Vec<BvhNode> = roots.collect();
                 let depths: Vec<u32> = leaves.iter().map(|leaf| leaf.depth).collect();
-                let is_shallow = |tree: &Vec<BvhNode>| deepest(tree, &depths) <= MAX_DEPTH;
-                let tree = top_by_ploc(&roots).filter(is_shallow);
-                let tree = tree.unwrap_or_else(|| median::over_boxes(&roots));
+                let tree = over_boxes(&roots, Split::ByArea);
+                let tree = if deepest(&tree, &depths) <= MAX_DEPTH {
+                    tree
+                } else {
+                    over_boxes(&roots, Split::ByCount)
+                };
                 let place = |node: &BvhNode| match node.count {
                     0 => BvhNode {
                         first: self.top.start as u32 + node.first - 1,
@@ -519,35 +517,6 @@ fn triangles(mesh: &Mesh, ids: &[u32]) -> Vec<Triangle> {
         Triangle { v0, v1, v2 }
     };
     ids.iter().map(triangle).collect()
-}
-
-/// Builds a tree over at least two boxes, each a leaf whose `first` is its number; `None` where
-/// that has nothing to compare.
-fn top_by_ploc(roots: &[BvhNode]) -> Option<Vec<BvhNode>> {
-    let corners = roots.iter().flat_map(|root| [root.min, root.max]);
-    measurable(bounds(corners.map(Vec3::from))).then_some(())?;
-    let boxes = roots.iter().map(|root| Aabb {
-        min: Vec3A::from(root.min),
-        max: Vec3A::from(root.max),
-    });
-    let boxes: Vec<Aabb> = boxes.collect();
-    let tree = PlocBuilder::with_capacity(boxes.len()).build(
-        PlocSearchDistance::Medium,
-        &boxes,
-        (0..boxes.len() as u32).collect(),
-        SortPrecision::U64,
-        0,
-    );
-    let node = |node: &obvhs::bvh2::node::Bvh2Node| BvhNode {
-        min: node.aabb.min.into(),
-        first: match node.prim_count {
-            0 => node.first_index,
-            _ => tree.primitive_indices[node.first_index as usize],
-        },
-        max: node.aabb.max.into(),
-        count: node.prim_count,
-    };
-    Some(tree.nodes.iter().map(node).collect())
 }
 
 /// The depth of a top level together with the trees that are its leaves.

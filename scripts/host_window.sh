@@ -18,7 +18,7 @@ save rt 60 rays
 # Number of pixels of the ground in shadow. They see the sky alone, so all have one color.
 in_shadow() {
     local count
-    count=$(convert "$1" -crop 320x200+0+0 +repage -alpha off -fill black +opaque '#5d5d59' \
+    count=$(convert "$1" -alpha off -fill black +opaque '#5d5d59' \
         -fill white -opaque '#5d5d59' -format '%[fx:round(mean*w*h)]' info:)
     echo "${count%%.*}"
 }

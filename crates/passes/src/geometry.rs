@@ -483,7 +483,7 @@ impl Geometry {
     /// The ranges of positions that are others than in a version of the shape.
     pub fn positions_since(&self, version: u64, mesh: &Mesh) -> Vec<Range<usize>> {
         if version < self.begun {
-            return whole(mesh.positions.len());
+            return all(mesh.positions.len());
         }
         let moved = self.pieces.iter().filter(|piece| piece.moved > version);
         moved.map(|piece| piece.ranges(mesh)[0].clone()).collect()
@@ -492,7 +492,7 @@ impl Geometry {
     /// The ranges of normals that are others than in a version of the shape.
     pub fn normals_since(&self, version: u64, mesh: &Mesh) -> Vec<Range<usize>> {
         if version < self.begun {
-            return whole(mesh.normals.len());
+            return all(mesh.normals.len());
         }
         let moved = self.pieces.iter().filter(|piece| piece.moved > version);
         moved.map(|piece| piece.ranges(mesh)[1].clone()).collect()
@@ -501,7 +501,7 @@ impl Geometry {
     /// The ranges of triangles that have other corners than in a version of the winding.
     pub fn triangles_since(&self, version: u64, mesh: &Mesh) -> Vec<Range<usize>> {
         if version < self.begun {
-            return whole(mesh.triangles.len());
+            return all(mesh.triangles.len());
         }
         let turned = self.pieces.iter().filter(|piece| piece.turned > version);
         let turned = turned.map(|piece| piece.triangles(mesh));
@@ -604,8 +604,8 @@ impl Geometry {
             version,
         });
         Fitted {
-            nodes: whole(tree.nodes.len()),
-            primitives: whole(tree.primitives.len()),
+            nodes: all(tree.nodes.len()),
+            primitives: all(tree.primitives.len()),
             tree,
             how: How::Made,
         }
@@ -748,6 +748,11 @@ impl Piece {
     }
 }
 
+/// The range of a whole list.
+fn all(count: usize) -> Vec<Range<usize>> {
+    std::iter::once(0..count).collect()
+}
+
 /// Lengthens a list by so many items; the range of the new ones.
 fn lengthened<T: Clone>(list: &mut Vec<T>, by: usize, item: T) -> Range<usize> {
     let before = list.len();
@@ -788,9 +793,4 @@ pub(crate) fn nodes_to_walk(tree: &TwoLevelBvh) -> &[BvhNode] {
     } else {
         &tree.nodes
     }
-}
-
-/// One range of this many items, as a list.
-fn whole(count: usize) -> Vec<Range<usize>> {
-    std::iter::once(0..count).collect()
 }

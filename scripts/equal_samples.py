@@ -37,14 +37,15 @@ WITHIN = [
     (r"lit == TOO_MANY\);", r"lit == TOO_MANY || was_asked);"),
     (r"^struct Answer", r"var<private> was_asked: bool = false;\n\nstruct Answer"),
 ]
+# Rays are never chosen for all receivers.
+NO_RAYS = [(r"if lists > f32\(params\.samples\)", "if lists < 0.0")]
 LISTS = """(
     format: 3,
     extends: "light_buffer_area.ron",
     lights: [directional, spot, point],
     passes: [
-        Remove(pass: "weigh.choose_lists"),
-        Change(pass: "bin_casters.layer.bin", dispatch: Over("scene.indices.count / 3")),
-        Change(pass: "test_samples", shader: "leave_to_rays"),
+        Change(pass: "weigh.choose_lists", shader: "choose_no_rays"),
+        Change(pass: "test_samples", shader: "leave_unsure"),
     ],
 )
 """
@@ -75,8 +76,12 @@ def replaced(text, pairs, where):
 
 def write_lists(folder):
     """The document of `light_buffer_area` that shows what lies within the bound."""
-    shader = (ROOT / "shaders/test_samples.wgsl").read_text()
-    (folder / "leave_to_rays.wgsl").write_text(replaced(shader, WITHIN, "test_samples.wgsl"))
+    for name, own, pairs in (
+        ("test_samples", "leave_unsure", WITHIN),
+        ("choose_lists", "choose_no_rays", NO_RAYS),
+    ):
+        shader = (ROOT / f"shaders/{name}.wgsl").read_text()
+        (folder / f"{own}.wgsl").write_text(replaced(shader, pairs, f"{name}.wgsl"))
     (folder / "lists.ron").write_text(LISTS)
     return folder / "lists.ron"
 

@@ -127,7 +127,7 @@ fn many_casters_are_searched_by_the_hierarchy_with_the_same_answer() {
         let end = if strip == 199 { 50.0 } else { at(strip + 1) };
         add_rectangle(&mut strips, [at(strip), end], 1.0, [-30.0, 30.0]);
     }
-    let of = |mesh: &Mesh| area(mesh, (FROM_ABOVE, 100.0), 64, OracleMode::Exact).1;
+    let of = |mesh: &Mesh| area(mesh, (FROM_ABOVE, 85.0), 64, OracleMode::Exact).1;
     let (strips, whole) = (of(&strips), of(&half_plane()));
     let left = |area: &AreaVisibility| -> Vec<f32> {
         area.shares
@@ -174,7 +174,7 @@ fn a_receiver_within_the_lights_ball_asks_the_hierarchy() {
 
 #[test]
 fn what_faces_away_from_the_lights_centre_sees_none_of_it() {
-    let (truth, area) = area(&half_plane(), (DVec3::Y, 170.0), 16, OracleMode::Exact);
+    let (truth, area) = area(&half_plane(), (DVec3::Y, 85.0), 16, OracleMode::Exact);
     assert!(
         truth
             .classes

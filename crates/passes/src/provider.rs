@@ -70,6 +70,8 @@ use std::{ops::Range, sync::Arc, time::Instant};
 /// wgpu cannot bind a buffer of size zero. An array of an empty scene therefore holds one zero
 /// item, and its hierarchy one leaf around a triangle without area, which no ray hits.
 /// [`Describe::describe`] still says 0 items, so that nothing is drawn.
+///
+/// [`Adjacency::opposite`]: skiagraph_scene::Adjacency::opposite
 #[derive(Clone)]
 pub struct SceneProvider {
     pub(crate) scene: Arc<Scene>,

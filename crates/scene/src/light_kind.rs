@@ -131,13 +131,22 @@ impl LightKind {
         }
     }
 
+    /// Returns the radius of a spot or point light, a length of the scene; `None` for a directional
+    /// light.
+    pub fn radius(&self) -> Option<f64> {
+        match self {
+            Self::Directional(_) => None,
+            Self::Spot(SpotLight { radius, .. }) | Self::Point(PointLight { radius, .. }) => {
+                Some(*radius)
+            }
+        }
+    }
+
     /// Returns true if the light has an extent, so that its shadows have a penumbra.
     pub fn has_extent(&self) -> bool {
         match self {
             Self::Directional(light) => light.has_extent(),
-            Self::Spot(SpotLight { radius, .. }) | Self::Point(PointLight { radius, .. }) => {
-                *radius > 0.0
-            }
+            _ => self.radius().is_some_and(|radius| radius > 0.0),
         }
     }
 

@@ -33,7 +33,7 @@ use skiagraph_reference::{
     shimmer::{Seen, same_receivers},
     texels, wrong_surfaces,
 };
-use skiagraph_scene::{Camera, LightKind, PointLight, SpotLight};
+use skiagraph_scene::{Camera, LightKind};
 use std::rc::Rc;
 
 /// The graph that every comparison draws first, as far as its output `primitive` needs: which one
@@ -217,10 +217,8 @@ impl<'a> GroundTruthView<'a> {
     /// answered as if the rest of the ball were not there. 0 for a directional light and for one
     /// without extent.
     pub fn inside_light(&self) -> u64 {
-        let radius = match self.light {
-            LightKind::Directional(_) => return 0,
-            LightKind::Spot(SpotLight { radius, .. })
-            | LightKind::Point(PointLight { radius, .. }) => radius,
+        let Some(radius) = self.light.radius() else {
+            return 0;
         };
         let classes = self.ground_truth.pixels.classes.iter().enumerate();
         let facing = classes.filter(|(_, class)| radius > 0.0 && class.faces_light());

@@ -47,7 +47,7 @@ use crate::wording::{length, plural, size, thousands};
 use skiagraph_graph::Plan;
 use skiagraph_passes::SceneProvider;
 use skiagraph_reference::{Oracle, PixelCounts};
-use skiagraph_scene::{LightKind, PointLight, Scene, SpotLight};
+use skiagraph_scene::Scene;
 use std::{
     cell::{OnceCell, RefCell},
     ops::Range,
@@ -588,11 +588,7 @@ fn unlit(view: &str, pixels: &PixelCounts) -> Option<String> {
 /// Warns of surfaces within a lamp, which methods answer by a disk that is not all of it.
 fn within_lamp(view: &ViewOrPath, scene: &Scene, pixels: u64) -> Option<String> {
     let kind = view.light(scene);
-    let (LightKind::Spot(SpotLight { radius, .. }) | LightKind::Point(PointLight { radius, .. })) =
-        kind
-    else {
-        return None;
-    };
+    let radius = kind.radius()?;
     let lights = view.own_light().into_iter().chain(&scene.lights);
     let light = lights.into_iter().find(|light| light.kind == kind);
     let light = light.map_or_else(

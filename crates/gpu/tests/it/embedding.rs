@@ -150,7 +150,7 @@ impl Provider for Number {
         _: &wgpu::Queue,
     ) -> Result<wgpu::Buffer, ProviderError> {
         if name == "host.unused" {
-            return Err(ProviderError::new("nobody should ask for it".to_owned()));
+            return Err(ProviderError::new("no pass reads it".to_owned()));
         }
         if !self.is_there {
             return Err(ProviderError::new("it is still loading".to_owned()));

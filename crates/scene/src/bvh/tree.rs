@@ -167,17 +167,7 @@ impl Bvh {
         }
         for index in self.order().into_iter().rev() {
             let node = self.nodes[index as usize];
-            let (first, count) = (node.first as usize, node.count as usize);
-            let (min, max) = if count == 0 {
-                let [a, b] = [self.nodes[first], self.nodes[first + 1]];
-                let low = Vec3::from(a.min).min(b.min.into());
-                (low, Vec3::from(a.max).max(b.max.into()))
-            } else {
-                let primitives = self.primitives[first..first + count].iter();
-                let corners = primitives.flat_map(|&id| mesh.triangles[id as usize]);
-                let places = corners.map(|corner| mesh.positions[corner as usize]);
-                bounds(places).unwrap_or_default()
-            };
+            let (min, max) = fitted_box(&node, &self.nodes, &self.primitives, mesh);
             let node = &mut self.nodes[index as usize];
             (node.min, node.max) = (min.into(), max.into());
         }
@@ -231,6 +221,24 @@ pub(super) fn cost_of(node: &BvhNode) -> f64 {
 pub(super) fn area(node: &BvhNode) -> f64 {
     let size = Vec3::from(node.max).as_dvec3() - Vec3::from(node.min).as_dvec3();
     size.x * size.y + size.y * size.z + size.z * size.x
+}
+
+/// Returns the box of a node: of its triangles, or around its children's boxes.
+pub(super) fn fitted_box(
+    node: &BvhNode,
+    nodes: &[BvhNode],
+    primitives: &[u32],
+    mesh: &Mesh,
+) -> (Vec3, Vec3) {
+    let (first, count) = (node.first as usize, node.count as usize);
+    if count == 0 {
+        let [a, b] = [nodes[first], nodes[first + 1]];
+        let low = Vec3::from(a.min).min(b.min.into());
+        return (low, Vec3::from(a.max).max(b.max.into()));
+    }
+    let primitives = primitives[first..first + count].iter();
+    let corners = primitives.flat_map(|&id| mesh.triangles[id as usize]);
+    bounds(corners.map(|corner| mesh.positions[corner as usize])).unwrap_or_default()
 }
 
 #[cfg(test)]

@@ -4,10 +4,9 @@
 use super::{
     node::BvhNode,
     top::{Split, over_boxes},
-    tree::{Bvh, MAX_DEPTH, area, cost_of},
+    tree::{Bvh, MAX_DEPTH, area, cost_of, fitted_box},
 };
-use crate::mesh::{Mesh, bounds};
-use glam::Vec3;
+use crate::mesh::Mesh;
 use obvhs::triangle::Triangle;
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
@@ -413,17 +412,7 @@ impl TwoLevelBvh {
                 0 => &at.root,
                 _ => &self.nodes[at.nodes.start + index - 1],
             };
-            let (first, count) = (node.first as usize, node.count as usize);
-            let (min, max) = if count == 0 {
-                let [a, b] = [self.nodes[first], self.nodes[first + 1]];
-                let low = Vec3::from(a.min).min(b.min.into());
-                (low, Vec3::from(a.max).max(b.max.into()))
-            } else {
-                let primitives = self.primitives[first..first + count].iter();
-                let corners = primitives.flat_map(|&id| mesh.triangles[id as usize]);
-                let places = corners.map(|corner| mesh.positions[corner as usize]);
-                bounds(places).unwrap_or_default()
-            };
+            let (min, max) = fitted_box(node, &self.nodes, &self.primitives, mesh);
             let node = match index {
                 0 => &mut at.root,
                 _ => &mut self.nodes[at.nodes.start + index - 1],

@@ -75,7 +75,7 @@ impl Provided {
     }
 
     /// Description of work for the CPU, which a [`CpuCall`](crate::step::CpuCall) calls and no
-    /// shader can bind.
+    /// shader can bind; it has no items and no kind.
     pub const CPU_WORK: Self = Self {
         binding: ProvidedBinding::CpuWork,
         ..Self::ACCELERATION_STRUCTURE
@@ -92,10 +92,11 @@ pub enum ProvidedBinding {
     /// The whole array or some of its items, as `var<storage, read>`, or one of its items, such as
     /// `lights[2]`, as `var<uniform>`.
     Both,
-    /// The acceleration structure, as `acceleration_structure`, for ray queries. The resource is
-    /// not a buffer.
+    /// The whole acceleration structure, as `acceleration_structure`, for ray queries. The resource
+    /// is not a buffer.
     AccelerationStructure,
-    /// By no shader: a [`CpuCall`](crate::step::CpuCall) calls it. The resource is not a buffer.
+    /// In no way: the resource is work for the CPU, which a [`CpuCall`](crate::step::CpuCall)
+    /// calls. It is not a buffer.
     CpuWork,
 }
 

@@ -92,7 +92,8 @@ pub enum ResourceKind {
     Provided(Provided),
     /// An acceleration structure, for ray queries, that the host's provider makes.
     AccelerationStructure,
-    /// Work for the CPU that the host's provider makes.
+    /// Work for the CPU that the host's provider makes, called by a
+    /// [`CpuCall`](crate::step::CpuCall).
     CpuWork,
     /// The uniform buffer `frame`, which is filled before each frame: index, seconds and flags
     /// ([`FRAME_BYTES`]).

@@ -1,7 +1,6 @@
 //! Steps of passes: draws, dispatches, copies, clears and work for the CPU. The types are generic
-//! over a [`Stage`]: a
-//! step refers to resources and shaders by name as a pass kind lowers it, by id once it is linked,
-//! and by GPU handle once it is made on a device.
+//! over a [`Stage`]: a step refers to resources and shaders by name when a pass kind makes it, by
+//! id in a plan, and by GPU handle in an executor.
 //!
 //! A pass kind of a host adds steps in [`PassKind::lower`](crate::PassKind::lower):
 //!
@@ -360,20 +359,22 @@ pub struct CpuCall<S: Stage> {
     /// Provided resource that does the work: one that is described as
     /// [`CPU_WORK`](crate::Provided::CPU_WORK).
     pub work: S::Work,
-    /// Name of what the work is to do, as an entry point is that of a shader.
+    /// Name of the task to do, one of those that the work knows. `CpuWork::run` of `skiagraph-gpu`
+    /// gets it.
     pub entry: String,
-    /// Buffer of one u32, the number of items; those beyond the end of a buffer are left out.
+    /// Buffer of one u32: the number of items that the work reads of each buffer and writes. Items
+    /// beyond the end of the shortest buffer are left out.
     pub count: S::Operand,
-    /// Buffers whose items the work reads.
+    /// Buffers whose first `count` items the work reads.
     pub reads: Vec<CpuItems<S>>,
-    /// Buffer whose items the work writes, all of them.
+    /// Buffer whose first `count` items the work writes, every one of them.
     pub writes: CpuItems<S>,
 }
 
-/// Buffer of a [`CpuCall`].
+/// Buffer whose items a [`CpuCall`] reads or writes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CpuItems<S: Stage> {
-    /// The buffer.
+    /// The buffer, whole or in part.
     pub buffer: S::Operand,
     /// Size of an item in bytes, a multiple of 4.
     pub bytes: u64,

@@ -178,8 +178,8 @@ impl<'a> Series<'a> {
         self.planned.len()
     }
 
-    /// Returns all planned runs with nothing measured, in the order of views, in these of
-    /// viewports, in these of methods.
+    /// Returns all planned runs, without measurements. They are ordered by view, then by viewport,
+    /// then by method, each in the order of the [`Comparison`].
     pub fn planned_runs(&self) -> &[Run] {
         &self.planned
     }
@@ -407,8 +407,8 @@ impl<'a> Series<'a> {
         self.save(pictures)
     }
 
-    /// Returns the finished runs, and behind them the kept runs in the folder that are not of this
-    /// comparison.
+    /// Returns the results of this comparison's finished runs, followed by the earlier runs in the
+    /// folder that are kept although this comparison does not measure them ([`Kept`]).
     pub fn whole(&self) -> Results {
         match &self.folder {
             Some(folder) => folder.whole(&self.results),

@@ -41,7 +41,8 @@ pub struct Tuned {
     pub is_whole: bool,
     /// Error of the defaults on the views of `chosen_on`, from 0 to 1: the share of the pixels
     /// facing the light that are wrong, without those whose right answer rounding may flip; under
-    /// lights with an extent the mean square error of the shares of light.
+    /// lights [with an extent](crate#terms) the mean square error of the [shares of
+    /// light](crate#terms).
     pub default_error: f64,
     /// Error of the tuned setting on the views of `chosen_on`, in the same unit.
     pub error: f64,

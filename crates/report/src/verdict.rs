@@ -16,7 +16,7 @@ pub(crate) const MAX_BAND: f64 = 0.01;
 pub struct Verdict {
     /// Index of the row that is fastest in frames in which every pass runs, among those without a
     /// wrong pixel outside the band (the pixels whose answer rounding decides). `None` if there is
-    /// no such row, or shares of light are compared.
+    /// no such row, or [shares of light](skiagraph_compare#terms) are compared.
     pub fastest_exact: Option<usize>,
     /// Indices of the recommended rows, or if none is right enough of the least wrong ones: the
     /// fastest, then those whose times cannot be told apart from it. Times are of frames in which

@@ -13,8 +13,8 @@ pub enum Error {
     Unknown {
         /// Name that was requested.
         name: String,
-        /// Names of the resources that every provider has, without those of single lights and their
-        /// lists.
+        /// Names of the resources that every provider has; `lights`, `light_areas` and their items,
+        /// such as `lights[2]`, are not listed.
         known: Vec<String>,
     },
     /// The mesh has more triangles than an acceleration structure of the device holds, so the

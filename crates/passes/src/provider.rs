@@ -423,9 +423,9 @@ impl SceneProvider {
     }
 
     /// Returns the lights that the resources `lights` and `light_areas` describe: those of
-    /// [`set_lights`](Self::set_lights), if it was called. Otherwise these are all lights of the
-    /// scene in its order (its default light if it has none), or the light of a view alone, if
-    /// [`set_view`](Self::set_view) was given a view whose own light is none of these.
+    /// [`set_lights`](Self::set_lights), if it was called. Otherwise the list has all lights of the
+    /// scene, in the scene's order (its default light if it has none); or only a view's own light,
+    /// if [`set_view`](Self::set_view) was given a view with a light that the scene does not list.
     pub fn lights(&self) -> &[LightKind] {
         &self.versions.lights.now
     }
@@ -512,9 +512,9 @@ impl SceneProvider {
 
     /// Moves each part of the mesh: `maps[n]` takes part number n from its original place, as given
     /// to [`set_parts`](Self::set_parts) or [`from_parts`](Self::from_parts), to its new place in
-    /// world space. Only parts whose map has changed are moved, and equal maps cost nothing. The
-    /// triangles of a part that its map mirrors are wound the other way, as in glTF, so that its
-    /// outside stays outside.
+    /// world space. Only parts whose map has changed are moved, and equal maps cost nothing. If a
+    /// map mirrors its part, the winding of the part's triangles is reversed (the rule of glTF), so
+    /// that the outside stays the front face.
     ///
     /// # Errors
     /// [`Error::NoParts`] if the mesh has no parts; [`Error::Move`] if the number of maps is not
@@ -538,8 +538,9 @@ impl SceneProvider {
     }
 
     /// Returns the handles of the mesh's parts, in the order in which
-    /// [`set_transforms`](Self::set_transforms) takes their maps: those of
-    /// [`set_parts`](Self::set_parts), then those that were added later.
+    /// [`set_transforms`](Self::set_transforms) takes their maps: first the parts that
+    /// [`set_parts`](Self::set_parts) or [`from_parts`](Self::from_parts) was given, then the parts
+    /// that were [added](Self::add_part) later.
     pub fn parts(&self) -> impl Iterator<Item = PartId> {
         self.geometry.parts().iter().copied()
     }
@@ -562,8 +563,8 @@ impl SceneProvider {
     /// part is uploaded and gets a hierarchy, plans stay valid, and its triangles get primitive ids
     /// that are unused or that a removed part had. If it does not fit, the mesh grows by a half,
     /// all of it is uploaded, and graphs must be planned anew, as after
-    /// [`set_mesh`](Self::set_mesh). In a scene with materials, those of all parts are uploaded,
-    /// and a graph that reads `scene.materials` or `scene.uvs` must be planned anew.
+    /// [`set_mesh`](Self::set_mesh). In a scene with materials, the materials of all parts are
+    /// uploaded, and a graph that reads `scene.materials` or `scene.uvs` must be planned anew.
     ///
     /// # Errors
     /// [`Error::NoParts`] if the mesh has no parts, [`Error::Move`] for a map that cannot move the

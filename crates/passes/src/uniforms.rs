@@ -117,13 +117,14 @@ pub struct LightUniform {
     /// detail of a far-off scene.
     pub centre: Vec3,
     /// Largest sum of |matrix entry · coordinate| in the computation of clip x or clip y, over all
-    /// points of the scene's bounding box. It bounds the rounding error of clip x and y, which is a
-    /// share of it. 0 for other lights than directional ones.
+    /// points of the scene's bounding box. The f32 rounding error of clip x and y is proportional
+    /// to it. 0 for spot and point lights.
     pub corner_across: f32,
     /// World units per unit of the light's clip x, y and z; for a spot light, at the distance
     /// `range`. For a point light each is `range`.
     pub extent: Vec3,
-    /// The same sum as `corner_across`, for clip z. 0 for other lights than directional ones.
+    /// Largest sum of |matrix entry · coordinate| in the computation of clip z, over the same
+    /// points as for `corner_across`. 0 for spot and point lights.
     pub corner_along: f32,
     /// Position of a spot or point light, world space, rounded to f32; 0 for a directional light.
     pub position: Vec3,

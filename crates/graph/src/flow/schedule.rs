@@ -24,8 +24,8 @@ pub struct Schedule {
     /// them.
     pub aliases: Aliases,
     /// Textures and buffers of the graph that a live pass also reads as they were in the frame
-    /// before (`.previous`). Two of each are made on the device, which take turns from frame to
-    /// frame.
+    /// before (`.previous`). The device holds two of each. A frame writes one and reads the other
+    /// as `.previous`; in the next frame they change places.
     pub ping_pong: BTreeSet<ResourceId>,
 }
 

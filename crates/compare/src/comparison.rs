@@ -113,8 +113,8 @@ pub struct Comparison {
     /// Limits on frame time, wrong pixels and memory. They change no measurement: the results
     /// record them, and a report recommends no method that exceeds one.
     pub budgets: Budgets,
-    /// Figures that others have published, such as those of a paper. Those for the scene, view,
-    /// viewport, map size and preset of a run are shown beside the run's own figures.
+    /// Published figures, such as those of a paper. Figures for the scene, view, viewport, map size
+    /// and preset of a run are shown beside the run's own.
     pub published: Vec<Row>,
     /// Command line that the results record, so that the measurement can be repeated; `None` to
     /// record none.

@@ -37,7 +37,8 @@ pub struct Raster {
     pub size: [u32; 2],
     /// Numbers per pixel: 1, or 3 if red, green and blue differ somewhere.
     pub channels: usize,
-    /// Numbers as the file holds them: those of a pixel together, row by row from the top left.
+    /// Numbers as the file holds them, pixel after pixel, row by row from the top left. A pixel has
+    /// `channels` numbers.
     pub values: Vec<f64>,
     /// Number that stands for 1 in a format of integers, such as 255; `None` for floats, in which 1
     /// stands for 1.

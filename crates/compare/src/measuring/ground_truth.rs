@@ -105,8 +105,8 @@ impl PrimaryVisibility {
     }
 }
 
-/// Counts the [reference](crate#terms)'s pixels in the way in which [`Statistics::judged`] counts
-/// those of a method, as if a method had given exactly the reference's answers.
+/// Counts the [reference](crate#terms)'s pixels as [`Statistics::judged`] would count the pixels of
+/// a method that gave exactly the reference's answers.
 pub fn own_counts(truth: &GroundTruthPixels) -> Statistics {
     let (visibility, status) = (truth.visibility(), truth.status());
     // Its own buffers are as large as it is and hold values that are allowed.

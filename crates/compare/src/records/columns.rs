@@ -424,7 +424,7 @@ pub struct Column {
     /// Head of the column.
     pub head: &'static str,
     /// Name of the column's quantity in files of published figures, such as `wrong_percent`; empty
-    /// if such files cannot have it.
+    /// if such files cannot have the column's quantity.
     pub quantity: &'static str,
     source: &'static Source,
 }

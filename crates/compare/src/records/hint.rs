@@ -22,7 +22,8 @@ pub struct Hint {
     /// The method with the setting to try and what `--set` gave to it, as an argument of `compare`:
     /// `nsm@cull=none,slope_bias=1`.
     pub set: String,
-    /// Number of wrong pixels with that setting, counted as `wrong` is.
+    /// Number of wrong pixels with the setting `set`, without those whose right answer rounding may
+    /// flip.
     pub wrong_then: u64,
 }
 

@@ -52,8 +52,8 @@ pub struct Results {
     /// The scene that was drawn.
     pub scene: Scene,
     /// Mode of the [reference](crate#terms)'s shadow rays: `exact` (from the visible surface, whose
-    /// own triangle is excluded) or `offset:LENGTH` (the origin is moved towards the light by so
-    /// many scene units).
+    /// own triangle is excluded) or `offset:LENGTH` (the origin is moved towards the light by
+    /// LENGTH scene units).
     pub oracle: String,
     /// Number of timed frames of a still view. Of a camera path each frame is timed.
     pub frames: u32,
@@ -72,7 +72,7 @@ pub struct Results {
     /// One entry per view, viewport, preset and map size, in this order.
     pub runs: Vec<Run>,
     /// Results of other machines, adapters, scenes or protocols that `merge` put into the same
-    /// file; absent where all runs were measured alike. None of them has others of its own.
+    /// file; absent where all runs were measured alike. The `others` of each entry are empty.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub others: Vec<Results>,
 }
@@ -129,7 +129,8 @@ impl Machine {
             .is_some_and(|load| load >= 0.5 * f64::from(self.cores))
     }
 
-    /// True if both are the same machine, whatever its load was.
+    /// True if `self` and `other` have the same host name, processor and number of cores; their
+    /// loads may differ.
     pub fn is_same(&self, other: &Self) -> bool {
         let Self {
             host,
@@ -228,8 +229,8 @@ pub struct Run {
     /// All params of the graph, defaults included, with the values that it ran with.
     pub params: BTreeMap<String, serde_json::Value>,
     /// Hash of everything but the params that the run depends on: the files of the graph, its
-    /// includes and shaders; those of the graph that finds the visible triangles; mesh, light and
-    /// view.
+    /// includes and shaders; the files of the graph that finds the visible triangles; the mesh,
+    /// light and view.
     pub fingerprint: String,
     /// Day on which the run was measured, `2026-11-21` (UTC).
     pub date: String,
@@ -245,7 +246,7 @@ pub struct Run {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub commit: Option<String>,
     /// Machine on which the run was measured, with its load at the start of the comparison; absent
-    /// in results of older versions, whose machine is that of the results.
+    /// in results of older versions, for which [`Results::machine`] holds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub machine: Option<Machine>,
     /// Record of the search that chose these params; absent for a method that was not tuned.
@@ -272,8 +273,8 @@ pub struct Run {
     /// The measurements; absent where the method could not run.
     #[serde(flatten)]
     pub measured: Option<Measured>,
-    /// Reason why the method could not run on this adapter, or its outputs are not those of a
-    /// shadow method; absent where it was measured.
+    /// Reason why the method could not run on this adapter, or its outputs do not have the size,
+    /// format or values of a shadow method's; absent where it was measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unavailable: Option<String>,
     /// Figures that others have published about the run, from the files of `--beside`.
@@ -320,8 +321,8 @@ impl Run {
         Some(Part { count: shadow, of })
     }
 
-    /// True if both runs have the same preset, view, viewport and map size, so that one replaces
-    /// the other in results.
+    /// True if `self` and `other` have the same preset, view, viewport and map size. Results keep
+    /// only one of two such runs.
     pub fn is_in_place_of(&self, other: &Self) -> bool {
         (&self.preset, &self.view, self.viewport, self.map_size)
             == (&other.preset, &other.view, other.viewport, other.map_size)
@@ -589,8 +590,8 @@ impl Measured {
     }
 
     /// Returns the number of wrong pixels outside the band (the pixels whose right answer rounding
-    /// may flip). For a method that reuses results of earlier frames it is that of the worst
-    /// picture of its steady state; the mean, by which reports rank, is in
+    /// may flip). For a method that reuses results of earlier frames it counts the worst picture of
+    /// its steady state; the mean over all these pictures, by which reports rank, is in
     /// [`steady`](Self::steady).
     pub fn wrong_outside_band(&self) -> u64 {
         self.wrong.total.saturating_sub(self.wrong.in_band)
@@ -646,11 +647,13 @@ pub struct Images {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub texels: Option<String>,
     /// File name of the picture of the factor of the texels per pixel that distances and the map's
-    /// resolution cause (perspective aliasing); absent as `texels` is.
+    /// resolution cause (perspective aliasing); absent where the graph has no output
+    /// `texel_density`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub perspective: Option<String>,
     /// File name of the picture of the factor of the texels per pixel that the surface's angles to
-    /// eye and light cause (projection aliasing); absent as `texels` is.
+    /// eye and light cause (projection aliasing); absent where the graph has no output
+    /// `texel_density`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub projection: Option<String>,
 }

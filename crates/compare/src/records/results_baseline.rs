@@ -334,7 +334,7 @@ impl CellChange {
     }
 
     /// Returns the verdict on the method on this view: worse if errors or frame times are worse
-    /// than in the baseline, otherwise better if one of both is better.
+    /// than in the baseline, otherwise better if errors or frame times are better.
     pub fn verdict(&self) -> Change {
         let both = [self.errors, self.times()];
         let is = |change: &Change| both.contains(change);

@@ -35,7 +35,8 @@ pub struct Steady {
 /// of the worst picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Cycle {
-    /// Number of pictures: those of one period, or 16 if the picture did not repeat.
+    /// Number of pictures over which the means are taken: one period, or 16 if the picture did not
+    /// repeat.
     pub pictures: u32,
     /// Mean number of all wrong pixels of a picture.
     pub wrong_mean: f64,

@@ -23,7 +23,8 @@ use std::collections::BTreeMap;
 /// Record of a search for good settings of one method: what was found, and on which views.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Tuned {
-    /// Name of the method as it was before the search: `nsm`. Its runs stand beside the tuned ones.
+    /// Name of the method before the search, such as `nsm`. The results have runs of that method,
+    /// too, beside the tuned ones.
     pub of: String,
     /// Values of the params that were set for all methods of the comparison (`--set`), by name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]

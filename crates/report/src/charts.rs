@@ -224,7 +224,7 @@ pub fn growth(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, Compa
 }
 
 /// Builds the chart of errors over the frames of camera paths: a panel for each folder, path, light
-/// and viewport, and a line for each method and map size. The error is that of [`path_panels`].
+/// and viewport, and a line for each method and map size. The error is defined at [`path_panels`].
 /// `viewport` (pixels) limits the chart to one viewport; `None` draws all.
 ///
 /// # Errors

@@ -110,8 +110,9 @@ impl Gate {
         lines
     }
 
-    /// Checks that the limit is of one of these pictures, and of a figure that pictures have. Its
-    /// `method` is the path of a picture, or its file name without the ending.
+    /// Checks that [`method`](Self::method) names one of the pictures `files` (its path, or its
+    /// file name without the ending), and that [`figure`](Self::figure) is one that judged pictures
+    /// have.
     ///
     /// # Errors
     /// Text that names the picture or the figure.

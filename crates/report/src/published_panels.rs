@@ -49,8 +49,7 @@ pub fn published<'a>(run: &'a Run, quantity: &str) -> Option<&'a Published> {
     figures.find(|figure| figure.quantity == quantity)
 }
 
-/// Grouping of the bars in a panel: by viewport, with a pair of panels for each map size, or the
-/// other way round.
+/// Grouping of the bars in panels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Groups {
     /// A group of bars for each viewport, a pair of panels for each map size.

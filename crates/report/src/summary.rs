@@ -354,9 +354,10 @@ fn median(times: &FrameTimes, by_wall: bool) -> Option<f64> {
     Some(times.spread(by_wall)?.median)
 }
 
-/// Combines those of `runs` in one viewport (pixels) into rows by method, setting and map size, the
-/// fastest first. Give it the runs under one light: it does not keep lights apart. Rows that could
-/// not run come last. A tuned method stands behind the one that it is a setting of.
+/// Combines the runs of `runs` that are in the viewport `viewport` (pixels) into rows by method,
+/// setting and map size, the fastest first. Give it the runs under one light: it does not keep
+/// lights apart. Rows that could not run come last. A tuned method stands behind the one that it is
+/// a setting of.
 pub fn rows<'a>(runs: impl IntoIterator<Item = &'a Run>, viewport: [u32; 2]) -> Vec<Row<'a>> {
     let mut cells: Vec<(String, Vec<&Run>)> = Vec::new();
     for run in runs.into_iter().filter(|run| run.viewport == viewport) {

@@ -83,8 +83,8 @@ pub fn verdict(rows: &[Row], budgets: &Budgets) -> Verdict {
     verdict
 }
 
-/// True if rounding decides the right answer of more than 1 % of the pixels facing the light, so
-/// that a verdict holds for the others only.
+/// True if rounding decides the right answer of more than 1 % of the pixels facing the light. A
+/// verdict then holds only for the rest of the pixels.
 pub fn is_conditioned(wrong: Wrong) -> bool {
     Condition::new(wrong).is_some()
 }

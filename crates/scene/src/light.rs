@@ -29,7 +29,8 @@ const WIDEST_DEGREES: f64 = 90.0;
 /// to wgpu clip space. Depth z in 0..1 grows away from the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightFit {
-    /// Matrix from world space to the light's clip space (affine: w stays 1).
+    /// Matrix from world space to the light's clip space: x and y from −1 to 1, z from 0 at the
+    /// side of the box towards the light to 1 at its far side. It is affine: w stays 1.
     pub view_projection: DMat4,
     /// World units per unit of light-space clip x, y and z: half the box's width, half its height,
     /// its whole depth.
@@ -96,7 +97,8 @@ impl DirectionalLight {
         self.fit_outline(&self.outline(points))
     }
 
-    /// Returns the outline of points in world space as the light sees them.
+    /// Returns the outline of points in world space as the light sees them, for
+    /// [`fit_outline`](Self::fit_outline).
     pub fn outline(&self, points: impl IntoIterator<Item = Vec3>) -> Outline {
         let forward = self.direction.normalize();
         let (right, up) = across(forward);
@@ -115,8 +117,8 @@ impl DirectionalLight {
         }
     }
 
-    /// Returns the box of [`fit`](Self::fit) around the points of an outline, which this light's
-    /// [`outline`](Self::outline) has made.
+    /// Returns the box that [`fit`](Self::fit) would return for the points of `outline`, which must
+    /// come from [`outline`](Self::outline) of a light with this direction.
     pub fn fit_outline(&self, outline: &Outline) -> LightFit {
         let forward = self.direction.normalize();
         let (right, up) = across(forward);

@@ -60,8 +60,8 @@ pub struct Towards {
     pub distance: f64,
 }
 
-/// Name of the only light of a scene whose scene file has the field `light` instead of the list
-/// `lights`.
+/// Name that a scene's light gets if the scene file has the field `light`, for a single light,
+/// instead of the list `lights`.
 pub const ONLY_LIGHT: &str = "light";
 
 /// A positional light farther from the origin is as good as directional, and f32 cannot square the
@@ -131,8 +131,8 @@ impl LightKind {
         }
     }
 
-    /// Returns the radius of a spot or point light, a length of the scene; `None` for a directional
-    /// light.
+    /// Returns the radius of a spot or point light in scene units, 0 if it has no extent; `None`
+    /// for a directional light.
     pub fn radius(&self) -> Option<f64> {
         match self {
             Self::Directional(_) => None,

@@ -51,8 +51,8 @@ impl Mesh {
         self.normal_indices[primitive as usize].map(|index| self.normals[index as usize].as_dvec3())
     }
 
-    /// Winds a triangle the other way: its second and third corner change places, with their
-    /// normals and texture coordinates.
+    /// Reverses the winding of triangle `primitive`: its second and third corner change places,
+    /// with their normals and texture coordinates.
     ///
     /// # Panics
     /// If `primitive` is not below `triangles.len()`.

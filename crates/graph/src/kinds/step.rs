@@ -84,8 +84,8 @@ impl Stage for Names {
 /// the step's pass uses.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Operand {
-    /// A material or input of the document, a resource that the host's provider describes, or a
-    /// part of one of these.
+    /// A material or input of the document, a resource that the host's [provider](crate#terms)
+    /// describes, or a part of one of these.
     Named(Reference),
     /// A buffer that only this pass uses, which [`Lowering::scratch`](crate::Lowering::scratch) has
     /// added.
@@ -351,9 +351,10 @@ pub enum Groups<S: Stage> {
     Indirect(S::Arguments),
 }
 
-/// Work of the CPU on the items of buffers, a [`Step`]. The frame waits for it: an executor ends
-/// the GPU's work before it, copies the items back, has the work done, and uploads what it wrote.
-/// Only `Executor::submit` of `skiagraph-gpu` runs passes with such a step.
+/// Work of the CPU on the [items](crate#terms) of buffers, a [`Step`]. The frame waits for it: an
+/// [executor](crate#terms) ends the GPU's work before it, copies the items back, has the work done,
+/// and uploads what it wrote. Only `Executor::submit` of `skiagraph-gpu` runs passes with such a
+/// step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CpuCall<S: Stage> {
     /// Provided resource that does the work: one that is described as
@@ -362,12 +363,12 @@ pub struct CpuCall<S: Stage> {
     /// Name of the task to do, one of those that the work knows. `CpuWork::run` of `skiagraph-gpu`
     /// gets it.
     pub entry: String,
-    /// Buffer of one u32: the number of items that the work reads of each buffer and writes. Items
-    /// beyond the end of the shortest buffer are left out.
+    /// Buffer of one u32: the number of [items](crate#terms) that the work reads of each buffer and
+    /// writes. Items beyond the end of the shortest buffer are left out.
     pub count: S::Operand,
-    /// Buffers whose first `count` items the work reads.
+    /// Buffers whose first `count` [items](crate#terms) the work reads.
     pub reads: Vec<CpuItems<S>>,
-    /// Buffer whose first `count` items the work writes, every one of them.
+    /// Buffer whose first `count` [items](crate#terms) the work writes, every one of them.
     pub writes: CpuItems<S>,
 }
 

@@ -33,7 +33,7 @@ pub struct LinkedPass {
     /// Full name with its place in the document: the name there, with the names of the groups and
     /// includes around the pass in front, `blur.x`, and the index of a repetition behind,
     /// `fill[0]`. An include without a name counts by the name of its file. `material@pass` for a
-    /// capture.
+    /// [capture](crate#terms).
     pub name: Located<String>,
     /// Kind of the pass, as the document writes it, such as `Compute`; [`CAPTURE`] for a pass that
     /// planning added.
@@ -71,8 +71,8 @@ impl LinkedPass {
 pub struct Access {
     /// Id of the resource that the access reads or writes.
     pub resource: ResourceId,
-    /// Part of the resource that the access reads or writes: mips and layers of a texture, or items
-    /// of a buffer.
+    /// Part of the resource that the access reads or writes: mips and layers of a texture, or
+    /// [items](crate#terms) of a buffer.
     pub part: SubresourceRange,
     /// True if the access reads its [`part`](Self::part) of the resource.
     pub reads: bool,
@@ -186,7 +186,7 @@ pub struct LinkedBinding {
 /// Resource or bytes that a [`LinkedBinding`] binds.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BindTarget {
-    /// A buffer, or a range of its items, bound as a uniform or storage buffer.
+    /// A buffer, or a range of its [items](crate#terms), bound as a uniform or storage buffer.
     Buffer(Target),
     /// A texture or a part of one, bound as a sampled or storage texture.
     Texture {

@@ -127,13 +127,14 @@ pub enum Error {
          or give it parts with `set_parts`"
     )]
     NoParts,
-    /// A part was named that the mesh does not have (any more).
+    /// The mesh has no part with the given handle: the part was removed, or belongs to another
+    /// mesh.
     #[error(
         "the mesh has no part {0:?}: it was removed, or is of a mesh that was replaced; \
          `SceneProvider::parts` lists those that there are"
     )]
     NoPart(
-        /// Handle of the part.
+        /// Handle that was given.
         PartId,
     ),
     /// A part of the mesh cannot be moved by the affine transform that was set for it, or the

@@ -156,8 +156,8 @@ impl<'a> Lowering<'a> {
     }
 
     /// Reports an error of kind `code` at the place of the expression `expr`, whose value is not
-    /// allowed. `what` is the message. As by [`report`](Self::report), it is ignored while a
-    /// document is loaded: substitutes of values need no check.
+    /// allowed. `what` is the message. It is ignored while a document is loaded, when expressions
+    /// have no value yet.
     pub fn report_value(&mut self, code: Code, expr: &Expr, what: impl Into<String>) {
         self.report(Diagnostic::error(code, what).at(expr.span.clone(), ""));
     }

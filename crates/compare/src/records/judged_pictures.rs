@@ -80,8 +80,9 @@ pub struct JudgedPicture {
     /// [unattributable](JudgedPictures::unattributable); none of them is in the
     /// [band](crate#terms).
     pub wrong_unattributable: u64,
-    /// Errors of the [shares of light](crate#terms), over all pixels facing the light;
-    /// `rmse_outside_band` and `soft` without those that are unattributable.
+    /// Errors of the [shares of light](crate#terms), over all pixels facing the light. The fields
+    /// `rmse_outside_band` and `soft` leave out pixels in the band and
+    /// [unattributable](JudgedPictures::unattributable) ones.
     pub graded: Graded,
     /// Distances of the wrong pixels, outside the [band](crate#terms) and attributable, from the
     /// edges of the [reference](crate#terms)'s shadows.

@@ -54,7 +54,7 @@ pub struct PointLight {
 /// Direction and distance from a point to a light, as [`LightKind::towards`] returns them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Towards {
-    /// Unit vector to the light; zero for a point at the light's position.
+    /// Unit vector to the light, world space; zero for a point at the light's position.
     pub direction: DVec3,
     /// Distance to the light, in scene units; infinite for a directional light.
     pub distance: f64,
@@ -150,7 +150,8 @@ impl LightKind {
         }
     }
 
-    /// Returns the position of a spot or point light, or `None` for a directional light.
+    /// Returns the position of a spot or point light, world space, or `None` for a directional
+    /// light.
     pub fn position(&self) -> Option<DVec3> {
         match self {
             Self::Directional(_) => None,
@@ -160,7 +161,7 @@ impl LightKind {
         }
     }
 
-    /// Returns the direction and distance from a world-space point to the light.
+    /// Returns the direction and distance from `point`, world space, to the light.
     pub fn towards(&self, point: DVec3) -> Towards {
         match (self, self.position()) {
             (Self::Directional(light), _) => Towards {

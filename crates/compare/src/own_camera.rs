@@ -24,17 +24,17 @@ const NEAR_TO_FAR: f64 = 1e4;
 /// Lengths are in the scene's units, positions and directions in world space.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct OwnCamera {
-    /// Position of the eye.
+    /// Position of the eye, world space.
     pub eye: Option<DVec3>,
-    /// Direction in which the eye looks, of any length above 0.
+    /// Direction in which the eye looks, world space, of any length above 0.
     pub direction: Option<DVec3>,
-    /// Up direction, of any length above 0.
+    /// Direction up in the picture, world space, of any length above 0.
     pub up: Option<DVec3>,
     /// Vertical field of view in degrees, between 0 and 180.
     pub fov_y_degrees: Option<f64>,
-    /// Distance of the near plane from the eye.
+    /// Distance of the near plane from the eye, in scene units.
     pub near: Option<f64>,
-    /// Distance of the far plane from the eye.
+    /// Distance of the far plane from the eye, in scene units.
     pub far: Option<f64>,
 }
 

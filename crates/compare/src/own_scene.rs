@@ -42,8 +42,8 @@ pub struct MeshSceneOptions {
     /// Parts of the camera of the view that is chosen for a file without cameras; `near` and `far`
     /// are ignored here.
     pub camera: OwnCamera,
-    /// Direction in which the light of a sun travels, for a file without lights; `None` chooses a
-    /// sun or a lamp.
+    /// Direction in which the light of a sun travels, world space, for a file without lights;
+    /// `None` chooses a sun or a lamp.
     pub sun: Option<DVec3>,
     /// True to add a ground, a square slab, below a mesh that has no floor.
     pub ground: bool,

@@ -290,8 +290,8 @@ pub struct ColorTarget<S: Stage> {
     /// Texture that a multisampled `target` is resolved into after the draw; `None` if it is not
     /// resolved.
     pub resolve: Option<S::Attachment>,
-    /// Red, green, blue and alpha that the target is cleared to before the draw; `None` keeps the
-    /// target's content.
+    /// Red, green, blue and alpha that the target is cleared to before the draw, linear, or whole
+    /// numbers for an integer format; `None` keeps the target's content.
     pub clear: Option<[f64; 4]>,
     /// Blending of the drawn colour with the colour in the target; `None` replaces the colour in
     /// the target.

@@ -33,8 +33,8 @@
 //! - *Primitive*: a triangle of the mesh. Its *id* is its index in
 //!   [`Mesh::triangles`](skiagraph_scene::Mesh::triangles).
 //! - *G-buffer*: the primitive id that each pixel shows, row by row from the top left.
-//! - *Receiver* ([`Receiver`]): the point of a surface that a pixel shows. *Caster*: a triangle that
-//!   may keep the light from it.
+//! - *Receiver* ([`Receiver`]): the point of a surface that a pixel shows. *Caster*: a triangle
+//!   that may keep the light from it.
 //! - *PFL*: the pixels that face the light ([`Class::faces_light`]). Shares of errors are shares of
 //!   their number.
 //! - *Band*: the indeterminate pixels ([`GroundTruthPixels::indeterminate`]). Errors there are

@@ -63,8 +63,11 @@
 //! - Times are of frames in which *every pass runs*, or of frames in which *only the camera moves*,
 //!   so that passes with unchanged inputs are skipped. Methods are timed *in turns*, frame by
 //!   frame.
-//! - *Steady state* ([`Steady`](records::steady::Steady)): the pictures of a still view that a
-//!   method repeats which reuses results of earlier frames.
+//! - *Early end*: the work stops because [`Sink::stop`](sink::Sink::stop) asks for it; the error is
+//!   [`CompareError::Interrupted`](error::CompareError::Interrupted).
+//! - *Steady state* ([`Steady`](records::steady::Steady)): some methods reuse results of earlier
+//!   frames. On a still view their pictures change at first and then repeat; the pictures that
+//!   repeat are the steady state.
 
 pub mod comparison;
 pub mod default_view;

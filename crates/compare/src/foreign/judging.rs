@@ -141,7 +141,7 @@ pub(crate) struct Truth<'a> {
 ///
 /// # Errors
 /// A file that cannot be read or is not such a picture; pictures of different sizes; ids or depths
-/// that are not those of the scene under this camera; no GPU; an early end.
+/// that are not those of the scene under this camera; no GPU; an [early end](crate#terms).
 pub fn judge(
     judging: &Judging,
     scene: Scene,

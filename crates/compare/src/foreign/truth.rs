@@ -62,8 +62,8 @@ impl TruthRequest {
 /// line of text for each file: its name and meaning.
 ///
 /// # Errors
-/// A view for which the reference cannot be computed, no GPU, an early end, a file that cannot be
-/// written.
+/// A view for which the reference cannot be computed, no GPU, an [early end](crate#terms), a file
+/// that cannot be written.
 pub fn write_truth(
     request: &TruthRequest,
     scene: Scene,

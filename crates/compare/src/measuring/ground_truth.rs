@@ -139,7 +139,7 @@ impl<'a> GroundTruthView<'a> {
     /// progress under the name `what`.
     ///
     /// # Errors
-    /// An early end, primitive ids of another mesh, an invalid light.
+    /// An [early end](crate#terms), primitive ids of another mesh, an invalid light.
     pub fn new(
         oracle: Rc<Oracle<'a>>,
         camera: Camera,
@@ -239,7 +239,7 @@ impl<'a> GroundTruthView<'a> {
     /// [`nearest_blockers`] does.
     ///
     /// # Errors
-    /// An early end.
+    /// An [early end](crate#terms).
     pub fn nearest_blockers(&self, progress: Progress) -> Result<Vec<u32>, CompareError> {
         let (camera, primitives) = (&self.camera, &self.primitives);
         let found = nearest_blockers(

@@ -167,8 +167,8 @@ impl HardCaseContext<'_> {
     /// method.
     ///
     /// # Errors
-    /// An early end, a lost device, a picture that cannot be written. All other errors are part of
-    /// the result.
+    /// An [early end](crate#terms), a lost device, a picture that cannot be written. All other
+    /// errors are part of the result.
     pub fn run(&self, hard: &HardCase) -> Result<Case, CompareError> {
         let scene = Arc::new(hard.scene());
         let mut provider = SceneProvider::new(scene.clone());

@@ -203,8 +203,8 @@ impl<'a> Series<'a> {
     /// [`Comparison::viewports`].
     ///
     /// # Errors
-    /// An early end, a lost device, a file that cannot be written, a reference that cannot be
-    /// computed.
+    /// An [early end](crate#terms), a lost device, a file that cannot be written, a reference that
+    /// cannot be computed.
     pub fn measure(&mut self, view: usize, viewport: usize) -> Result<(), CompareError> {
         let places = self.places(view, viewport);
         let (view, viewport) = (
@@ -420,8 +420,8 @@ impl<'a> Series<'a> {
     /// nothing if results stay in memory.
     ///
     /// # Errors
-    /// An early end; a file that cannot be written; a results.json that another process has
-    /// meanwhile written of another adapter, scene or protocol.
+    /// An [early end](crate#terms); a file that cannot be written; a results.json that another
+    /// process has meanwhile written of another adapter, scene or protocol.
     pub fn save(&mut self, pictures: &[PictureFile]) -> Result<(), CompareError> {
         match &mut self.folder {
             Some(folder) => folder.save(&self.results, pictures, self.session.sink),

@@ -71,8 +71,8 @@ const OTHERS: usize = 3;
 /// most ten times those of its part in the comparison.
 ///
 /// # Errors
-/// A comparison of camera paths; no method with params to tune; an early end, a lost device, a
-/// reference that cannot be computed.
+/// A comparison of camera paths; no method with params to tune; an [early end](crate#terms), a lost
+/// device, a reference that cannot be computed.
 pub fn tune(comparison: &mut Comparison, session: Session) -> Result<(), CompareError> {
     comparison.check(Session::new(session.gpu, &Silent))?;
     let scene = comparison.scene.clone();

@@ -45,8 +45,8 @@ pub struct JudgedPictures {
     /// Number of pixels whose surface, as [`surfaces`](Self::surfaces) says, is hidden behind
     /// another one by more than rounding explains.
     pub wrong_surface: u64,
-    /// Sampling of the [reference](crate#terms) for a light [with an extent](crate#terms); absent
-    /// for other lights.
+    /// Number of samples and estimated error of the [reference](crate#terms) under a light [with an
+    /// extent](crate#terms); absent for other lights.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub area: Option<AreaReference>,
     /// Source of the surface that each pixel shows: `rasterised` by this program, `ids` or `depth`

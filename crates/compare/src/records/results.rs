@@ -266,8 +266,8 @@ pub struct Run {
     /// Number of pixels for which the GPU rasterised a triangle that is hidden behind another one,
     /// by more than rounding explains. All methods are judged on the rasterised triangle.
     pub wrong_surface: u64,
-    /// Sampling of the [reference](crate#terms) for a light [with an extent](crate#terms); absent
-    /// for other lights.
+    /// Number of samples and estimated error of the [reference](crate#terms) under a light [with an
+    /// extent](crate#terms); absent for other lights.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub area: Option<AreaReference>,
     /// The measurements; absent where the method could not run.
@@ -393,8 +393,9 @@ impl Answer {
     }
 }
 
-/// Sampling of the [reference](crate#terms) for a light [with an extent](crate#terms). The run's
-/// `pixels` count a pixel as lit if it sees half of the light or more.
+/// Number of samples and estimated error of the [reference](crate#terms) under a light [with an
+/// extent](crate#terms). The run's `pixels` count a pixel as lit if it sees half of the light or
+/// more.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AreaReference {
     /// Number of shadow rays per pixel that faces the light.

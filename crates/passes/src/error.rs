@@ -119,9 +119,9 @@ pub enum Error {
         /// Position or normal that was given.
         value: glam::Vec3,
     },
-    /// Transforms were set with
-    /// [`SceneProvider::set_transforms`](crate::SceneProvider::set_transforms), but the mesh was
-    /// not given in parts.
+    /// The call needs a mesh in parts, but the mesh of the provider was not given in parts
+    /// ([`SceneProvider::set_parts`](crate::SceneProvider::set_parts),
+    /// [`from_parts`](crate::SceneProvider::from_parts)).
     #[error(
         "the provider's mesh has no parts to be moved: make it with `SceneProvider::from_parts`, \
          or give it parts with `set_parts`"

@@ -82,9 +82,8 @@ pub struct Access {
     /// the resource: as a clear, a copy or a cleared attachment does, or because the document
     /// promises it (`overwrites`).
     pub fully_overwrites: bool,
-    /// True if a change of the resource's content, of which the step uses something, is a reason
-    /// for a pass with [`Run::OnChange`] to run. False only for the uniform `frame` if the shader
-    /// reads just its flags.
+    /// True if a change of the resource's content makes a pass with [`Run::OnChange`] run. False
+    /// only for the uniform `frame` if the shader reads no more of it than its flags.
     pub triggers: bool,
     /// Usage that the resource must be created with on the device for this access.
     pub usage: Usage,

@@ -59,19 +59,20 @@ const MOST_COST: u64 = 10;
 /// decide.
 const OTHERS: usize = 3;
 
-/// Searches good values of the params that documents mark with `tune`, and adds each method with
-/// the best ones as a method of its own behind it. If the comparison has several views, every
-/// second one is taken out of it, and settings are chosen on these; otherwise they are chosen on
-/// other views of the scene. Where these are fewer than three, views are generated that show from
-/// other sides what the judged ones show. Params that a method sets stay as they are. A method whose document promises exact shadows for all casters is
-/// not searched. Values are chosen in the first of the comparison's viewports, and run in all.
+/// Searches good values of the params that documents mark with `tune`, and adds to the comparison,
+/// behind each method, the same method with the best values found. If the comparison has several
+/// views, every second one is taken out of it, and settings are chosen on these; otherwise they are
+/// chosen on other views of the scene. Where these are fewer than three, views are generated that
+/// show from other sides what the judged ones show. Params that a method sets stay as they are. A
+/// method whose document promises exact shadows for all casters is not searched. Values are chosen
+/// in the first of the comparison's viewports, and run in all.
 ///
 /// The work is bounded: plans and frames of a method, those of its tuned setting included, are at
 /// most ten times those of its part in the comparison.
 ///
 /// # Errors
-/// A comparison of camera paths; no method with params to tune; an early end, a lost device, a
-/// reference that cannot be computed.
+/// A comparison of camera paths; no method with params to tune; an [early end](crate#terms), a lost
+/// device, a reference that cannot be computed.
 pub fn tune(comparison: &mut Comparison, session: Session) -> Result<(), CompareError> {
     comparison.check(Session::new(session.gpu, &Silent))?;
     let scene = comparison.scene.clone();

@@ -22,8 +22,8 @@ pub trait PassKind: fmt::Debug + Send + Sync {
     /// Lowers the body to steps: appends the pass's GPU work to `pass`, step by step
     /// ([`Lowering::step`]). Called more than once, and without a GPU: when the document is loaded,
     /// and for every plan. It must depend only on the body and on values that it asks `pass` for. A
-    /// shader that it uses for some of these values only must be announced by
-    /// [`Lowering::alternative`].
+    /// shader that it uses with some of these values and not with others must be announced by
+    /// [`Lowering::alternative`] in every call.
     fn lower(&self, pass: &mut Lowering<'_>);
 }
 
@@ -127,8 +127,9 @@ impl<'a> Lowering<'a> {
         Scratch(self.scratch.len() - 1)
     }
 
-    /// Announces a shader that the pass runs only for other values of its expressions, so that the
-    /// shader is loaded with the document. `shader` is the name of a WGSL file that comes with the
+    /// Announces a shader that the pass runs with some values of its expressions and not with
+    /// others, whether this call appends a step with it or not. So it is loaded with the document,
+    /// and a plan with other values finds it. `shader` is the name of a WGSL file that comes with the
     /// pass kind, without folder and ending. Each pair in `imports` is the path that an `#import`
     /// names and the path of the module that is imported instead. `features` are device features
     /// that the pass uses if the device has them.

@@ -128,10 +128,7 @@ pub fn shadow_rays(gpu: &Gpu, name: &'static str, scene: &Arc<Scene>, edge: u32)
     let mut request = PlanRequest::new([edge; 2], &provider);
     let captured = ["rays", "ray_primitives", "ray_count"];
     for material in captured {
-        request.captures.push(Capture {
-            material: material.to_owned(),
-            after: None,
-        });
+        request.captures.push(Capture::new(material));
     }
     request.outputs = Some(vec![]);
     let plan = plan("pipelines/rt.ron", &EmbeddedSources, &request);

@@ -66,6 +66,14 @@ impl Provider for Given<'_> {
         Ok(device.create_buffer_init(&descriptor))
     }
 
+    fn submit_built(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+    ) -> Result<(), skiagraph_gpu::ProviderError> {
+        self.scene.submit_built(device, queue)
+    }
+
     fn build_acceleration_structure(
         &mut self,
         name: &str,

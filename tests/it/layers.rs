@@ -381,6 +381,14 @@ impl Provider for OtherLight {
             }),
         )
     }
+
+    fn submit_built(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+    ) -> Result<(), skiagraph_gpu::ProviderError> {
+        self.0.submit_built(device, queue)
+    }
 }
 
 #[test]

@@ -1,16 +1,15 @@
 //! The presets on a device with the limits that WebGPU promises, and without any feature.
 
 use crate::{
-    one_submission::{lamps, sun, view},
+    one_submission::{sun, view},
     support::{
         graphs::{open, run_on, shares},
         meshes,
     },
 };
 use skiagraph_gpu::{Pipelines, device::Gpu};
-use skiagraph_graph::{Code, Diagnostics, Graph, Plan, PlanRequest, step::Step};
+use skiagraph_graph::{Diagnostics, Graph, Plan, PlanRequest, step::Step};
 use skiagraph_passes::{EmbeddedSources, SceneProvider, presets, registry};
-use skiagraph_scene::LightKind;
 
 const VIEWPORT: [u32; 2] = [48, 32];
 
@@ -18,8 +17,8 @@ const VIEWPORT: [u32; 2] = [48, 32];
 const OTHERS: [(&str, &str); 1] = [("crsm_hw", "CONSERVATIVE_RASTERIZATION")];
 
 /// Masks are the buffers that passes bind besides all others.
-fn provider(light: LightKind) -> SceneProvider {
-    let mut provider = SceneProvider::from_mesh(meshes::foliage(40, 0.4, 4.0, 3), light);
+fn provider() -> SceneProvider {
+    let mut provider = SceneProvider::from_mesh(meshes::foliage(40, 0.4, 4.0, 3), sun());
     provider.set_camera(&view(0.0).camera(VIEWPORT));
     provider
 }
@@ -42,11 +41,6 @@ fn modest() -> Gpu {
     gpu
 }
 
-/// True if a graph does not take a light of that kind.
-fn is_other_light(refused: &Diagnostics) -> bool {
-    refused.iter().any(|mistake| mistake.code == Code::Light)
-}
-
 /// The most storage buffers that a pass of a plan binds.
 fn storage_buffers(plan: &Plan) -> usize {
     let programs = plan.live().flat_map(|pass| &pass.steps);
@@ -66,9 +60,9 @@ fn storage_buffers(plan: &Plan) -> usize {
     counts.max().unwrap_or_default()
 }
 
-/// Every preset is planned under each light that it takes, with masks, and gives the picture that
-/// it gives on a device with all limits of the adapter. Some pass binds as many storage buffers as
-/// a stage may have there.
+/// Every preset is planned for a scene with masks under a sun, and gives the picture that it gives
+/// on a device with all limits of the adapter. Some pass binds as many storage buffers as a stage
+/// may have there.
 #[test]
 fn every_preset_runs_at_the_default_limits() {
     let (wide, modest) = (open(), modest());
@@ -81,32 +75,22 @@ fn every_preset_runs_at_the_default_limits() {
     let mut most = 0;
     for preset in presets() {
         let other = OTHERS.iter().find(|(name, _)| *name == preset.name);
-        for light in [sun(), lamps()[0], lamps()[1]] {
-            let provider = provider(light);
-            let plan = match (planned(&preset.path, &provider), other) {
-                (Ok(plan), None) => plan,
-                (Err(refused), _) if is_other_light(&refused) => continue,
-                (Err(refused), Some((_, feature))) => {
-                    assert!(refused.to_string().contains(feature), "{refused}");
-                    continue;
-                }
-                (Err(refused), None) => panic!("{refused}"),
-                (Ok(_), Some((name, _))) => panic!("{name} runs: it is no exception any more"),
-            };
-            most = most.max(storage_buffers(&plan));
-            if light != sun() {
+        let plan = match (planned(&preset.path, &provider()), other) {
+            (Ok(plan), None) => plan,
+            (Err(refused), Some((_, feature))) => {
+                assert!(refused.to_string().contains(feature), "{refused}");
                 continue;
             }
-            let [narrow, expected] = [&modest, &wide].map(|gpu| {
-                let mut own = self::provider(light);
-                shares(
-                    &run_on(gpu, plan.clone(), &mut own, &["visibility"]),
-                    "visibility",
-                )
-            });
-            assert!(narrow == expected, "{}", preset.name);
-            assert!(narrow.iter().any(|share| *share < 1.0), "{}", preset.name);
-        }
+            (Err(refused), None) => panic!("{refused}"),
+            (Ok(_), Some((name, _))) => panic!("{name} runs: it is no exception any more"),
+        };
+        most = most.max(storage_buffers(&plan));
+        let [narrow, expected] = [&modest, &wide].map(|gpu| {
+            let report = run_on(gpu, plan.clone(), &mut provider(), &["visibility"]);
+            shares(&report, "visibility")
+        });
+        assert!(narrow == expected, "{}", preset.name);
+        assert!(narrow.iter().any(|share| *share < 1.0), "{}", preset.name);
     }
     assert_eq!(most, promised as usize);
 }

@@ -16,7 +16,7 @@ override first_sample: u32 = 0u;
 
 // A thread's rounds after which it looks for no other candidate: docs/light_buffer_area.md has why
 // sixteen threads in step then stay below 65,535, after which llvmpipe ends loops.
-const MOST_ROUNDS: u32 = 3200u;
+const MOST_ROUNDS: u32 = 3400u;
 const TOO_MANY: u32 = 0xffffffffu;
 // Wider lights than the bounds hold for: of more than 126 degrees.
 const WIDEST: f32 = 2.0;

@@ -85,7 +85,7 @@ fn cone_of(sight: Sight, primitive: u32) -> Cone {
     let size = sqrt(max(dot(a, a), max(dot(b, b), dot(c, c))));
     let across = sqrt(max(dot(a.xy, a.xy), max(dot(b.xy, b.xy), dot(c.xy, c.xy))));
     let beside = across + radius * size;
-    let roundings = select(256.0, 128.0, light_kind == LIGHT_DIRECTIONAL);
+    let roundings = select(256.0, 144.0, light_kind == LIGHT_DIRECTIONAL);
     let error = roundings * HALF_ULP * (1.0 + radius) * size * beside;
 
     let at = vec3(

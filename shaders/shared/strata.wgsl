@@ -38,7 +38,7 @@ fn disk_point(square: vec2<f32>) -> vec2<f32> {
 fn cosine_and_sine(angle: f32) -> vec2<f32> {
     let s = angle * angle;
     let cosine = 1.0 + s * (-1.0 / 2.0 + s * (1.0 / 24.0 + s * (-1.0 / 720.0 + s / 40320.0)));
-    let sine = 1.0 + s * (-1.0 / 6.0 + s * (1.0 / 120.0 + s * (-1.0 / 5040.0)));
+    let sine = 1.0 + s * (-1.0 / 6.0 + s * (1.0 / 120.0 + s * (-1.0 / 5040.0 + s / 362880.0)));
     return vec2(cosine, angle * sine);
 }
 

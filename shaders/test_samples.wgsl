@@ -126,7 +126,8 @@ fn set_four(sight: Sight, pixel: u32, item: u32, points: ptr<function, Points>) 
 
 fn point_of(sight: Sight, pixel: u32, i: u32) -> vec2<f32> {
     let sample = first_sample + i;
-    return seen_point(sight, disk_point(stratum_point(sample, samples, random_pair(pixel, sample))));
+    let square = stratum_point(sample, samples, random_pair(pixel, sample));
+    return seen_point(sight, disk_point(square));
 }
 
 // A thread's way through its list.

@@ -286,8 +286,9 @@ impl<'a> Trials<'a> {
         Ok(Trial::Error(error))
     }
 
-    /// The number that the wrong pixels of a view are divided by: views count alike, however many of
-    /// their pixels face the light, but for those with hardly any, of which one pixel says little.
+    /// The number that the wrong pixels of a view are divided by: views count alike, however many
+    /// of their pixels face the light, but for those with hardly any, of which one pixel says
+    /// little.
     fn counted(&self, view: &TrialView) -> f64 {
         let views = self.views.len() as f64;
         views

@@ -59,13 +59,22 @@ const MOST_COST: u64 = 10;
 /// decide.
 const OTHERS: usize = 3;
 
+/// Least number of pixels of the viewport that settings are chosen in: in a smaller one a few
+/// pixels decide between settings that are alike.
+const LEAST_PIXELS: u64 = 256 * 256;
+
+/// Longest side of a viewport that was made larger to choose settings in: all adapters have it.
+const LONGEST_SIDE: u32 = 8192;
+
 /// Searches good values of the params that documents mark with `tune`, and adds to the comparison,
 /// behind each method, the same method with the best values found. If the comparison has several
 /// views, every second one is taken out of it, and settings are chosen on these; otherwise they are
 /// chosen on other views of the scene. Where these are fewer than three, views are generated that
 /// show from other sides what the judged ones show. Params that a method sets stay as they are. A
 /// method whose document promises exact shadows for all casters is not searched. Values are chosen
-/// in the first of the comparison's viewports, and run in all.
+/// in the first of the comparison's viewports, and run in all. A viewport below 256 × 256 pixels is
+/// made as many times as large as is needed for that many, unless there is a limit of time or
+/// memory, which is one for the viewport itself.
 ///
 /// The work is bounded: plans and frames of a method, those of its tuned setting included, are at
 /// most ten times those of its part in the comparison.
@@ -80,7 +89,7 @@ pub fn tune(comparison: &mut Comparison, session: Session) -> Result<(), Compare
     check_methods(&methods)?;
     let most = most_work(comparison);
     let Split { chosen_on, judged } = Split::new(&comparison.views, &scene)?;
-    let viewport = comparison.viewports.first().copied().unwrap_or([512; 2]);
+    let viewport = trial_viewport(comparison);
     let mut provider = SceneProvider::new(scene.clone());
     let views = trial_views(
         comparison,
@@ -133,6 +142,22 @@ pub fn tune(comparison: &mut Comparison, session: Session) -> Result<(), Compare
     comparison.tuned = tuned.into_iter().collect();
     comparison.views = judged;
     Ok(())
+}
+
+/// The viewport that settings are chosen in.
+fn trial_viewport(comparison: &Comparison) -> [u32; 2] {
+    let [width, height] = comparison.viewports.first().copied().unwrap_or([512; 2]);
+    let budgets = &comparison.budgets;
+    if budgets.frame_ms.is_some() || budgets.memory_bytes.is_some() {
+        return [width, height];
+    }
+    let fits = |times: &u32| times.saturating_mul(width.max(height)) <= LONGEST_SIDE;
+    let pixels = |times: u32| u64::from(width * times) * u64::from(height * times);
+    let enough = (1..)
+        .take_while(fits)
+        .find(|times| pixels(*times) >= LEAST_PIXELS);
+    let times = enough.unwrap_or(1);
+    [width * times, height * times]
 }
 
 /// Refuses methods among which none has params to tune.

@@ -39,12 +39,14 @@ pub(crate) struct Buffers {
 const GAP: usize = 4096;
 
 impl Buffers {
-    /// Drops what was laid over another shape of the mesh.
-    pub fn lay_over(&mut self, shape: u64) {
+    /// Drops what was laid over another shape of the mesh, but for hierarchies of parts, which the
+    /// next ones are made from.
+    pub fn lay_over(&mut self, shape: u64, is_parted: bool) {
         if self.shape != shape {
             self.shape = shape;
             let is_laid = |name: &str| {
-                matches!(name, LIGHT | LIGHT_SPACE_NODES)
+                name == LIGHT
+                    || name == LIGHT_SPACE_NODES && !is_parted
                     || lights::list_of(name) == Some(lights::LIGHTS)
             };
             self.held.retain(|name, _| !is_laid(name));
@@ -63,6 +65,26 @@ impl Buffers {
     pub fn still_hold(&mut self, name: &str, version: u64) {
         if let Some((_, of)) = self.held.get_mut(name).and_then(|held| held.last_mut()) {
             *of = version;
+        }
+    }
+
+    /// Makes the buffer of that name whose content is of a version the one that was made last; false
+    /// if there is none.
+    pub fn take_up(&mut self, name: &str, version: u64) -> bool {
+        let Some(held) = self.held.get_mut(name) else {
+            return false;
+        };
+        let at = held.iter().position(|(_, of)| *of == version);
+        if let Some(at) = at {
+            held[at..].rotate_left(1);
+        }
+        at.is_some()
+    }
+
+    /// Drops the buffer of that name whose content is of a version, which another one has replaced.
+    pub fn leave(&mut self, name: &str, version: u64, by: u64) {
+        if let Some(held) = self.held.get_mut(name).filter(|_| version != by) {
+            held.retain(|(_, of)| *of != version);
         }
     }
 

@@ -45,6 +45,9 @@ pub struct Work {
     pub nodes: u64,
     /// Number of positions that the boxes of lights were laid around.
     pub laid: u64,
+    /// Number of triangles over which acceleration structures of the device, or of Embree, were
+    /// built; a top level over them is made anew with them, and is not counted.
+    pub triangles: u64,
 }
 
 impl Work {
@@ -56,6 +59,7 @@ impl Work {
             moved: self.moved - before.moved,
             nodes: self.nodes - before.nodes,
             laid: self.laid - before.laid,
+            triangles: self.triangles - before.triangles,
         }
     }
 }

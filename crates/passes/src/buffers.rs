@@ -68,8 +68,8 @@ impl Buffers {
         }
     }
 
-    /// Makes the buffer of that name whose content is of a version the one that was made last; false
-    /// if there is none.
+    /// Makes the buffer of that name whose content is of a version the last one that was made;
+    /// false if there is none.
     pub fn take_up(&mut self, name: &str, version: u64) -> bool {
         let Some(held) = self.held.get_mut(name) else {
             return false;

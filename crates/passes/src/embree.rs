@@ -82,8 +82,8 @@ const IDENTITY: [f32; 16] = [
 ];
 
 impl Embree {
-    /// Builds the hierarchies of a mesh, but those that `before` has already, and returns the number
-    /// of triangles that were built over. Primitives count as in the mesh.
+    /// Builds the hierarchies of a mesh, but those that `before` has already, and returns the
+    /// number of triangles that were built over. Primitives count as in the mesh.
     ///
     /// # Errors
     /// An index beyond the mesh's positions, or Embree's own.

@@ -5,11 +5,10 @@ use crate::{
     adjacencies::Adjacencies,
     built::{How, Work},
     error::Error,
-    hierarchies::{Hierarchies, Parted, Tree},
+    hierarchies::{Fitted, Hierarchies, Parted, Tree},
     names::next_version,
     outlines::Outlines,
     parts::{Free, Part, PartId, Room},
-    ray_query::Structures,
     uniforms::LightUniform,
 };
 use glam::{DAffine3, Vec3};
@@ -53,7 +52,6 @@ pub(crate) struct Geometry {
     hierarchies: Hierarchies,
     outlines: Outlines,
     adjacencies: Adjacencies,
-    pub structures: Structures,
     /// Work besides uploads.
     pub work: Work,
 }
@@ -104,18 +102,6 @@ struct Kept {
     tree: Arc<TwoLevelBvh>,
     /// Version of the shape that it is fitted to.
     version: u64,
-}
-
-/// The hierarchy as shaders read it.
-pub(crate) struct Fitted {
-    pub tree: Arc<TwoLevelBvh>,
-    /// Pieces whose nodes are others than those of a version.
-    pub pieces: Vec<usize>,
-    /// Ranges of the nodes that are others than those of a version.
-    pub nodes: Vec<Range<usize>>,
-    /// Ranges of the primitives that are others than those of that version.
-    pub primitives: Vec<Range<usize>>,
-    pub how: How,
 }
 
 /// How the places of parts, or parts, have changed a mesh.
@@ -690,8 +676,8 @@ impl Geometry {
     }
 
     /// Returns the hierarchy of a mesh in parts in the light space of `space`, of which only the
-    /// parts are fitted that have moved. Of another centre, it is the same where that is nearer than
-    /// `near`. The versions are those of the shape and of the resource.
+    /// parts are fitted that have moved. A centre that is nearer than `near` to the last one changes
+    /// nothing. The versions are those of the shape and of the resource.
     ///
     /// # Errors
     /// More triangles than its links can name.

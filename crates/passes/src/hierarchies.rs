@@ -1,7 +1,7 @@
 //! The hierarchies over a mesh in light spaces: built, and fitted again when the mesh is deformed;
 //! over a mesh in parts, those of its parts, of which those are fitted that have moved.
 
-use crate::{built::How, error::Error, geometry::Fitted};
+use crate::{built::How, error::Error};
 use glam::Vec3;
 use skiagraph_scene::{Bvh, LightSpace, LightSpaceNode, Mesh, TwoLevelBvh};
 use std::{ops::Range, sync::Arc};
@@ -28,6 +28,18 @@ pub(crate) struct Hierarchies {
     light_spaces: Vec<(Vec3, Kept)>,
     /// Likewise, of a mesh in parts.
     of_parts: Vec<OfParts>,
+}
+
+/// The hierarchy as shaders read it.
+pub(crate) struct Fitted {
+    pub tree: Arc<TwoLevelBvh>,
+    /// Pieces whose nodes are others than those of a version.
+    pub pieces: Vec<usize>,
+    /// Ranges of the nodes that are others than those of a version.
+    pub nodes: Vec<Range<usize>>,
+    /// Ranges of the primitives that are others than those of that version.
+    pub primitives: Vec<Range<usize>>,
+    pub how: How,
 }
 
 /// Nodes in a light space over the trees of parts.
@@ -78,7 +90,7 @@ impl Hierarchies {
 
     /// Returns the nodes over parts in the light space of `space`. `known` are those for its
     /// direction, if there are any, since when the pieces of `fitted` have changed. They keep their
-    /// centre, so that parts that stand still keep their nodes, as long as it is nearer than `near`.
+    /// centre as long as it is nearer than `near`, so that parts that stand still keep their nodes.
     ///
     /// # Errors
     /// More triangles than its links can name.

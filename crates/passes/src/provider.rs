@@ -11,7 +11,7 @@ use crate::{
     lights,
     names::*,
     parts::{PartId, Room},
-    ray_query,
+    ray_query::{Source, Structures},
     uniforms::{CameraUniform, LightAreaUniform, LightUniform, UnprojectionUniform},
 };
 use glam::{DAffine3, Vec3, Vec4};
@@ -39,7 +39,7 @@ use std::{ops::Range, sync::Arc, time::Instant};
 /// | `scene.adjacency` | `array<u32>`, three per primitive: [`Adjacency::opposite`] |
 /// | `scene.bvh_nodes` | 32-byte [`BvhNode`]s, node 0 is the root |
 /// | `scene.bvh_primitives` | `array<u32>`, primitive ids in leaf order |
-/// | `scene.light_space_nodes` | 32-byte [`LightSpaceNode`]s, node 0 is the root, the last a centre |
+/// | `scene.light_space_nodes` | 32-byte [`LightSpaceNode`]s, node 0 the root, the last a centre |
 /// | `scene.light_space_primitives` | `array<u32>`, primitive ids in their leaf order |
 /// | `scene.tlas` | `acceleration_structure`, instances: primitives count from their custom data |
 /// | `scene.embree` | work for the CPU, with the feature `embree` |
@@ -79,6 +79,7 @@ pub struct SceneProvider {
     /// Words of [`MASKS`], made at once: plans ask how many there are.
     pub(crate) masks: Vec<u32>,
     pub(crate) buffers: Buffers,
+    structures: Structures,
     #[cfg(feature = "embree")]
     embree: Option<(Arc<crate::embree::Embree>, u64)>,
     pub(crate) geometry: Geometry,
@@ -97,6 +98,7 @@ impl SceneProvider {
             masks: mask_words(&scene.mesh),
             scene,
             buffers: Buffers::default(),
+            structures: Structures::default(),
             #[cfg(feature = "embree")]
             embree: None,
             geometry: Geometry::whole(),
@@ -502,6 +504,7 @@ impl SceneProvider {
         self.masks = mask_words(&mesh);
         Arc::make_mut(&mut self.scene).mesh = mesh;
         self.geometry = self.geometry.replaced_by(Geometry::whole());
+        self.structures = Structures::default();
         self.versions.change_mesh();
     }
 
@@ -696,7 +699,7 @@ impl Describe for SceneProvider {
 impl Provider for SceneProvider {
     fn version(&self, name: &str) -> u64 {
         if name == TLAS {
-            return self.geometry.structures.version(self.versions.shape);
+            return self.structures.version(self.versions.shape);
         }
         let of_lights = lights::version(name, &self.versions);
         of_lights.unwrap_or_else(|| self.versions.get(name))
@@ -735,8 +738,7 @@ impl Provider for SceneProvider {
         let vertices = self.buffer(POSITIONS, on).map_err(why)?;
         let indices = self.buffer(INDICES, on).map_err(why)?;
         let began = Instant::now();
-        let mut structures = std::mem::take(&mut self.geometry.structures);
-        let tlas = structures.get(ray_query::Source {
+        let tlas = self.structures.get(Source {
             mesh: &self.scene.mesh,
             geometry: &self.geometry,
             buffers: [&vertices, &indices],
@@ -744,7 +746,6 @@ impl Provider for SceneProvider {
             device,
             queue,
         });
-        self.geometry.structures = structures;
         let (tlas, triangles) = tlas.map_err(why)?;
         if let Some(triangles) = triangles {
             self.geometry.work.triangles += triangles as u64;

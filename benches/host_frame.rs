@@ -130,8 +130,8 @@ fn print_work(works: &[Work]) {
         )
     };
     println!(
-        "  bytes uploaded {}, copied on the GPU {}; nodes {}, triangles {}; positions moved {}, laid \
-         around {}",
+        "  bytes uploaded {}, copied on the GPU {}; nodes {}, triangles {}; positions moved {}, \
+         laid around {}",
         both(|work| work.uploaded),
         both(|work| work.copied),
         both(|work| work.nodes),

@@ -676,7 +676,7 @@ impl Geometry {
     }
 
     /// Returns the hierarchy of a mesh in parts in the light space of `space`, of which only the
-    /// parts are fitted that have moved. A centre that is nearer than `near` to the last one changes
+    /// parts are fitted that have moved. A centre nearer than `near` to the last one changes
     /// nothing. The versions are those of the shape and of the resource.
     ///
     /// # Errors

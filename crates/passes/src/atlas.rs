@@ -11,8 +11,8 @@ use std::collections::HashMap;
 pub struct MaterialRecord {
     /// Base colour: linear red, green and blue. Shaders multiply it by the texture.
     pub base_color: [f32; 3],
-    /// Index in the buffer `scene.texels` of the texture's first texel; the others follow row by
-    /// row from the top left. 0 if the material has no texture.
+    /// Index in the buffer `scene.texels` of the texture's first texel, at the top left; the rest
+    /// of the texture follows row by row. 0 if the material has no texture.
     pub first_texel: u32,
     /// Width and height of the texture in texels; both 0 if the material has no texture.
     pub size: [u32; 2],

@@ -87,10 +87,11 @@ pub struct SceneProvider {
 }
 
 impl SceneProvider {
-    /// Creates a provider of `scene` without building any resource. Until
-    /// [`set_view`](Self::set_view), [`set_camera`](Self::set_camera) or [`set_eye`](Self::set_eye)
-    /// is called, the resource `camera` is all zeros. Until [`set_view`](Self::set_view) or
-    /// [`set_light`](Self::set_light) is called, the resource `light` is the scene's default light.
+    /// Creates a provider of `scene` without building any resource; each is built when an executor,
+    /// or [`prepare`](Self::prepare), first needs it. Until [`set_view`](Self::set_view),
+    /// [`set_camera`](Self::set_camera) or [`set_eye`](Self::set_eye) is called, the resource
+    /// `camera` is all zeros. Until [`set_view`](Self::set_view) or [`set_light`](Self::set_light)
+    /// is called, the resource `light` is the scene's default light.
     pub fn new(scene: Arc<Scene>) -> Self {
         let lights = lights::from_scene(&scene);
         Self {
@@ -115,10 +116,10 @@ impl SceneProvider {
         self.clone()
     }
 
-    /// Builds the resources that a plan's passes read and that are missing or out of date, so that
-    /// [`refresh`](skiagraph_gpu::Executor::refresh) has nothing left to build. Passes whose
-    /// results are not needed are left out, and so are resources of a mesh whose parts have no
-    /// transforms yet.
+    /// Builds the resources that the passes of a [`Plan`] read and that are missing or out of date,
+    /// so that [`refresh`](skiagraph_gpu::Executor::refresh) has nothing left to build. Passes
+    /// whose results are not needed are left out, and so are resources of a mesh whose parts have
+    /// no transforms yet.
     ///
     /// # Errors
     /// Those of [`Provider::build`] and [`Provider::build_acceleration_structure`].
@@ -148,7 +149,8 @@ impl SceneProvider {
         &self.built
     }
 
-    /// Returns the work that this provider has done so far, by counters.
+    /// Returns counters of the work that this provider has done so far: bytes uploaded, positions
+    /// moved, nodes fitted.
     pub fn work(&self) -> Work {
         let (uploads, rest) = (self.buffers.work, self.geometry.work);
         Work {
@@ -416,8 +418,8 @@ impl SceneProvider {
         provider
     }
 
-    /// Returns the scene that the provider serves, with the mesh that was set last in its current
-    /// shape.
+    /// Returns the provider's scene. Its mesh is the one that was set last, in its current shape:
+    /// with parts moved and positions deformed.
     pub fn scene(&self) -> &Arc<Scene> {
         &self.scene
     }
@@ -463,25 +465,26 @@ impl SceneProvider {
     }
 
     /// Returns the lights that the resources `lights` and `light_areas` describe: those of
-    /// [`set_lights`](Self::set_lights), if it was called. Otherwise these are all lights of the
-    /// scene in its order (its default light if it has none), or the light of a view alone, if
-    /// [`set_view`](Self::set_view) was given a view whose own light is none of these.
+    /// [`set_lights`](Self::set_lights), if it was called. Otherwise the list has all lights of the
+    /// scene, in the scene's order (its default light if it has none); or only a view's own light,
+    /// if [`set_view`](Self::set_view) was given a view with a light that the scene does not list.
     pub fn lights(&self) -> &[LightKind] {
         &self.versions.lights.now
     }
 
     /// Sets the light that the resources `light` and `light_area` describe;
-    /// [`lights`](Self::lights) stay as they are. A plan depends on the kind of its light: after a
-    /// change of kind, graphs must be planned anew. Until then
-    /// [`refresh`](skiagraph_gpu::Executor::refresh) fails with
+    /// [`lights`](Self::lights) stay as they are. A plan depends on the kind of its light
+    /// (directional, spot or point): after a change of kind, graphs must be planned anew. Until
+    /// then [`refresh`](skiagraph_gpu::Executor::refresh) fails with
     /// [`ExecuteError::OtherThanPlanned`](skiagraph_gpu::ExecuteError::OtherThanPlanned).
     pub fn set_light(&mut self, light: LightKind) {
         self.versions.set_light(light);
     }
 
     /// Sets the lights that the resources `lights` and `light_areas` describe, all at once;
-    /// [`light`](Self::light) stays as it is. They may be others in each frame. What a pass makes
-    /// from `lights[2]` alone is made anew only if that light has changed, or the mesh.
+    /// [`light`](Self::light) stays as it is. The lights may differ from frame to frame. A pass
+    /// with `run: OnChange` that reads `lights[2]` but no other light runs again only if that light
+    /// or the mesh has changed.
     ///
     /// A plan depends on the number of the lights and the kind of each: after a change of these,
     /// graphs that read them must be planned anew. Until then
@@ -552,9 +555,9 @@ impl SceneProvider {
 
     /// Moves each part of the mesh: `maps[n]` takes part number n from its original place, as given
     /// to [`set_parts`](Self::set_parts) or [`from_parts`](Self::from_parts), to its new place in
-    /// world space. Only parts whose map has changed are moved, and equal maps cost nothing. The
-    /// triangles of a part that its map mirrors are wound the other way, as in glTF, so that its
-    /// outside stays outside.
+    /// world space. Only parts whose map has changed are moved, and equal maps cost nothing. If a
+    /// map mirrors its part, the winding of the part's triangles is reversed (the rule of glTF), so
+    /// that the outside stays the front face.
     ///
     /// # Errors
     /// [`Error::NoParts`] if the mesh has no parts; [`Error::Move`] if the number of maps is not
@@ -578,8 +581,9 @@ impl SceneProvider {
     }
 
     /// Returns the handles of the mesh's parts, in the order in which
-    /// [`set_transforms`](Self::set_transforms) takes their maps: those of
-    /// [`set_parts`](Self::set_parts), then those that were added later.
+    /// [`set_transforms`](Self::set_transforms) takes their maps: first the parts that
+    /// [`set_parts`](Self::set_parts) or [`from_parts`](Self::from_parts) was given, then the parts
+    /// that were [added](Self::add_part) later.
     pub fn parts(&self) -> impl Iterator<Item = PartId> {
         self.geometry.parts().iter().copied()
     }
@@ -598,12 +602,12 @@ impl SceneProvider {
     }
 
     /// Adds a part to a mesh in parts, and returns its handle. `map` takes it from its own space to
-    /// its place in world space. Within the [room](Self::reserve) that there is, only this mesh is
-    /// uploaded and gets a hierarchy, its primitive ids are numbers that no triangle had, or that
-    /// those of removed parts had, and plans stay. Without room the mesh grows by a half, all of it
-    /// is uploaded, and graphs must be planned anew, as after [`set_mesh`](Self::set_mesh). In a
-    /// scene with materials, those of all parts are uploaded, and a graph that reads
-    /// `scene.materials` or `scene.uvs` must be planned anew.
+    /// its place in world space. If it fits into the [room](Self::reserve) that is left, only this
+    /// part is uploaded and gets a hierarchy, plans stay valid, and its triangles get primitive ids
+    /// that are unused or that a removed part had. If it does not fit, the mesh grows by a half,
+    /// all of it is uploaded, and graphs must be planned anew, as after
+    /// [`set_mesh`](Self::set_mesh). In a scene with materials, the materials of all parts are
+    /// uploaded, and a graph that reads `scene.materials` or `scene.uvs` must be planned anew.
     ///
     /// # Errors
     /// [`Error::NoParts`] if the mesh has no parts, [`Error::Move`] for a map that cannot move the
@@ -614,9 +618,10 @@ impl SceneProvider {
         Ok(part)
     }
 
-    /// Removes a part. Its triangles have no area from the next
-    /// [`refresh`](skiagraph_gpu::Executor::refresh) on, and their place is for parts that are
-    /// added later. Frames that are encoded show it still.
+    /// Removes a part. From the next [`refresh`](skiagraph_gpu::Executor::refresh) of an executor
+    /// on, the part's triangles have no area, so that they cover no pixel; frames that are already
+    /// encoded still show it. The memory of a part that was added, or [joined](Movable::joined)
+    /// with others, is reused for parts that are added later.
     ///
     /// # Errors
     /// [`Error::NoPart`] for a part that the mesh does not have.

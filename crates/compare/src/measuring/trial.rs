@@ -21,9 +21,9 @@ use std::collections::BTreeMap;
 
 /// A view on which settings are tried, with its ground truth.
 pub struct TrialView<'a> {
-    /// The view.
+    /// The view on which settings are tried.
     pub view: View,
-    /// Its light.
+    /// Light under which the view is drawn.
     pub light: LightKind,
     /// The ground truth of the view in the viewport of the trials.
     pub truth: GroundTruthView<'a>,

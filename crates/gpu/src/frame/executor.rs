@@ -91,7 +91,7 @@ impl Executor {
         Self::with_pipelines(&Pipelines::new(device), queue, plan, provider)
     }
 
-    /// Creates an executor of a plan on an open device. Those of one [`Gpu`] share its
+    /// Creates an executor of a plan on an open device. Executors of one [`Gpu`] share its
     /// [pipelines](Gpu::pipelines).
     ///
     /// # Errors
@@ -422,8 +422,10 @@ impl Executor {
         self.import(name, Physical::Texture(texture.clone()))
     }
 
-    /// Sets the buffer of the import `name`. It works as [`import_texture`](Self::import_texture)
-    /// does.
+    /// Sets the buffer of the import `name`, which
+    /// [`PlanRequest::imports`](skiagraph_graph::PlanRequest::imports) describes. Its content
+    /// counts as changed, even if the buffer is the one set before: passes with `run: OnChange`
+    /// that read it run in the next frame. The buffer may have more usages than described.
     ///
     /// # Errors
     /// Those of [`import_texture`](Self::import_texture).
@@ -431,9 +433,10 @@ impl Executor {
         self.import(name, Physical::Buffer(buffer.clone()))
     }
 
-    /// Sets the sampler of the import `name`. It works as [`import_texture`](Self::import_texture)
-    /// does. wgpu does not tell how a sampler filters, so a wrong one is refused only when a pass
-    /// binds it.
+    /// Sets the sampler of the import `name`, which
+    /// [`PlanRequest::imports`](skiagraph_graph::PlanRequest::imports) describes. Passes with `run:
+    /// OnChange` that use it run in the next frame. wgpu does not tell how a sampler filters, so a
+    /// wrong one is refused only when a pass binds it.
     ///
     /// # Errors
     /// Those of [`import_texture`](Self::import_texture).

@@ -21,8 +21,8 @@ pub struct PassTiming {
     /// last. `None` if there are no valid timestamps, for example because the adapter has none.
     /// For a pass that works on the CPU, it is the time that the GPU waits for it.
     pub gpu: Option<Duration>,
-    /// CPU time that the encoding of the pass's commands took, or the work itself of a pass that
-    /// works on the CPU.
+    /// CPU time that the encoding of the pass's commands took; for a pass that works on the CPU the
+    /// time of that work.
     pub cpu: Duration,
 }
 
@@ -40,7 +40,7 @@ impl FrameTiming {
         Some(end - begin)
     }
 
-    /// Returns the CPU time that the encoding of commands took: the sum over all passes that ran.
+    /// Returns the sum of [`PassTiming::cpu`] over all passes that ran.
     pub fn cpu(&self) -> Duration {
         self.passes.iter().map(|pass| pass.cpu).sum()
     }

@@ -30,7 +30,8 @@ pub struct Aliases {
     /// [live](crate::Plan::live) pass uses, except the host's, is in exactly one of them.
     pub list: Vec<Allocation>,
     /// Index in [`list`](Self::list) of the allocation of each resource. A resource that is not a
-    /// key has no allocation: no live pass uses it, it is a sampler, or the host makes it.
+    /// key has no allocation: no [live](crate#terms) pass uses it, it is a sampler, or the host
+    /// makes it.
     pub of: BTreeMap<ResourceId, usize>,
 }
 

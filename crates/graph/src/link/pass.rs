@@ -33,7 +33,7 @@ pub struct LinkedPass {
     /// Full name with its place in the document: the name there, with the names of the groups and
     /// includes around the pass in front, `blur.x`, and the index of a repetition behind,
     /// `fill[0]`. An include without a name counts by the name of its file. `material@pass` for a
-    /// capture.
+    /// [capture](crate#terms).
     pub name: Located<String>,
     /// Kind of the pass, as the document writes it, such as `Compute`; [`CAPTURE`] for a pass that
     /// planning added.
@@ -71,8 +71,8 @@ impl LinkedPass {
 pub struct Access {
     /// Id of the resource that the access reads or writes.
     pub resource: ResourceId,
-    /// Part of the resource that the access reads or writes: mips and layers of a texture, or items
-    /// of a buffer.
+    /// Part of the resource that the access reads or writes: mips and layers of a texture, or
+    /// [items](crate#terms) of a buffer.
     pub part: SubresourceRange,
     /// True if the access reads its [`part`](Self::part) of the resource.
     pub reads: bool,
@@ -82,9 +82,8 @@ pub struct Access {
     /// the resource: as a clear, a copy or a cleared attachment does, or because the document
     /// promises it (`overwrites`).
     pub fully_overwrites: bool,
-    /// True if a change of the resource's content, of which the step uses something, is a reason
-    /// for a pass with [`Run::OnChange`] to run. False only for the uniform `frame` if the shader
-    /// reads just its flags.
+    /// True if a change of the resource's content makes a pass with [`Run::OnChange`] run. False
+    /// only for the uniform `frame` if the shader reads no more of it than its flags.
     pub triggers: bool,
     /// Usage that the resource must be created with on the device for this access.
     pub usage: Usage,
@@ -186,7 +185,7 @@ pub struct LinkedBinding {
 /// Resource or bytes that a [`LinkedBinding`] binds.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BindTarget {
-    /// A buffer, or a range of its items, bound as a uniform or storage buffer.
+    /// A buffer, or a range of its [items](crate#terms), bound as a uniform or storage buffer.
     Buffer(Target),
     /// A texture or a part of one, bound as a sampled or storage texture.
     Texture {

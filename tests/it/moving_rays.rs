@@ -221,7 +221,8 @@ fn parts_come_and_go_under_ray_queries() {
     let mut maps = rows()[..3].to_vec();
     let mut scene = SceneProvider::from_parts(Movable::joined(&there), sun());
     scene.set_camera(&far_view().camera(VIEWPORT));
-    scene.reserve(Room::of_copies(&stone, 2)).unwrap();
+    let room = Room::of_copies(&stone, 2);
+    scene.reserve(room, &gpu.device.limits()).unwrap();
     scene.set_transforms(&maps).unwrap();
     let mut handles: Vec<PartId> = scene.parts().collect();
     let mut executor = rt(&gpu, "ray_query", &mut scene);

@@ -35,7 +35,9 @@ pub trait Provider: Describe {
     /// [usages](skiagraph_graph::ProvidedBinding::usages) of its description's binding, and
     /// `COPY_SRC` if it may be read back or is read as `.previous` (as it was in the frame before).
     ///
-    /// A frame reads the content that the buffer has when the frame is submitted. A provider that
+    /// The commands that fill the buffer are submitted when this method returns, or by
+    /// [`submit_built`](Self::submit_built). A frame reads the content that the buffer has when the
+    /// frame is submitted. A provider that
     /// changes a content while encoded frames wait for submission must return a new buffer for it.
     ///
     /// # Errors
@@ -67,6 +69,24 @@ pub trait Provider: Describe {
         Err(ProviderError::new(format!(
             "this provider builds no acceleration structure `{name}`"
         )))
+    }
+
+    /// Submits the commands that [`build`](Self::build) has recorded and not submitted, such as
+    /// copies into the buffers that it returned. An executor calls it once after it has asked for
+    /// all resources, also if one of them failed. So what is recorded for several resources is one
+    /// submission. The default implementation does nothing: it is that of providers whose `build`
+    /// submits by itself. A provider around another one must hand the call on.
+    ///
+    /// # Errors
+    /// If the commands are refused. The executor then asks for all these resources again at the
+    /// next [`refresh`](crate::Executor::refresh).
+    fn submit_built(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+    ) -> Result<(), ProviderError> {
+        let _ = (device, queue);
+        Ok(())
     }
 
     /// Makes the work for the CPU of the resource `name`, which [`Describe::describe`] describes as

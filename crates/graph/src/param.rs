@@ -153,6 +153,7 @@ impl fmt::Display for ParamValue {
 /// the host sets in [`Request::params`](crate::Request::params). The document declares the param,
 /// or exposes it from a document that it includes.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Param {
     /// Name, as in `params.NAME` of a shader and `--set NAME=…` on the command line, with its place
     /// in the document. A param that a named include exposes has the [include](crate#terms)'s name

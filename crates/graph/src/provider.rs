@@ -119,6 +119,7 @@ impl ProvidedBinding {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Import {
     /// A texture, which the host has created.
+    #[non_exhaustive]
     Texture {
         /// Format of the texture's texels.
         format: wgt::TextureFormat,
@@ -137,6 +138,7 @@ pub enum Import {
         usage: wgt::TextureUsages,
     },
     /// A buffer, which the host has created.
+    #[non_exhaustive]
     Buffer {
         /// Size of the buffer in bytes.
         bytes: u64,
@@ -148,6 +150,7 @@ pub enum Import {
         usage: wgt::BufferUsages,
     },
     /// A sampler, which the host has created.
+    #[non_exhaustive]
     Sampler {
         /// Filter that the sampler was created with.
         filter: Filter,
@@ -155,6 +158,54 @@ pub enum Import {
         /// true`).
         compare: bool,
     },
+}
+
+impl Import {
+    /// Describes the texture that a descriptor creates.
+    pub fn texture<L, V>(descriptor: &wgt::TextureDescriptor<L, V>) -> Self {
+        Self::Texture {
+            format: descriptor.format,
+            size: [descriptor.size.width, descriptor.size.height],
+            mips: descriptor.mip_level_count,
+            layers: descriptor.size.depth_or_array_layers,
+            is_3d: descriptor.dimension == wgt::TextureDimension::D3,
+            samples: descriptor.sample_count,
+            usage: descriptor.usage,
+        }
+    }
+
+    /// Describes a 2D texture of one mip, one layer and one sample. `size` is width and height in
+    /// texels.
+    pub fn plain_texture(
+        format: wgt::TextureFormat,
+        size: [u32; 2],
+        usage: wgt::TextureUsages,
+    ) -> Self {
+        Self::Texture {
+            format,
+            size,
+            mips: 1,
+            layers: 1,
+            is_3d: false,
+            samples: 1,
+            usage,
+        }
+    }
+
+    /// Describes a buffer of so many bytes. `items` is their number of array items; `None` is
+    /// enough unless a pass is dispatched over the items or an expression uses their number.
+    pub fn buffer(bytes: u64, items: Option<u64>, usage: wgt::BufferUsages) -> Self {
+        Self::Buffer {
+            bytes,
+            items,
+            usage,
+        }
+    }
+
+    /// Describes a sampler; `compare` is true for a comparison sampler.
+    pub fn sampler(filter: Filter, compare: bool) -> Self {
+        Self::Sampler { filter, compare }
+    }
 }
 
 impl std::fmt::Debug for dyn Describe + '_ {

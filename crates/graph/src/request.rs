@@ -196,6 +196,7 @@ impl<P> Request<P> {
 /// A material (texture or buffer) whose content is to be read back after a frame, as it is at the
 /// end of the frame or after one of its passes.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
 pub struct Capture {
     /// [Full name](crate#terms) of a material ([`Resource::name`](crate::Resource::name)), such as
     /// `left.depth` for the output `depth` of the [include](crate#terms) `left`, or a part of one,
@@ -208,6 +209,21 @@ pub struct Capture {
 }
 
 impl Capture {
+    /// Creates the capture of a [`material`](Self::material) at the end of the frame.
+    pub fn new(material: impl Into<String>) -> Self {
+        Self {
+            material: material.into(),
+            after: None,
+        }
+    }
+
+    /// Sets the pass [`after`](Self::after) which the content is captured.
+    #[must_use]
+    pub fn with_after(mut self, pass: impl Into<String>) -> Self {
+        self.after = Some(pass.into());
+        self
+    }
+
     /// Returns the name under which the content is read back: `material`, or `material@pass` for a
     /// [capture](crate#terms) after a pass.
     pub fn name(&self) -> String {

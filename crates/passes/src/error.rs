@@ -141,8 +141,20 @@ pub enum Error {
     /// number of transforms is not the number of parts.
     #[error(transparent)]
     Move(#[from] skiagraph_scene::MoveError),
+    /// The device has refused to copy what has not changed into the next buffers of resources, for
+    /// example because it has no memory for them.
+    #[error("{} could not be copied: {why}", names.join(", "))]
+    Copies {
+        /// Names of the resources.
+        names: Vec<String>,
+        /// Reason that wgpu gives.
+        why: String,
+    },
     /// A resource needs a larger buffer than the device can bind.
-    #[error("`{name}` needs a buffer of {bytes} bytes, but the device binds at most {limit}")]
+    #[error(
+        "`{name}` needs a buffer of {bytes} bytes, but the device binds at most {limit}: the \
+         smaller of its limits `max_buffer_size` and `max_storage_buffer_binding_size`"
+    )]
     TooLarge {
         /// Name of the resource, such as `scene.positions`.
         name: String,

@@ -50,10 +50,25 @@ impl Room {
     /// Returns the room that the parts of both rooms need together.
     pub fn and(self, other: Self) -> Self {
         Self {
-            parts: self.parts + other.parts,
-            positions: self.positions + other.positions,
-            normals: self.normals + other.normals,
-            triangles: self.triangles + other.triangles,
+            parts: self.parts.saturating_add(other.parts),
+            positions: self.positions.saturating_add(other.positions),
+            normals: self.normals.saturating_add(other.normals),
+            triangles: self.triangles.saturating_add(other.triangles),
+        }
+    }
+
+    /// The numbers of parts, positions, normals and triangles.
+    pub(crate) fn numbers(self) -> [usize; 4] {
+        [self.parts, self.positions, self.normals, self.triangles]
+    }
+
+    /// The room of these [numbers](Self::numbers).
+    pub(crate) fn from_numbers([parts, positions, normals, triangles]: [usize; 4]) -> Self {
+        Self {
+            parts,
+            positions,
+            normals,
+            triangles,
         }
     }
 
@@ -61,9 +76,9 @@ impl Room {
     pub(crate) fn of(rest: &Mesh, copies: usize) -> Self {
         Self {
             parts: copies,
-            positions: copies * rest.positions.len(),
-            normals: copies * rest.normals.len(),
-            triangles: copies * rest.triangles.len(),
+            positions: copies.saturating_mul(rest.positions.len()),
+            normals: copies.saturating_mul(rest.normals.len()),
+            triangles: copies.saturating_mul(rest.triangles.len()),
         }
     }
 }

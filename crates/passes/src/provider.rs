@@ -65,7 +65,8 @@ use std::{ops::Range, sync::Arc, time::Instant};
 /// refreshed and encoded for one submission, each with a light, a camera and a mesh of its own.
 /// Setting the same value again changes nothing for an executor that has seen it. Where a few parts
 /// of many have moved, the next buffer gets only those from the CPU; the GPU copies the rest from
-/// the buffer before, in a submission of the provider's own.
+/// the buffer before, in one submission of the provider's own
+/// ([`submit_built`](Provider::submit_built)).
 ///
 /// wgpu cannot bind a buffer of size zero. An array of an empty scene therefore holds one zero
 /// item, and its hierarchy one leaf around a triangle without area, which no ray hits.
@@ -83,6 +84,8 @@ pub struct SceneProvider {
     #[cfg(feature = "embree")]
     embree: Option<(Arc<crate::embree::Embree>, u64)>,
     pub(crate) geometry: Geometry,
+    /// Materials of the mesh, once they were asked for.
+    atlas: Arc<Atlas>,
     pub(crate) built: Vec<Built>,
 }
 
@@ -103,6 +106,7 @@ impl SceneProvider {
             #[cfg(feature = "embree")]
             embree: None,
             geometry: Geometry::whole(),
+            atlas: Arc::default(),
             built: Vec::new(),
         }
     }
@@ -140,7 +144,7 @@ impl SceneProvider {
                 _ => {}
             }
         }
-        Ok(())
+        self.submit_built(device, queue)
     }
 
     /// Lists the resources that this provider has built: an entry for each, in the order of their
@@ -210,7 +214,7 @@ impl SceneProvider {
     fn upload_hierarchy(&mut self, on: On) -> Result<How, Error> {
         // Beyond some four million triangles the boxes of all leaves exceed what Vulkan promises
         // to bind, and so the smallest leaves are joined.
-        let most = binding_limit(on.device) / size_of::<BvhNode>() as u64;
+        let most = binding_limit(&on.device.limits()) / size_of::<BvhNode>() as u64;
         let (version, known) = (self.version(BVH_NODES), self.buffers.version(BVH_NODES));
         let mesh = &self.scene.mesh;
         let fitted = self.geometry.bvh(mesh, most as usize, version, known);
@@ -244,16 +248,36 @@ impl SceneProvider {
     }
 
     /// Uploads the numbers of those triangles that have other corners than before.
-    fn upload_triangles(&mut self, name: &str, items: &[[u32; 3]], on: On) -> Result<How, Error> {
+    fn upload_triangles<const N: usize>(
+        &mut self,
+        name: &str,
+        items: &[[u32; N]],
+        on: On,
+    ) -> Result<How, Error> {
         let (version, known) = (self.version(name), self.buffers.version(name));
         let mesh = &self.scene.mesh;
         let turned = self
             .geometry
             .triangles_since(known.unwrap_or_default(), mesh);
-        let turned = turned.iter().map(|range| 3 * range.start..3 * range.end);
+        let turned = turned.iter().map(|range| N * range.start..N * range.end);
         let (items, changed) = (items.as_flattened(), turned.collect::<Vec<_>>());
         self.buffers
             .patch_list(name, items, &changed, version, on)?;
+        Ok(How::Made)
+    }
+
+    /// Uploads the items behind those that were there, of a list that only grows.
+    fn upload_appended<T: bytemuck::NoUninit + bytemuck::Zeroable>(
+        &mut self,
+        name: &str,
+        items: &[T],
+        on: On,
+    ) -> Result<How, Error> {
+        let (version, known) = (self.version(name), self.buffers.version(name));
+        if known.is_none_or(|known| self.geometry.is_begun_after(known)) {
+            return self.upload_items(name, items, on);
+        }
+        self.buffers.extend(name, items, version, on)?;
         Ok(How::Made)
     }
 
@@ -299,7 +323,7 @@ impl SceneProvider {
         };
         // As in the other hierarchy, leaves are joined where there are too many nodes to bind; the
         // last item is the centre.
-        let most = binding_limit(on.device) / size_of::<LightSpaceNode>() as u64 - 1;
+        let most = binding_limit(&on.device.limits()) / size_of::<LightSpaceNode>() as u64 - 1;
         if self.geometry.is_parted() {
             // An eighth of the scene's size nearer or farther, boxes are as tight.
             let space = (space, light.max_distance / 16.0);
@@ -355,7 +379,7 @@ impl SceneProvider {
             NORMAL_INDICES => self.upload_triangles(name, &mesh.normal_indices, on),
             ADJACENCY => {
                 let opposite = self.geometry.adjacency(mesh, self.version(name));
-                self.upload_triangles(name, opposite.as_chunks().0, on)
+                self.upload_triangles(name, opposite.as_chunks::<3>().0, on)
             }
             MASKS => {
                 let words = std::mem::take(&mut self.masks);
@@ -363,11 +387,23 @@ impl SceneProvider {
                 self.masks = words;
                 done
             }
-            UVS => self.upload_items(name, &mesh.surfaces.uvs, on),
-            UV_INDICES => self.upload_items(name, mesh.surfaces.uv_indices.as_flattened(), on),
-            MATERIAL_INDICES => self.upload_items(name, &mesh.surfaces.of, on),
-            MATERIALS => self.upload_items(name, &Atlas::new(&mesh.surfaces)?.records, on),
-            TEXELS => self.upload_items(name, &Atlas::new(&mesh.surfaces)?.texels, on),
+            UVS => self.upload_appended(name, &mesh.surfaces.uvs, on),
+            UV_INDICES => self.upload_triangles(name, &mesh.surfaces.uv_indices, on),
+            MATERIAL_INDICES => {
+                self.upload_triangles(name, mesh.surfaces.of.as_chunks::<1>().0, on)
+            }
+            MATERIALS | TEXELS => {
+                Arc::make_mut(&mut self.atlas).append(&mesh.surfaces)?;
+                let atlas = Arc::clone(&self.atlas);
+                if !self.geometry.is_in_parts() {
+                    // No other materials come, so that it is not worth its memory.
+                    self.atlas = Arc::default();
+                }
+                match name {
+                    MATERIALS => self.upload_appended(name, &atlas.records, on),
+                    _ => self.upload_appended(name, &atlas.texels, on),
+                }
+            }
             CAMERA => self.upload_items(name, &[self.versions.eye.now.finite()?.camera], on),
             UNPROJECTION => {
                 self.upload_items(name, &[self.versions.eye.now.finite()?.unprojection], on)
@@ -506,6 +542,7 @@ impl SceneProvider {
     pub fn set_mesh(&mut self, mesh: Mesh) {
         self.masks = mask_words(&mesh);
         Arc::make_mut(&mut self.scene).mesh = mesh;
+        self.atlas = Arc::default();
         self.geometry = self.geometry.replaced_by(Geometry::whole());
         self.structures = Structures::default();
         self.versions.change_mesh();
@@ -590,11 +627,14 @@ impl SceneProvider {
 
     /// Makes room for parts that [`add_part`](Self::add_part) adds. The numbers of positions,
     /// triangles and other items become larger, on which plans depend (see
-    /// [`set_mesh`](Self::set_mesh)): reserve before graphs are planned.
+    /// [`set_mesh`](Self::set_mesh)): reserve before graphs are planned. `limits` are those of the
+    /// device that the provider is used with.
     ///
     /// # Errors
-    /// [`Error::NoParts`] if the mesh has no parts.
-    pub fn reserve(&mut self, room: Room) -> Result<(), Error> {
+    /// [`Error::NoParts`] if the mesh has no parts, [`Error::TooLarge`] if the device cannot bind
+    /// the mesh with that room. The mesh then stays as it was.
+    pub fn reserve(&mut self, room: Room, limits: &wgpu::Limits) -> Result<(), Error> {
+        self.geometry.limit = Some(binding_limit(limits));
         self.geometry.reserve(room, &mut self.scene)?;
         self.masks = mask_words(&self.scene.mesh);
         self.versions.change_mesh();
@@ -606,12 +646,14 @@ impl SceneProvider {
     /// part is uploaded and gets a hierarchy, plans stay valid, and its triangles get primitive ids
     /// that are unused or that a removed part had. If it does not fit, the mesh grows by a half,
     /// all of it is uploaded, and graphs must be planned anew, as after
-    /// [`set_mesh`](Self::set_mesh). In a scene with materials, the materials of all parts are
-    /// uploaded, and a graph that reads `scene.materials` or `scene.uvs` must be planned anew.
+    /// [`set_mesh`](Self::set_mesh). In a scene with materials the part's own are uploaded, in a
+    /// scene with masks those of all parts; a graph that reads `scene.materials`, `scene.uvs` or
+    /// `scene.masks` must be planned anew.
     ///
     /// # Errors
     /// [`Error::NoParts`] if the mesh has no parts, [`Error::Move`] for a map that cannot move the
-    /// part. The mesh then stays as it was.
+    /// part, [`Error::TooLarge`] if the mesh must grow and the device cannot bind a larger one. The
+    /// mesh then stays as it was.
     pub fn add_part(&mut self, mesh: &Mesh, map: &DAffine3) -> Result<PartId, Error> {
         let (part, change) = self.geometry.add(mesh, map, &mut self.scene)?;
         self.note_change(change);
@@ -729,6 +771,15 @@ impl Provider for SceneProvider {
         buffer.map_err(ProviderError::from_error)
     }
 
+    fn submit_built(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+    ) -> Result<(), ProviderError> {
+        let submitted = self.buffers.submit(On { device, queue });
+        submitted.map_err(ProviderError::from_error)
+    }
+
     fn build_acceleration_structure(
         &mut self,
         name: &str,
@@ -742,6 +793,8 @@ impl Provider for SceneProvider {
         let on = On { device, queue };
         let vertices = self.buffer(POSITIONS, on).map_err(why)?;
         let indices = self.buffer(INDICES, on).map_err(why)?;
+        // It is built of what they hold.
+        self.submit_built(device, queue)?;
         let began = Instant::now();
         let tlas = self.structures.get(Source {
             mesh: &self.scene.mesh,

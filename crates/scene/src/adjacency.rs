@@ -10,6 +10,7 @@ pub const NO_NEIGHBOUR: u32 = u32::MAX;
 /// Edge adjacency of a mesh: for each edge of a triangle the triangle on its other side. It is the
 /// *corner table* of Rossignac, Safonova and Szymczak ("3D Compression Made Simple", SMI 2001).
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Adjacency {
     /// Corner opposite each triangle edge, three entries per triangle. Entry `3 * p + i` belongs to
     /// the edge of triangle `p` from corner `i` to its next corner. Its value is `3 * q + k`: `q`

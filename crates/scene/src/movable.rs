@@ -36,6 +36,7 @@ struct Part {
 /// Part of a [`Movable`] after it was moved, as [`Movable::moved_part`] returns it, to be written
 /// into a mesh by [`Movable::put`].
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct MovedPart {
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
@@ -57,6 +58,7 @@ pub struct PartPlace {
 
 /// Changes that a call of [`Movable::put`] or [`Movable::put_at`] made to a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct PartChange {
     /// True if the call changed a position or normal of the part.
     pub is_elsewhere: bool,

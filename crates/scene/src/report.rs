@@ -5,6 +5,7 @@ use std::{fmt, path::PathBuf};
 
 /// Counts and warnings of the import of a mesh file. The report of a generated mesh is empty.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct ImportReport {
     /// Path of the mesh file; `None` for a mesh that is not from a file.
     pub file: Option<PathBuf>,

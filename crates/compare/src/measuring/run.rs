@@ -434,5 +434,10 @@ pub fn scene_bytes(
         })?;
         bytes += buffer.size();
     }
+    let submitted = provider.submit_built(&session.gpu.device, &session.gpu.queue);
+    submitted.map_err(|why| ExecuteError::Provider {
+        name: "what the provider copies".to_owned(),
+        why,
+    })?;
     Ok(bytes)
 }

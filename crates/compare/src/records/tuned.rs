@@ -40,10 +40,11 @@ pub struct Tuned {
     /// True if the search ended because no change helps; false if it ended at the limit of its
     /// cost.
     pub is_whole: bool,
-    /// Error of the defaults on the views of `chosen_on`, from 0 to 1: the share of the pixels
-    /// facing the light that are wrong, without those whose right answer rounding may flip; under
-    /// lights [with an extent](crate#terms) the mean square error of the [shares of
-    /// light](crate#terms).
+    /// Error of the defaults, from 0 to 1, the mean over the views of `chosen_on`: the share of the
+    /// pixels facing the light that are wrong, without those whose right answer rounding may flip;
+    /// under lights [with an extent](crate#terms) the mean square error of the [shares of
+    /// light](crate#terms). A view with less than a quarter of the mean number of such pixels counts
+    /// less.
     pub default_error: f64,
     /// Error of the tuned setting on the views of `chosen_on`, in the same unit.
     pub error: f64,

@@ -13,6 +13,7 @@ use std::{
 /// in which they run, with the lifetimes, run conditions and allocations that follow from this
 /// order.
 #[derive(Clone, Debug, Default)]
+#[non_exhaustive]
 pub struct Schedule {
     /// Ids of the [live](crate::Plan::live) passes in the order in which they run in a frame. A
     /// *position* is an index into this list.

@@ -45,6 +45,7 @@ impl fmt::Display for Scalar {
 /// the word for the kind of a resource that the host's [provider](crate#terms) describes, such as
 /// `spot`. Two words are equal if their fields `word` are equal.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Word {
     /// The word itself, such as `spot`.
     pub word: Name,

@@ -29,6 +29,7 @@ pub const CAPTURE: &str = "Capture";
 
 /// A pass of a plan. Its steps refer to resources by [`ResourceId`] and hold their parsed shaders.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct LinkedPass {
     /// Full name with its place in the document: the name there, with the names of the groups and
     /// includes around the pass in front, `blur.x`, and the index of a repetition behind,
@@ -133,6 +134,7 @@ pub struct Attachment {
 
 /// A shader of a draw or dispatch, with its entry points, constants and bindings.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct LinkedProgram {
     /// The program's shader, which holds the naga module and its reflection.
     pub shader: Arc<Shader>,
@@ -169,6 +171,7 @@ impl LinkedProgram {
 
 /// One binding of a program: its numbers, and the resource or bytes bound to it.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct LinkedBinding {
     /// Index of the bind group that holds the binding, counted from 0 (`@group`).
     pub group: u32,

@@ -47,8 +47,8 @@ pub struct Work {
     /// Number of positions that were visited to fit the light space of a light (the space of its
     /// shadow map) around the mesh.
     pub laid: u64,
-    /// Number of triangles over which acceleration structures of the device, or of Embree, were
-    /// built; a top level over them is made anew with them, and is not counted.
+    /// Number of triangles over which acceleration structures of the device were built; a
+    /// top level over them is made anew with them, and is not counted.
     pub triangles: u64,
 }
 

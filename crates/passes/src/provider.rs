@@ -825,11 +825,7 @@ impl Provider for SceneProvider {
             return Ok(embree.clone());
         }
         let began = Instant::now();
-        let before = self.embree.as_ref().map(|(embree, _)| &**embree);
-        let built = crate::embree::Embree::build(&self.scene.mesh, &self.geometry, before);
-        let (embree, triangles) = built.map_err(why)?;
-        let embree = Arc::new(embree);
-        self.geometry.work.triangles += triangles as u64;
+        let embree = Arc::new(crate::embree::Embree::build(&self.scene).map_err(why)?);
         self.embree = Some((embree.clone(), version));
         self.note(EMBREE, How::Made, began);
         Ok(embree)

@@ -9,7 +9,7 @@ use skiagraph_gpu::{
     Executor, Frame,
     device::{self, Gpu},
 };
-use skiagraph_graph::{Graph, PlanRequest};
+use skiagraph_graph::{Graph, ParamValue, PlanRequest};
 use skiagraph_passes::{EmbeddedSources, Room, SceneProvider, Work, registry};
 use skiagraph_scene::{DirectionalLight, Indexed, Mesh, Movable, View};
 use std::time::{Duration, Instant};
@@ -23,7 +23,14 @@ const MESHES: usize = 300;
 const ROOM: usize = 20;
 /// Parts that move in each frame.
 const MOVING: usize = 5;
-const PRESETS: [&str; 2] = ["light_buffer", "rt"];
+/// Presets, with the engine of their rays if it is not `hierarchy`.
+const METHODS: [(&str, Option<&str>); 4] = [
+    ("light_buffer", None),
+    ("rt", None),
+    ("rt", Some("light_space")),
+    ("rt", Some("ray_query")),
+];
+const RAY_QUERY: wgpu::Features = wgpu::Features::EXPERIMENTAL_RAY_QUERY;
 /// Small: the CPU's work does not depend on it.
 const VIEWPORT: [u32; 2] = [32, 32];
 /// Triangles of a stone: 578, in rings of 17 between two poles.
@@ -34,7 +41,8 @@ fn main() {
     // `cargo bench` says `--bench`; without it the frames are only tried.
     let measured = std::env::args().any(|argument| argument == "--bench");
     let (frames, added) = if measured { (1000, ROOM) } else { (3, 1) };
-    let gpu = match device::open(None) {
+    let wanted = device::Wanted::default().with_features(RAY_QUERY);
+    let gpu = match device::open_with(&wanted) {
         Ok(gpu) => gpu,
         Err(error) => {
             println!("NOTHING WAS MEASURED: {error}");
@@ -51,8 +59,15 @@ fn main() {
         "{MESHES} meshes, {} triangles, {MOVING} of them move",
         MESHES * stone.triangles.len()
     );
-    for preset in PRESETS {
-        let mut host = Host::new(&gpu, preset, &stone);
+    for (preset, engine) in METHODS {
+        let of = (preset, engine);
+        let words = engine.map(|engine| format!("@engine={engine}"));
+        let preset = &*format!("{preset}{}", words.unwrap_or_default());
+        if engine == Some("ray_query") && !gpu.device.features().contains(RAY_QUERY) {
+            println!("{preset} IS NOT MEASURED: this adapter has no EXPERIMENTAL_RAY_QUERY");
+            continue;
+        }
+        let mut host = Host::new(&gpu, of, &stone);
         // The first frames make what later ones have.
         for turn in 0..3 {
             host.frame(turn, MOVING);
@@ -166,10 +181,12 @@ fn print_work(works: &[Work]) {
         )
     };
     println!(
-        "  bytes uploaded {}, copied on the GPU {}; nodes {}; positions moved {}, laid around {}",
+        "  bytes uploaded {}, copied on the GPU {}; nodes {}, triangles {}; positions moved {}, \
+         laid around {}",
         both(|work| work.uploaded),
         both(|work| work.copied),
         both(|work| work.nodes),
+        both(|work| work.triangles),
         both(|work| work.moved),
         both(|work| work.laid),
     );
@@ -188,7 +205,7 @@ struct Host<'a> {
 }
 
 impl<'a> Host<'a> {
-    fn new(gpu: &'a Gpu, preset: &str, stone: &Mesh) -> Self {
+    fn new(gpu: &'a Gpu, (preset, engine): (&str, Option<&str>), stone: &Mesh) -> Self {
         let stones = Movable::joined(&vec![stone; MESHES]);
         let light = DirectionalLight::new(DVec3::new(0.4, -1.0, -0.3));
         let mut provider = SceneProvider::from_parts(stones, light);
@@ -206,6 +223,10 @@ impl<'a> Host<'a> {
         let mut request = PlanRequest::new(VIEWPORT, &provider);
         request.limits = gpu.device.limits();
         request.features = gpu.device.features();
+        if let Some(engine) = engine {
+            let engine = ParamValue::Choice(engine.to_owned());
+            request.params.insert("engine".to_owned(), engine);
+        }
         let plan = graph
             .plan(&request)
             .unwrap_or_else(|faults| panic!("{faults}"));

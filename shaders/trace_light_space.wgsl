@@ -7,7 +7,8 @@
 #import "shared/light.wgsl"
 #import "shared/trace_entries.wgsl"
 
-// As `LightSpaceNode` in crates/scene/src/bvh/light_space.rs, relative to `light.centre`.
+// As `LightSpaceNode` in crates/scene/src/bvh/light_space.rs, relative to the centre, which is
+// `farthest` of one more item behind all nodes: it may be the one that `light.centre` once was.
 struct Node {
     // Rectangle that it covers, seen along the light.
     low: vec2<f32>,
@@ -42,7 +43,8 @@ struct Place {
 }
 
 fn place(ray: Ray, sheared: Sheared) -> Place {
-    let relative = ray.origin - light.centre.xyz;
+    let last = arrayLength(&scene_light_space_nodes) - 1u;
+    let relative = ray.origin - scene_light_space_nodes[last].farthest;
     let size = abs(relative);
     // No two points of the scene are farther apart than half of `max_distance`.
     let pad = PAD * (max(size.x, max(size.y, size.z)) + 0.5 * light.max_distance);

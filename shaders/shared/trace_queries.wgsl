@@ -1,5 +1,5 @@
 // How the device's own ray queries trace for `Trace`. A shader that imports this enables
-// wgpu_ray_query.
+// wgpu_ray_query. The custom data of an instance is the id of its first primitive.
 
 #import "shared/trace_entries.wgsl"
 #import "shared/solid.wgsl"
@@ -21,11 +21,12 @@ fn trace(ray: Ray, skipped: u32, first_found: bool) -> Hit {
     rayQueryInitialize(&query, scene_tlas, asked);
     while rayQueryProceed(&query) {
         let found = rayQueryGetCandidateIntersection(&query);
+        let primitive = found.instance_custom_data + found.primitive_index;
         let weights = found.barycentrics;
         // The interval is open below, whatever the device holds.
-        if found.primitive_index != skipped
+        if primitive != skipped
             && found.t > ray.t_min
-            && is_opaque(found.primitive_index, weights.x, weights.y) {
+            && is_opaque(primitive, weights.x, weights.y) {
             rayQueryConfirmIntersection(&query);
         }
     }
@@ -33,5 +34,6 @@ fn trace(ray: Ray, skipped: u32, first_found: bool) -> Hit {
     if found.kind == RAY_QUERY_INTERSECTION_NONE {
         return missed;
     }
-    return Hit(found.t, found.primitive_index, found.barycentrics.x, found.barycentrics.y);
+    let primitive = found.instance_custom_data + found.primitive_index;
+    return Hit(found.t, primitive, found.barycentrics.x, found.barycentrics.y);
 }

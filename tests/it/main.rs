@@ -45,6 +45,7 @@ mod light_space;
 mod masked;
 mod mirrored;
 mod moving;
+mod moving_rays;
 mod one_submission;
 mod oracle;
 mod predicates;

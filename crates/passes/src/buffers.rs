@@ -55,12 +55,14 @@ impl Clone for Recorded {
 const GAP: usize = 4096;
 
 impl Buffers {
-    /// Drops what was laid over another shape of the mesh.
-    pub fn lay_over(&mut self, shape: u64) {
+    /// Drops what was laid over another shape of the mesh, but for hierarchies of parts, which the
+    /// next ones are made from.
+    pub fn lay_over(&mut self, shape: u64, is_parted: bool) {
         if self.shape != shape {
             self.shape = shape;
             let is_laid = |name: &str| {
-                matches!(name, LIGHT | LIGHT_SPACE_NODES)
+                name == LIGHT
+                    || name == LIGHT_SPACE_NODES && !is_parted
                     || lights::list_of(name) == Some(lights::LIGHTS)
             };
             self.held.retain(|name, _| !is_laid(name));
@@ -79,6 +81,26 @@ impl Buffers {
     pub fn still_hold(&mut self, name: &str, version: u64) {
         if let Some((_, of)) = self.held.get_mut(name).and_then(|held| held.last_mut()) {
             *of = version;
+        }
+    }
+
+    /// Makes the buffer of that name whose content is of a version the last one that was made;
+    /// false if there is none.
+    pub fn take_up(&mut self, name: &str, version: u64) -> bool {
+        let Some(held) = self.held.get_mut(name) else {
+            return false;
+        };
+        let at = held.iter().position(|(_, of)| *of == version);
+        if let Some(at) = at {
+            held[at..].rotate_left(1);
+        }
+        at.is_some()
+    }
+
+    /// Drops the buffer of that name whose content is of a version, which another one has replaced.
+    pub fn leave(&mut self, name: &str, version: u64, by: u64) {
+        if let Some(held) = self.held.get_mut(name).filter(|_| version != by) {
+            held.retain(|(_, of)| *of != version);
         }
     }
 

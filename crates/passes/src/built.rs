@@ -47,6 +47,9 @@ pub struct Work {
     /// Number of positions that were visited to fit the light space of a light (the space of its
     /// shadow map) around the mesh.
     pub laid: u64,
+    /// Number of triangles over which acceleration structures of the device were built; a
+    /// top level over them is made anew with them, and is not counted.
+    pub triangles: u64,
 }
 
 impl Work {
@@ -59,6 +62,7 @@ impl Work {
             moved: self.moved - before.moved,
             nodes: self.nodes - before.nodes,
             laid: self.laid - before.laid,
+            triangles: self.triangles - before.triangles,
         }
     }
 }

@@ -62,7 +62,7 @@ impl Embree {
     /// # Errors
     /// An index beyond the mesh's positions, or Embree's own.
     pub fn build(scene: &Arc<Scene>) -> Result<Self, Error> {
-        check_corners(&scene.mesh)?;
+        check_corners(&scene.mesh, 0..scene.mesh.triangles.len())?;
         tree(scene)
             .map(Self)
             .map_err(|why| Error::Embree(format!("{why:?}")))

@@ -6,7 +6,7 @@ use crate::{
     buffers::check_size,
     built::{How, Work},
     error::Error,
-    hierarchies::{Hierarchies, Tree},
+    hierarchies::{Fitted, Hierarchies, Parted, Tree},
     names::{BVH_NODES, INDICES, NORMALS, POSITIONS, next_version},
     outlines::Outlines,
     parts::{Free, Part, PartId, Room},
@@ -75,6 +75,20 @@ struct Piece {
     moved: u64,
     /// Number of the change that gave its triangles their corners.
     turned: u64,
+    /// Number of the change that gave it another tree.
+    built: u64,
+}
+
+/// Triangles that a tracer other than ours has in a structure of their own.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Solid {
+    /// The piece that they are; `None` for pieces whose triangles lie among those of others, which
+    /// are one solid together.
+    pub piece: Option<usize>,
+    /// The range of the mesh that holds them, and no others if they are a piece.
+    pub triangles: Range<usize>,
+    /// Number of the last change of their corners.
+    pub changed: u64,
 }
 
 #[derive(Clone)]
@@ -100,16 +114,6 @@ struct Kept {
     tree: Arc<TwoLevelBvh>,
     /// Version of the shape that it is fitted to.
     version: u64,
-}
-
-/// The hierarchy as shaders read it.
-pub(crate) struct Fitted {
-    pub tree: Arc<TwoLevelBvh>,
-    /// Ranges of the nodes that are others than those of a version.
-    pub nodes: Vec<Range<usize>>,
-    /// Ranges of the primitives that are others than those of that version.
-    pub primitives: Vec<Range<usize>>,
-    pub how: How,
 }
 
 /// How the places of parts, or parts, have changed a mesh.
@@ -581,11 +585,9 @@ impl Geometry {
         let Some(kept) = self.bvh.take() else {
             return self.build_bvh(mesh, most, version);
         };
-        let since = |version: u64| {
-            let pieces = self.pieces.iter().enumerate();
-            pieces.filter_map(move |(piece, of)| (of.moved > version).then_some(piece))
-        };
-        let moved: Vec<usize> = since(kept.version).collect();
+        let moved = self.pieces.iter().enumerate();
+        let moved = moved.filter_map(|(piece, of)| (of.moved > kept.version).then_some(piece));
+        let moved: Vec<usize> = moved.collect();
         let how = if self.is_bent {
             Moved::Freely
         } else {
@@ -593,14 +595,20 @@ impl Geometry {
         };
         let mut tree = kept.tree;
         let refit = Arc::make_mut(&mut tree).refit(mesh, &moved, how);
-        let others: Vec<usize> = since(known.unwrap_or_default()).collect();
+        for &piece in &refit.rebuilt {
+            self.pieces[piece].built = version;
+        }
+        let known = known.unwrap_or_default();
+        let since = |of: fn(&Piece) -> u64| {
+            let pieces = self.pieces.iter().enumerate();
+            let since = pieces.filter(move |(_, piece)| of(piece) > known);
+            since.map(|(piece, _)| piece)
+        };
+        let others: Vec<usize> = since(|piece| piece.moved.max(piece.built)).collect();
         let nodes = others.iter().map(|&piece| tree.nodes_of(piece));
         let nodes = nodes.chain(tree.top()).collect();
-        let known = known.unwrap_or_default();
-        let turned = others.iter().copied();
-        let turned = turned.filter(|&piece| self.pieces[piece].turned > known);
-        let others = refit.rebuilt.iter().copied().chain(turned);
-        let primitives = others.map(|piece| tree.primitives_of(piece)).collect();
+        let primitives = since(|piece| piece.turned.max(piece.built));
+        let primitives = primitives.map(|piece| tree.primitives_of(piece)).collect();
         let how = if refit.rebuilt.is_empty() {
             How::Refitted
         } else {
@@ -614,6 +622,7 @@ impl Geometry {
         });
         Fitted {
             tree,
+            pieces: others,
             nodes,
             primitives,
             how,
@@ -641,6 +650,7 @@ impl Geometry {
             version,
         });
         Fitted {
+            pieces: (0..self.pieces.len()).collect(),
             nodes: all(tree.nodes.len()),
             primitives: all(tree.primitives.len()),
             tree,
@@ -681,7 +691,7 @@ impl Geometry {
         tree
     }
 
-    /// Returns the hierarchy of the mesh in the light space of `space`.
+    /// Returns the hierarchy of a mesh without parts in the light space of `space`.
     ///
     /// # Errors
     /// More triangles than its links can name.
@@ -697,13 +707,93 @@ impl Geometry {
         Ok(tree)
     }
 
-    /// Returns the uniform of a light that is laid around the mesh; around parts where they are,
-    /// of which only those are looked at that have moved.
-    pub fn lay(&mut self, light: LightKind, mesh: &Mesh) -> LightUniform {
-        if self.first.is_none() {
-            self.work.laid += mesh.positions.len() as u64;
-            return LightUniform::new(light, mesh);
+    /// True if the mesh is in parts.
+    pub fn is_parted(&self) -> bool {
+        self.first.is_some()
+    }
+
+    /// Returns the hierarchy of a mesh in parts in the light space of `space`, of which only the
+    /// parts are fitted that have moved. A centre nearer than `near` to the last one changes
+    /// nothing. The versions are those of the shape and of the resource.
+    ///
+    /// # Errors
+    /// More triangles than its links can name.
+    pub fn light_space_of_parts(
+        &mut self,
+        (space, near): (LightSpace, f32),
+        mesh: &Mesh,
+        most: usize,
+        versions: [u64; 2],
+    ) -> Result<Parted, Error> {
+        let known = self.hierarchies.take(space.direction);
+        let since = known.as_ref().map(|known| known.shape);
+        let fitted = self.bvh(mesh, most, versions[0], since);
+        let of = (space, near);
+        let parted = self
+            .hierarchies
+            .of_parts(known, of, &fitted, mesh, versions)?;
+        self.work.nodes += parted.fitted as u64;
+        Ok(parted)
+    }
+
+    /// Returns the solids of the mesh: all of its triangles but those that no part has. They are
+    /// `most` at most, and the numbers of their first triangles have 24 bits.
+    pub fn solids(&self, mesh: &Mesh, most: u32) -> Vec<Solid> {
+        let mut solids = Vec::new();
+        let (mut together, mut changed) = (0..0, 0);
+        for (number, piece) in self.pieces.iter().enumerate() {
+            let (triangles, of_piece) = (piece.triangles(mesh), piece.moved.max(piece.turned));
+            if self.is_solid(piece, mesh, most) {
+                let piece = Some(number);
+                solids.push(Solid {
+                    piece,
+                    triangles,
+                    changed: of_piece,
+                });
+            } else {
+                // Those of a piece that is gone may have been among these.
+                changed = changed.max(of_piece);
+                together.end = together.end.max(triangles.end);
+            }
         }
+        solids.retain(|solid| !solid.triangles.is_empty());
+        let together = Solid {
+            piece: None,
+            triangles: together,
+            changed,
+        };
+        solids.extend((!together.triangles.is_empty()).then_some(together));
+        solids
+    }
+
+    /// True if a piece is a solid by itself.
+    fn is_solid(&self, piece: &Piece, mesh: &Mesh, most: u32) -> bool {
+        let triangles = piece.triangles(mesh);
+        let count = match &piece.content {
+            Content::Part(part) => part.of.triangles(part.number).len(),
+            Content::Outside(outside) => outside.triangles.len(),
+            Content::Whole => triangles.len(),
+            Content::Gone => return false,
+        };
+        let is_named = triangles.start < 1 << 24 && self.pieces.len() < most as usize;
+        count == triangles.len() && is_named
+    }
+
+    /// Returns the corners of the solid of those pieces that are none by themselves: those of other
+    /// triangles are all the same one, so that they have no area.
+    pub fn together(&self, mesh: &Mesh, solid: &Solid, most: u32) -> Vec<[u32; 3]> {
+        let mut corners = vec![[0; 3]; solid.triangles.len()];
+        let pieces = self.pieces.iter();
+        let pieces = pieces.filter(|piece| !self.is_solid(piece, mesh, most));
+        for primitive in pieces.flat_map(|piece| piece.primitives(mesh)) {
+            corners[primitive as usize] = mesh.triangles[primitive as usize];
+        }
+        corners
+    }
+
+    /// Returns the uniform of a light that is laid around the mesh. Of pieces that stand still, few
+    /// corners are looked at, or none.
+    pub fn lay(&mut self, light: LightKind, mesh: &Mesh) -> LightUniform {
         let moved: Vec<u64> = self.pieces.iter().map(|piece| piece.moved).collect();
         let corners = |piece: usize| self.pieces[piece].corners(mesh);
         let (uniform, laid) = self.outlines.lay(light, &moved, corners);
@@ -719,6 +809,7 @@ impl Piece {
             content,
             moved: version,
             turned: version,
+            built: version,
         }
     }
 
@@ -747,8 +838,9 @@ impl Piece {
     fn triangles(&self, mesh: &Mesh) -> Range<usize> {
         match &self.content {
             Content::Part(part) => part.triangles(),
+            Content::Outside(outside) => outside.range(),
             Content::Gone => 0..0,
-            Content::Whole | Content::Outside(_) => 0..mesh.triangles.len(),
+            Content::Whole => 0..mesh.triangles.len(),
         }
     }
 
@@ -798,6 +890,12 @@ fn lengthened<T: Clone>(list: &mut Vec<T>, by: usize, item: T) -> Range<usize> {
 }
 
 impl Outside {
+    /// The range that holds its triangles.
+    fn range(&self) -> Range<usize> {
+        let ends = self.triangles.first().zip(self.triangles.last());
+        ends.map_or(0..0, |(first, last)| *first as usize..*last as usize + 1)
+    }
+
     fn new(parts: &Movable) -> Self {
         let mesh = &parts.rest;
         let mut is_inside = vec![false; mesh.triangles.len()];

@@ -3,7 +3,7 @@
 
 use crate::uniforms::LightUniform;
 use glam::{DVec3, Vec3};
-use skiagraph_scene::{DirectionalLight, LightKind, Outline};
+use skiagraph_scene::{DirectionalLight, LightKind, Outline, outline::border};
 
 /// Number of directions of light whose outlines are kept: those of lights that take turns, or of a
 /// scene with many.
@@ -20,8 +20,20 @@ struct Of<T> {
 #[derive(Clone, Default)]
 pub(crate) struct Outlines {
     boxes: Vec<Of<Option<[Vec3; 2]>>>,
+    borders: Vec<Of<Border>>,
     /// By the direction of the light; the last one was asked for last.
     directions: Vec<Direction>,
+}
+
+/// Corners of a piece of which its outline is made, for lights that take many directions.
+#[derive(Clone, Default)]
+enum Border {
+    #[default]
+    Unasked,
+    /// An outline was made of all its corners: it may be the only one before the piece moves.
+    AskedOnce,
+    /// The corners that may be on an outline.
+    Found(Vec<Vec3>),
 }
 
 /// Outlines of pieces that a light has asked for.
@@ -45,7 +57,11 @@ impl Outlines {
         corners: impl Fn(usize) -> Vec<Vec3>,
     ) -> (LightUniform, u64) {
         let mut laid = self.lay_boxes(moved, &corners);
-        let boxes = &self.boxes;
+        self.borders.resize_with(moved.len(), || Of {
+            made: Border::default(),
+            moved: 0,
+        });
+        let (boxes, borders) = (&self.boxes, &mut self.borders);
         let bounds = boxes.iter().filter_map(|of| of.made);
         let bounds = bounds.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
         let directions = &mut self.directions;
@@ -59,8 +75,23 @@ impl Outlines {
                 own[piece].get_or_insert_with(outline).clone()
             };
             let exact = |piece: usize| {
+                let of = &mut borders[piece];
+                if of.moved != moved[piece] {
+                    *of = Of {
+                        made: Border::Unasked,
+                        moved: moved[piece],
+                    };
+                }
+                if let Border::Found(border) = &of.made {
+                    laid += border.len() as u64;
+                    return sun.outline(border.iter().copied());
+                }
                 let corners = corners(piece);
                 laid += corners.len() as u64;
+                of.made = match of.made {
+                    Border::Unasked => Border::AskedOnce,
+                    _ => Border::Found(border(&corners)),
+                };
                 sun.outline(corners)
             };
             let outline = Outline::joined(&mut known.outlines, loose, exact);

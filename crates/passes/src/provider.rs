@@ -11,7 +11,7 @@ use crate::{
     lights,
     names::*,
     parts::{PartId, Room},
-    ray_query,
+    ray_query::{Source, Structures},
     uniforms::{CameraUniform, LightAreaUniform, LightUniform, UnprojectionUniform},
 };
 use glam::{DAffine3, Vec3, Vec4};
@@ -39,9 +39,9 @@ use std::{ops::Range, sync::Arc, time::Instant};
 /// | `scene.adjacency` | `array<u32>`, three per primitive: [`Adjacency::opposite`] |
 /// | `scene.bvh_nodes` | 32-byte [`BvhNode`]s, node 0 is the root |
 /// | `scene.bvh_primitives` | `array<u32>`, primitive ids in leaf order |
-/// | `scene.light_space_nodes` | 32-byte [`LightSpaceNode`]s, node 0 is the root |
+/// | `scene.light_space_nodes` | 32-byte [`LightSpaceNode`]s, node 0 the root, the last a centre |
 /// | `scene.light_space_primitives` | `array<u32>`, primitive ids in their leaf order |
-/// | `scene.tlas` | `acceleration_structure`, one instance; primitives have their ids |
+/// | `scene.tlas` | `acceleration_structure`, instances: primitives count from their custom data |
 /// | `scene.embree` | work for the CPU, with the feature `embree` |
 /// | `scene.masks` | `array<u32>`: [`mask_words`], what `shared/masks.wgsl` reads |
 /// | `scene.uvs` | `array<vec2<f32>>`, v down |
@@ -80,7 +80,7 @@ pub struct SceneProvider {
     /// Words of [`MASKS`], made at once: plans ask how many there are.
     pub(crate) masks: Vec<u32>,
     pub(crate) buffers: Buffers,
-    pub(crate) tlas: Option<(wgpu::Tlas, u64)>,
+    structures: Structures,
     #[cfg(feature = "embree")]
     embree: Option<(Arc<crate::embree::Embree>, u64)>,
     pub(crate) geometry: Geometry,
@@ -102,7 +102,7 @@ impl SceneProvider {
             masks: mask_words(&scene.mesh),
             scene,
             buffers: Buffers::default(),
-            tlas: None,
+            structures: Structures::default(),
             #[cfg(feature = "embree")]
             embree: None,
             geometry: Geometry::whole(),
@@ -166,7 +166,8 @@ impl SceneProvider {
 
     /// The buffer of that name with what is in it now.
     fn buffer(&mut self, name: &str, on: On) -> Result<wgpu::Buffer, Error> {
-        self.buffers.lay_over(self.versions.shape);
+        let is_parted = self.geometry.is_parted();
+        self.buffers.lay_over(self.versions.shape, is_parted);
         let version = self.version(name);
         if let Some(buffer) = self.buffers.get(name, version) {
             return Ok(buffer.clone());
@@ -320,11 +321,52 @@ impl SceneProvider {
             direction: light.to_light,
             centre: light.centre,
         };
-        // As in the other hierarchy, leaves are joined where there are too many nodes to bind.
-        let most = binding_limit(&on.device.limits()) / size_of::<LightSpaceNode>() as u64;
+        // As in the other hierarchy, leaves are joined where there are too many nodes to bind; the
+        // last item is the centre.
+        let most = binding_limit(&on.device.limits()) / size_of::<LightSpaceNode>() as u64 - 1;
+        if self.geometry.is_parted() {
+            // An eighth of the scene's size nearer or farther, boxes are as tight.
+            let space = (space, light.max_distance / 16.0);
+            return self.upload_light_space_of_parts(space, most as usize, on);
+        }
         let mesh = &self.scene.mesh;
         let tree = self.geometry.light_space(space, mesh, most as usize)?;
         self.upload_tree([LIGHT_SPACE_NODES, LIGHT_SPACE_PRIMITIVES], tree, on)
+    }
+
+    fn upload_light_space_of_parts(
+        &mut self,
+        space: (LightSpace, f32),
+        most: usize,
+        on: On,
+    ) -> Result<How, Error> {
+        let version = self.version(LIGHT_SPACE_NODES);
+        let (mesh, versions) = (&self.scene.mesh, [self.versions.shape, version]);
+        let of = self
+            .geometry
+            .light_space_of_parts(space, mesh, most, versions)?;
+        let buffers = &mut self.buffers;
+        let names = [LIGHT_SPACE_NODES, LIGHT_SPACE_PRIMITIVES];
+        let known = names.map(|name| buffers.take_up(name, of.since));
+        let all = |count: usize| std::iter::once(0..count).collect::<Vec<_>>();
+        let [nodes, primitives] = of.changed;
+        let nodes = if known[0] { nodes } else { all(of.nodes.len()) };
+        buffers.patch_list(names[0], &of.nodes, &nodes, version, on)?;
+        let items = &of.tree.primitives;
+        let primitives = if known[1] {
+            primitives
+        } else {
+            all(items.len())
+        };
+        buffers.patch_list(names[1], items, &primitives, version, on)?;
+        for name in names {
+            buffers.leave(name, of.since, version);
+        }
+        Ok(if of.since == 0 {
+            How::Made
+        } else {
+            How::Refitted
+        })
     }
 
     fn upload_named(&mut self, name: &str, on: On) -> Result<How, Error> {
@@ -502,6 +544,7 @@ impl SceneProvider {
         Arc::make_mut(&mut self.scene).mesh = mesh;
         self.atlas = Arc::default();
         self.geometry = self.geometry.replaced_by(Geometry::whole());
+        self.structures = Structures::default();
         self.versions.change_mesh();
     }
 
@@ -702,6 +745,9 @@ impl Describe for SceneProvider {
 
 impl Provider for SceneProvider {
     fn version(&self, name: &str) -> u64 {
+        if name == TLAS {
+            return self.structures.version(self.versions.shape);
+        }
         let of_lights = lights::version(name, &self.versions);
         of_lights.unwrap_or_else(|| self.versions.get(name))
     }
@@ -744,22 +790,25 @@ impl Provider for SceneProvider {
         if name != TLAS {
             return Err(why(unknown(name)));
         }
-        let version = self.versions.get(TLAS);
-        if let Some((tlas, of)) = &self.tlas
-            && *of == version
-        {
-            return Ok(tlas.clone());
-        }
         let on = On { device, queue };
         let vertices = self.buffer(POSITIONS, on).map_err(why)?;
         let indices = self.buffer(INDICES, on).map_err(why)?;
         // It is built of what they hold.
         self.submit_built(device, queue)?;
         let began = Instant::now();
-        let of = [&vertices, &indices];
-        let tlas = ray_query::build(&self.scene.mesh, of, device, queue).map_err(why)?;
-        self.tlas = Some((tlas.clone(), version));
-        self.note(TLAS, How::Made, began);
+        let tlas = self.structures.get(Source {
+            mesh: &self.scene.mesh,
+            geometry: &self.geometry,
+            buffers: [&vertices, &indices],
+            shape: self.versions.shape,
+            device,
+            queue,
+        });
+        let (tlas, triangles) = tlas.map_err(why)?;
+        if let Some(triangles) = triangles {
+            self.geometry.work.triangles += triangles as u64;
+            self.note(TLAS, How::Made, began);
+        }
         Ok(tlas)
     }
 

@@ -1,87 +1,278 @@
-//! The scene as an acceleration structure of the device: one geometry, one instance.
+//! The scene as acceleration structures of the device: a bottom level for each piece of the mesh
+//! that moves by itself, of its positions in world space, and a top level of instances that leave
+//! everything where it is. Where a piece has moved, it gets another bottom level; the others keep
+//! theirs.
 
-use crate::error::Error;
+use crate::{
+    error::Error,
+    geometry::{Geometry, Solid},
+    names::next_version,
+};
 use skiagraph_scene::Mesh;
+use std::{
+    collections::BTreeMap,
+    ops::Range,
+    sync::{
+        Arc,
+        atomic::{AtomicUsize, Ordering},
+    },
+};
+use wgpu::{
+    AccelerationStructureFlags as Flags, BlasTriangleGeometrySizeDescriptor as Size,
+    util::{BufferInitDescriptor, DeviceExt},
+};
 
 /// Rows of the matrix that leaves everything where it is.
 const IDENTITY: [f32; 12] = [1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0.];
 
-/// Builds it of the buffers of the mesh's positions (16 bytes each) and indices (4 bytes each), and
-/// submits the build. Primitives count as in the mesh, and none is opaque: a query sees each as a
-/// candidate. A mesh without triangles is a structure without instances.
-///
-/// # Errors
-/// More triangles than the device can take, or an index beyond the mesh's positions.
-pub(crate) fn build(
-    mesh: &Mesh,
-    [vertices, indices]: [&wgpu::Buffer; 2],
-    device: &wgpu::Device,
-    queue: &wgpu::Queue,
-) -> Result<wgpu::Tlas, Error> {
-    let most = device.limits().max_blas_primitive_count;
-    if mesh.triangles.len() as u64 > u64::from(most) {
-        return Err(Error::TooManyTriangles {
-            triangles: mesh.triangles.len(),
-            most,
-        });
-    }
-    check_corners(mesh)?;
-    let corners = mesh.positions.len();
-    let size = wgpu::BlasTriangleGeometrySizeDescriptor {
-        vertex_format: wgpu::VertexFormat::Float32x3,
-        vertex_count: corners as u32,
-        index_format: Some(wgpu::IndexFormat::Uint32),
-        index_count: Some(3 * mesh.triangles.len() as u32),
-        flags: wgpu::AccelerationStructureGeometryFlags::empty(),
-    };
-    let mut tlas = device.create_tlas(&wgpu::CreateTlasDescriptor {
-        label: Some("scene.tlas"),
-        max_instances: 1,
-        flags: wgpu::AccelerationStructureFlags::PREFER_FAST_TRACE,
-        update_mode: wgpu::AccelerationStructureUpdateMode::Build,
-    });
-    let blas = (!mesh.triangles.is_empty()).then(|| {
-        device.create_blas(
-            &wgpu::CreateBlasDescriptor {
-                label: Some("scene.blas"),
-                flags: wgpu::AccelerationStructureFlags::PREFER_FAST_TRACE,
-                update_mode: wgpu::AccelerationStructureUpdateMode::Build,
-            },
-            wgpu::BlasGeometrySizeDescriptors::Triangles {
-                descriptors: vec![size.clone()],
-            },
-        )
-    });
-    tlas[0] = blas
-        .as_ref()
-        .map(|blas| wgpu::TlasInstance::new(blas, IDENTITY, 0, u8::MAX));
-    let geometry = || wgpu::BlasTriangleGeometry {
-        size: &size,
-        vertex_buffer: vertices,
-        first_vertex: 0,
-        vertex_stride: 16,
-        index_buffer: Some(indices),
-        first_index: Some(0),
-        transform_buffer: None,
-        transform_buffer_offset: None,
-    };
-    let entry = blas.as_ref().map(|blas| wgpu::BlasBuildEntry {
-        blas,
-        geometry: wgpu::BlasGeometries::TriangleGeometries(vec![geometry()]),
-    });
-    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor {
-        label: Some("scene.tlas"),
-    });
-    encoder.build_acceleration_structures(entry.iter(), [&tlas]);
-    queue.submit([encoder.finish()]);
-    Ok(tlas)
+/// Acceleration structures that are kept for the next change.
+#[derive(Clone, Default)]
+pub(crate) struct Structures {
+    bottoms: BTreeMap<Option<usize>, Bottom>,
+    top: Option<Top>,
 }
 
-/// Refuses a mesh whose triangles have corners that it lacks. Builders of hierarchies do not look
-/// at indices, and the memory behind the positions may belong to anything.
-pub(crate) fn check_corners(mesh: &Mesh) -> Result<(), Error> {
+/// Bottom level of a solid.
+#[derive(Clone)]
+struct Bottom {
+    blas: wgpu::Blas,
+    changed: u64,
+}
+
+#[derive(Clone)]
+struct Top {
+    tlas: wgpu::Tlas,
+    /// Version of the shape that it is of.
+    shape: u64,
+    /// Its version as a resource, and the next one: over bottom levels that are compact.
+    versions: [u64; 2],
+    open: Option<Open>,
+}
+
+/// Number of bottom levels whose compact sizes the device has not told yet.
+#[derive(Clone, Default)]
+struct Open(Arc<AtomicUsize>);
+
+impl Open {
+    fn is_none(&self) -> bool {
+        self.0.load(Ordering::Acquire) == 0
+    }
+
+    /// Asks for the compact size of a bottom level whose build was submitted.
+    fn ask(&self, blas: &wgpu::Blas) {
+        self.0.fetch_add(1, Ordering::AcqRel);
+        let open = Self::clone(self);
+        blas.prepare_compaction_async(move |_| {
+            open.0.fetch_sub(1, Ordering::AcqRel);
+        });
+    }
+}
+
+impl Top {
+    /// True if its bottom levels can be made compact now.
+    fn is_ready(&self) -> bool {
+        self.open.as_ref().is_some_and(Open::is_none)
+    }
+}
+
+/// The mesh where structures are made of it.
+#[derive(Clone, Copy)]
+pub(crate) struct Source<'a> {
+    pub mesh: &'a Mesh,
+    pub geometry: &'a Geometry,
+    /// Positions of 16 bytes, and indices of 4 bytes.
+    pub buffers: [&'a wgpu::Buffer; 2],
+    /// Version of the mesh's shape.
+    pub shape: u64,
+    pub device: &'a wgpu::Device,
+    pub queue: &'a wgpu::Queue,
+}
+
+impl Structures {
+    /// Returns the version of the top level over a shape. With the shape as it is, it changes once:
+    /// when the device has told how small the bottom levels can be.
+    pub fn version(&self, shape: u64) -> u64 {
+        match &self.top {
+            Some(top) if top.shape == shape => top.versions[usize::from(top.is_ready())],
+            _ => shape,
+        }
+    }
+
+    /// Returns the top level over the mesh, and the number of triangles of the bottom levels that
+    /// were built for it, if it was made anew; the builds are submitted. Primitives of an instance
+    /// are counted from its custom data, and none is opaque: a query sees each as a candidate. A
+    /// mesh without triangles is a structure without instances.
+    ///
+    /// No structure is built a second time, since frames that are encoded may read it.
+    ///
+    /// # Errors
+    /// More triangles than the device can take, or an index beyond the mesh's positions.
+    pub fn get(&mut self, of: Source<'_>) -> Result<(wgpu::Tlas, Option<usize>), Error> {
+        let known = self.top.take();
+        let is_same = known.as_ref().is_some_and(|top| top.shape == of.shape);
+        if let Some(top) = known.as_ref().filter(|top| is_same && !top.is_ready()) {
+            let tlas = top.tlas.clone();
+            self.top = known;
+            return Ok((tlas, None));
+        }
+        let limits = of.device.limits();
+        let solids = of.geometry.solids(of.mesh, limits.max_tlas_instance_count);
+        let mut versions = [of.shape, next_version()];
+        let mut open = None;
+        if let Some(top) = known {
+            if top.is_ready() {
+                self.compact(of.queue);
+            } else {
+                open = top.open;
+            }
+            if is_same {
+                versions = [top.versions[1]; 2];
+            }
+        }
+        let new = self.create(&solids, of)?;
+        let tlas = self.build(&solids, &new, of);
+        for (solid, _) in new.iter().filter(|(_, is_first)| *is_first) {
+            if let Some(bottom) = self.bottoms.get(&solid.piece) {
+                open.get_or_insert_with(Open::default).ask(&bottom.blas);
+            }
+        }
+        let triangles = new.iter().map(|(solid, _)| solid.triangles.len()).sum();
+        self.top = Some(Top {
+            tlas: tlas.clone(),
+            shape: of.shape,
+            versions,
+            open,
+        });
+        Ok((tlas, Some(triangles)))
+    }
+
+    /// Copies each bottom level whose compact size is known into one of that size.
+    fn compact(&mut self, queue: &wgpu::Queue) {
+        let bottoms = self.bottoms.values_mut();
+        for bottom in bottoms.filter(|bottom| bottom.blas.ready_for_compaction()) {
+            bottom.blas = queue.compact_blas(&bottom.blas);
+        }
+    }
+
+    /// Creates the bottom levels of those solids that are new or have changed, and returns these;
+    /// true for those that were never built. Bottom levels of others than `solids` are dropped.
+    fn create<'s>(
+        &mut self,
+        solids: &'s [Solid],
+        of: Source<'_>,
+    ) -> Result<Vec<(&'s Solid, bool)>, Error> {
+        let most = of.device.limits().max_blas_primitive_count;
+        let mut before = std::mem::take(&mut self.bottoms);
+        let mut new = Vec::new();
+        for solid in solids {
+            let known = before.remove(&solid.piece);
+            let is_first = known.is_none();
+            let bottom = match known.filter(|known| known.changed == solid.changed) {
+                Some(known) => known,
+                None => {
+                    let triangles = solid.triangles.len();
+                    if triangles as u64 > u64::from(most) {
+                        return Err(Error::TooManyTriangles { triangles, most });
+                    }
+                    check_corners(of.mesh, solid.triangles.clone())?;
+                    new.push((solid, is_first));
+                    let flags = if is_first {
+                        Flags::PREFER_FAST_TRACE | Flags::ALLOW_COMPACTION
+                    } else {
+                        Flags::PREFER_FAST_BUILD
+                    };
+                    let descriptor = wgpu::CreateBlasDescriptor {
+                        label: Some("scene.blas"),
+                        flags,
+                        update_mode: wgpu::AccelerationStructureUpdateMode::Build,
+                    };
+                    let descriptors = vec![size_of(solid, of.mesh)];
+                    let sizes = wgpu::BlasGeometrySizeDescriptors::Triangles { descriptors };
+                    Bottom {
+                        blas: of.device.create_blas(&descriptor, sizes),
+                        changed: solid.changed,
+                    }
+                }
+            };
+            self.bottoms.insert(solid.piece, bottom);
+        }
+        Ok(new)
+    }
+
+    /// Builds the new bottom levels, and a top level over all.
+    fn build(&self, solids: &[Solid], new: &[(&Solid, bool)], of: Source<'_>) -> wgpu::Tlas {
+        let mut tlas = of.device.create_tlas(&wgpu::CreateTlasDescriptor {
+            label: Some("scene.tlas"),
+            max_instances: solids.len().max(1) as u32,
+            flags: Flags::PREFER_FAST_TRACE,
+            update_mode: wgpu::AccelerationStructureUpdateMode::Build,
+        });
+        for (index, solid) in solids.iter().enumerate() {
+            let bottom = self.bottoms.get(&solid.piece);
+            let first = solid.triangles.start as u32;
+            tlas[index] = bottom
+                .map(|bottom| wgpu::TlasInstance::new(&bottom.blas, IDENTITY, first, u8::MAX));
+        }
+        let most = of.device.limits().max_tlas_instance_count;
+        let together = new.iter().find(|(solid, _)| solid.piece.is_none());
+        let together = together.map(|(solid, _)| {
+            let corners = of.geometry.together(of.mesh, solid, most);
+            of.device.create_buffer_init(&BufferInitDescriptor {
+                label: Some("scene.blas"),
+                contents: bytemuck::cast_slice(corners.as_flattened()),
+                usage: wgpu::BufferUsages::BLAS_INPUT,
+            })
+        });
+        let sizes: Vec<Size> = new
+            .iter()
+            .map(|(solid, _)| size_of(solid, of.mesh))
+            .collect();
+        let [positions, indices] = of.buffers;
+        let entries = new.iter().zip(&sizes).filter_map(|((solid, _), size)| {
+            let (index_buffer, first) = match (solid.piece, &together) {
+                (None, Some(own)) => (own, 0),
+                _ => (indices, solid.triangles.start),
+            };
+            let geometry = wgpu::BlasTriangleGeometry {
+                size,
+                vertex_buffer: positions,
+                first_vertex: 0,
+                vertex_stride: 16,
+                index_buffer: Some(index_buffer),
+                first_index: Some(3 * first as u32),
+                transform_buffer: None,
+                transform_buffer_offset: None,
+            };
+            let blas = &self.bottoms.get(&solid.piece)?.blas;
+            let geometry = wgpu::BlasGeometries::TriangleGeometries(vec![geometry]);
+            Some(wgpu::BlasBuildEntry { blas, geometry })
+        });
+        let entries: Vec<wgpu::BlasBuildEntry<'_>> = entries.collect();
+        let descriptor = wgpu::CommandEncoderDescriptor {
+            label: Some("scene.tlas"),
+        };
+        let mut encoder = of.device.create_command_encoder(&descriptor);
+        encoder.build_acceleration_structures(entries.iter(), [&tlas]);
+        of.queue.submit([encoder.finish()]);
+        tlas
+    }
+}
+
+fn size_of(solid: &Solid, mesh: &Mesh) -> Size {
+    Size {
+        vertex_format: wgpu::VertexFormat::Float32x3,
+        vertex_count: mesh.positions.len() as u32,
+        index_format: Some(wgpu::IndexFormat::Uint32),
+        index_count: Some(3 * solid.triangles.len() as u32),
+        flags: wgpu::AccelerationStructureGeometryFlags::empty(),
+    }
+}
+
+/// Refuses a mesh if some of its triangles have corners that it lacks. Builders of hierarchies do
+/// not look at indices, and the memory behind the positions may belong to anything.
+pub(crate) fn check_corners(mesh: &Mesh, triangles: Range<usize>) -> Result<(), Error> {
     let corners = mesh.positions.len();
-    let mut used = mesh.triangles.as_flattened().iter();
+    let mut used = mesh.triangles[triangles].as_flattened().iter();
     match used.find(|index| **index as usize >= corners) {
         Some(&index) => Err(Error::Corner { index, corners }),
         None => Ok(()),

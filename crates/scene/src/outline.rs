@@ -1,6 +1,6 @@
 //! Outlines of points as a directional light sees them: what its box is fitted to.
 
-use glam::DVec2;
+use glam::{DMat3, DVec2, DVec3, Vec3};
 
 /// Outline of points as a directional light sees them: their convex hull across the light, and
 /// their least and greatest depth. [`DirectionalLight::outline`](crate::DirectionalLight::outline)
@@ -64,6 +64,69 @@ impl Outline {
         joined.hull = convex_hull(joined.hull);
         joined
     }
+}
+
+/// Triangles of a cube seen from its middle: a corner, the middle of a face, and the next corner of
+/// that face. Each axis is 0 or a side.
+fn cones() -> impl Iterator<Item = [DVec3; 3]> {
+    let faces = [0, 1, 2]
+        .into_iter()
+        .flat_map(|axis| [(axis, 1.0), (axis, -1.0)]);
+    faces.flat_map(|(axis, side)| {
+        let round = [
+            (1.0, 1.0),
+            (-1.0, 1.0),
+            (-1.0, -1.0),
+            (1.0, -1.0),
+            (1.0, 1.0),
+        ];
+        let corner = move |(u, v): (f64, f64)| {
+            let mut corner = DVec3::splat(side);
+            corner[(axis + 1) % 3] = u;
+            corner[(axis + 2) % 3] = v;
+            corner
+        };
+        let mut middle = DVec3::ZERO;
+        middle[axis] = side;
+        (0..4).map(move |turn| [corner(round[turn]), middle, corner(round[turn + 1])])
+    })
+}
+
+/// Returns those of some points that may be corners of an [`Outline`] of all of them, or nearest or
+/// farthest in it, whatever the direction of the light: all but those that lie well within the
+/// polyhedra between the points farthest in 14 directions.
+pub fn border(points: &[Vec3]) -> Vec<Vec3> {
+    /// Volumes this much smaller than that of a cube as large are flat.
+    const FLAT: f64 = 1e-6;
+    /// A point so near to the outer side, as a share of its distance, counts as outside. It is far
+    /// more than f64 errs by, and so is `FLAT`.
+    const MARGIN: f64 = 1e-6;
+    let farthest = |direction: DVec3| {
+        let along = |point: &Vec3| direction.dot(point.as_dvec3());
+        let farthest = points.iter().max_by(|a, b| along(a).total_cmp(&along(b)));
+        farthest.map_or(DVec3::ZERO, |point| point.as_dvec3())
+    };
+    let corners: Vec<[DVec3; 3]> = cones().map(|cone| cone.map(farthest)).collect();
+    let middle = corners.iter().flatten().sum::<DVec3>() / (3 * corners.len()) as f64;
+    let insides = corners.iter().filter_map(|cone| {
+        let [a, b, c] = cone.map(|corner| corner - middle);
+        let size = a.length().max(b.length()).max(c.length());
+        let matrix = DMat3::from_cols(a, b, c);
+        (matrix.determinant().abs() > FLAT * size.powi(3)).then(|| matrix.inverse())
+    });
+    let insides: Vec<DMat3> = insides.collect();
+    let is_inside = |point: &&Vec3| {
+        let from_middle = point.as_dvec3() - middle;
+        insides.iter().any(|inside| {
+            let weights = *inside * from_middle;
+            weights.min_element() >= 0.0 && weights.element_sum() < 1.0 - MARGIN
+        })
+    };
+    points
+        .iter()
+        .filter(|point| !is_inside(point))
+        .copied()
+        .collect()
 }
 
 /// Directions across the light, counter-clockwise.

@@ -3,9 +3,9 @@
 //! watertight triangle test (Woop, Benthin and Wald 2013): axes permuted so that the direction's
 //! longest component is the last, then sheared so that the direction is the z axis.
 
-use super::{node::BvhNode, tree::Bvh};
+use super::{node::BvhNode, tree::Bvh, two_level::TwoLevelBvh};
 use crate::mesh::Mesh;
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec2, Vec3};
 use obvhs::triangle::Triangle;
 
 /// Weight of depth beside width when triangles are put together: half the surface of a flat box is
@@ -42,6 +42,15 @@ pub struct LightSpaceNode {
 impl LightSpaceNode {
     /// Number of low bits of `link` that hold a leaf's number of primitives.
     pub const LEAF_BITS: u32 = 6;
+
+    /// Returns the item that shaders find behind all nodes: [`LightSpace::centre`], in
+    /// [`farthest`](Self::farthest).
+    pub fn centre(centre: Vec3) -> Self {
+        Self {
+            farthest: centre.into(),
+            ..Self::default()
+        }
+    }
 }
 
 /// Coordinates for rays that are all parallel to `direction`, such as those towards a light: seen
@@ -129,7 +138,7 @@ impl LightSpace {
             let bounds = match (node.count, children.map(bounds_of)) {
                 (0, [Some(first), Some(second)]) => Some(first.or(second)),
                 (0, _) => None,
-                _ => corners(bvh, mesh, node)
+                _ => corners(&bvh.primitives, mesh, node)
                     .map(|corner| places[corner as usize])
                     .reduce(Bounds::or),
             };
@@ -143,6 +152,68 @@ impl LightSpace {
         }
         let nodes = bvh.nodes.iter().zip(nodes);
         nodes.map(|(node, bounds)| bounds?.rounded(node)).collect()
+    }
+
+    /// Fits nodes to a hierarchy of two levels over a mesh: those of some pieces, which have moved
+    /// or have other trees than before, and those of the top level. `nodes` are those of
+    /// [`TwoLevelBvh::nodes`] in this light space, in the same order and with the same primitives;
+    /// those of other pieces are fitted already. Returns the number of nodes that were fitted, or
+    /// `None` if [`LightSpaceNode::link`] has too few bits, as for [`build`](Self::build).
+    ///
+    /// # Panics
+    /// If there is no piece of such a number, or the mesh has fewer triangles than the hierarchy.
+    pub fn refit_pieces(
+        &self,
+        nodes: &mut Vec<LightSpaceNode>,
+        tree: &TwoLevelBvh,
+        mesh: &Mesh,
+        pieces: impl IntoIterator<Item = usize>,
+    ) -> Option<usize> {
+        nodes.resize(tree.nodes.len(), LightSpaceNode::default());
+        let of_pieces = pieces
+            .into_iter()
+            .flat_map(|piece| tree.children_first(piece));
+        let mut fitted = 0;
+        for index in of_pieces.chain(tree.top_children_first()) {
+            let node = &tree.nodes[index];
+            let first = node.first as usize;
+            nodes[index] = match node.count {
+                // Rounded outwards, their bounds are those of the node rounded so.
+                0 => nodes[first].or(&nodes[first + 1]).linked(node)?,
+                _ => {
+                    let corners = corners(&tree.primitives, mesh, node);
+                    let places = corners.map(|corner| mesh.positions[corner as usize]);
+                    let bounds = places.map(|place| Bounds::at(self.place(place)));
+                    let nothing = || Bounds::at((DVec2::ZERO, DVec3::ZERO));
+                    let bounds = bounds.reduce(Bounds::or).unwrap_or_else(nothing);
+                    bounds.rounded(node)?
+                }
+            };
+            fitted += 1;
+        }
+        Some(fitted)
+    }
+}
+
+impl LightSpaceNode {
+    /// The bounds of both.
+    fn or(&self, other: &Self) -> Self {
+        Self {
+            low: Vec2::from(self.low).min(other.low.into()).into(),
+            high: Vec2::from(self.high).max(other.high.into()).into(),
+            farthest: Vec3::from(self.farthest).max(other.farthest.into()).into(),
+            link: 0,
+        }
+    }
+
+    /// With the link of a node; `None` where it has too few bits.
+    fn linked(self, node: &BvhNode) -> Option<Self> {
+        let fits =
+            node.count < 1 << Self::LEAF_BITS && node.first < 1 << (u32::BITS - Self::LEAF_BITS);
+        fits.then(|| Self {
+            link: node.first << Self::LEAF_BITS | node.count,
+            ..self
+        })
     }
 }
 
@@ -173,21 +244,24 @@ impl Bounds {
 
     /// `None` where the node's link is too small.
     fn rounded(self, node: &BvhNode) -> Option<LightSpaceNode> {
-        let bits = LightSpaceNode::LEAF_BITS;
-        let fits = node.count < 1 << bits && node.first < 1 << (u32::BITS - bits);
-        fits.then(|| LightSpaceNode {
+        let rounded = LightSpaceNode {
             low: self.low.to_array().map(down),
             high: self.high.to_array().map(up),
             farthest: self.farthest.to_array().map(up),
-            link: node.first << bits | node.count,
-        })
+            link: 0,
+        };
+        rounded.linked(node)
     }
 }
 
-/// Indices of the corners of a leaf's triangles.
-fn corners<'a>(bvh: &'a Bvh, mesh: &'a Mesh, leaf: &BvhNode) -> impl Iterator<Item = u32> + 'a {
+/// Indices of the corners of a leaf's triangles; none of the leaf of an empty tree.
+fn corners<'a>(
+    primitives: &'a [u32],
+    mesh: &'a Mesh,
+    leaf: &BvhNode,
+) -> impl Iterator<Item = u32> + 'a {
     let slots = leaf.first as usize..(leaf.first + leaf.count) as usize;
-    let primitives = bvh.primitives[slots].iter();
+    let primitives = primitives.get(slots).unwrap_or_default().iter();
     primitives.flat_map(|&primitive| mesh.triangles[primitive as usize])
 }
 

@@ -415,6 +415,20 @@ impl TwoLevelBvh {
         self.pieces[piece].slots.clone()
     }
 
+    /// The nodes of a piece but its root, which is of the top level: children before their parents.
+    pub(super) fn children_first(&self, piece: usize) -> impl Iterator<Item = usize> {
+        let Subtree { nodes, order, .. } = &self.pieces[piece];
+        let below = order.iter().rev().filter(|index| **index > 0);
+        below.map(move |index| nodes.start + *index as usize - 1)
+    }
+
+    /// The nodes of the top level, children before their parents.
+    pub(super) fn top_children_first(&self) -> impl Iterator<Item = usize> {
+        let [root, below] = self.top();
+        // Built so that parents come first.
+        below.rev().chain(root)
+    }
+
     /// Fits the boxes of a piece; its cost.
     fn fit(&mut self, mesh: &Mesh, piece: usize) -> f64 {
         let at = &mut self.pieces[piece];

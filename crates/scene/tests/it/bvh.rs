@@ -256,12 +256,22 @@ proptest! {
         let at_rest = mesh.clone();
         let mut levels = TwoLevelBvh::build(&mesh, &at_rest, &pieces(&run), most);
         prop_assert!(levels.nodes.len() <= most);
-        checked_levels(&mesh, &levels);
+        let tree = checked_levels(&mesh, &levels);
+        // In a light space each node is the one that the whole tree has there.
+        let mut nodes = Vec::new();
+        let fitted = SPACE.refit_pieces(&mut nodes, &levels, &mesh, 0..parts);
+        let all = SPACE.refit(&tree, &mesh);
+        prop_assert_eq!(fitted, all.is_some().then_some(levels.nodes.len()));
+        prop_assert!(all.is_none_or(|all| all == nodes));
         for (piece, by) in shifts {
             let piece = piece % parts;
             shift(&mut mesh, &run[piece], Vec3::new(by, -by, 1e3 * by));
             levels.refit(&mesh, &[piece], Moved::Affinely);
-            checked_levels(&mesh, &levels);
+            let tree = checked_levels(&mesh, &levels);
+            if fitted.is_some() {
+                SPACE.refit_pieces(&mut nodes, &levels, &mesh, [piece]);
+                prop_assert!(SPACE.refit(&tree, &mesh).is_none_or(|all| all == nodes));
+            }
         }
     }
 }
@@ -287,6 +297,11 @@ proptest! {
         }
     }
 }
+
+const SPACE: LightSpace = LightSpace {
+    direction: Vec3::new(0.3, 1.0, -0.4),
+    centre: Vec3::new(3.0, 0.0, 20.0),
+};
 
 /// Primitive ids of runs of triangles, the last of which takes what is left.
 fn runs(triangles: usize, pieces: usize) -> Vec<Vec<u32>> {
@@ -505,6 +520,8 @@ proptest! {
         if has_room {
             levels.reserve(4, 100);
         }
+        let mut nodes = Vec::new();
+        SPACE.refit_pieces(&mut nodes, &levels, &whole, 0..begun);
         for change in changes {
             let mut moved = vec![];
             match change {
@@ -526,9 +543,21 @@ proptest! {
                 }
                 Err(_) => {}
             }
-            let nodes = levels.nodes.len();
-            levels.refit(&whole, &moved, Moved::Affinely);
-            prop_assert_eq!(levels.nodes.len(), nodes);
+            let count = levels.nodes.len();
+            let refit = levels.refit(&whole, &moved, Moved::Affinely);
+            prop_assert_eq!(levels.nodes.len(), count);
+            let others = moved.iter().copied().chain(refit.rebuilt);
+            prop_assert!(SPACE.refit_pieces(&mut nodes, &levels, &whole, others).is_some());
+            let mut anew = Vec::new();
+            SPACE.refit_pieces(&mut anew, &levels, &whole, 0..levels.pieces());
+            let mut open = if there.is_empty() { vec![] } else { vec![0] };
+            while let Some(index) = open.pop() {
+                prop_assert_eq!(nodes[index as usize], anew[index as usize]);
+                let node = levels.nodes[index as usize];
+                if node.count == 0 {
+                    open.extend([node.first, node.first + 1]);
+                }
+            }
             if there.is_empty() {
                 continue;
             }

@@ -1,7 +1,7 @@
 //! The light's box around parts is that around all their points, of which few are looked at.
 
 use glam::{DVec3, Vec3};
-use skiagraph_scene::{DirectionalLight, LightFit, Outline};
+use skiagraph_scene::{DirectionalLight, LightFit, Outline, outline::border};
 
 /// Clouds of points in rows, some of which are nothing.
 fn clouds(count: usize) -> Vec<Vec<Vec3>> {
@@ -65,6 +65,36 @@ fn the_box_of_parts_is_that_of_their_points() {
             }
             assert_eq!(joined(&mut known, &moved), fit(&moved), "{count}");
             assert!(count < 100 || asked < 3 * count / 4, "{asked} of {count}");
+        }
+    }
+}
+
+/// The border of points gives the outlines of all of them, and of most meshes it is few.
+#[test]
+fn outlines_of_the_border_are_those_of_all_points() {
+    let mut clouds: Vec<Vec<Vec3>> = clouds(60);
+    let whole: Vec<Vec3> = clouds.iter().flatten().copied().collect();
+    let far: Vec<Vec3> = whole.iter().map(|p| *p + Vec3::splat(4e5)).collect();
+    let flat: Vec<Vec3> = whole.iter().map(|p| p.with_y(2.0)).collect();
+    let thin: Vec<Vec3> = whole.iter().map(|p| p.with_y(1e-5 * p.y)).collect();
+    let on_a_grid: Vec<Vec3> = whole.iter().map(|p| (4.0 * *p).round()).collect();
+    assert!(border(&whole).len() < whole.len());
+    println!("{} of {}", border(&whole).len(), whole.len());
+    clouds.extend([whole, far, flat, thin, on_a_grid]);
+    for points in &clouds {
+        let border = border(points);
+        for turn in 0..200 {
+            let angle = 0.37 * f64::from(turn);
+            let direction = match turn {
+                0 => DVec3::X,
+                1 => DVec3::NEG_Y,
+                2 => DVec3::Z,
+                3 => DVec3::ONE,
+                _ => DVec3::new(angle.cos(), -(0.1 + 0.01 * angle), angle.sin()),
+            };
+            let light = DirectionalLight::new(direction);
+            let of = |points: &[Vec3]| light.outline(points.iter().copied());
+            assert_eq!(of(&border), of(points), "{direction}, {}", points.len());
         }
     }
 }

@@ -7,7 +7,6 @@
 mod args;
 mod commands;
 mod error;
-mod scene_notes;
 mod scene_selection;
 mod terminal;
 

@@ -292,7 +292,7 @@ fn cells_of_two_machines_that_disagree_are_not_joined() {
     }
     let joined = ends(folder, "merge one two --out all", 0);
     assert!(
-        joined.contains("1 cell were measured more than once and agree"),
+        joined.contains("1 of 2 cells were measured more than once and agree"),
         "{joined}"
     );
     assert_eq!(

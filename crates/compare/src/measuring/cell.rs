@@ -194,8 +194,9 @@ pub(crate) fn light_text(light: LightKind) -> String {
 mod tests {
     use super::*;
     use crate::graphs::shadow_method::load_methods;
+    use glam::DQuat;
     use skiagraph_passes::EmbeddedSources;
-    use skiagraph_scene::{SceneLibrary, SceneRequest};
+    use skiagraph_scene::{PoseKey, RigidKey, SceneLibrary, SceneRequest};
     use std::collections::BTreeSet;
     use std::sync::Arc;
 
@@ -221,23 +222,69 @@ mod tests {
         insta::assert_snapshot!(id_of(&comparison()));
     }
 
-    /// Of paths on which the camera, the lights and parts of the mesh move.
+    /// Ids are hashes of this text, not of how a version of Rust shows a type.
     #[test]
-    fn ids_of_paths_are_the_same_in_every_version() {
-        let mut comparison = comparison();
-        let paths = SceneLibrary::default().paths("park").unwrap();
-        assert!(paths.iter().any(|path| !path.moves.is_empty()));
-        comparison.views = paths.into_iter().map(ViewOrPath::Path).collect();
-        let method = &comparison.methods[0];
-        let ids = comparison.views.iter().map(|path| {
-            let id = id(&comparison, path, [512, 512], method);
-            format!(
-                "{} {id} {}",
-                path.name(),
-                truth_id(&comparison, path, [512, 512])
-            )
-        });
-        insta::assert_snapshot!(ids.collect::<Vec<_>>().join("\n"));
+    fn motions_are_written_down_in_text_of_their_own() {
+        let mut lines = Vec::new();
+        let rigid = RigidKey {
+            at: 1.5,
+            translation: DVec3::X,
+            degrees: 90.0,
+        };
+        let pose = PoseKey {
+            at: 0.0,
+            translation: DVec3::ZERO,
+            rotation: DQuat::IDENTITY,
+        };
+        let motions = [
+            Motion::Rigid {
+                pivot: DVec3::ZERO,
+                axis: DVec3::Y,
+                keys: vec![rigid],
+            },
+            Motion::Posed { keys: vec![pose] },
+            Motion::Sway {
+                axis: DVec3::X,
+                up: DVec3::Y,
+                degrees: 6.0,
+                seconds: 1.7,
+            },
+        ];
+        for motion in &motions {
+            motion_lines(motion, &mut lines);
+        }
+        let expected = [
+            "rigid 0,0,0 0,1,0",
+            "rigid key 1.5 1,0,0 90",
+            "posed",
+            "posed key 0 0,0,0 0,0,0,1",
+            "sway 1,0,0 0,1,0 6 1.7",
+        ];
+        assert_eq!(lines, expected);
+    }
+
+    /// A truth waits for no method, and is another one of another light, size or mode.
+    #[test]
+    fn all_cells_of_a_view_wait_for_one_truth() {
+        let of = |comparison: &Comparison| {
+            truth_id(comparison, &comparison.views[0], comparison.viewports[0])
+        };
+        let (one, mut other) = (comparison(), comparison());
+        other.methods = load_methods(&["rt"], &[], &[], &EmbeddedSources).unwrap();
+        other.protocol.frames = 3;
+        assert_eq!(of(&one), of(&other));
+        assert_ne!(of(&one), id_of(&one));
+        type Change = fn(&mut Comparison);
+        let changes: [Change; 3] = [
+            |of| of.viewports[0] = [512, 511],
+            |of| of.protocol.oracle = "offset:0.5".parse().unwrap(),
+            |of| of.protocol.jitter = Some(4),
+        ];
+        for change in changes {
+            let mut other = comparison();
+            change(&mut other);
+            assert_ne!(of(&one), of(&other));
+        }
     }
 
     #[test]

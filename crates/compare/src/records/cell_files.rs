@@ -246,9 +246,9 @@ fn join_plan(plan: &CellPlan, folders: &[&Path], joined: &mut Joined) -> Result<
         joined.kept.extend(found.into_iter().map(|(_, kept)| kept));
     }
     if twice > 0 {
-        let cells = plural(twice, "cell");
+        let all = plural(plan.cells.len(), "cell");
         joined.notes.push(format!(
-            "{cells} were measured more than once and agree: the first of each counts"
+            "{twice} of {all} were measured more than once and agree: the first of each counts"
         ));
     }
     if let [first, ..] = &missing[..] {

@@ -30,7 +30,7 @@ pub fn plan(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let session = Session::new(&of.gpu, &Terminal);
     of.comparisons.iter().try_for_each(|it| it.check(session))?;
     let words = std::env::args_os().skip(1).map(OsString::into_string);
-    let words = words.collect::<Result<_, _>>();
+    let words = words.collect::<Result<Vec<String>, OsString>>();
     let words = words.map_err(|word| {
         let text = format!("--plan: {word:?} is not UTF-8; rename it, for plans are text");
         CliError::Input(text)

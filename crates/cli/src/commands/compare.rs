@@ -106,6 +106,7 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
 
 /// The comparisons that the arguments ask for, not checked yet.
 pub struct Loaded {
+    /// The GPU that they run on.
     pub gpu: Gpu,
     /// One for each scene.
     pub comparisons: Vec<Comparison>,
@@ -205,6 +206,7 @@ fn check_earlier(
 
 /// A scene's folder for results.
 pub struct Target {
+    /// The folder.
     pub folder: PathBuf,
     /// The folder's name below that of all scenes; `None` of a single scene.
     pub name: Option<String>,

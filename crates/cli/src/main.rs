@@ -7,7 +7,6 @@
 mod args;
 mod commands;
 mod error;
-mod scene_notes;
 mod scene_selection;
 mod terminal;
 
@@ -39,6 +38,8 @@ fn main() -> ExitCode {
     with_runtime_dir();
     let gpu = &cli.gpu;
     let outcome = match &cli.command {
+        Command::Compare(args) if args.plan.is_some() => commands::cells::plan(args, gpu),
+        Command::Compare(args) if args.cells.is_some() => commands::cells::measure(args, gpu),
         Command::Compare(args) => commands::compare::compare(args, gpu),
         Command::Run(args) => commands::run::run(args, gpu),
         Command::Chart(args) => commands::chart::chart(args),

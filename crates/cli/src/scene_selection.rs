@@ -2,12 +2,12 @@
 
 use crate::args::shared::SceneArgs;
 use crate::error::CliError;
-use crate::scene_notes::{from_below, of_mesh};
 use crate::terminal::console::note;
 use skiagraph_compare::error::CompareError;
 use skiagraph_compare::files::scene::write_scene;
 use skiagraph_compare::measuring::view_or_path::{ViewOrPath, under_lights};
 use skiagraph_compare::own_scene::OwnScene;
+use skiagraph_compare::own_scene_notes::{from_below, notes};
 use skiagraph_compare::wording::did_you_mean;
 use skiagraph_scene::{
     CameraPath, ImportReport, MeshFile, Scene, SceneError, SceneFile, SceneLibrary, SceneRequest,
@@ -55,7 +55,9 @@ impl SceneSelection {
         let (options, explain) = (args.mesh_scene(), |error| explain(error, args, &library));
         let own = if is_mesh {
             let own = OwnScene::of_mesh(Path::new(args.scene()), &options).map_err(explain)?;
-            of_mesh(args, &own).iter().for_each(|text| note(text));
+            for text in notes(&options, &own) {
+                note(&format!("{}: {text}", args.scene()));
+            }
             own
         } else {
             let request = SceneRequest {
@@ -93,7 +95,7 @@ impl SceneSelection {
             write(path, file, &views)?;
         }
         let views = under_lights(&own.scene, views, args.light_name())?;
-        if let Some(text) = from_below(&views, args) {
+        if let Some(text) = from_below(&views, options.sun) {
             note(&text);
         }
         Ok(Self {

@@ -79,6 +79,7 @@ pub mod lists;
 pub mod measuring;
 pub mod own_camera;
 pub mod own_scene;
+pub mod own_scene_notes;
 pub mod pictures;
 pub mod quantities;
 pub mod records;

@@ -3,6 +3,7 @@
 
 use crate::summary::{Row, by_wall};
 use crate::summary_table::summaries;
+use skiagraph_compare::graphs::method::Method;
 use skiagraph_compare::records::judged_pictures::{JudgedPicture, JudgedPictures};
 use skiagraph_compare::records::results::Results;
 use skiagraph_compare::wording::{bytes, ms, size, unknown};
@@ -81,6 +82,20 @@ impl Figure {
 }
 
 impl Gate {
+    /// Checks that the methods of all limits are compared.
+    ///
+    /// # Errors
+    /// A text for the user that names the first method that is not, with those that are.
+    pub fn check(gates: &[Self], methods: &[Method]) -> Result<(), String> {
+        let mut known: Vec<&str> = methods.iter().map(|method| method.name.as_str()).collect();
+        known.dedup();
+        let is_unknown = |gate: &&Self| !known.contains(&&*gate.method);
+        gates.iter().find(is_unknown).map_or(Ok(()), |gate| {
+            let what = format!("--fail-if: `{}` is not compared", gate.method);
+            Err(unknown(&what, &gate.method, "methods", &known))
+        })
+    }
+
     /// Returns a line of text for each row that is beyond this limit. A row is the method with one
     /// map size, in one viewport and under one light, over all views. A row that could not run
     /// fails as well. The list is empty if all rows pass, or if the results have no row of the

@@ -5,11 +5,12 @@ use itertools::Itertools;
 use skiagraph_compare::error::CompareError;
 use skiagraph_compare::files::lock;
 use skiagraph_compare::files::write::{check_folder, write_whole};
+use skiagraph_compare::records::cell_files;
 use skiagraph_compare::records::read_back;
 use skiagraph_compare::records::results_csv;
 use skiagraph_compare::records::sources::{Kept, Source, merged, sources};
 use skiagraph_compare::records::stress::Report;
-use skiagraph_compare::sink::Sink;
+use skiagraph_compare::sink::{Silent, Sink};
 use skiagraph_compare::wording::plural;
 use std::{
     fs,
@@ -42,7 +43,14 @@ pub fn write(places: &[PathBuf], file: &Path, sink: &dyn Sink) -> Result<(), Com
         Some(folder) => Some(lock::wait_for(folder, lock::RESULTS, sink)?),
         None => None,
     };
-    let (sources, matrices) = read(places)?;
+    let Read {
+        sources,
+        matrices,
+        missing,
+    } = read(places, sink)?;
+    if let Some(missing) = missing {
+        sink.note(&missing);
+    }
     write_page(&sources, &matrices, file, sink)
 }
 
@@ -52,10 +60,12 @@ pub fn write(places: &[PathBuf], file: &Path, sink: &dyn Sink) -> Result<(), Com
 /// copied into `out`. The sink is told which results are joined and which are kept apart.
 ///
 /// # Errors
-/// If a place has no results, results cannot be read, or a file cannot be written.
+/// If a place has no results, results cannot be read, or a file cannot be written; cells of two
+/// versions of the program, or that two machines measured with other errors. If planned cells are
+/// not measured yet, what is there is written before.
 pub fn merge(places: &[PathBuf], out: &Path, sink: &dyn Sink) -> Result<(), CompareError> {
     // All is read before anything is written.
-    read(places)?;
+    read(places, &Silent)?;
     check_folder(out)?;
     let _locked = lock::wait_for(out, lock::RESULTS, sink)?;
     let mut places = places.to_vec();
@@ -64,11 +74,16 @@ pub fn merge(places: &[PathBuf], out: &Path, sink: &dyn Sink) -> Result<(), Comp
         let out = out.display();
         sink.note(&format!("the results that {out} holds already stay in it"));
     }
-    let (sources, matrices) = read(&places)?;
+    let Read {
+        sources,
+        matrices,
+        missing,
+    } = read(&places, sink)?;
     let Some(results) = merged(&sources, out) else {
-        let text =
-            "there is nothing to join: name folders that `skiagraph compare --out DIR` wrote";
-        return Err(CompareError::Input(text.into()));
+        let text = missing.unwrap_or_else(|| {
+            "there is nothing to join: name folders that `skiagraph compare --out DIR` wrote".into()
+        });
+        return Err(CompareError::Input(text));
     };
     for source in &sources {
         sink.note(&told(source));
@@ -81,7 +96,8 @@ pub fn merge(places: &[PathBuf], out: &Path, sink: &dyn Sink) -> Result<(), Comp
         ));
     }
     results_csv::save(&results, out)?;
-    write_page(&sources, &matrices, &out.join(FILE), sink)
+    write_page(&sources, &matrices, &out.join(FILE), sink)?;
+    missing.map_or(Ok(()), |missing| Err(CompareError::Input(missing)))
 }
 
 /// Describes what was joined.
@@ -100,23 +116,43 @@ fn told(source: &Source) -> String {
     text
 }
 
+/// Contents of folders and files.
+struct Read {
+    sources: Vec<Source>,
+    matrices: Vec<Report>,
+    /// Text on the planned cells that are not measured yet.
+    missing: Option<String>,
+}
+
 /// Reads the results and matrices of folders or files; one that is named twice is read once.
-fn read(places: &[PathBuf]) -> Result<(Vec<Source>, Vec<Report>), CompareError> {
-    let (mut kept, mut matrices) = (Vec::new(), Vec::new());
-    let places = read_back::with_scenes(places);
+fn read(places: &[PathBuf], sink: &dyn Sink) -> Result<Read, CompareError> {
+    let places: Vec<PathBuf> = places
+        .iter()
+        .unique_by(|place| of_place(place))
+        .cloned()
+        .collect();
+    let cells = cell_files::join(&places)?;
+    cells.notes.iter().for_each(|text| sink.note(text));
+    let (mut kept, mut matrices) = (cells.kept, Vec::new());
+    let places = read_back::with_scenes(&places);
     for place in places.iter().unique_by(|place| of_place(place)) {
         let matrix = if place.is_dir() {
             read_back::stress(place)?
         } else {
             None
         };
-        // A folder may be of `stress` alone.
-        if matrix.is_none() || place.join("results.json").exists() {
+        // A folder may be of `stress` or of cells alone.
+        let has_others = matrix.is_some() || cell_files::is_folder(place);
+        if !has_others || place.join("results.json").exists() {
             kept.extend(Kept::read(place)?);
         }
         matrices.extend(matrix);
     }
-    Ok((sources(kept), matrices))
+    Ok(Read {
+        sources: sources(kept),
+        matrices,
+        missing: cells.missing,
+    })
 }
 
 /// The file of the results of a folder, or the file itself, by the one name that all its names lead
@@ -127,7 +163,8 @@ fn of_place(place: &Path) -> PathBuf {
     } else {
         place.to_path_buf()
     };
-    fs::canonicalize(&file).unwrap_or(file)
+    let found = fs::canonicalize(&file).or_else(|_| fs::canonicalize(place));
+    found.unwrap_or(file)
 }
 
 fn write_page(
@@ -148,7 +185,6 @@ mod tests {
     use super::*;
     use crate::samples::results as sample;
     use skiagraph_compare::records::results::Results;
-    use skiagraph_compare::sink::Silent;
 
     /// A folder with these results and a picture of the first run.
     fn folder(place: &Path, results: &Results) -> PathBuf {

@@ -10,7 +10,7 @@ use skiagraph_compare::graphs::argument::Assignment;
 use skiagraph_compare::measuring::ground_truth::REFERENCE_SAMPLES;
 use skiagraph_compare::pictures::{data::DataFormat, save::Save};
 use skiagraph_compare::quantities::{bytes, milliseconds, percent};
-use skiagraph_compare::records::published_row::PublishedFile;
+use skiagraph_compare::records::{published_row::PublishedFile, shard::Shard};
 use skiagraph_compare::size::Size;
 use skiagraph_reference::OracleMode;
 use skiagraph_report::gate::Gate;
@@ -18,6 +18,10 @@ use std::path::PathBuf;
 
 /// Arguments of `skiagraph compare`.
 #[derive(Args, Debug)]
+#[command(mut_args(|arg| match arg.get_id().as_str() {
+    "out" | "cells" | "shard" => arg,
+    _ => arg.conflicts_with("cells"),
+}))]
 #[command(mut_arg("scenes", |scenes| scenes.action(ArgAction::Append).help(
     "Built-in scene, scene file (.ron), name in scenes/, or a mesh (.obj, .gltf, .glb). Given \
      several times, each scene is compared by itself into DIR/SCENE, with an overview"
@@ -118,6 +122,20 @@ pub struct CompareArgs {
     /// sizes stay there.
     #[arg(long, conflicts_with = "resume")]
     pub replace: bool,
+    /// Write the cells of the comparison into a file, a line for each, and measure none: many
+    /// machines can then each measure a part of them.
+    #[arg(long, value_name = "FILE.jsonl", conflicts_with_all = [
+        "tune", "out", "resume", "replace", "baseline", "fail_if", "format", "passes", "details",
+        "write_scene",
+    ])]
+    pub plan: Option<PathBuf>,
+    /// Measure the cells that --plan wrote and --out does not hold yet, each into a file of its
+    /// own; `merge` joins them.
+    #[arg(long, value_name = "FILE.jsonl")]
+    pub cells: Option<PathBuf>,
+    /// Part of --cells to measure: 3/10 is the third of ten. Without it: all.
+    #[arg(long, value_name = "NUMBER/COUNT", requires = "cells")]
+    pub shard: Option<Shard>,
     /// Published figures to show beside the measured ones in results.json and --format markdown,
     /// there as (LABEL VALUE): a CSV with the columns scene, view, viewport, map_size, preset,
     /// quantity, value, source, note. May be repeated.

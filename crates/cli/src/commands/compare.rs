@@ -33,7 +33,7 @@ use skiagraph_compare::records::{
 };
 use skiagraph_compare::sink::{Session, Silent};
 use skiagraph_compare::size::Size;
-use skiagraph_compare::wording::{command_line, plural, size, unknown};
+use skiagraph_compare::wording::{command_line, plural, size};
 use skiagraph_draw::{from_plan, to_svg};
 use skiagraph_gpu::device::Gpu;
 use skiagraph_passes::SceneProvider;
@@ -47,7 +47,15 @@ use skiagraph_report::{
     table::terminal,
 };
 use skiagraph_scene::Scene;
-use std::{io::IsTerminal, path::PathBuf, sync::Arc};
+use std::{
+    ffi::OsString,
+    io::IsTerminal,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+
+/// Commit that the program was built from.
+pub const COMMIT: Option<&str> = option_env!("SKIAGRAPH_COMMIT");
 
 /// Checks all arguments, then measures the methods on each scene and prints and saves the results.
 ///
@@ -56,62 +64,20 @@ use std::{io::IsTerminal, path::PathBuf, sync::Arc};
 /// continued, Ctrl-C stops the command, no method runs on this adapter, a limit of `--fail-if` is
 /// exceeded, or a method is worse than in `--baseline`.
 pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
-    let scenes = args.scene.each()?;
-    let published = published::read(&args.published)?;
     let baseline = args.baseline.as_deref().map(Baseline::read).transpose()?;
-    let sources = preset::sources(&Terminal);
-    let names = if args.presets.is_empty() && !args.all {
-        preset::shipped_and_own(&sources)
-    } else {
-        preset::named_or_all(&args.presets, &sources)
-    };
-    let methods = shadow_method::load_methods(&names, &args.params, &args.map_size, &sources)?;
-    note_without_map(&methods, &args.map_size);
-    check_gates(&args.fail_if, &methods)?;
-    let primary = PrimaryVisibility::load(&sources)?;
-    let loaded = methods.iter().map(|method| &method.preset.graph);
-    let gpu = device::open(&gpu.request(), loaded)?;
-    let session = Session::new(&gpu, &Terminal);
-    interrupt::install()?;
-    let targets = Target::all(args)?;
-    let mut comparisons = Vec::new();
-    for (scene, target) in scenes.iter().zip(&targets) {
-        let (scene, views) = views(args, scene, &methods, session)?;
-        let mut comparison = Comparison {
-            views,
-            viewports: unique(args.size.iter().map(|Size(size)| *size)),
-            methods: methods.clone(),
-            tuned: Default::default(),
-            protocol: Protocol {
-                frames: args.frames,
-                warmup: args.warmup,
-                cached_frames: args.cached_frames.unwrap_or(args.frames),
-                jitter: args.jitter,
-                oracle: args.oracle,
-                reference_samples: args.reference_samples,
-                pictures: args.images == Images::All,
-                data: args.data,
-            },
-            primary: primary.clone(),
-            budgets: Budgets {
-                frame_ms: args.under,
-                wrong_percent: args.below,
-                memory_bytes: args.memory,
-            },
-            published: published.clone(),
-            command: Some(command_line(std::env::args_os())),
-            commit: option_env!("SKIAGRAPH_COMMIT").map(str::to_owned),
-            scene,
-        };
+    let loaded = Loaded::new(args, gpu, std::env::args_os())?;
+    let session = Session::new(&loaded.gpu, &Terminal);
+    let (mut comparisons, targets) = (loaded.comparisons, loaded.targets);
+    for (comparison, target) in comparisons.iter_mut().zip(&targets) {
+        let gpu = &loaded.gpu;
         check_folder(&target.folder)?;
         if args.tune {
             // Refused before the search, not behind it.
-            check_earlier(args, &comparison, baseline.as_ref(), target, &gpu)?;
-            tune(&mut comparison, session).map_err(search_ended)?;
+            check_earlier(args, comparison, baseline.as_ref(), target, gpu)?;
+            tune(comparison, session).map_err(search_ended)?;
         }
         comparison.check(session)?;
-        check_earlier(args, &comparison, baseline.as_ref(), target, &gpu)?;
-        comparisons.push(comparison);
+        check_earlier(args, comparison, baseline.as_ref(), target, gpu)?;
     }
     let mut measured = Measured::default();
     let mut all = comparisons.into_iter().zip(&targets);
@@ -135,6 +101,79 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         ([], []) => Ok(()),
         ([], worse) => Err(CliError::Baseline(worse.join("\n"))),
         (failures, worse) => Err(CliError::Gate([failures, worse].concat().join("\n"))),
+    }
+}
+
+/// The comparisons that the arguments ask for, not checked yet.
+pub struct Loaded {
+    /// The GPU that they run on.
+    pub gpu: Gpu,
+    /// One for each scene.
+    pub comparisons: Vec<Comparison>,
+    /// The folder of each.
+    pub targets: Vec<Target>,
+}
+
+impl Loaded {
+    /// Loads methods and scenes, and opens the GPU. `words` are those of the command line.
+    pub fn new(
+        args: &CompareArgs,
+        gpu: &GpuArgs,
+        words: impl Iterator<Item = OsString>,
+    ) -> Result<Self, CliError> {
+        let scenes = args.scene.each()?;
+        let published = published::read(&args.published)?;
+        let sources = preset::sources(&Terminal);
+        let names = if args.presets.is_empty() && !args.all {
+            preset::shipped_and_own(&sources)
+        } else {
+            preset::named_or_all(&args.presets, &sources)
+        };
+        let methods = shadow_method::load_methods(&names, &args.params, &args.map_size, &sources)?;
+        note_without_map(&methods, &args.map_size);
+        Gate::check(&args.fail_if, &methods).map_err(CliError::Input)?;
+        let primary = PrimaryVisibility::load(&sources)?;
+        let loaded = methods.iter().map(|method| &method.preset.graph);
+        let gpu = device::open(&gpu.request(), loaded)?;
+        let session = Session::new(&gpu, &Terminal);
+        interrupt::install()?;
+        let targets = Target::all(args)?;
+        let command = command_line(words);
+        let comparison = |scene| -> Result<Comparison, CliError> {
+            let (scene, views) = views(args, scene, &methods, session)?;
+            Ok(Comparison {
+                views,
+                viewports: unique(args.size.iter().map(|Size(size)| *size)),
+                methods: methods.clone(),
+                tuned: Default::default(),
+                protocol: Protocol {
+                    frames: args.frames,
+                    warmup: args.warmup,
+                    cached_frames: args.cached_frames.unwrap_or(args.frames),
+                    jitter: args.jitter,
+                    oracle: args.oracle,
+                    reference_samples: args.reference_samples,
+                    pictures: args.images == Images::All,
+                    data: args.data,
+                },
+                primary: primary.clone(),
+                budgets: Budgets {
+                    frame_ms: args.under,
+                    wrong_percent: args.below,
+                    memory_bytes: args.memory,
+                },
+                published: published.clone(),
+                command: Some(command.clone()),
+                commit: COMMIT.map(str::to_owned),
+                scene,
+            })
+        };
+        let comparisons = scenes.iter().map(comparison).collect::<Result<_, _>>()?;
+        Ok(Self {
+            gpu,
+            comparisons,
+            targets,
+        })
     }
 }
 
@@ -166,10 +205,11 @@ fn check_earlier(
 }
 
 /// A scene's folder for results.
-struct Target {
-    folder: PathBuf,
+pub struct Target {
+    /// The folder.
+    pub folder: PathBuf,
     /// The folder's name below that of all scenes; `None` of a single scene.
-    name: Option<String>,
+    pub name: Option<String>,
 }
 
 impl Target {
@@ -253,36 +293,13 @@ fn measure(
             args.scene.scenes.len()
         ));
     }
-    let graphs = match args.images {
-        Images::All => graphs(comparison, session),
-        Images::None => Vec::new(),
-    };
     let mut series = Series::new(comparison, session, Some((folder, kept(args))))?;
-    for (name, svg) in &graphs {
-        write_whole(&folder.join(name), svg.as_bytes())?;
-    }
+    write_graphs(comparison, folder, session)?;
     let outcome = run(args, comparison, &mut series);
     let results = finish(args, target, series, outcome, measured)?;
     judge(args, target, baseline, &results, measured)?;
     measured.finished += 1;
     Ok(())
-}
-
-/// Refuses conditions on methods that are not compared.
-fn check_gates(gates: &[Gate], methods: &[Method]) -> Result<(), CliError> {
-    let names = || methods.iter().map(|method| method.name.as_str());
-    let is_unknown = |gate: &&Gate| !names().contains(&*gate.method);
-    let Some(gate) = gates.iter().find(is_unknown) else {
-        return Ok(());
-    };
-    let what = format!("--fail-if: `{}` is not compared", gate.method);
-    let known: Vec<&str> = names().unique().collect();
-    Err(CliError::Input(unknown(
-        &what,
-        &gate.method,
-        "methods",
-        &known,
-    )))
 }
 
 /// Prints a note on the methods without a param `map_size`, unless `map_sizes` is empty.
@@ -297,24 +314,31 @@ pub fn note_without_map(methods: &[Method], map_sizes: &[u32]) {
     }
 }
 
-/// A chart of each method's graph, with its file name; of one that this adapter cannot run there is
-/// none.
-fn graphs(comparison: &Comparison, session: Session) -> Vec<(String, String)> {
-    let Some(&viewport) = comparison.viewports.first() else {
-        return Vec::new();
+/// Writes a chart of each method's graph, if pictures are written; of one that this adapter cannot
+/// run there is none.
+pub fn write_graphs(
+    comparison: &Comparison,
+    folder: &Path,
+    session: Session,
+) -> Result<(), CliError> {
+    let viewport = comparison.viewports.first();
+    let Some(&viewport) = viewport.filter(|_| comparison.protocol.pictures) else {
+        return Ok(());
     };
     let mut provider = SceneProvider::new(comparison.scene.clone());
     if let Some(&light) = comparison.kinds_of_light().last() {
         provider.set_light(light);
     }
-    let chart = |method: &Method| {
+    for method in &comparison.methods {
         let capabilities = Capabilities::new(session.gpu);
         let plan = method.at(viewport).plan(viewport, capabilities, &provider);
         let title = format!("{}, viewport {}", method.name, size(viewport));
-        let svg = to_svg(&from_plan(&plan.ok()?).titled(title));
-        Some((graph_name(&method.name), svg))
-    };
-    comparison.methods.iter().filter_map(chart).collect()
+        if let Ok(plan) = plan {
+            let svg = to_svg(&from_plan(&plan).titled(title));
+            write_whole(&folder.join(graph_name(&method.name)), svg.as_bytes())?;
+        }
+    }
+    Ok(())
 }
 
 /// The light by its name: where a method answers for every light it is judged under every light,

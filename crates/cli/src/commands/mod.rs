@@ -1,5 +1,6 @@
 //! Runs the commands, one in each file. Each takes its arguments and may return an error.
 
+pub mod cells;
 pub mod chart;
 pub mod check;
 pub mod compare;

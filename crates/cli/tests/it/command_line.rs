@@ -233,19 +233,43 @@ fn show_writes_out_what_a_document_extends_with_its_origins() {
 fn wrong_usage_has_exit_code_2() {
     let folder = tempfile::tempdir().unwrap();
     for line in [
-        &["compare", "--size", "big"][..],
-        &["run", "rt", "--save", "visibility=shadow.jpg"],
-        &[
-            "run",
-            "rt",
-            "--view",
-            "all",
-            "--save",
-            "visibility=shadow.png",
-        ],
-        &["frobnicate"],
+        "",
+        "frobnicate",
+        "compare --size big",
+        "run rt --save visibility=shadow.jpg",
+        "run rt --view all --save visibility=shadow.png",
+        "check",
+        "compare --size 10",
+        "compare --frames 0",
+        "compare --frames 100001",
+        "compare --warmup 4294967295 --frames 1",
+        "run",
+        "run rt --save visibility=a.gif",
+        "compare --look 0,0,0",
+        "compare --oracle offset:-1",
+        "compare --oracle embree",
+        "compare --under 3",
+        "compare --below 200%",
+        "compare --fail-if wrong>1%",
+        "profile",
+        "profile nsm --frames 0",
+        "check a.ron --format yaml",
+        "chart",
+        "merge --out all",
+        "merge park",
+        "completions cmd",
+        "chart out --kind pie",
+        "doctor --memory-limit lots",
+        "doctor --timeout -1",
+        "doctor --timeout 86401",
+        "compare --cells cells.jsonl --frames 3",
+        "compare --cells cells.jsonl --shard 0/3",
+        "compare --shard 1/3",
+        "compare --plan cells.jsonl --resume",
+        "compare --plan cells.jsonl --tune",
     ] {
-        assert_exit(&skiagraph(folder.path(), line), 2);
+        let words: Vec<&str> = line.split_whitespace().collect();
+        assert_exit(&skiagraph(folder.path(), &words), 2);
     }
 }
 

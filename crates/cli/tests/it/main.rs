@@ -5,6 +5,7 @@
 mod support;
 
 mod backends;
+mod cells;
 mod command_line;
 mod endless_files;
 mod faults;

@@ -42,6 +42,16 @@ impl Fingerprint {
         Self(hash)
     }
 
+    /// Returns the hash extended by bytes, without their number.
+    pub(crate) fn with_bytes(self, bytes: &[u8]) -> Self {
+        self.with(bytes.iter().copied())
+    }
+
+    /// Returns the hash as bytes, the least significant one first.
+    pub(crate) fn bytes(self) -> [u8; 8] {
+        self.0.to_le_bytes()
+    }
+
     /// Returns the hash extended by a text and, before it, its length, so that a word moved from
     /// one text to the next changes the hash.
     pub fn with_text(self, text: &str) -> Self {

@@ -48,6 +48,15 @@ impl Mistake {
         }
     }
 
+    /// Returns the mistake in a text of which its own is a part that begins at the byte `at`, for
+    /// example a line.
+    pub fn behind(self, at: usize) -> Self {
+        Self {
+            at: self.at + at,
+            ..self
+        }
+    }
+
     /// Creates a mistake with the message `what` at the first occurrence of the string `field` in
     /// `text`, or at the beginning of `text` if it does not occur.
     pub fn at_field(text: &str, field: &str, what: String) -> Self {

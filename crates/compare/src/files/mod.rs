@@ -18,5 +18,6 @@ pub mod json;
 pub mod lock;
 pub(crate) mod picture_sources;
 pub mod scene;
+pub mod truth_file;
 pub mod watch;
 pub mod write;

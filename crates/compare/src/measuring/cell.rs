@@ -22,13 +22,15 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::comparison::Comparison;
+use crate::comparison::{Comparison, Protocol};
 use crate::files::fingerprint::Fingerprint;
 use crate::graphs::method::Method;
 use crate::measuring::view_or_path::ViewOrPath;
 use crate::wording::size;
 use glam::DVec3;
-use skiagraph_scene::{CameraPath, DirectionalLight, LightKind, PointLight, SpotLight, View};
+use skiagraph_scene::{
+    CameraPath, DirectionalLight, LightKind, Motion, PartMotion, PointLight, SpotLight, View,
+};
 
 /// Returns the id of a cell, 16 hexadecimal digits: a hash of the scene's name and number of
 /// triangles; the name, camera and light of the view or path; the viewport in pixels; the preset
@@ -41,39 +43,68 @@ pub fn id(
     viewport: [u32; 2],
     method: &Method,
 ) -> String {
-    let scene = &comparison.scene;
-    let light = view.light(scene);
-    let mut lines = vec![
-        format!("scene {} {}", scene.name, scene.mesh.triangles.len()),
-        light_text(light),
-        format!("viewport {}", size(viewport)),
-        format!("method {}", method.preset.name),
-    ];
-    match view {
-        ViewOrPath::Still(view) => lines.push(format!("view {}", view_text(view))),
-        ViewOrPath::Path(path) => path_lines(path, &mut lines),
-    }
+    let mut lines = scene_lines(comparison, view, viewport);
+    lines.push(format!("method {}", method.preset.name));
+    view_lines(view, &mut lines);
     let params = method.all_params().into_iter();
     lines.extend(params.map(|(name, value)| format!("param {name}={value}")));
-    lines.extend(protocol_lines(comparison, light.has_extent()));
-    let all = lines.iter();
-    let hash = all.fold(Fingerprint::EMPTY, |hash, line| hash.with_text(line));
+    let Protocol {
+        oracle,
+        frames,
+        warmup,
+        cached_frames,
+        ..
+    } = comparison.protocol;
+    lines.extend([
+        format!("oracle {oracle}"),
+        format!("frames {frames}"),
+        format!("warmup {warmup}"),
+        format!("cached frames {cached_frames}"),
+    ]);
+    lines.extend(sampling_lines(comparison, view));
+    hash(&lines)
+}
+
+/// Returns the id of the truth that the cells of a view or path in a viewport wait for, 16
+/// hexadecimal digits: a hash of scene, view and viewport as in [`id`], and of all that changes the
+/// reference's answers: its mode, its rays to a light with an extent, and the jitter.
+pub fn truth_id(comparison: &Comparison, view: &ViewOrPath, viewport: [u32; 2]) -> String {
+    let mut lines = scene_lines(comparison, view, viewport);
+    view_lines(view, &mut lines);
+    lines.push(format!("truth {}", comparison.protocol.oracle));
+    lines.extend(sampling_lines(comparison, view));
+    hash(&lines)
+}
+
+fn hash(lines: &[String]) -> String {
+    let lines = lines.iter();
+    let hash = lines.fold(Fingerprint::EMPTY, |hash, line| hash.with_text(line));
     hash.to_string()
 }
 
-fn protocol_lines(comparison: &Comparison, has_extent: bool) -> Vec<String> {
-    let protocol = &comparison.protocol;
-    let mut lines = vec![
-        format!("oracle {}", protocol.oracle),
-        format!("frames {}", protocol.frames),
-        format!("warmup {}", protocol.warmup),
-        format!("cached frames {}", protocol.cached_frames),
-    ];
-    if has_extent {
-        lines.push(format!("samples {}", protocol.reference_samples));
+fn scene_lines(comparison: &Comparison, view: &ViewOrPath, viewport: [u32; 2]) -> Vec<String> {
+    let scene = &comparison.scene;
+    vec![
+        format!("scene {} {}", scene.name, scene.mesh.triangles.len()),
+        light_text(view.light(scene)),
+        format!("viewport {}", size(viewport)),
+    ]
+}
+
+fn view_lines(view: &ViewOrPath, lines: &mut Vec<String>) {
+    match view {
+        ViewOrPath::Still(view) => lines.push(format!("view {}", view_text(view))),
+        ViewOrPath::Path(path) => path_lines(path, lines),
     }
-    lines.extend(protocol.jitter.map(|count| format!("jitter {count}")));
-    lines
+}
+
+/// Where a pixel is sampled, and how often a light with an extent.
+fn sampling_lines(comparison: &Comparison, view: &ViewOrPath) -> Vec<String> {
+    let protocol = &comparison.protocol;
+    let has_extent = view.light(&comparison.scene).has_extent();
+    let samples = has_extent.then(|| format!("samples {}", protocol.reference_samples));
+    let jitter = protocol.jitter.map(|count| format!("jitter {count}"));
+    samples.into_iter().chain(jitter).collect()
 }
 
 /// Three numbers, each as the shortest decimal that reads back as it.
@@ -100,10 +131,43 @@ fn path_lines(path: &CameraPath, lines: &mut Vec<String>) {
         let (direction, position) = (text(direction), text(position));
         lines.push(format!("light key {} {direction} {position}", key.at));
     }
-    lines.extend(path.moves.iter().map(|part| format!("{part:?}")));
+    for PartMotion { part, motion } in &path.moves {
+        lines.push(format!("moves {part}"));
+        motion_lines(motion, lines);
+    }
 }
 
-fn light_text(light: LightKind) -> String {
+fn motion_lines(motion: &Motion, lines: &mut Vec<String>) {
+    match motion {
+        Motion::Rigid { pivot, axis, keys } => {
+            let [pivot, axis] = [*pivot, *axis].map(vector);
+            lines.push(format!("rigid {pivot} {axis}"));
+            for key in keys {
+                let (at, shift, turn) = (key.at, vector(key.translation), key.degrees);
+                lines.push(format!("rigid key {at} {shift} {turn}"));
+            }
+        }
+        Motion::Posed { keys } => {
+            lines.push("posed".into());
+            for key in keys {
+                let (at, shift) = (key.at, vector(key.translation));
+                let [x, y, z, w] = key.rotation.to_array();
+                lines.push(format!("posed key {at} {shift} {x},{y},{z},{w}"));
+            }
+        }
+        Motion::Sway {
+            axis,
+            up,
+            degrees,
+            seconds,
+        } => {
+            let [axis, up] = [*axis, *up].map(vector);
+            lines.push(format!("sway {axis} {up} {degrees} {seconds}"));
+        }
+    }
+}
+
+pub(crate) fn light_text(light: LightKind) -> String {
     let word = light.word();
     let numbers = match light {
         LightKind::Directional(DirectionalLight {
@@ -130,8 +194,9 @@ fn light_text(light: LightKind) -> String {
 mod tests {
     use super::*;
     use crate::graphs::shadow_method::load_methods;
+    use glam::DQuat;
     use skiagraph_passes::EmbeddedSources;
-    use skiagraph_scene::{SceneLibrary, SceneRequest};
+    use skiagraph_scene::{PoseKey, RigidKey, SceneLibrary, SceneRequest};
     use std::collections::BTreeSet;
     use std::sync::Arc;
 
@@ -155,6 +220,71 @@ mod tests {
     #[test]
     fn an_id_is_the_same_in_every_version() {
         insta::assert_snapshot!(id_of(&comparison()));
+    }
+
+    /// Ids are hashes of this text, not of how a version of Rust shows a type.
+    #[test]
+    fn motions_are_written_down_in_text_of_their_own() {
+        let mut lines = Vec::new();
+        let rigid = RigidKey {
+            at: 1.5,
+            translation: DVec3::X,
+            degrees: 90.0,
+        };
+        let pose = PoseKey {
+            at: 0.0,
+            translation: DVec3::ZERO,
+            rotation: DQuat::IDENTITY,
+        };
+        let motions = [
+            Motion::Rigid {
+                pivot: DVec3::ZERO,
+                axis: DVec3::Y,
+                keys: vec![rigid],
+            },
+            Motion::Posed { keys: vec![pose] },
+            Motion::Sway {
+                axis: DVec3::X,
+                up: DVec3::Y,
+                degrees: 6.0,
+                seconds: 1.7,
+            },
+        ];
+        for motion in &motions {
+            motion_lines(motion, &mut lines);
+        }
+        let expected = [
+            "rigid 0,0,0 0,1,0",
+            "rigid key 1.5 1,0,0 90",
+            "posed",
+            "posed key 0 0,0,0 0,0,0,1",
+            "sway 1,0,0 0,1,0 6 1.7",
+        ];
+        assert_eq!(lines, expected);
+    }
+
+    /// A truth waits for no method, and is another one of another light, size or mode.
+    #[test]
+    fn all_cells_of_a_view_wait_for_one_truth() {
+        let of = |comparison: &Comparison| {
+            truth_id(comparison, &comparison.views[0], comparison.viewports[0])
+        };
+        let (one, mut other) = (comparison(), comparison());
+        other.methods = load_methods(&["rt"], &[], &[], &EmbeddedSources).unwrap();
+        other.protocol.frames = 3;
+        assert_eq!(of(&one), of(&other));
+        assert_ne!(of(&one), id_of(&one));
+        type Change = fn(&mut Comparison);
+        let changes: [Change; 3] = [
+            |of| of.viewports[0] = [512, 511],
+            |of| of.protocol.oracle = "offset:0.5".parse().unwrap(),
+            |of| of.protocol.jitter = Some(4),
+        ];
+        for change in changes {
+            let mut other = comparison();
+            change(&mut other);
+            assert_ne!(of(&one), of(&other));
+        }
     }
 
     #[test]

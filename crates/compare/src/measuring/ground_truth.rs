@@ -18,6 +18,7 @@
 
 use crate::error::CompareError;
 use crate::files::fingerprint::{Fingerprint, RecordedSources};
+use crate::files::truth_file::Truth;
 use crate::graphs::faults::GraphFaults;
 use crate::graphs::planning::Capabilities;
 use crate::graphs::shadow_method::Outputs;
@@ -146,37 +147,29 @@ impl<'a> GroundTruthView<'a> {
         light: LightKind,
         primitives: Vec<u32>,
         how: (OracleMode, u32),
-        (what, sink): (&str, &dyn Sink),
+        of: (&str, &dyn Sink),
     ) -> Result<Self, CompareError> {
-        let begin = |of: &str| {
-            let (name, rows) = (format!("{of}, {what}"), camera.viewport[1]);
-            Step::begin(sink, &name, rows.into(), "rows")
-        };
-        let failed = |error: Error| match error {
-            Error::Interrupted => CompareError::interrupted(),
-            error => CompareError::Input(format!("no reference for {what}: {error}")),
-        };
-        let step = begin("reference");
-        let rows_done = |rows| step.set_done(rows);
-        let progress = heard(sink, &rows_done);
-        let truth = area::ground_truth(&oracle, &camera, light, &primitives, how, progress);
-        let ground_truth = truth.map_err(failed)?;
-        step.end();
-        let step = begin("what is visible");
-        let rows_done = |rows| step.set_done(rows);
-        let progress = heard(sink, &rows_done);
-        let wrong_surfaces = wrong_surfaces(&oracle, &camera, &primitives, progress);
-        let wrong_surfaces = wrong_surfaces.map_err(failed)?;
-        step.end();
-        Ok(Self {
+        let truth = trace(&oracle, &camera, light, &primitives, how, of)?;
+        let (camera, seen) = ((camera, light), (primitives, how.0));
+        Ok(Self::traced(oracle, camera, seen, truth))
+    }
+
+    /// Creates the ground truth from answers that were traced before, of the same inputs.
+    pub(crate) fn traced(
+        oracle: Rc<Oracle<'a>>,
+        (camera, light): (Camera, LightKind),
+        (primitives, mode): (Vec<u32>, OracleMode),
+        truth: Truth,
+    ) -> Self {
+        Self {
             oracle,
             camera,
             light,
             primitives,
-            mode: how.0,
-            ground_truth,
-            wrong_surfaces,
-        })
+            mode,
+            ground_truth: truth.ground_truth,
+            wrong_surfaces: truth.wrong_surfaces,
+        }
     }
 
     /// Returns the mesh, camera and visible primitives (triangles) of the view, as functions of the
@@ -301,6 +294,41 @@ impl<'a> GroundTruthView<'a> {
         let jump = LayerJump::measured(self.seen(), [&shown, &shares], layers, truth);
         jump.map_err(|error| CompareError::Input(format!("no jump between layers: {error}")))
     }
+}
+
+/// Runs the oracle as [`GroundTruthView::new`] does, and returns its answers alone.
+pub(crate) fn trace(
+    oracle: &Oracle,
+    camera: &Camera,
+    light: LightKind,
+    primitives: &[u32],
+    how: (OracleMode, u32),
+    (what, sink): (&str, &dyn Sink),
+) -> Result<Truth, CompareError> {
+    let begin = |of: &str| {
+        let (name, rows) = (format!("{of}, {what}"), camera.viewport[1]);
+        Step::begin(sink, &name, rows.into(), "rows")
+    };
+    let failed = |error: Error| match error {
+        Error::Interrupted => CompareError::interrupted(),
+        error => CompareError::Input(format!("no reference for {what}: {error}")),
+    };
+    let step = begin("reference");
+    let rows_done = |rows| step.set_done(rows);
+    let progress = heard(sink, &rows_done);
+    let truth = area::ground_truth(oracle, camera, light, primitives, how, progress);
+    let ground_truth = truth.map_err(failed)?;
+    step.end();
+    let step = begin("what is visible");
+    let rows_done = |rows| step.set_done(rows);
+    let progress = heard(sink, &rows_done);
+    let wrong_surfaces = wrong_surfaces(oracle, camera, primitives, progress);
+    let wrong_surfaces = wrong_surfaces.map_err(failed)?;
+    step.end();
+    Ok(Truth {
+        ground_truth,
+        wrong_surfaces,
+    })
 }
 
 /// Frames of a still view or camera path with their ground truth.

@@ -23,6 +23,7 @@
 
 pub mod camera_pose;
 pub mod cell;
+mod cell_folder;
 pub mod date;
 pub mod device;
 mod diagnostics;
@@ -32,6 +33,7 @@ pub mod ground_truth;
 pub mod guarantee;
 pub mod hard_case;
 mod hint;
+pub mod many_machines;
 pub mod poison;
 pub mod profiling;
 mod results_folder;
@@ -45,5 +47,6 @@ mod steady;
 mod stop;
 mod timing;
 mod trial;
+mod truth_folder;
 pub mod tune;
 pub mod view_or_path;

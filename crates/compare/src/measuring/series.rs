@@ -30,13 +30,15 @@ use crate::graphs::faults::reasons;
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
 use crate::measuring::camera_pose::CameraPose;
+use crate::measuring::cell_folder::CellFolder;
 use crate::measuring::frame_sequence::FrameSequence;
-use crate::measuring::ground_truth::{GroundTruthFrames, GroundTruthView};
+use crate::measuring::ground_truth::{GroundTruthFrames, GroundTruthView, trace};
 use crate::measuring::results_folder::ResultsFolder;
 use crate::measuring::resume::{Kept, earlier};
 use crate::measuring::run::{Judged, MeasureContext};
 use crate::measuring::sequence::follow;
 use crate::measuring::stop::{Stop, attempt};
+use crate::measuring::truth_folder::SeenFrame;
 use crate::measuring::view_or_path::ViewOrPath;
 use crate::measuring::{cell, date, device};
 use crate::pictures::run_pictures::{PictureFile, conditions};
@@ -50,6 +52,7 @@ use skiagraph_reference::{Oracle, PixelCounts};
 use skiagraph_scene::Scene;
 use std::{
     cell::{OnceCell, RefCell},
+    collections::BTreeSet,
     ops::Range,
     path::Path,
     rc::Rc,
@@ -71,15 +74,26 @@ pub struct Series<'a> {
     planned: Vec<Run>,
     /// Which of them are done.
     is_done: Vec<bool>,
+    /// Which of them others measure.
+    is_left_out: Vec<bool>,
     /// Results so far: the finished runs, in the order in which they were planned.
     pub results: Results,
-    /// Where they are kept, with what is in the folder besides; `None` to keep them in memory.
-    folder: Option<ResultsFolder>,
+    /// Where they are kept.
+    store: Store,
     /// Messages on graphs that ran but whose outputs do not have the size, format or values that a
     /// shadow method's must have.
     pub broken: Vec<String>,
     /// Counts the runs that are measured now.
     progress: Runs<'a>,
+}
+
+/// Where the results of a comparison are kept.
+enum Store {
+    Memory,
+    /// One file, with what is in the folder besides.
+    Results(ResultsFolder),
+    /// A file for each cell.
+    Cells(CellFolder),
 }
 
 /// Checks a comparison, measures all its runs and returns the results, without writing files.
@@ -115,6 +129,20 @@ impl<'a> Series<'a> {
         session: Session<'a>,
         kept_in: Option<(&Path, Kept)>,
     ) -> Result<Self, CompareError> {
+        let mut series = Self::in_memory(comparison, session);
+        let mut earlier_runs = Vec::new();
+        if let Some((folder, keep)) = kept_in {
+            let (results, planned) = (&series.results, &series.planned);
+            let (folder, kept) = earlier(folder, keep, results, planned, session.sink)?;
+            series.store = Store::Results(folder);
+            earlier_runs = kept;
+        }
+        series.begin(earlier_runs);
+        Ok(series)
+    }
+
+    /// A comparison that has not begun.
+    fn in_memory(comparison: &'a Comparison, session: Session<'a>) -> Self {
         let methods = comparison.settled(session);
         let began = date::now();
         let machine = device::machine();
@@ -140,37 +168,66 @@ impl<'a> Series<'a> {
             budgets: comparison.budgets,
             commands: comparison.command.iter().cloned().collect(),
             runs: Vec::new(),
+            plan: None,
             others: Vec::new(),
         };
-        let mut series = Self {
+        Self {
             comparison,
             session,
             provider: SceneProvider::new(comparison.scene.clone()),
             is_moved: false,
             oracle: OnceCell::new(),
             is_done: vec![false; planned.len()],
+            is_left_out: vec![false; planned.len()],
             planned,
             results,
-            folder: None,
+            store: Store::Memory,
             broken: Vec::new(),
             progress: Runs::begin(session.sink, 0),
             methods,
-        };
-        if let Some((folder, keep)) = kept_in {
-            let (results, planned) = (&series.results, &series.planned);
-            let (folder, kept) = earlier(folder, keep, results, planned, session.sink)?;
-            series.folder = Some(folder);
-            for (place, run) in kept.into_iter().enumerate() {
-                match run {
-                    Some(run) if run.measured.is_some() => series.done(place, run),
-                    Some(run) => series.planned[place] = run,
-                    None => {}
-                }
+        }
+    }
+
+    /// Begins a comparison of which only the cells with the ids in `chosen` are measured, as far as
+    /// `folder` does not hold them already. Each is written into a file of its own.
+    ///
+    /// # Errors
+    /// A cell in the folder that another version of the program has measured.
+    pub(crate) fn of_cells(
+        comparison: &'a Comparison,
+        session: Session<'a>,
+        mut folder: CellFolder,
+        chosen: &BTreeSet<&str>,
+    ) -> Result<Self, CompareError> {
+        let mut series = Self::in_memory(comparison, session);
+        let planned = series.planned.iter();
+        series.is_left_out = planned.map(|run| !chosen.contains(&*run.cell)).collect();
+        let mut kept = Vec::new();
+        for (run, is_left_out) in series.planned.iter().zip(&series.is_left_out) {
+            let run = (!is_left_out).then(|| folder.earlier(run, session.sink));
+            kept.push(run.transpose()?.flatten());
+        }
+        series.store = Store::Cells(folder);
+        series.begin(kept);
+        Ok(series)
+    }
+
+    /// Takes over earlier runs, parallel to the planned ones, and counts those that are left.
+    fn begin(&mut self, kept: Vec<Option<Run>>) {
+        for (place, run) in kept.into_iter().enumerate() {
+            match run {
+                Some(run) if run.measured.is_some() => self.done(place, run),
+                Some(run) => self.planned[place] = run,
+                None => {}
             }
         }
-        let left = series.planned() - series.results.runs.len();
-        series.progress = Runs::begin(session.sink, left as u64);
-        Ok(series)
+        let left = (0..self.planned()).filter(|place| self.is_missing(*place));
+        self.progress = Runs::begin(self.session.sink, left.count() as u64);
+    }
+
+    /// True if a planned run is to be measured yet.
+    fn is_missing(&self, place: usize) -> bool {
+        !self.is_done[place] && !self.is_left_out[place]
     }
 
     /// Returns the number of all planned runs, finished or not.
@@ -225,10 +282,10 @@ impl<'a> Series<'a> {
         for (place, method) in places.clone().zip(&methods) {
             self.plan_again(place, method, viewport)?;
         }
-        if self.is_done[places.clone()].iter().all(|is_done| *is_done) {
+        if !places.clone().any(|place| self.is_missing(place)) {
             return Ok(());
         }
-        let truth_views = self.truth_views(&frames, viewport)?;
+        let truth_views = self.truth_views(view, &frames, viewport)?;
         let path = GroundTruthFrames::new(&frames, truth_views, self.session.sink)?;
         let Some(truth_view) = path.truth_views.first() else {
             return Ok(());
@@ -254,8 +311,9 @@ impl<'a> Series<'a> {
             pictures: protocol.has_files().then(RefCell::default),
         };
         let missing = places.zip(&methods);
-        let missing: Vec<(usize, &Method)> =
-            missing.filter(|(place, _)| !self.is_done[*place]).collect();
+        let missing: Vec<(usize, &Method)> = missing
+            .filter(|(place, _)| self.is_missing(*place))
+            .collect();
         match view {
             ViewOrPath::Still(_) => self.measure_still(&context, &missing),
             ViewOrPath::Path(_) => self.follow_path(&context, &missing),
@@ -410,9 +468,9 @@ impl<'a> Series<'a> {
     /// Returns the results of this comparison's finished runs, followed by the earlier runs in the
     /// folder that are kept although this comparison does not measure them ([`Kept`]).
     pub fn whole(&self) -> Results {
-        match &self.folder {
-            Some(folder) => folder.whole(&self.results),
-            None => self.results.clone(),
+        match &self.store {
+            Store::Results(folder) => folder.whole(&self.results),
+            Store::Memory | Store::Cells(_) => self.results.clone(),
         }
     }
 
@@ -423,9 +481,10 @@ impl<'a> Series<'a> {
     /// An [early end](crate#terms); a file that cannot be written; a results.json that another
     /// process has meanwhile written of another adapter, scene or protocol.
     pub fn save(&mut self, pictures: &[PictureFile]) -> Result<(), CompareError> {
-        match &mut self.folder {
-            Some(folder) => folder.save(&self.results, pictures, self.session.sink),
-            None => Ok(()),
+        match &mut self.store {
+            Store::Memory => Ok(()),
+            Store::Results(folder) => folder.save(&self.results, pictures, self.session.sink),
+            Store::Cells(folder) => folder.save(&self.results, pictures),
         }
     }
 
@@ -467,6 +526,7 @@ impl<'a> Series<'a> {
     /// The ground truth of each frame.
     fn truth_views<'m>(
         &mut self,
+        view: &ViewOrPath,
         frames: &'m FrameSequence,
         viewport: [u32; 2],
     ) -> Result<Vec<GroundTruthView<'m>>, CompareError>
@@ -479,6 +539,7 @@ impl<'a> Series<'a> {
             ..
         } = self.comparison.protocol;
         let (session, count) = (self.session, frames.poses.len());
+        let id = cell::truth_id(self.comparison, view, viewport);
         let truth_view = |(index, pose): (usize, &CameraPose)| {
             frames.show(index, viewport, &mut self.provider)?;
             let oracle: Rc<Oracle<'m>> = match &frames.meshes {
@@ -497,7 +558,21 @@ impl<'a> Series<'a> {
             step.end();
             let (camera, light) = (pose.camera(viewport), self.provider.light());
             let (how, heard) = ((mode, reference_samples), (&*what, session.sink));
-            GroundTruthView::new(oracle, camera, light, ids, how, heard)
+            let trace = || trace(&oracle, &camera, light, &ids, how, heard);
+            let truth = match &self.store {
+                Store::Memory | Store::Results(_) => trace()?,
+                Store::Cells(folder) => {
+                    let seen = SeenFrame {
+                        moved: frames.meshes.as_ref().map(|meshes| &meshes[index]),
+                        camera: &camera,
+                        light,
+                        primitives: &ids,
+                    };
+                    folder.truths.find(&id, &seen, heard, trace)?
+                }
+            };
+            let (camera, seen) = ((camera, light), (ids, mode));
+            Ok(GroundTruthView::traced(oracle, camera, seen, truth))
         };
         frames.poses.iter().enumerate().map(truth_view).collect()
     }

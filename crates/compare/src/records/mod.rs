@@ -23,6 +23,8 @@
 mod assignments;
 pub mod baseline;
 pub mod budgets;
+pub mod cell_files;
+pub mod cell_plan;
 pub mod check;
 pub mod columns;
 pub mod hint;
@@ -36,6 +38,7 @@ pub mod results_baseline;
 pub mod results_csv;
 pub mod samples;
 pub mod sequence;
+pub mod shard;
 pub mod sources;
 pub mod statistics;
 pub mod steady;

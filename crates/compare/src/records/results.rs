@@ -69,6 +69,10 @@ pub struct Results {
     pub budgets: Budgets,
     /// Commands that measured the runs, the first one first.
     pub commands: Vec<String>,
+    /// Hash of the plan of which the runs are cells, 16 hexadecimal digits: they may be of several
+    /// machines of one kind. Absent without a plan.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plan: Option<String>,
     /// One entry per view, viewport, preset and map size, in this order.
     pub runs: Vec<Run>,
     /// Results of other machines, adapters, scenes or protocols that `merge` put into the same
@@ -83,6 +87,13 @@ impl Results {
         let others = std::mem::take(&mut self.others);
         let others = others.into_iter().flat_map(Self::each);
         [self].into_iter().chain(others).collect()
+    }
+
+    /// True if runs on both machines belong together in these results: it is the same one, or of
+    /// cells of a plan one of the same kind, whatever its name.
+    pub fn joins(&self, one: &Machine, other: &Machine) -> bool {
+        let kind = |of: &Machine| (of.processor.clone(), of.cores);
+        one.is_same(other) || (self.plan.is_some() && kind(one) == kind(other))
     }
 
     /// Returns the machine on which a run of these results was measured.
@@ -881,6 +892,7 @@ pub(crate) mod tests {
                     ..run("rt_hw", None)
                 },
             ],
+            plan: None,
             others: Vec::new(),
         }
     }

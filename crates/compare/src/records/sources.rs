@@ -64,11 +64,12 @@ fn by_machine(mut results: Results) -> Vec<Results> {
     let mut parts: Vec<Results> = Vec::new();
     for run in std::mem::take(&mut results.runs) {
         let machine = results.machine_of(&run).clone();
-        let known = parts.iter().position(|part| part.machine.is_same(&machine));
+        let is_known = |part: &Results| part.joins(&part.machine, &machine);
+        let known = parts.iter().position(is_known);
         let index = known.unwrap_or_else(|| {
             parts.push(Results {
                 // Load is that of the comparison, where it is the same machine.
-                machine: if machine.is_same(&results.machine) {
+                machine: if results.joins(&machine, &results.machine) {
                     results.machine.clone()
                 } else {
                     machine
@@ -126,7 +127,12 @@ impl Source {
             (of.program.clone(), adapter, of.scene.clone(), protocol)
         };
         let results = &self.results;
-        results.machine.is_same(&other.machine) && conditions(results) == conditions(other)
+        let joins = if results.plan == other.plan {
+            results.joins(&results.machine, &other.machine)
+        } else {
+            results.machine.is_same(&other.machine)
+        };
+        joins && conditions(results) == conditions(other)
     }
 
     /// True if one of the runs has the label of a run of this source and is another cell, of other
@@ -139,11 +145,30 @@ impl Source {
         runs.any(|run| known.iter().any(|known| at_odds(known, run)))
     }
 
+    /// Names all machines of the runs, where they are several of one kind.
+    fn name_machines(&mut self) {
+        let runs = self.results.runs.iter();
+        let hosts = runs.filter_map(|run| run.machine.as_ref()?.host.clone());
+        let hosts = unique(hosts);
+        if self.results.plan.is_some() && hosts.len() > 1 {
+            self.results.machine.host = Some(match &hosts[..] {
+                [first, others @ ..] if others.len() > 3 => {
+                    format!("{first} and {} others", others.len())
+                }
+                hosts => hosts.join(", "),
+            });
+        }
+    }
+
     fn add(&mut self, folder: PathBuf, other: Results) {
-        let place = self.folders.len();
-        self.folders.push(folder);
+        let known = self.folders.iter().position(|known| *known == folder);
+        let place = known.unwrap_or_else(|| {
+            self.folders.push(folder);
+            self.folders.len() - 1
+        });
         let commands = [&self.results.commands[..], &other.commands].concat();
         let machine = other.machine.clone();
+        let plan = self.results.plan.clone().or_else(|| other.plan.clone());
         if self.results.began < other.began {
             // Load, budgets and hour are those of the newest comparison.
             self.results = Results {
@@ -152,6 +177,7 @@ impl Source {
             };
         }
         self.results.commands = unique(commands);
+        self.results.plan = plan;
         for mut run in other.runs {
             run.machine.get_or_insert_with(|| machine.clone());
             // Times are written so that they sort.
@@ -188,6 +214,7 @@ pub fn sources(kept: Vec<Kept>) -> Vec<Source> {
         });
         sources[index].add(folder, results);
     }
+    sources.iter_mut().for_each(Source::name_machines);
     sources
 }
 
@@ -269,6 +296,36 @@ mod tests {
         let joined = sources(kept);
         assert_eq!(joined[1].results.machine.host.as_deref(), Some("far"));
         assert_eq!(joined[1].results.runs, of_two.runs[1..2]);
+    }
+
+    #[test]
+    fn cells_of_one_plan_on_machines_of_one_kind_stay_together() {
+        let on = |host: &str, run: usize| {
+            let mut part = sample();
+            part.plan = Some("0123456789abcdef".into());
+            part.machine.host = Some(host.into());
+            part.runs = vec![part.runs.swap_remove(run)];
+            part.runs[0].machine = Some(part.machine.clone());
+            kept(host, part)
+        };
+        let mut other_kind = on("c", 2);
+        other_kind.results.machine.cores = 64;
+        other_kind.results.runs[0].machine = Some(other_kind.results.machine.clone());
+        let joined = sources(vec![on("a", 0), on("b", 1), other_kind]);
+        assert_eq!(joined.len(), 2);
+        assert_eq!(joined[0].results.runs.len(), 2);
+        assert_eq!(joined[0].results.machine.host.as_deref(), Some("a, b"));
+        // Read back from one file, they are the same sources again.
+        let folder = tempfile::tempdir().unwrap();
+        let whole = merged(&joined, folder.path()).unwrap();
+        crate::records::results_csv::save(&whole, folder.path()).unwrap();
+        let again = sources(Kept::read(folder.path()).unwrap());
+        let runs = again.iter().map(|source| source.results.runs.len());
+        assert_eq!(runs.collect::<Vec<_>>(), [2, 1]);
+        // Each run names its own machine.
+        let machines = again[0].results.runs.iter().map(|run| run.machine.clone());
+        let hosts = machines.map(|machine| machine.unwrap().host.unwrap());
+        assert_eq!(hosts.collect::<Vec<_>>(), ["a", "b"]);
     }
 
     #[test]

@@ -1,25 +1,36 @@
-//! Writes notes on a scene: the parts that its mesh file holds, and those chosen for it.
+//! Writes notes on a scene of one's own: the parts that its mesh file holds, and those chosen for
+//! it.
+//!
+//! ```
+//! use skiagraph_compare::own_scene::{MeshSceneOptions, OwnScene};
+//! use skiagraph_compare::own_scene_notes::notes;
+//!
+//! let folder = tempfile::tempdir()?;
+//! let file = folder.path().join("tile.obj");
+//! std::fs::write(&file, "v 0 0 0\nv 0 0 1\nv 1 0 0\nf 1 2 3\n")?;
+//! let options = MeshSceneOptions::default();
+//! let own = OwnScene::of_mesh(&file, &options)?;
+//! assert!(notes(&options, &own)[1].starts_with("it holds no camera and no light"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
-use crate::args::shared::SceneArgs;
+use crate::own_scene::{Chosen, MeshSceneOptions, OwnScene};
+use crate::wording::length;
 use glam::DVec3;
 use itertools::Itertools;
-use skiagraph_compare::own_scene::{Chosen, OwnScene};
-use skiagraph_compare::wording::length;
 use skiagraph_scene::{Scene, View};
 
-/// Returns lines on a mesh file: its views and lights, its size, and options to choose others.
-pub fn of_mesh(args: &SceneArgs, own: &OwnScene) -> Vec<String> {
+/// Returns lines on a mesh file that was loaded with `options`: its views and lights, its size, and
+/// the program's options that choose others.
+pub fn notes(options: &MeshSceneOptions, own: &OwnScene) -> Vec<String> {
     let chosen = &own.chosen;
     let notes = [
         held(&own.scene, chosen),
-        chosen.size.map(|size| extent(size, args.up)),
-        options(args, &own.scene, chosen),
-        floor(args, chosen),
+        chosen.size.map(|size| extent(size, options.camera.up)),
+        choices(options, &own.scene, chosen),
+        floor(options, chosen),
     ];
-    let notes = notes.into_iter().flatten();
-    notes
-        .map(|text| format!("{}: {text}", args.scene()))
-        .collect()
+    notes.into_iter().flatten().collect()
 }
 
 /// The views and lights that a file holds.
@@ -49,16 +60,16 @@ fn extent(size: DVec3, up: Option<DVec3>) -> String {
 }
 
 /// Which options would choose what was chosen.
-fn options(args: &SceneArgs, scene: &Scene, chosen: &Chosen) -> Option<String> {
+fn choices(options: &MeshSceneOptions, scene: &Scene, chosen: &Chosen) -> Option<String> {
     let mut said = Vec::new();
     if let Some(view) = scene.views.first().filter(|_| chosen.view) {
         let eye = || format!("--eye {}", three(view.eye));
         let look = || format!("--look {}", three(view.direction.normalize()));
-        said.extend(args.eye.is_none().then(eye));
-        said.extend(args.look.is_none().then(look));
+        said.extend(options.camera.eye.is_none().then(eye));
+        said.extend(options.camera.direction.is_none().then(look));
     }
     let light = scene.lights.first().filter(|_| chosen.light);
-    if let (Some(light), None) = (light, args.own_light()) {
+    if let (Some(light), None) = (light, options.sun) {
         let sun = light.kind.directional();
         let sun = sun.map(|sun| format!("--light {}", three(sun.direction)));
         let lamp = light.kind.position();
@@ -81,7 +92,7 @@ fn options(args: &SceneArgs, scene: &Scene, chosen: &Chosen) -> Option<String> {
 }
 
 /// A ground that was added, or that is missing.
-fn floor(args: &SceneArgs, chosen: &Chosen) -> Option<String> {
+fn floor(options: &MeshSceneOptions, chosen: &Chosen) -> Option<String> {
     match &chosen.ground {
         Some(ground) => Some(format!(
             "a ground was added, a square of {} units at the height {}, just below the lowest \
@@ -89,21 +100,22 @@ fn floor(args: &SceneArgs, chosen: &Chosen) -> Option<String> {
             length(ground.edge),
             ground.height as f32
         )),
-        None if args.ground && chosen.has_floor => Some(
+        None if options.ground && chosen.has_floor => Some(
             "--ground adds none, for the mesh has a floor: half of its outline from above, in the \
              lowest twentieth"
                 .into(),
         ),
-        None if !args.ground && chosen.view && !chosen.is_inside && !chosen.has_floor => {
+        None if !options.ground && chosen.view && !chosen.is_inside && !chosen.has_floor => {
             Some("it has no floor for its shadow to fall on; --ground adds one".into())
         }
         None => None,
     }
 }
 
-/// Returns a warning if the user's own sun shines upwards, as its direction may be reversed.
-pub fn from_below(views: &[View], args: &SceneArgs) -> Option<String> {
-    let direction = args.own_light()?;
+/// Returns a warning if `sun`, the direction in which the light of the user's own sun travels,
+/// points upwards in the first view, as it may be reversed.
+pub fn from_below(views: &[View], sun: Option<DVec3>) -> Option<String> {
+    let direction = sun?;
     let up = views.first()?.up;
     let three = |v: DVec3| format!("{},{},{}", v.x, v.y, v.z);
     (direction.dot(up) > 0.0).then(|| {

@@ -36,8 +36,11 @@
 //! - [`records`]: holds measurements as plain data, and reads and writes their files.
 //! - [`pictures`]: writes texels as pictures.
 //! - [`foreign`]: judges pictures of other renderers.
+//! - [`rays`]: times and judges rays without a method.
+//! - [`adapters`]: finds out about one adapter what there is to find out.
 //! - [`files`]: writes, locks and watches files.
 
+pub mod adapters;
 pub mod comparison;
 pub mod default_view;
 pub mod error;
@@ -50,6 +53,7 @@ pub mod own_camera;
 pub mod own_scene;
 pub mod pictures;
 pub mod quantities;
+pub mod rays;
 pub mod records;
 pub mod sink;
 pub mod size;

@@ -13,7 +13,7 @@ pub fn merge(args: &MergeArgs) -> Result<(), CliError> {
     page::merge(&args.places, &args.out, &Terminal)?;
     let out = args.out.display();
     note(&format!(
-        "report.html, results.json and results.csv are in {out}"
+        "report.html and the joined results are in {out}"
     ));
     Ok(())
 }

@@ -4,6 +4,7 @@
 
 mod support;
 
+mod adapter;
 mod backends;
 mod command_line;
 mod endless_files;

@@ -21,6 +21,7 @@
 //! # }
 //! ```
 
+pub mod abilities;
 pub mod camera_pose;
 pub mod cell;
 pub mod date;
@@ -31,6 +32,7 @@ pub mod frame_sequence;
 pub mod ground_truth;
 pub mod guarantee;
 pub mod hard_case;
+pub mod hard_cases;
 mod hint;
 pub mod poison;
 pub mod profiling;

@@ -105,7 +105,11 @@ fn hard(report: &Report) -> Vec<HardFigures> {
             own.map(|cell| (case.name.clone(), cell))
         });
         let cells: Vec<_> = cells.collect();
-        let count = |verdict| cells.iter().filter(move |(_, cell)| cell.verdict == verdict);
+        let count = |verdict| {
+            cells
+                .iter()
+                .filter(move |(_, cell)| cell.verdict == verdict)
+        };
         let outside = |cell: &Cell| {
             let outside = cell.counts.map(|counts| counts.outside_band);
             outside.map_or(0, |outside| outside.lit + outside.shadow)

@@ -148,10 +148,9 @@ pub fn run(request: &AdapterRequest, sink: &dyn Sink) -> Result<Finished, Compar
             left.push(row.name);
             continue;
         }
-        write_whole(
-            &folder.join(row.name).join("row.json"),
-            to_text(&found).as_bytes(),
-        )?;
+        let own = folder.join(row.name);
+        check_folder(&own)?;
+        write_whole(&own.join("row.json"), to_text(&found).as_bytes())?;
         record.rows.retain(|it| it.row != row.name);
         record.rows.push(found);
         write_whole(&folder.join(FILE), to_text(&record).as_bytes())?;

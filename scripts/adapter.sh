@@ -21,4 +21,6 @@ test -x "$program" || { echo "there is no program $program: unpack the whole fol
 }
 SKIAGRAPH_ASSETS=$here/scenes
 export SKIAGRAPH_ASSETS
+# Scenes are found beside the program, and the folder of the rows is made there.
+cd "$here"
 exec "$program" adapter "$@"

@@ -32,6 +32,7 @@ fi
 rm -rf "$out" "$out.tar.gz"
 mkdir -p "$out/scenes"
 strip -o "$out/skiagraph" "$program"
+cp scenes/lamps.ron "$out/scenes/" # the others are in the program
 if [ -z "$small" ]; then
     mkdir "$out/scenes/sponza"
     cp "$(dirname "$mesh")/LICENSE.txt" "$out/scenes/sponza/"

@@ -50,9 +50,11 @@ fn cell(results: &Results, run: &Run) -> CellFigures {
     let passes = measured.passes.iter();
     let passes = passes.filter_map(|pass| Some((pass.name.clone(), pass.gpu_ms?.p95)));
     CellFigures {
-        is_exact: run.promise.as_ref().is_some_and(|promise| {
-            promise.is_exact_for_all() || promise.of == "exact" && results.scene.parts.open == 0
-        }),
+        // Shares of light are compared by their bits instead.
+        is_exact: run.is_hard()
+            && run.promise.as_ref().is_some_and(|promise| {
+                promise.is_exact_for_all() || promise.of == "exact" && results.scene.parts.open == 0
+            }),
         wrong: measured.wrong.total,
         wrong_outside: measured.wrong_outside_band(),
         rmse: (measured.answer == Answer::Graded).then_some(measured.graded.rmse),

@@ -158,7 +158,7 @@ const LINES: &[Line] = &[
         seconds: 30,
         full: "compare rt light_buffer light_buffer@stage=compute nsm crsm --scene city:10000 \
                --view overview --size 1024x576 --map-size 1024 --frames 5",
-        small: "compare rt light_buffer nsm --scene city:1000 --view overview --size 48x27 \
+        small: "compare rt light_buffer nsm --scene city:10000 --view overview --size 48x27 \
                 --map-size 64 --frames 1",
         ..LINE
     },

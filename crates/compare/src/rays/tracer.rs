@@ -137,6 +137,7 @@ impl<'a> Tracer<'a> {
         for shared in ["scene.positions", "scene.indices"] {
             given.build(shared, device, queue).map_err(refused)?;
         }
+        given.submit_built(device, queue).map_err(refused)?;
         let wait = || drop(device.poll(wgpu::PollType::wait_indefinitely()));
         wait();
         let began = Instant::now();
@@ -151,6 +152,7 @@ impl<'a> Tracer<'a> {
             let built = given.build_acceleration_structure("scene.tlas", device, queue);
             built.map_err(refused)?;
         }
+        given.submit_built(device, queue).map_err(refused)?;
         wait();
         let built = began.elapsed();
         let document = Document(document(set, engine));
@@ -202,7 +204,7 @@ pub fn shadow_rays(
     let names = ["rays", "ray_primitives", "ray_count"];
     let graph = loaded("pipelines/rt.ron", &EmbeddedSources)?;
     let mut request = Capabilities::new(session.gpu).request(viewport, &provider);
-    request.captures = names.map(captured).into();
+    request.captures = names.map(Capture::new).into();
     request.outputs = Some(vec![]);
     let plan = graph.plan(&request);
     let plan = plan.map_err(|faults| CompareError::Input(reasons(&faults)))?;
@@ -222,13 +224,6 @@ pub fn shadow_rays(
         skip,
         to_light: scene.light_of(view).directional().is_some(),
     })
-}
-
-fn captured(material: &str) -> Capture {
-    Capture {
-        material: material.to_owned(),
-        after: None,
-    }
 }
 
 fn loaded(path: &str, sources: &dyn Sources) -> Result<Graph, CompareError> {
@@ -342,6 +337,14 @@ impl Provider for Given<'_> {
             usage: wgpu::BufferUsages::STORAGE,
         };
         Ok(device.create_buffer_init(&descriptor))
+    }
+
+    fn submit_built(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+    ) -> Result<(), ProviderError> {
+        self.scene.submit_built(device, queue)
     }
 
     fn build_acceleration_structure(

@@ -21,6 +21,18 @@ test -x "$program" || { echo "there is no program $program: unpack the whole fol
 }
 SKIAGRAPH_ASSETS=$here/scenes
 export SKIAGRAPH_ASSETS
-# Scenes are found beside the program, and the folder of the rows is made there.
+# Scenes are found beside the program, and the folder of the rows is made there. A folder that is
+# named is meant from where this script was called.
+before=
+for word in "$@"; do
+    shift
+    case $before,$word in
+        --out,/* | *,--out=/*) ;;
+        --out,*) word=$PWD/$word ;;
+        *,--out=*) word=--out=$PWD/${word#--out=} ;;
+    esac
+    before=$word
+    set -- "$@" "$word"
+done
 cd "$here"
 exec "$program" adapter "$@"

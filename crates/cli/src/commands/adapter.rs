@@ -28,7 +28,7 @@ pub fn adapter(args: &AdapterArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     if !finished.left.is_empty() {
         let left = finished.left.join(", ");
         print(&format!(
-            "no time was left for {left}: run the same command again\n"
+            "not finished: {left}; run the same command again\n"
         ))?;
     }
     print(&format!("the folder to hand in: {folder}\n"))

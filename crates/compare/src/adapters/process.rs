@@ -71,6 +71,13 @@ pub(super) fn run(
     }
 }
 
+/// True if the user, or what started this program, ended the process by SIGHUP, SIGINT or SIGTERM:
+/// that says nothing about the adapter. 130 is this program's exit code after SIGINT. SIGKILL is
+/// left out, as the kernel sends it for want of memory.
+pub(super) fn is_from_outside(exit: Option<i32>, signal: Option<i32>) -> bool {
+    exit == Some(130) || matches!(signal, Some(1 | 2 | 15))
+}
+
 fn ended(status: ExitStatus, took: Duration) -> Ended {
     let outcome = match status.code() {
         Some(0) => Outcome::Done,
@@ -114,6 +121,7 @@ mod tests {
             ("exit 3", Outcome::Lost, Some(3), None),
             ("exit 101", Outcome::Crashed, Some(101), None),
             ("kill -SEGV $$", Outcome::Crashed, None, Some(11)),
+            ("kill -TERM $$", Outcome::Crashed, None, Some(15)),
             ("exec sleep 60", Outcome::TimedOut, None, Some(9)),
         ] {
             let mut command = Command::new("sh");
@@ -125,6 +133,8 @@ mod tests {
                 "{script}"
             );
             let said = std::fs::read_to_string(folder.path().join("stdout.txt")).unwrap();
+            let is_stopped = is_from_outside(ended.exit, ended.signal);
+            assert_eq!(is_stopped, script == "kill -TERM $$", "{script}");
             assert_eq!(said == "said\n", script.starts_with("echo"), "{script}");
         }
         let nothing = run(Command::new("/no/such"), folder.path(), limit, &Silent);

@@ -83,7 +83,7 @@ pub struct Finished {
     pub folder: PathBuf,
     /// The rows of the folder.
     pub record: AdapterRecord,
-    /// Names of the rows that found no time.
+    /// Names of the rows that found no time, or were ended from outside.
     pub left: Vec<&'static str>,
 }
 
@@ -142,9 +142,14 @@ pub fn run(request: &AdapterRequest, sink: &dyn Sink) -> Result<Finished, Compar
         } else {
             answer(request, row, command, (&folder, limit), sink)?
         };
-        let was_cut = found.outcome == Outcome::TimedOut && limit.as_secs() < row.seconds;
-        sink.note(&format!("      {}", told(&found, was_cut)));
-        if was_cut {
+        let is_out_of_time = found.outcome == Outcome::TimedOut && limit.as_secs() < row.seconds;
+        let cut = if process::is_from_outside(found.exit, found.signal) {
+            Some("ended from outside")
+        } else {
+            is_out_of_time.then_some("out of all rows' time")
+        };
+        sink.note(&format!("      {}", told(&found, cut)));
+        if cut.is_some() {
             left.push(row.name);
             continue;
         }
@@ -191,6 +196,9 @@ fn abilities(request: &AdapterRequest, sink: &dyn Sink) -> Result<Abilities, Com
     let said = said.trim().trim_start_matches("error: ");
     match ended.outcome {
         Outcome::Done => {}
+        _ if process::is_from_outside(ended.exit, ended.signal) => {
+            return Err(CompareError::interrupted());
+        }
         Outcome::Lost => return Err(CompareError::NoGpu(said.into())),
         outcome => {
             return Err(CompareError::NoGpu(format!(
@@ -335,7 +343,10 @@ fn last_lines(path: &Path) -> Vec<String> {
 }
 
 /// The end of a row as a line.
-fn told(row: &RowRecord, was_cut: bool) -> String {
+fn told(row: &RowRecord, cut: Option<&str>) -> String {
+    if let Some(cut) = cut {
+        return format!("{cut} after {} s: run it again to go on", row.seconds);
+    }
     let signal = row.signal.map(|signal| format!(", signal {signal}"));
     let mut text = format!(
         "{}{} after {} s",
@@ -347,9 +358,6 @@ fn told(row: &RowRecord, was_cut: bool) -> String {
     );
     if row.outcome == Outcome::Lacking {
         text = row.outcome.words().into();
-    }
-    if was_cut {
-        text += ", the last of all rows' time: run it again to go on";
     }
     let cells = row.figures.cells.iter();
     let wrong: u64 = cells.clone().map(|cell| cell.wrong_outside).sum();
@@ -373,4 +381,51 @@ fn told(row: &RowRecord, was_cut: bool) -> String {
         text += &format!("; {} rays wrong", rays.wrong());
     }
     text
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+    use crate::sink::Silent;
+    use std::os::unix::fs::PermissionsExt;
+
+    /// A program whose rows end as `script` says; it runs on an adapter with ray queries.
+    fn program(folder: &Path, script: &str) -> PathBuf {
+        let adapter = r#"{"name": "a", "backend": "b", "driver": "c", "device_type": "Cpu"}"#;
+        let doctor = format!(
+            r#"{{"schema": 1, "program": "p", "machine": {{"host": "h", "processor": "", "cores": 1,
+                "load": null}}, "adapters": [], "adapter": {adapter}, "limits": {{"texture_edge": 1,
+                "storage_binding": 1, "buffer": 1, "memory": null, "threads": 1, "groups": 1}},
+                "features": {{"ray_query": true}}}}"#
+        );
+        let text =
+            format!("#!/bin/sh\nif [ \"$1\" = doctor ]; then echo '{doctor}'; else {script}; fi\n");
+        let path = folder.join("program.sh");
+        fs::write(&path, text).unwrap();
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
+        path
+    }
+
+    #[test]
+    fn a_row_that_was_ended_from_outside_is_run_again_and_a_crash_is_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let turn = |script: &str| {
+            let mut request = AdapterRequest::new(program(folder.path(), script));
+            request.out = Some(folder.path().join("out"));
+            request.only = vec!["hard_area".into()];
+            run(&request, &Silent).unwrap()
+        };
+        for script in ["kill -TERM $$", "kill -INT $$", "exit 130"] {
+            let finished = turn(script);
+            assert_eq!(finished.left, ["hard_area"], "{script}");
+            assert!(finished.record.rows.is_empty(), "{script}");
+        }
+        for script in ["kill -SEGV $$", "exit 0"] {
+            let finished = turn(script);
+            assert!(finished.left.is_empty(), "{script}");
+            let row = &finished.record.rows[0];
+            let ended = (row.outcome, row.signal);
+            assert_eq!(ended, (Outcome::Crashed, Some(11)), "{script}");
+        }
+    }
 }

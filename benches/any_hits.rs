@@ -5,6 +5,7 @@
 mod engines;
 
 use engines::{Engine, RAY_QUERY, Rays, engines, rays};
+use skiagraph_compare::sink::{Session, Silent};
 use skiagraph_gpu::device;
 use std::time::Duration;
 
@@ -33,14 +34,15 @@ fn main() {
     }
     println!("| rays | engine | built in, ms | Mrays/s | blocked | unlike `Hierarchy` |");
     println!("|---|---|---|---|---|---|");
-    for rays in rays(&gpu, edge) {
-        let mut engines = engines(&gpu, &rays);
+    let session = Session::new(&gpu, &Silent);
+    for rays in rays(session, edge) {
+        let mut engines = engines(session, &rays);
         let mut times = vec![Vec::new(); engines.len()];
         // Turn by turn, so that what else the machine does meets all of them.
         for turn in 0..=turns {
             for (engine, times) in engines.iter_mut().zip(&mut times) {
                 let (time, blocked) = (engine.trace)();
-                assert_eq!(blocked.len(), rays.rays.len(), "{}", engine.name);
+                assert_eq!(blocked.len(), rays.set.rays.len(), "{}", engine.name);
                 // The first turn warms up, and is what answers are compared by.
                 match turn {
                     0 => engine.blocked = blocked,
@@ -53,7 +55,7 @@ fn main() {
 }
 
 fn report(rays: &Rays, engines: &[Engine<'_>], times: &mut [Vec<Duration>]) {
-    let count = rays.rays.len();
+    let count = rays.set.rays.len();
     let expected = &engines[0].blocked;
     for (engine, times) in engines.iter().zip(times) {
         times.sort();
@@ -63,7 +65,7 @@ fn report(rays: &Rays, engines: &[Engine<'_>], times: &mut [Vec<Duration>]) {
         let blocked = engine.blocked.iter().filter(|blocked| **blocked).count();
         println!(
             "| {}, {count} | {} | {:.0} | {:.2} | {blocked} | {differing} |",
-            rays.name,
+            rays.set.name,
             engine.name,
             engine.built.as_secs_f64() * 1e3,
             count as f64 / median.as_secs_f64() / 1e6,

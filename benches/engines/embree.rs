@@ -13,7 +13,7 @@ pub fn engine(rays: &Rays) -> Engine<'_> {
     let embree = embree.unwrap_or_else(|why| panic!("{why}"));
     let built = begin.elapsed();
     let trace = move || {
-        let (given, skip) = (&rays.rays[..], &rays.skip[..]);
+        let (given, skip) = (&rays.set.rays[..], &rays.set.skip[..]);
         let (entry, reads): (_, &[&[u8]]) = match skip {
             [] => ("any_hit", &[bytemuck::cast_slice(given)]),
             _ => (

@@ -2,35 +2,25 @@
 
 #[cfg(feature = "embree")]
 mod embree;
-mod gpu;
 
-use glam::Vec3;
-use skiagraph_gpu::device::Gpu;
+use skiagraph_compare::{
+    rays::{
+        speed::random_rays,
+        tracer::{RaySet, Tracer, shadow_rays},
+    },
+    sink::Session,
+};
+use skiagraph_passes::{Engine as Word, SceneProvider};
 use skiagraph_scene::{Scene, SceneLibrary, SceneRequest};
 use std::{sync::Arc, time::Duration};
 
 /// Features that `RayQuery` asks for.
 pub const RAY_QUERY: wgpu::Features = wgpu::Features::EXPERIMENTAL_RAY_QUERY;
 
-/// As the shaders have it.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
-pub struct Ray {
-    pub origin: Vec3,
-    pub t_min: f32,
-    pub direction: Vec3,
-    pub t_max: f32,
-}
-
 /// Rays through a scene.
 pub struct Rays {
-    pub name: &'static str,
     pub scene: Arc<Scene>,
-    pub rays: Vec<Ray>,
-    /// The primitive that each ray does not see; empty if all see all.
-    pub skip: Vec<u32>,
-    /// True if all rays go towards the scene's light.
-    pub to_light: bool,
+    pub set: RaySet,
 }
 
 /// One way to trace some rays.
@@ -46,7 +36,7 @@ pub struct Engine<'a> {
 }
 
 /// The sets of rays; shadow rays are those of `edge` × `edge` pixels.
-pub fn rays(gpu: &Gpu, edge: u32) -> Vec<Rays> {
+pub fn rays(session: Session, edge: u32) -> Vec<Rays> {
     let load = |name: &str| {
         let request = SceneRequest {
             argument: name.to_owned(),
@@ -55,49 +45,50 @@ pub fn rays(gpu: &Gpu, edge: u32) -> Vec<Rays> {
         let loaded = SceneLibrary::from_environment().load(&request);
         loaded.map(|(scene, _)| Arc::new(scene))
     };
+    let shadow = |name: &str, scene: &Arc<Scene>| {
+        let set = shadow_rays(session, name, scene, edge);
+        Rays {
+            scene: Arc::clone(scene),
+            set: set.unwrap_or_else(|why| panic!("{why}")),
+        }
+    };
     let mut sets = Vec::new();
     match load("sponza") {
         Ok(scene) => {
-            sets.push(gpu::shadow_rays(gpu, "Sponza `main`", &scene, edge));
-            sets.push(random_rays("Sponza, random", &scene, edge * edge));
+            sets.push(shadow("Sponza `main`", &scene));
+            let random = random_rays(&scene, (edge * edge) as usize);
+            let set = RaySet::new("Sponza, random", random);
+            sets.push(Rays { scene, set });
         }
         Err(why) => println!("without Sponza: {why}"),
     }
     let park = load("park").unwrap_or_else(|why| panic!("{why}"));
-    sets.push(gpu::shadow_rays(gpu, "`park` `bench_side`", &park, edge));
+    sets.push(shadow("`park` `bench_side`", &park));
     sets
 }
 
-/// From anywhere in the scene's box in any direction, a tenth of its size long.
-fn random_rays(name: &'static str, scene: &Arc<Scene>, count: u32) -> Rays {
-    let (low, high) = scene.mesh.bounds().unwrap_or_default();
-    let mut random = skiagraph_benches::Random(1);
-    let mut unit = || random.below(1 << 24) as f32 / (1u32 << 24) as f32;
-    let mut vector = || Vec3::new(unit(), unit(), unit());
-    let rays = (0..count).map(|_| Ray {
-        origin: low + vector() * (high - low),
-        t_min: 0.0,
-        direction: vector() * 2.0 - 1.0,
-        t_max: 0.1 * (high - low).length(),
-    });
-    Rays {
-        name,
-        scene: Arc::clone(scene),
-        rays: rays.collect(),
-        skip: Vec::new(),
-        to_light: false,
-    }
-}
-
 /// The engines that there are for these rays, the compute hierarchy first.
-pub fn engines<'a>(gpu: &'a Gpu, rays: &'a Rays) -> Vec<Engine<'a>> {
-    let mut all = vec![gpu::engine(gpu, rays, "Hierarchy", &["scene.bvh_nodes"])];
-    if rays.to_light {
-        let built = ["scene.light_space_nodes"];
-        all.push(gpu::engine(gpu, rays, "LightSpace", &built));
+pub fn engines<'a>(session: Session<'a>, rays: &'a Rays) -> Vec<Engine<'a>> {
+    let mut provider = SceneProvider::new(Arc::clone(&rays.scene));
+    let mut engine = |word: Word| {
+        let tracer = Tracer::new(session, &mut provider, &rays.set, word);
+        let mut tracer = tracer.unwrap_or_else(|why| panic!("{why}"));
+        Engine {
+            name: format!("{word:?}"),
+            built: tracer.built,
+            trace: Box::new(move || {
+                let (time, hits) = tracer.trace().unwrap_or_else(|why| panic!("{why}"));
+                (time, hits.iter().map(|hit| hit.is_blocked()).collect())
+            }),
+            blocked: Vec::new(),
+        }
+    };
+    let mut all = vec![engine(Word::Hierarchy)];
+    if rays.set.to_light {
+        all.push(engine(Word::LightSpace));
     }
-    if gpu.device.features().contains(RAY_QUERY) {
-        all.push(gpu::engine(gpu, rays, "RayQuery", &[]));
+    if session.gpu.device.features().contains(RAY_QUERY) {
+        all.push(engine(Word::RayQuery));
     }
     #[cfg(feature = "embree")]
     all.push(embree::engine(rays));

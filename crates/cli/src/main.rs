@@ -57,7 +57,9 @@ fn main() -> ExitCode {
         Command::Show(args) => commands::show::show(args),
         Command::Schema(args) => commands::schema::schema(args),
         Command::Scenes => commands::scenes::scenes(),
-        Command::Doctor => commands::doctor::doctor(gpu),
+        Command::Doctor(args) => commands::doctor::doctor(args, gpu),
+        Command::Adapter(args) => commands::adapter::adapter(args, gpu),
+        Command::AnyHits(args) => commands::rays::any_hits(args, gpu),
         Command::View(args) => commands::view::view(args, gpu),
     };
     match outcome {

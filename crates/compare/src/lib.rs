@@ -36,6 +36,8 @@
 //! - [`records`]: holds measurements as plain data, and reads and writes their files.
 //! - [`pictures`]: writes texels as pictures.
 //! - [`foreign`]: judges pictures of other renderers.
+//! - [`rays`]: times and judges rays without a method.
+//! - [`adapters`]: finds out about one adapter what there is to find out.
 //! - [`files`]: writes, locks and watches files.
 //!
 //! # Terms
@@ -69,6 +71,7 @@
 //!   frames. On a still view their pictures change at first and then repeat; the pictures that
 //!   repeat are the steady state.
 
+pub mod adapters;
 pub mod comparison;
 pub mod default_view;
 pub mod error;
@@ -82,6 +85,7 @@ pub mod own_scene;
 pub mod own_scene_notes;
 pub mod pictures;
 pub mod quantities;
+pub mod rays;
 pub mod records;
 pub mod sink;
 pub mod size;

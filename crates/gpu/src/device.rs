@@ -50,9 +50,10 @@ pub struct Gpu {
 #[derive(Clone, Copy, Debug, Default)]
 #[non_exhaustive]
 pub struct Wanted<'a> {
-    /// Text that the adapter's name must contain; upper and lower case are the same. `None` takes
-    /// the text from the environment variable `WGPU_ADAPTER_NAME`, or accepts any name if that is
-    /// not set.
+    /// Text that the adapter's name must contain, or else its driver's name and version, so that
+    /// two drivers of one GPU can be told apart; upper and lower case are the same. `None` takes
+    /// the text from the environment variable `WGPU_ADAPTER_NAME`, or accepts any adapter if that
+    /// is not set.
     pub adapter: Option<&'a str>,
     /// The backends to search. `None` searches those that the environment variable `WGPU_BACKEND`
     /// lists, separated by commas, or [`BACKENDS`] if that is not set.
@@ -123,13 +124,13 @@ pub enum GpuError {
         /// commas.
         seen: String,
     },
-    /// No adapter of the searched backends has a name that contains the requested text.
+    /// No adapter of the searched backends has a name or a driver that contains the requested text.
     #[error("no adapter is called `{name}`; there are: {seen}")]
     NoSuchAdapter {
         /// The requested text: [`Wanted::adapter`], or else `WGPU_ADAPTER_NAME`.
         name: String,
-        /// Names of the adapters of the searched backends, each with its backend in brackets,
-        /// separated by commas.
+        /// Names of the adapters of the searched backends, each with its backend and driver in
+        /// brackets, separated by commas.
         seen: String,
     },
     /// The adapter refused to open a device.
@@ -202,10 +203,10 @@ pub fn adapters() -> Vec<wgpu::AdapterInfo> {
         .collect()
 }
 
-/// Opens a device on the first adapter of [`adapters`] whose name contains `name`; upper and lower
-/// case are the same. `None` takes the text from the environment variable `WGPU_ADAPTER_NAME`, or
-/// accepts any name if that is not set. The search covers the backends that `WGPU_BACKEND` lists,
-/// or [`BACKENDS`] if that is not set.
+/// Opens a device on the first adapter of [`adapters`] whose name contains `name`, or else whose
+/// driver's does; upper and lower case are the same. `None` takes the text from the environment
+/// variable `WGPU_ADAPTER_NAME`, or accepts any name if that is not set. The search covers the
+/// backends that `WGPU_BACKEND` lists, or [`BACKENDS`] if that is not set.
 ///
 /// # Errors
 /// See [`GpuError`].
@@ -244,13 +245,18 @@ pub fn open_with(wanted: &Wanted<'_>) -> Result<Gpu, GpuError> {
         .map(str::to_owned)
         .or_else(|| std::env::var("WGPU_ADAPTER_NAME").ok())
         .filter(|name| !name.is_empty());
-    let fits = |adapter: &&wgpu::Adapter| {
-        name.as_ref().is_none_or(|name| {
-            let of_adapter = adapter.get_info().name.to_lowercase();
-            of_adapter.contains(&name.to_lowercase())
-        })
+    let wanted_name = name.as_deref().unwrap_or_default().to_lowercase();
+    let by_name = |adapter: &&wgpu::Adapter| {
+        let of_adapter = adapter.get_info().name.to_lowercase();
+        of_adapter.contains(&wanted_name)
     };
-    let Some(adapter) = adapters.iter().find(fits) else {
+    let by_driver = |adapter: &&wgpu::Adapter| {
+        let info = adapter.get_info();
+        let driver = format!("{} {}", info.driver, info.driver_info).to_lowercase();
+        driver.contains(&wanted_name)
+    };
+    let found = adapters.iter().find(by_name);
+    let Some(adapter) = found.or_else(|| adapters.iter().find(by_driver)) else {
         let infos: Vec<_> = adapters.iter().map(wgpu::Adapter::get_info).collect();
         return Err(GpuError::NoSuchAdapter {
             name: name.unwrap_or_default(),
@@ -311,6 +317,13 @@ fn names_of(backends: wgpu::Backends) -> String {
 
 /// Adapters for a message.
 fn list(adapters: &[wgpu::AdapterInfo]) -> String {
-    let name = |info: &wgpu::AdapterInfo| format!("{} ({})", info.name, info.backend.to_str());
+    let name = |info: &wgpu::AdapterInfo| {
+        let backend = info.backend.to_str();
+        let driver = format!("{} {}", info.driver, info.driver_info);
+        match driver.trim() {
+            "" => format!("{} ({backend})", info.name),
+            driver => format!("{} ({backend}, {driver})", info.name),
+        }
+    };
     adapters.iter().map(name).collect::<Vec<_>>().join(", ")
 }

@@ -10,6 +10,7 @@
 //! assert!(text.contains("nsm") && text.contains("12"));
 //! ```
 
+pub mod adapters;
 pub mod baseline_text;
 pub mod charts;
 pub mod gate;
@@ -29,6 +30,7 @@ pub mod published_charts;
 pub mod published_left_out;
 pub mod published_panels;
 pub mod raster;
+pub mod ray_text;
 pub mod results_table;
 #[cfg(test)]
 mod samples;

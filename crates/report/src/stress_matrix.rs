@@ -3,6 +3,7 @@
 
 use crate::notes::wrong_surface;
 use crate::table::terminal;
+use skiagraph_cases::HardCase;
 use skiagraph_compare::lists::unique;
 use skiagraph_compare::records::stress::{
     Case, Casters, Cell, Column, Guarantee, OutsideBand, Report, Verdict,
@@ -26,6 +27,20 @@ pub fn render(report: &Report, command_for: CommandFor) -> String {
         text += &format!("\nFailed\n{failures}");
     }
     text
+}
+
+/// Returns the catalogue of hard cases as text for a terminal: names, casters, reasons.
+pub fn catalogue() -> String {
+    let row = |case: HardCase| {
+        let casters = match case.casters {
+            Casters::Closed => "closed",
+            Casters::Open => "open",
+        };
+        vec![case.name.into(), casters.into(), case.reason.into()]
+    };
+    let heads = ["case", "casters", "what it provokes"];
+    let rows = skiagraph_cases::cases().into_iter().map(row);
+    terminal(&Table::new(heads, 3, rows)) + "\n"
 }
 
 /// Returns lines with the adapter, the viewport and the meaning of the cells.

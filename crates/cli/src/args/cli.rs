@@ -4,9 +4,9 @@
 
 use crate::args::{
     commands::{
-        ChartArgs, CheckArgs, CompareArgs, CompletionsArgs, GraphArgs, JudgeArgs, MergeArgs,
-        NewArgs, PresetsArgs, ProfileArgs, ReportArgs, RunArgs, SchemaArgs, ShowArgs, StressArgs,
-        TruthArgs, ViewArgs,
+        AdapterArgs, AnyHitsArgs, ChartArgs, CheckArgs, CompareArgs, CompletionsArgs, DoctorArgs,
+        GraphArgs, JudgeArgs, MergeArgs, NewArgs, PresetsArgs, ProfileArgs, ReportArgs, RunArgs,
+        SchemaArgs, ShowArgs, StressArgs, TruthArgs, ViewArgs,
     },
     shared::GpuArgs,
 };
@@ -183,7 +183,21 @@ pub enum Command {
     Scenes,
     /// Show the GPUs with their limits and features, and the folders that are searched for meshes.
     #[command(after_help = "Example:\n  skiagraph doctor --adapter llvmpipe")]
-    Doctor,
+    Doctor(DoctorArgs),
+    /// Ask one adapter everything that docs/adapters.md shows, within eight minutes: each row is a
+    /// process with a time limit, and a crash or a lost device is an answer. Goes on where it was
+    /// stopped. The folder is what `merge` takes.
+    #[command(
+        after_help = "Examples:\n  skiagraph adapter\n  skiagraph adapter --backend gl --out gl"
+    )]
+    Adapter(AdapterArgs),
+    /// Measure how many rays a second each engine answers with any hit: the compute hierarchies,
+    /// and the driver's ray queries where there are any.
+    #[command(
+        name = "any_hits",
+        after_help = "Example:\n  skiagraph any_hits --scene park --scene sponza"
+    )]
+    AnyHits(AnyHitsArgs),
     /// Show methods in a window: fly through the scene, turn the light, move params, look at any
     /// material, see where a method is wrong. Changed files are read again while it runs.
     #[command(after_help = "Examples:\n  skiagraph view\n  \

@@ -21,14 +21,15 @@ use std::{path::PathBuf, sync::Arc, time::Duration};
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "GPU")]
 pub struct GpuArgs {
-    /// GPU to use: part of its name, in any case. Without it: $WGPU_ADAPTER_NAME, else the best one
-    /// found.
+    /// GPU to use: part of its name or of its driver's, in any case, which tells two drivers of one
+    /// GPU apart. Without it: $WGPU_ADAPTER_NAME, else the best one found.
     #[arg(long, global = true, value_name = "NAME")]
     pub adapter: Option<String>,
     /// Interface through which the GPU is used. Without it: those that $WGPU_BACKEND lists, else
     /// Vulkan, Metal or Direct3D 12. On GL a method that is not proven there is refused.
-    #[arg(long, global = true, value_name = "BACKEND")]
-    pub backend: Option<BackendWord>,
+    #[arg(long, global = true, value_name = "BACKEND",
+          value_parser = ["vulkan", "metal", "dx12", "gl"])]
+    pub backend: Option<String>,
     /// Most memory for the textures and buffers of a graph: 512MiB, 2GiB, or bytes. A graph that
     /// needs more is refused, with a table of the largest. Without it: on a software adapter the
     /// machine's free memory, else no limit.
@@ -46,34 +47,23 @@ impl GpuArgs {
     pub fn request(&self) -> GpuRequest {
         let mut request = GpuRequest::default();
         request.adapter.clone_from(&self.adapter);
-        request.backends = self.backend.map(wgpu::Backends::from);
+        request.backends = self.backend.as_deref().map(wgpu::Backends::from_comma_list);
         request.memory_limit = self.memory_limit;
         request.timeout = (self.timeout > 0).then(|| Duration::from_secs(self.timeout));
         request
     }
-}
 
-/// Interfaces to GPUs that this program knows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum BackendWord {
-    /// Vulkan.
-    Vulkan,
-    /// Metal.
-    Metal,
-    /// Direct3D 12.
-    Dx12,
-    /// OpenGL and OpenGL ES.
-    Gl,
-}
-
-impl From<BackendWord> for wgpu::Backends {
-    fn from(word: BackendWord) -> Self {
-        match word {
-            BackendWord::Vulkan => Self::VULKAN,
-            BackendWord::Metal => Self::METAL,
-            BackendWord::Dx12 => Self::DX12,
-            BackendWord::Gl => Self::GL,
-        }
+    /// Returns the words that choose the same adapter in another command.
+    pub fn words(&self) -> Vec<String> {
+        let options = [
+            ("--adapter", self.adapter.clone()),
+            ("--backend", self.backend.clone()),
+            ("--memory-limit", self.memory_limit.map(|it| it.to_string())),
+        ];
+        let given = options
+            .into_iter()
+            .filter_map(|(name, value)| Some([name.into(), value?]));
+        given.flatten().collect()
     }
 }
 

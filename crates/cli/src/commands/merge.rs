@@ -12,8 +12,6 @@ use skiagraph_report::page;
 pub fn merge(args: &MergeArgs) -> Result<(), CliError> {
     page::merge(&args.places, &args.out, &Terminal)?;
     let out = args.out.display();
-    note(&format!(
-        "report.html, results.json and results.csv are in {out}"
-    ));
+    note(&format!("report.html and the joined results are in {out}"));
     Ok(())
 }

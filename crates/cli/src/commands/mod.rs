@@ -1,5 +1,6 @@
 //! Runs the commands, one in each file. Each takes its arguments and may return an error.
 
+pub mod adapter;
 pub mod cells;
 pub mod chart;
 pub mod check;
@@ -12,6 +13,7 @@ pub mod merge;
 pub mod new;
 pub mod presets;
 pub mod profile;
+pub mod rays;
 pub mod report;
 pub mod run;
 pub mod run_sequence;

@@ -2,33 +2,32 @@
 
 use crate::args::commands::{RecordFormat, StressArgs};
 use crate::args::shared::GpuArgs;
+use crate::commands::rays::conformance;
 use crate::error::CliError;
 use crate::terminal::console::print;
 use crate::terminal::{Terminal, interrupt, progress};
 use itertools::Itertools;
-use skiagraph_cases::{Casters, HardCase};
+use skiagraph_cases::HardCase;
 use skiagraph_compare::files::json::to_text;
-use skiagraph_compare::files::lock::{self, Locked};
-use skiagraph_compare::files::write::{check_folder, write_whole};
+use skiagraph_compare::files::write::write_whole;
 use skiagraph_compare::graphs::faults::reasons;
 use skiagraph_compare::graphs::method::Method;
 use skiagraph_compare::graphs::planning::Capabilities;
 use skiagraph_compare::graphs::{preset, shadow_method};
-use skiagraph_compare::lists::unique;
 use skiagraph_compare::measuring::ground_truth::PrimaryVisibility;
 use skiagraph_compare::measuring::hard_case::{HardCaseContext, MethodRun};
+use skiagraph_compare::measuring::hard_cases::{
+    cases, check_abilities, check_exact, check_pictures, claim, with_triangles,
+};
 use skiagraph_compare::measuring::{device, guarantee};
-use skiagraph_compare::pictures::run_pictures::{check_stems, reference_stem};
 use skiagraph_compare::records::results::PROGRAM;
 use skiagraph_compare::records::stress::{Column, Report, Verdict};
-use skiagraph_compare::records::table::Table;
 use skiagraph_compare::sink::Session;
 use skiagraph_compare::sink::Sink;
-use skiagraph_compare::wording::{command_line, did_you_mean, plural, unknown};
-use skiagraph_gpu::{device::Gpu, timing::Trust};
+use skiagraph_compare::wording::{command_line, plural};
+use skiagraph_gpu::timing::Trust;
 use skiagraph_passes::SceneProvider;
 use skiagraph_report::stress_matrix;
-use skiagraph_report::table::terminal;
 use std::{path::Path, sync::Arc};
 
 /// Checks all arguments, then runs the methods on the cases and prints and saves the results.
@@ -38,7 +37,10 @@ use std::{path::Path, sync::Arc};
 /// cannot be written, a guarantee is broken, or rounding decides too many pixels of a case.
 pub fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     if args.list {
-        return list();
+        return print(&stress_matrix::catalogue());
+    }
+    if let Some(count) = args.rays {
+        return conformance(count, args, gpu);
     }
     let cases = cases(&args.cases)?;
     let sources = preset::sources(&Terminal);
@@ -69,11 +71,10 @@ pub fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         .collect::<Result<Vec<_>, _>>()?;
     check_abilities(&methods, &gpu)?;
     if let Some(folder) = &args.save {
-        check_pictures(&methods, &cases, viewport)?;
-        check_folder(folder)?;
+        check_pictures(&methods, &cases, viewport, folder)?;
     }
     let _claimed = match &args.out {
-        Some(folder) => Some(claim(folder)?),
+        Some(folder) => Some(claim(folder, &Terminal)?),
         None => None,
     };
     let context = HardCaseContext {
@@ -95,18 +96,6 @@ pub fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     interrupt::install()?;
     let outcome = run(&context, &cases, &mut report, args.out.as_deref());
     finish(&report, outcome, cases.len(), args)
-}
-
-/// The folder for stress.json, which no other process may write meanwhile.
-fn claim(folder: &Path) -> Result<Locked, CliError> {
-    check_folder(folder)?;
-    lock::claim(folder, lock::STRESS, &Terminal)?.ok_or_else(|| {
-        CliError::Input(format!(
-            "another `skiagraph stress` is writing stress.json into {}\n  wait for its end, or \
-             give another --out",
-            folder.display()
-        ))
-    })
 }
 
 /// Runs case after case; whatever is done is on disk at once.
@@ -172,21 +161,6 @@ fn finish(
     }
 }
 
-/// Refuses to run where there is nothing to run.
-fn check_abilities(methods: &[MethodRun], gpu: &Gpu) -> Result<(), CliError> {
-    let reasons = methods.iter().map(|run| {
-        let reason = run.column.unavailable.as_ref()?;
-        Some(format!("\n  {}: {reason}", run.method.name))
-    });
-    match reasons.collect::<Option<String>>() {
-        Some(reasons) => Err(CliError::Input(format!(
-            "no method can run on {}{reasons}",
-            gpu.adapter.get_info().name
-        ))),
-        None => Ok(()),
-    }
-}
-
 /// The command that shows a cell.
 fn command_for(args: &StressArgs, column: &Column, case: &str, set: Option<&str>) -> String {
     let mut words = vec!["skiagraph".into(), "stress".into(), column.preset.clone()];
@@ -207,72 +181,4 @@ fn command_for(args: &StressArgs, column: &Column, case: &str, set: Option<&str>
     }
     option("--save", "pictures".into());
     command_line(words.into_iter().map(|word: String| word.into()))
-}
-
-/// The cases of these names, or all.
-fn cases(names: &[String]) -> Result<Vec<HardCase>, CliError> {
-    if names.is_empty() {
-        return Ok(skiagraph_cases::cases());
-    }
-    let find = |name: &String| {
-        skiagraph_cases::case(name).ok_or_else(|| {
-            let known = skiagraph_cases::cases();
-            let hint = did_you_mean(name, known.iter().map(|case| case.name));
-            CliError::Input(format!(
-                "unknown case `{name}`{hint}\n  `skiagraph stress --list` names them"
-            ))
-        })
-    };
-    unique(names).into_iter().map(find).collect()
-}
-
-/// A case with something to draw, if there is one: what is wrong with a graph on an empty mesh is a
-/// result, not a mistake in the graph.
-fn with_triangles(cases: &[HardCase]) -> HardCase {
-    let has_triangles = |case: &&HardCase| !case.scene().mesh.triangles.is_empty();
-    *cases.iter().find(has_triangles).unwrap_or(&cases[0])
-}
-
-fn check_exact(exact: &[String], names: &[String]) -> Result<(), CliError> {
-    let Some(name) = exact.iter().find(|name| !names.contains(name)) else {
-        return Ok(());
-    };
-    let what = format!("--exact {name}: none of the methods that run has this name");
-    let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    Err(CliError::Usage(unknown(&what, name, "methods", &names)))
-}
-
-/// Refuses cells that would overwrite each other's pictures, before anything runs.
-fn check_pictures(
-    methods: &[MethodRun],
-    cases: &[HardCase],
-    viewport: [u32; 2],
-) -> Result<(), CliError> {
-    let mut stems = Vec::new();
-    for case in cases {
-        let reference = reference_stem(case.name, viewport);
-        stems.push((reference, format!("the reference of `{}`", case.name)));
-        for run in methods {
-            stems.extend(run.stems(case, viewport));
-        }
-    }
-    Ok(check_stems(stems)?)
-}
-
-/// Lists the catalogue.
-fn list() -> Result<(), CliError> {
-    let row = |case: HardCase| {
-        let casters = match case.casters {
-            Casters::Closed => "closed",
-            Casters::Open => "open",
-        };
-        vec![case.name.into(), casters.into(), case.reason.into()]
-    };
-    let heads = ["case", "casters", "what it provokes"];
-    let table = terminal(&Table::new(
-        heads,
-        3,
-        skiagraph_cases::cases().into_iter().map(row),
-    ));
-    print(&format!("{table}\n"))
 }

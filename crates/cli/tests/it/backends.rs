@@ -70,6 +70,29 @@ fn each_adapter_is_listed_with_its_backend() {
     let help = skiagraph(Path::new("."), "doctor --help");
     let help = String::from_utf8_lossy(&help.stdout);
     assert!(help.contains("--backend"), "{help}");
+
+    // A driver's words choose its adapter, and are listed where no adapter has the name.
+    let fields: Vec<&str> = chosen.split(" · ").collect();
+    let (name, driver) = (fields[0], fields[3]);
+    let version = driver.rsplit(' ').find(|word| !name.contains(word));
+    let version = version.unwrap_or(driver).to_uppercase();
+    for (asked, code, words) in [
+        (version.as_str(), 0, format!("Chosen: {chosen}")),
+        (
+            "nothing-like-it",
+            3,
+            format!("{name} ({backend}, {driver})"),
+        ),
+    ] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_skiagraph"));
+        let output = command.args(["doctor", "--backend", backend, "--adapter", asked]);
+        let output = output
+            .output()
+            .expect("the program was built for this test");
+        let told = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
+        assert_eq!(output.status.code(), Some(code), "{asked}: {told}");
+        assert!(told.contains(&words), "{asked}: {told}");
+    }
 }
 
 /// Checks runs with the validation layer of Chromium's package: .ci/long does so with every preset.

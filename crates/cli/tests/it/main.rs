@@ -4,6 +4,7 @@
 
 mod support;
 
+mod adapter;
 mod backends;
 mod cells;
 mod command_line;

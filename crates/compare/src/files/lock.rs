@@ -31,6 +31,10 @@ pub const RESULTS: &str = ".skiagraph-results.lock";
 /// is held to the end of the command.
 pub const STRESS: &str = ".skiagraph-stress.lock";
 
+/// Name of the lock file for adapter.json, the rows of one adapter. The lock is held to the end of
+/// the command.
+pub const ADAPTER: &str = ".skiagraph-adapter.lock";
+
 /// A lock that this process holds until the value is dropped or the process ends. It locks nothing
 /// on a file system without locks.
 #[derive(Debug)]

@@ -85,6 +85,14 @@ pub fn open<'a>(
 ) -> Result<Gpu, CompareError> {
     let all = |all, graph: &Graph| all | graph.features();
     let features = graphs.into_iter().fold(wgpu::Features::empty(), all);
+    open_with(request, features)
+}
+
+/// Opens the requested adapter, with those of `features` that it has.
+///
+/// # Errors
+/// As [`open`].
+pub fn open_with(request: &GpuRequest, features: wgpu::Features) -> Result<Gpu, CompareError> {
     let mut wanted = Wanted::default().with_features(features);
     wanted.adapter = request.adapter.as_deref();
     wanted.backends = request.backends;
@@ -134,16 +142,23 @@ pub fn machine() -> Machine {
 /// Describes a GPU's adapter for results. `trust` comes from [`timestamp_trust`]; if the timestamps
 /// cannot be trusted, the description holds the reason.
 pub fn describe(gpu: &Gpu, trust: Trust) -> Adapter {
-    let info = gpu.adapter.get_info();
+    Adapter {
+        gpu_unavailable: match trust {
+            Trust::Trusted => None,
+            Trust::Untrusted { reason } => Some(reason),
+        },
+        ..adapter(gpu.adapter.get_info())
+    }
+}
+
+/// Describes an adapter that may not be open, as if its timestamps could be trusted.
+pub fn adapter(info: wgpu::AdapterInfo) -> Adapter {
     Adapter {
         driver: driver(&info),
         backend: info.backend.to_str().into(),
         device_type: format!("{:?}", info.device_type),
         name: info.name,
-        gpu_unavailable: match trust {
-            Trust::Trusted => None,
-            Trust::Untrusted { reason } => Some(reason),
-        },
+        gpu_unavailable: None,
     }
 }
 

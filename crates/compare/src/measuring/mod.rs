@@ -21,6 +21,7 @@
 //! # }
 //! ```
 
+pub mod abilities;
 pub mod camera_pose;
 pub mod cell;
 mod cell_folder;
@@ -32,6 +33,7 @@ pub mod frame_sequence;
 pub mod ground_truth;
 pub mod guarantee;
 pub mod hard_case;
+pub mod hard_cases;
 mod hint;
 pub mod many_machines;
 pub mod poison;

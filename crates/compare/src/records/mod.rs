@@ -20,6 +20,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod abilities;
+pub mod adapter;
 mod assignments;
 pub mod baseline;
 pub mod budgets;
@@ -32,6 +34,7 @@ pub mod judged_pictures;
 pub mod profile;
 pub mod published;
 pub mod published_row;
+pub mod rays;
 pub mod read_back;
 pub mod results;
 pub mod results_baseline;

@@ -1,0 +1,218 @@
+//! The rows: the questions that an adapter is asked.
+//!
+//! ```
+//! use skiagraph_compare::adapters::rows::rows;
+//!
+//! for row in rows(true, false) {
+//!     println!("{}: skiagraph {} ({} s)", row.name, row.command.join(" "), row.seconds);
+//! }
+//! ```
+
+use crate::records::abilities::Ability;
+
+/// A question, and the command that answers it.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// Name of the row, and of its folder.
+    pub name: &'static str,
+    /// The question, as a line of text.
+    pub asks: &'static str,
+    /// Longest time in seconds. It is generous, as a machine may have other work; the limits
+    /// together are longer than the eight minutes after which no row begins and none goes on.
+    pub seconds: u64,
+    /// Words of the command, without the program and without `--out`.
+    pub command: Vec<String>,
+    /// Ability without which the row is left out.
+    pub needs: Option<Ability>,
+    /// Groups of methods that must answer alike to the bit, the first one as the others.
+    pub alike: &'static [&'static [&'static str]],
+}
+
+/// A row as the table below has it: the command of the full row, then that of the small one.
+struct Line {
+    name: &'static str,
+    asks: &'static str,
+    seconds: u64,
+    full: &'static str,
+    small: &'static str,
+    needs: Option<Ability>,
+    alike: &'static [&'static [&'static str]],
+}
+
+const LINE: Line = Line {
+    name: "",
+    asks: "",
+    seconds: 60,
+    full: "",
+    small: "",
+    needs: None,
+    alike: &[],
+};
+
+/// Hard answers of one scene that are the same bits, whichever way they are found.
+const HARD_ALIKE: &[&[&str]] = &[&["rt", "light_buffer", "light_buffer@stage=compute"]];
+
+/// Rays of each kind on a GPU; a software adapter traces a fortieth.
+const RAYS: u64 = 4_000_000;
+
+const LINES: &[Line] = &[
+    Line {
+        name: "hard",
+        asks: "is every method right on the hard cases, as guaranteed?",
+        seconds: 150,
+        full: "stress rt light_buffer light_buffer@stage=compute crsm crsma_full nsm --size \
+               128x128 --map-size 128",
+        small: "stress rt light_buffer light_buffer@stage=compute --size 32x32 --map-size 32 \
+                --case grid_of_holes --case torus",
+        ..LINE
+    },
+    Line {
+        name: "hard_area",
+        asks: "the same under lights with an extent",
+        seconds: 60,
+        full: "stress rt_area light_buffer_area --size 64x64 --map-size 64 --set samples=4",
+        small: "stress rt_area light_buffer_area --size 24x24 --map-size 24 --set samples=4 \
+                --case torus",
+        ..LINE
+    },
+    Line {
+        name: "hard_ray_query",
+        asks: "the same by the driver's ray queries",
+        seconds: 90,
+        full: "stress rt rt_area --size 64x64 --map-size 64 --set engine=ray_query --set samples=4",
+        small: "stress rt --size 32x32 --map-size 32 --set engine=ray_query --case torus",
+        needs: Some(Ability::RayQuery),
+        ..LINE
+    },
+    Line {
+        name: "rays",
+        asks: "are closed surfaces watertight, and how many of 10^9 rays are wrong?",
+        seconds: 150,
+        full: "stress --rays {rays}",
+        small: "stress --rays 2000",
+        ..LINE
+    },
+    Line {
+        name: "park",
+        asks: "are three ways to hard shadows the same bits, in nine views of closed meshes?",
+        seconds: 90,
+        full: "compare rt light_buffer light_buffer@stage=compute crsm crsma_full nsm --scene \
+               park --view all --size 256x256 --map-size 512 --data npy --frames 3",
+        small: "compare rt light_buffer light_buffer@stage=compute nsm --scene park --size 48x48 \
+                --map-size 64 --data npy --frames 1",
+        alike: HARD_ALIKE,
+        ..LINE
+    },
+    Line {
+        name: "lamps",
+        asks: "the same under a spot, a point and a directional light",
+        seconds: 60,
+        full: "compare rt light_buffer light_buffer@stage=compute nsm --scene lamps --view all \
+               --light all --size 256x256 --map-size 512 --data npy --frames 3",
+        small: "compare rt light_buffer --scene lamps --light all --size 32x32 --data npy \
+                --frames 1",
+        alike: HARD_ALIKE,
+        ..LINE
+    },
+    Line {
+        name: "area",
+        asks: "do lists and rays give the same shares of an extended light, to the bit?",
+        seconds: 90,
+        full: "compare rt_area light_buffer_area --scene park_soft --size 128x128,256x256 \
+               --reference-samples 64 --data npy --frames 3",
+        small: "compare rt_area light_buffer_area --scene park_soft --size 32x32 \
+                --reference-samples 16 --set samples=4 --data npy --frames 1",
+        alike: &[&["rt_area", "light_buffer_area"]],
+        ..LINE
+    },
+    Line {
+        name: "any_hits",
+        asks: "how many rays a second does each engine answer?",
+        seconds: 90,
+        full: "any_hits --scene park --scene sponza --size 512 --turns 5",
+        small: "any_hits --scene park --size 48 --turns 1",
+        ..LINE
+    },
+    Line {
+        name: "sizes",
+        asks: "what does a frame cost by its size, and when are lists asked faster in fragments, \
+               when in compute?",
+        seconds: 180,
+        full: "compare rt light_buffer light_buffer@stage=compute nsm crsm --scene sponza --size \
+               256x256,512x512,1024x1024,1920x1080 --map-size 1024 --frames 5",
+        small: "compare rt light_buffer light_buffer@stage=compute nsm --scene park --size \
+                40x40,64x64 --map-size 64 --frames 2",
+        ..LINE
+    },
+    Line {
+        name: "sizes_ray_query",
+        asks: "the same by ray queries",
+        seconds: 90,
+        full: "compare rt rt@engine=ray_query --scene sponza --size 256x256,1024x1024 --frames 5",
+        small: "compare rt rt@engine=ray_query --scene park --size 40x40 --frames 1",
+        needs: Some(Ability::RayQuery),
+        ..LINE
+    },
+    Line {
+        name: "city_10000",
+        asks: "what does a frame cost by the number of triangles?",
+        seconds: 60,
+        full: "compare rt light_buffer light_buffer@stage=compute nsm crsm --scene city:10000 \
+               --view overview --size 1024x576 --map-size 1024 --frames 5",
+        small: "compare rt light_buffer nsm --scene city:10000 --view overview --size 48x27 \
+                --map-size 64 --frames 1",
+        ..LINE
+    },
+    Line {
+        name: "city_100000",
+        asks: "the same, ten times as many",
+        seconds: 60,
+        full: "compare rt light_buffer light_buffer@stage=compute nsm crsm --scene city:100000 \
+               --view overview --size 1024x576 --map-size 1024 --frames 5",
+        small: "",
+        ..LINE
+    },
+    Line {
+        name: "city_1000000",
+        asks: "the same, a hundred times as many",
+        seconds: 120,
+        full: "compare rt light_buffer light_buffer@stage=compute nsm crsm --scene city:1000000 \
+               --view overview --size 1024x576 --map-size 1024 --frames 5",
+        small: "",
+        ..LINE
+    },
+];
+
+/// Words behind each comparison: no pictures, only the time of whole frames, and what a killed
+/// process has measured is kept.
+const COMPARED: &str = "--warmup 1 --cached-frames 0 --images none --resume";
+
+/// Returns the rows in their order. Small ones try the way on a software adapter within two
+/// minutes; a software adapter gets fewer rays.
+pub fn rows(is_small: bool, is_software: bool) -> Vec<Row> {
+    let rays = if is_software { RAYS / 40 } else { RAYS };
+    let row = |line: &Line| {
+        let words = if is_small { line.small } else { line.full };
+        let words = words.replace("{rays}", &rays.to_string());
+        let more = if words.starts_with("compare") {
+            COMPARED
+        } else {
+            ""
+        };
+        let command: Vec<String> = words
+            .split_whitespace()
+            .chain(more.split_whitespace())
+            .map(str::to_owned)
+            .collect();
+        Row {
+            name: line.name,
+            asks: line.asks,
+            seconds: line.seconds,
+            command,
+            needs: line.needs,
+            alike: line.alike,
+        }
+    };
+    let all = LINES.iter().map(row);
+    all.filter(|row| !row.command.is_empty()).collect()
+}

@@ -1,0 +1,163 @@
+//! Abilities of an adapter: its limits and features, and whether its clock can be trusted.
+//!
+//! ```
+//! use skiagraph_compare::{
+//!     measuring::{abilities::abilities, device::{self, GpuRequest}},
+//!     records::abilities::Ability,
+//! };
+//!
+//! if let Ok(gpu) = device::open(&GpuRequest::default(), []) {
+//!     let abilities = abilities(&gpu);
+//!     assert!(abilities.limits.texture_edge >= 2048);
+//!     println!("{abilities}, ray queries: {}", abilities.has(Ability::RayQuery));
+//! }
+//! ```
+
+use crate::records::results::{Adapter, Machine};
+use crate::wording::bytes;
+use serde::{Deserialize, Serialize};
+use std::{collections::BTreeMap, fmt};
+
+/// Abilities of an opened adapter: the JSON that `doctor --format json` prints.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Abilities {
+    /// Version of this schema: 1.
+    pub schema: u32,
+    /// The program that asked, `skiagraph 0.1.0`.
+    pub program: String,
+    /// Machine that the adapter is in.
+    pub machine: Machine,
+    /// All adapters of the machine, the preferred one first.
+    pub adapters: Vec<Adapter>,
+    /// The adapter that was opened. `gpu_unavailable` holds the reason why its timestamps cannot be
+    /// trusted; absent if they can.
+    pub adapter: Adapter,
+    /// Limits of the adapter.
+    pub limits: Limits,
+    /// Optional abilities, and whether the adapter has them.
+    pub features: BTreeMap<Ability, bool>,
+}
+
+/// Limits of an adapter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Limits {
+    /// Most texels along an edge of a texture.
+    pub texture_edge: u32,
+    /// Most bytes of a storage buffer that a shader sees at once.
+    pub storage_binding: u64,
+    /// Most bytes of a buffer.
+    pub buffer: u64,
+    /// Most bytes that a graph may take; null where the driver does not say.
+    pub memory: Option<u64>,
+    /// Most threads of a workgroup.
+    pub threads: u32,
+    /// Most workgroups along a dimension of a dispatch.
+    pub groups: u32,
+}
+
+/// Optional ability of an adapter that graphs or their timing use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Ability {
+    /// Timestamps around passes.
+    Timestamps,
+    /// Timestamps between passes.
+    TimestampsBetween,
+    /// Timestamps inside passes.
+    TimestampsInside,
+    /// Filtering of textures of 32-bit floats.
+    FilteredFloats,
+    /// Ray queries in shaders.
+    RayQuery,
+}
+
+impl Ability {
+    /// All abilities, in the order in which they are shown.
+    pub const ALL: [Self; 5] = [
+        Self::Timestamps,
+        Self::TimestampsBetween,
+        Self::TimestampsInside,
+        Self::FilteredFloats,
+        Self::RayQuery,
+    ];
+
+    /// Returns the feature of wgpu.
+    pub fn feature(self) -> wgpu::Features {
+        match self {
+            Self::Timestamps => wgpu::Features::TIMESTAMP_QUERY,
+            Self::TimestampsBetween => wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS,
+            Self::TimestampsInside => wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES,
+            Self::FilteredFloats => wgpu::Features::FLOAT32_FILTERABLE,
+            Self::RayQuery => wgpu::Features::EXPERIMENTAL_RAY_QUERY,
+        }
+    }
+
+    /// Returns the use that is made of it.
+    pub fn purpose(self) -> &'static str {
+        match self {
+            Self::Timestamps => "timestamps: GPU time of each pass",
+            Self::TimestampsBetween => "timestamps between passes: GPU time of copies and clears",
+            Self::TimestampsInside => {
+                "timestamps inside passes: the way around drivers that time compute wrongly"
+            }
+            Self::FilteredFloats => "filtering of 32-bit float textures",
+            Self::RayQuery => "ray queries: `Trace` with `engine: RayQuery`",
+        }
+    }
+}
+
+impl Abilities {
+    /// True if the adapter has an ability.
+    pub fn has(&self, ability: Ability) -> bool {
+        self.features.get(&ability).copied().unwrap_or_default()
+    }
+}
+
+/// Returns an adapter as `doctor` lists it: name, interface, kind, driver.
+pub fn line(adapter: &Adapter) -> String {
+    let Adapter {
+        name,
+        backend,
+        device_type,
+        driver,
+        ..
+    } = adapter;
+    format!("{name} · {backend} · {device_type} · {driver}")
+}
+
+impl fmt::Display for Abilities {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let limits = &self.limits;
+        let edge = limits.texture_edge;
+        // Larger meshes are drawn and traced in parts, but indices are bound whole.
+        let storage = limits.storage_binding;
+        let (storage, triangles) = (bytes(storage), storage / 12 / 1_000_000);
+        let memory = limits.memory.map(bytes);
+        let memory = memory.unwrap_or("what the driver gives (it does not say how much)".into());
+        writeln!(f, "\nChosen: {}", line(&self.adapter))?;
+        writeln!(f, "  textures: up to {edge}x{edge}")?;
+        writeln!(
+            f,
+            "  storage buffer binding: up to {storage} (indices of {triangles} million triangles)"
+        )?;
+        writeln!(f, "  buffer: up to {}", bytes(limits.buffer))?;
+        writeln!(f, "  memory for a graph: {memory}")?;
+        writeln!(
+            f,
+            "  compute: {} invocations per workgroup, {} groups per dimension",
+            limits.threads, limits.groups
+        )?;
+        for ability in Ability::ALL {
+            let has = if self.has(ability) { "yes" } else { "no" };
+            writeln!(f, "  {has:<3} {}", ability.purpose())?;
+        }
+        match &self.adapter.gpu_unavailable {
+            None => writeln!(
+                f,
+                "  GPU times: true (a long dispatch after a raster pass takes as long as the clock \
+                 says)"
+            ),
+            Some(reason) => writeln!(f, "  GPU times: none, {reason}"),
+        }
+    }
+}

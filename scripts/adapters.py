@@ -1,0 +1,94 @@
+#!/usr/bin/env python3
+"""Checks what `skiagraph merge` joined of several adapters' folders:
+
+    scripts/adapters.py DIR                    DIR/adapters.json
+    scripts/adapters.py DIR --equal 'Mesa 25'  whose errors must be those of the first, to the pixel
+
+On every adapter, methods that promise to be exact have no wrong pixel outside the band, methods that
+must answer alike do so to the bit, rays of the compute hierarchy are right, and no row crashed,
+failed, hung or lost the device. Shares of wrong pixels are within 0.05 points of the first
+adapter's, or within the share that rounding decides. Exit 0 if all of it holds, 1 if not.
+"""
+
+import argparse
+import json
+import sys
+from pathlib import Path
+
+POINTS = 0.05
+
+
+def key(cell):
+    return (cell["scene"], cell["view"], cell["method"], *cell["viewport"], cell["map_size"])
+
+
+def cells(record):
+    found = (cell for row in record["rows"] for cell in row["figures"].get("cells", []))
+    return {key(cell): cell for cell in found if "unavailable" not in cell}
+
+
+def points(cell, count):
+    return 100 * cell[count] / max(cell["facing"], 1)
+
+
+def own_faults(record):
+    for row in record["rows"]:
+        figures = row["figures"]
+        if row["outcome"] not in ("done", "lacking"):
+            yield f"{row['row']}: {row['outcome']}: {' / '.join(row['said'][-3:])}"
+        for cell in figures.get("cells", []):
+            if cell["is_exact"] and cell["wrong_outside"]:
+                yield f"{key(cell)}: {cell['wrong_outside']} wrong pixels outside the band"
+        for equal in figures.get("equal", []):
+            if equal["differing"]:
+                yield f"{equal['methods']} on {equal['view']}: {equal['differing']} pixels differ"
+        for test in figures.get("rays", {}).get("tests", []):
+            for engine in test["engines"]:
+                wrong = engine["through"] + engine["blocked"] + engine["unanswered"]
+                if engine["engine"] == "Hierarchy" and wrong:
+                    yield f"{test['solid']} {test['aim']}: {wrong} wrong rays of the hierarchy"
+
+
+def faults_beside(first, record, must_be_equal):
+    ours, theirs = cells(first), cells(record)
+    both = ours.keys() & theirs.keys()
+    if not both:
+        yield "no cell in common with the first adapter"
+    for place in sorted(both, key=str):
+        one, other = ours[place], theirs[place]
+        if must_be_equal and (one["wrong"], one["facing"]) != (other["wrong"], other["facing"]):
+            yield f"{place}: {other['wrong']} of {other['facing']} wrong, not {one['wrong']} of {one['facing']}"
+        apart = abs(points(one, "wrong") - points(other, "wrong"))
+        if apart > max(POINTS, points(one, "band"), points(other, "band")):
+            yield f"{place}: {apart:.3f} points apart"
+
+
+def main():
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--equal", default="", metavar="DRIVER")
+    args = parser.parse_args()
+    records = json.loads((args.folder / "adapters.json").read_text())
+    failed, met = 0, not args.equal
+    for record in records:
+        adapter = record["abilities"]["adapter"]
+        is_equal = bool(args.equal) and args.equal in adapter["driver"]
+        met |= is_equal
+        found = list(own_faults(record))
+        if record is not records[0]:
+            found += faults_beside(records[0], record, is_equal)
+        failed += len(found)
+        rows = [row["row"] for row in record["rows"]]
+        print(f"{adapter['name']} · {adapter['backend']} · {adapter['driver']}: {len(rows)} rows, "
+              f"{len(cells(record))} cells, {len(found)} faults")
+        print("".join(f"  FAILED {fault}\n" for fault in found), end="")
+    if not met or len(records) < 2:
+        failed += 1
+        print(f"FAILED {len(records)} adapters, of `{args.equal}` none" if not met else "FAILED only one adapter")
+    sys.exit(1 if failed else 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -165,7 +165,7 @@ fn structures_are_built_of_what_moved_and_made_compact_once() {
     let stone = stone();
     let triangles = stone.triangles.len() as u64;
     let mut maps = rows();
-    let mut scene = provider(Movable::joined(&vec![&stone; COUNT + 1]), &maps);
+    let mut scene = provider(Movable::joined(&[&stone; COUNT + 1]), &maps);
     let mut executor = rt(&gpu, "ray_query", &mut scene);
     assert_eq!(scene.work().triangles, (COUNT as u64 + 1) * triangles);
     let times = |scene: &SceneProvider| {

@@ -342,10 +342,7 @@ fn speed(records: &[AdapterRecord]) -> Table {
 }
 
 /// The cells of the rows that are chosen.
-fn cells<'a>(
-    record: &'a AdapterRecord,
-    is_of: fn(&str) -> bool,
-) -> impl Iterator<Item = &'a CellFigures> {
+fn cells(record: &AdapterRecord, is_of: fn(&str) -> bool) -> impl Iterator<Item = &CellFigures> {
     let rows = record.rows.iter().filter(move |row| is_of(&row.row));
     rows.flat_map(|row| &row.figures.cells)
 }

@@ -132,7 +132,7 @@ pub fn vendor_report(of: &Conformance) -> String {
     text += "\nWrong: blocked rays let through + others blocked + rays without an answer.\n";
     let wrong = of.tests.iter().filter_map(|test| {
         let own = test.engines.iter().find(|it| it.engine == engine)?;
-        (!own.examples.is_empty()).then(|| (test, &own.examples))
+        (!own.examples.is_empty()).then_some((test, &own.examples))
     });
     for (test, examples) in wrong {
         text += &format!(

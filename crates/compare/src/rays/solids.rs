@@ -204,7 +204,7 @@ impl Solid {
             };
             let out = target - self.centre;
             let [near, far] = self.reach;
-            if index % 2 == 0 {
+            if index.is_multiple_of(2) {
                 // From the centre: past every corner, or half-way to the nearest one. Faces of flat
                 // and spiky solids are nearer than their corners, by less than a tenth.
                 let length = if aim.is_blocked() {

@@ -210,7 +210,7 @@ impl LightSpaceNode {
     fn linked(self, node: &BvhNode) -> Option<Self> {
         let fits =
             node.count < 1 << Self::LEAF_BITS && node.first < 1 << (u32::BITS - Self::LEAF_BITS);
-        fits.then(|| Self {
+        fits.then_some(Self {
             link: node.first << Self::LEAF_BITS | node.count,
             ..self
         })

@@ -34,6 +34,17 @@ pub(crate) struct Buffers {
     pub work: Work,
 }
 
+/// What a patch has written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Patched {
+    /// All items, to a new buffer.
+    All,
+    /// Some items, to a copy of the buffer before.
+    Some,
+    /// No item: the buffer is that before.
+    Nothing,
+}
+
 /// Items that are written apart although others are between them: a copy costs more than so many
 /// bytes.
 const GAP: usize = 4096;
@@ -121,11 +132,12 @@ impl Buffers {
         changed: &[Range<usize>],
         version: u64,
         on: On,
-    ) -> Result<(), Error> {
+    ) -> Result<Patched, Error> {
         let written: usize = changed.iter().map(Range::len).sum();
         if !self.held.contains_key(name) || written >= items.len() {
             // Without a copy of the list.
-            return self.make(name, items, version, on);
+            self.make(name, items, version, on)?;
+            return Ok(Patched::All);
         }
         let append = |range: Range<usize>, to: &mut Vec<T>| to.extend_from_slice(&items[range]);
         self.patch(name, (items.len(), changed), append, version, on)
@@ -140,7 +152,7 @@ impl Buffers {
         items: impl Fn(Range<usize>, &mut Vec<T>),
         version: u64,
         on: On,
-    ) -> Result<(), Error> {
+    ) -> Result<Patched, Error> {
         let stride = size_of::<T>();
         let ranges = joined(changed, GAP / stride);
         let written: usize = ranges.iter().map(Range::len).sum();
@@ -148,12 +160,13 @@ impl Buffers {
         let known = known.filter(|known| known.size() == (count * stride) as u64);
         if written == 0 && known.is_some() {
             self.still_hold(name, version);
-            return Ok(());
+            return Ok(Patched::Nothing);
         }
         let Some(known) = known.filter(|_| 2 * written <= count) else {
             let mut all = Vec::with_capacity(count);
             items(0..count, &mut all);
-            return self.make(name, &all, version, on);
+            self.make(name, &all, version, on)?;
+            return Ok(Patched::All);
         };
         let buffer = create(name, known.size(), on.device);
         let mut encoder = on.device.create_command_encoder(&Default::default());
@@ -177,7 +190,28 @@ impl Buffers {
         on.queue.submit([encoder.finish()]);
         self.work.copied += known.size();
         self.hold(name, buffer, version);
-        Ok(())
+        Ok(Patched::Some)
+    }
+
+    /// Drops what was made of that name.
+    pub fn forget(&mut self, name: &str) {
+        self.held.remove(name);
+    }
+
+    /// Makes the buffer of that name that was made last one that the GPU may write: a copy, if it
+    /// was handed out.
+    pub fn renew(&mut self, name: &str, patched: Patched, on: On) -> Option<wgpu::Buffer> {
+        let (known, version) = self.last(name)?.clone();
+        if patched != Patched::Nothing {
+            return Some(known);
+        }
+        let buffer = create(name, known.size(), on.device);
+        let mut encoder = on.device.create_command_encoder(&Default::default());
+        encoder.copy_buffer_to_buffer(&known, 0, &buffer, 0, known.size());
+        on.queue.submit([encoder.finish()]);
+        self.work.copied += known.size();
+        self.hold(name, buffer.clone(), version);
+        Some(buffer)
     }
 }
 

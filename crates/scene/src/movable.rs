@@ -43,6 +43,18 @@ pub struct MovedPart {
     pub is_mirrored: bool,
 }
 
+impl MovedPart {
+    /// Creates a part whose moved positions and normals another one writes, such as a GPU:
+    /// [`Movable::put_at`] winds its triangles and moves nothing.
+    pub fn written_elsewhere(is_mirrored: bool) -> Self {
+        Self {
+            positions: Vec::new(),
+            normals: Vec::new(),
+            is_mirrored,
+        }
+    }
+}
+
 /// Place of the lists of a [`Movable`] within those of a larger mesh, for [`Movable::put_at`]: the
 /// indices of its first position, normal and triangle there.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

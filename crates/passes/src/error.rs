@@ -146,20 +146,22 @@ pub enum Error {
         PartId,
     ),
     /// The bounds of a part hold nothing: they are not finite, or the low corner is not the lower.
-    #[error("the bounds of part {0:?} hold nothing: {} to {}", .1[0], .1[1])]
-    Bounds(
+    #[error("the bounds of part {part:?} hold nothing: {low} to {high}")]
+    Bounds {
         /// Handle of the part.
-        PartId,
-        /// Low and high corner that were stated.
-        [glam::Vec3; 2],
-    ),
-    /// A thing is made of all positions on the CPU, but those of a part are in a buffer of the host.
+        part: PartId,
+        /// Low corner that was stated.
+        low: glam::Vec3,
+        /// High corner that was stated.
+        high: glam::Vec3,
+    },
+    /// Something needs all positions on the CPU, but those of a part are in a buffer of the host.
     #[error(
-        "`{0}` is made of positions on the CPU, but those of part {1:?} are in a buffer of the \
+        "`{0}` needs all positions on the CPU, but those of part {1:?} are in a buffer of the \
          host: trace with `engine: Hierarchy`, or add the part by `add_part`"
     )]
     OnDevice(
-        /// Name of the thing, such as `scene.light_space_nodes`.
+        /// What needs them: `deform`, or a resource such as `scene.light_space_nodes`.
         &'static str,
         /// Handle of the part.
         PartId,

@@ -504,15 +504,20 @@ impl Geometry {
     /// Notes that the host has rewritten the vertices of a part within these bounds.
     ///
     /// # Errors
-    /// [`Error::NoPart`], [`Error::NoHostPart`], [`Error::Move`].
+    /// [`Error::NoPart`], [`Error::NoHostPart`], [`Error::Bounds`], [`Error::Move`].
     pub fn rewrite(&mut self, id: PartId, bounds: [Vec3; 2]) -> Result<Change, Error> {
         let number = self.number(id)?;
         let part = self.part(id)?;
         let (Some(_), Some(map)) = (&part.host, &part.map) else {
             return Err(Error::NoHostPart(id));
         };
-        if !bounds[0].cmple(bounds[1]).all() {
-            return Err(Error::Bounds(id, bounds));
+        let [low, high] = bounds;
+        if !low.cmple(high).all() {
+            return Err(Error::Bounds {
+                part: id,
+                low,
+                high,
+            });
         }
         let moved = placed(bounds, map).map_err(|error| error.renumbered(number))?;
         if let Some(host) = &mut self.part_mut(id.piece)?.host {

@@ -568,7 +568,7 @@ impl SceneProvider {
     /// mesh then stays as it was.
     pub fn deform(&mut self, positions: Vec<Vec3>, normals: Vec<Vec3>) -> Result<(), Error> {
         if let Some(part) = self.geometry.a_host_part() {
-            return Err(Error::OnDevice("the deformed mesh", part));
+            return Err(Error::OnDevice("deform", part));
         }
         let mesh = &self.scene.mesh;
         let expected = [mesh.positions.len(), mesh.normals.len()];

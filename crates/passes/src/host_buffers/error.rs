@@ -73,11 +73,9 @@ pub enum HostMeshError {
     #[error("the mesh has no triangle with three different positions")]
     Empty,
     /// A vertex at rest lies outside of the bounds that were stated.
-    #[error("vertex {vertex} at rest, {position}, lies beyond the stated bounds {low} to {high}")]
+    #[error("the vertex at {position} at rest lies beyond the stated bounds {low} to {high}")]
     Bounds {
-        /// Number of the vertex, from 0.
-        vertex: u32,
-        /// Its position at rest.
+        /// Position of the vertex at rest.
         position: Vec3,
         /// Low corner of the bounds.
         low: Vec3,

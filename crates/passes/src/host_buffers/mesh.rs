@@ -78,7 +78,7 @@ impl HostMesh {
                     .iter()
                     .map(|&index| index.into())
                     .collect::<Vec<u32>>();
-                &wide
+                &wide[..]
             }
         };
         let decoded = |attribute: Attribute| vertices.decoded(attribute, rest);
@@ -129,11 +129,9 @@ impl HostMesh {
     pub fn with_bounds(mut self, [low, high]: [Vec3; 2]) -> Result<Self, HostMeshError> {
         let rest = &self.own.movable.rest;
         let is_within = |at: Vec3| at.cmpge(low).all() && at.cmple(high).all();
-        let mut beyond = rest.used_positions().filter(|at| !is_within(*at));
-        if let Some(position) = beyond.next() {
-            let vertex = rest.positions.iter().position(|at| *at == position);
+        let beyond = rest.used_positions().find(|at| !is_within(*at));
+        if let Some(position) = beyond {
             return Err(HostMeshError::Bounds {
-                vertex: vertex.unwrap_or_default() as u32,
                 position,
                 low,
                 high,

@@ -96,7 +96,7 @@ fn place_normals(
         let source = normal_sources[i];
         var normal = vec3(0.0);
         if source.x != NONE {
-            let own = attribute(source.x, mesh.normal_at, mesh.normal_format);
+            let own = component_bits(source.x, mesh.normal_at, mesh.normal_format);
             normal = unit(parts[thread.y].across * bitcast<vec3<f32>>(own));
         }
         if all(normal == vec3(0.0)) {
@@ -180,11 +180,11 @@ fn shortened(v: vec3<f32>) -> vec3<f32> {
 }
 
 fn own_position(vertex: u32) -> vec3<u32> {
-    return attribute(vertex, mesh.position_at, mesh.position_format);
+    return component_bits(vertex, mesh.position_at, mesh.position_format);
 }
 
 // Three components of an attribute, decoded, as bits of f32.
-fn attribute(vertex: u32, at: u32, format: u32) -> vec3<u32> {
+fn component_bits(vertex: u32, at: u32, format: u32) -> vec3<u32> {
     let word = mesh.first + vertex * mesh.stride + at;
     if format == FLOAT32 {
         return vec3(vertices[word], vertices[word + 1u], vertices[word + 2u]);
@@ -246,15 +246,15 @@ fn from_half(bits: u32) -> u32 {
 // n / most, rounded to the nearest; at least -1.
 fn share(n: i32, most: u32) -> u32 {
     let sign = select(0u, 0x80000000u, n < 0);
-    let of = min(u32(abs(n)), most);
-    if of == 0u {
+    let size = min(u32(abs(n)), most);
+    if size == 0u {
         return 0u;
     }
-    var shift = countLeadingZeros(of) - countLeadingZeros(most);
-    if (of << shift) < most {
+    var shift = countLeadingZeros(size) - countLeadingZeros(most);
+    if (size << shift) < most {
         shift += 1u;
     }
-    var rest = of << shift;
+    var rest = size << shift;
     var mantissa = 0u;
     for (var i = 0u; i < 24u; i++) {
         mantissa <<= 1u;

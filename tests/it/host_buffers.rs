@@ -37,7 +37,7 @@ fn camera(size: [u32; 2]) -> Camera {
 
 /// A mesh as engines keep them: 16-bit positions, 8-bit normals, 16-bit indices.
 struct Quantised {
-    /// Of 12 bytes each.
+    /// Bytes of the vertices, 12 each.
     vertices: Vec<u8>,
     positions: Vec<[f32; 3]>,
     normals: Vec<[f32; 3]>,
@@ -47,7 +47,7 @@ struct Quantised {
 const STRIDE: u64 = 12;
 
 impl Quantised {
-    /// Of a mesh that fits -1 to 1. A vertex for each corner.
+    /// Quantises a mesh that fits -1 to 1; a vertex for each corner.
     fn new(mesh: &Mesh) -> Self {
         let mut own = Self {
             vertices: Vec::new(),
@@ -455,7 +455,7 @@ fn exact_presets_are_right_on_a_hosts_buffer() {
         let [seen, told, primitives] = names.map(|name| values(&report, name));
         let truth = oracle.shade(
             &camera(VIEWPORT),
-            sun().into(),
+            sun(),
             &primitives,
             OracleMode::Exact,
             Progress::default(),

@@ -34,7 +34,7 @@ pub(crate) struct Buffers {
     pub work: Work,
 }
 
-/// What a patch has written.
+/// Items that a patch has written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Patched {
     /// All items, to a new buffer.

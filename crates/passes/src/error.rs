@@ -161,7 +161,7 @@ pub enum Error {
          host: trace with `engine: Hierarchy`, or add the part by `add_part`"
     )]
     OnDevice(
-        /// What needs them: `deform`, or a resource such as `scene.light_space_nodes`.
+        /// Name of it: `deform`, or a resource such as `scene.light_space_nodes`.
         &'static str,
         /// Handle of the part.
         PartId,
@@ -178,7 +178,10 @@ pub enum Error {
     Read(#[from] crate::host::GpuMeshError),
     /// A vertex lies beyond the bounds of its part, as
     /// [`SceneProvider::check_bounds`](crate::SceneProvider::check_bounds) has found.
-    #[error("vertex {vertex} of part {part:?} lies beyond its stated bounds {} to {}", bounds[0], bounds[1])]
+    #[error(
+        "vertex {vertex} of part {part:?} lies beyond its stated bounds {} to {}",
+        bounds[0], bounds[1]
+    )]
     Beyond {
         /// Handle of the part.
         part: PartId,

@@ -9,7 +9,8 @@ use crate::{
     host_buffers::{HostMesh, HostWrite},
     names::next_version,
     outlines::Outlines,
-    parts::{Free, HostPart, Part, PartId, Room, placed},
+    part::{HostPart, Part, placed},
+    parts::{Free, PartId, Room},
     uniforms::LightUniform,
 };
 use glam::{DAffine3, Vec3};

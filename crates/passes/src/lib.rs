@@ -46,6 +46,7 @@ mod host_buffers;
 mod lights;
 pub mod names;
 mod outlines;
+mod part;
 mod parts;
 mod presets;
 mod provider;

@@ -654,9 +654,9 @@ impl SceneProvider {
         Ok(part)
     }
 
-    /// Adds a part whose vertices are in a buffer of the host, as [`add_part`](Self::add_part) does.
-    /// Refreshes read the buffer if the part has moved or was [rewritten](Self::rewrite_part), by
-    /// submissions of their own, and write its positions and normals for all passes. No frame
+    /// Adds a part whose vertices are in a buffer of the host, as [`add_part`](Self::add_part)
+    /// does. Refreshes read the buffer if the part has moved or was
+    /// [rewritten](Self::rewrite_part), by submissions of their own, and write its positions and normals for all passes. No frame
     /// brings them to the CPU: the light is laid around the mesh's bounds, and
     /// [`scene`](Self::scene) has the part as it is at rest.
     ///
@@ -678,17 +678,17 @@ impl SceneProvider {
     /// them, and rays beyond them miss. [`check_bounds`](Self::check_bounds) finds those that lie.
     ///
     /// # Errors
-    /// [`Error::NoHostPart`] for a part of another kind, [`Error::NoPart`] for one that there is not,
-    /// [`Error::Bounds`] for bounds that hold nothing, [`Error::Move`] for bounds that the part's map
-    /// moves beyond f32.
+    /// [`Error::NoHostPart`] for a part of another kind, [`Error::NoPart`] for one that there is
+    /// not, [`Error::Bounds`] for bounds that hold nothing, [`Error::Move`] for bounds that the
+    /// part's map moves beyond f32.
     pub fn rewrite_part(&mut self, part: PartId, bounds: [Vec3; 2]) -> Result<(), Error> {
         let change = self.geometry.rewrite(part, bounds)?;
         self.note_change(change);
         Ok(())
     }
 
-    /// Looks at all vertices of parts of hosts' buffers, as what was submitted so far leaves them,
-    /// whether they are within the bounds that were stated. It waits for the GPU: for debugging, not
+    /// Checks that all vertices of parts of hosts' buffers, as they are after all that was
+    /// submitted, lie within the bounds that were stated. It waits for the GPU: for debugging, not
     /// for each frame.
     ///
     /// # Errors

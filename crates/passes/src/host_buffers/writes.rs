@@ -64,7 +64,7 @@ struct MeshRecord {
     normals: u32,
 }
 
-/// What a kernel writes, with the scene's buffers that it reads.
+/// Buffer that a kernel writes, with the scene's buffers that it reads.
 #[derive(Clone, Copy)]
 pub(crate) enum Written<'a> {
     Positions {
@@ -122,8 +122,8 @@ impl Kernels {
     /// that were uploaded for it.
     ///
     /// # Errors
-    /// [`Error::TooLarge`] if the device cannot bind the vertices of a mesh, [`Error::HostVertices`]
-    /// if it refuses them.
+    /// [`Error::TooLarge`] if the device cannot bind the vertices of a mesh,
+    /// [`Error::HostVertices`] if it refuses them.
     pub fn write(&mut self, written: Written, parts: &[HostWrite], on: On) -> Result<u64, Error> {
         let scope = on.device.push_error_scope(wgpu::ErrorFilter::Validation);
         let uploaded = self.submit(written, parts, on);

@@ -656,9 +656,9 @@ impl SceneProvider {
 
     /// Adds a part whose vertices are in a buffer of the host, as [`add_part`](Self::add_part)
     /// does. Refreshes read the buffer if the part has moved or was
-    /// [rewritten](Self::rewrite_part), by submissions of their own, and write its positions and normals for all passes. No frame
-    /// brings them to the CPU: the light is laid around the mesh's bounds, and
-    /// [`scene`](Self::scene) has the part as it is at rest.
+    /// [rewritten](Self::rewrite_part), by submissions of their own, and write its positions and
+    /// normals for all passes. No frame brings them to the CPU: the light is laid around the mesh's
+    /// bounds, and [`scene`](Self::scene) has the part's positions at rest.
     ///
     /// The host keeps the buffer, and does not write it but as told there.
     ///

@@ -30,6 +30,8 @@ pub(crate) struct Buffers {
     held: BTreeMap<String, Vec<(wgpu::Buffer, u64)>>,
     /// Version of the mesh's shape that the lights were laid over.
     shape: u64,
+    /// True if the GPU writes some items, so that none between those that are changed is written.
+    pub keeps_gaps: bool,
     /// Bytes that were brought to the device so far.
     pub work: Work,
 }
@@ -154,7 +156,8 @@ impl Buffers {
         on: On,
     ) -> Result<Patched, Error> {
         let stride = size_of::<T>();
-        let ranges = joined(changed, GAP / stride);
+        let gap = if self.keeps_gaps { 1 } else { GAP / stride };
+        let ranges = joined(changed, gap);
         let written: usize = ranges.iter().map(Range::len).sum();
         let known = self.last(name).map(|(buffer, _)| buffer.clone());
         let known = known.filter(|known| known.size() == (count * stride) as u64);

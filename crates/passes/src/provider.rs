@@ -164,6 +164,7 @@ impl SceneProvider {
     /// The buffer of that name with what is in it now.
     fn buffer(&mut self, name: &str, on: On) -> Result<wgpu::Buffer, Error> {
         self.buffers.lay_over(self.versions.shape);
+        self.buffers.keeps_gaps = self.geometry.a_host_part().is_some();
         let version = self.version(name);
         if let Some(buffer) = self.buffers.get(name, version) {
             return Ok(buffer.clone());

@@ -153,15 +153,7 @@ fn texture(gpu: &Gpu, label: &str) -> wgpu::Texture {
 /// If the graph has a mistake, which would be this crate's.
 pub fn plan(kind: Kind, passes: usize) -> Plan {
     let mut request = PlanRequest::new([EDGE, EDGE], &NoProvider);
-    let source = Import::Texture {
-        format: FORMAT,
-        size: [EDGE, EDGE],
-        mips: 1,
-        layers: 1,
-        is_3d: false,
-        samples: 1,
-        usage: USAGE,
-    };
+    let source = Import::plain_texture(FORMAT, [EDGE, EDGE], USAGE);
     request.imports.insert("source".to_owned(), source);
     Graph::load("graph.ron", &Registry::standard(), &document(kind, passes))
         .and_then(|graph| graph.plan(&request))

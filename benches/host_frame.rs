@@ -1,7 +1,8 @@
 //! CPU time of an engine's frame: 300 meshes of 173,400 triangles, of which five move in each
 //! frame. Setting the transforms, `refresh`, `encode` and finishing the encoder is measured;
 //! submission and the GPU's work are not: each frame is submitted and waited for outside the clock,
-//! so that the CPU is the frame's own.
+//! so that the CPU is the frame's own. At the end the same of the fifty lines of docs/embedding.md,
+//! which know no more than where everything is.
 
 use glam::{DAffine3, DVec3};
 use skiagraph_gpu::{
@@ -12,6 +13,10 @@ use skiagraph_graph::{Graph, PlanRequest};
 use skiagraph_passes::{EmbeddedSources, Room, SceneProvider, Work, registry};
 use skiagraph_scene::{DirectionalLight, Indexed, Mesh, Movable, View};
 use std::time::{Duration, Instant};
+
+#[path = "../crates/passes/examples/preset/shadows.rs"]
+#[allow(missing_docs, reason = "a program's, not a library's")]
+mod shadows;
 
 const MESHES: usize = 300;
 /// Meshes that there is room for besides.
@@ -69,6 +74,52 @@ fn main() {
         times.sort_by(f64::total_cmp);
         let [median, most] = [times.len() / 2, times.len() - 1].map(|at| times[at]);
         println!("{preset}, one mesh more: {median:.2}, {most:.2} at most");
+    }
+    fifty_lines(&gpu, &stone, frames);
+}
+
+/// Prints the times of the program of docs/embedding.md.
+fn fifty_lines(gpu: &Gpu, stone: &Mesh, frames: usize) {
+    let (of, on) = (vec![stone; MESHES], (&gpu.device, &gpu.queue));
+    let mut program = shadows::Shadows::new(on, VIEWPORT, &of).expect("the preset runs anywhere");
+    let mut places: Vec<DAffine3> = (0..MESHES).map(|index| place(index, 0)).collect();
+    let mut frame = |turn: usize, moving: usize| {
+        for (index, map) in places[..moving].iter_mut().enumerate() {
+            *map = place(index, turn + 1);
+        }
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let start = Instant::now();
+        let light = DVec3::new(0.4, -1.0, -0.3);
+        let seen = program.frame(&mut encoder, &view().camera(VIEWPORT), light, &places);
+        seen.expect("the frame was encoded before");
+        let commands = encoder.finish();
+        let time = since(start);
+        gpu.queue.submit([commands]);
+        let waited = gpu.device.poll(wgpu::PollType::wait_indefinitely());
+        waited.expect("the GPU is there");
+        time
+    };
+    (0..3).for_each(|turn| {
+        frame(turn, MOVING);
+    });
+    for (what, moving) in [("nothing moves", 0), ("five move", MOVING)] {
+        let mut times: Vec<f64> = (0..frames).map(|turn| frame(turn, moving)).collect();
+        times.sort_by(f64::total_cmp);
+        let [median, most] = [0.5, 0.99].map(|share| times[(share * (frames - 1) as f64) as usize]);
+        println!("the fifty lines, {what}: {median:.3} ({most:.3})");
+    }
+}
+
+fn view() -> View {
+    View {
+        name: String::new(),
+        eye: DVec3::new(30.0, 20.0, 90.0),
+        direction: DVec3::new(0.0, -0.4, -1.0),
+        up: DVec3::Y,
+        fov_y_degrees: 50.0,
+        near: 0.1,
+        far: 300.0,
+        light: None,
     }
 }
 
@@ -142,19 +193,9 @@ impl<'a> Host<'a> {
         let light = DirectionalLight::new(DVec3::new(0.4, -1.0, -0.3));
         let mut provider = SceneProvider::from_parts(stones, light);
         provider
-            .reserve(Room::of_copies(stone, ROOM))
-            .expect("the mesh has parts");
-        let view = View {
-            name: String::new(),
-            eye: DVec3::new(30.0, 20.0, 90.0),
-            direction: DVec3::new(0.0, -0.4, -1.0),
-            up: DVec3::Y,
-            fov_y_degrees: 50.0,
-            near: 0.1,
-            far: 300.0,
-            light: None,
-        };
-        provider.set_camera(&view.camera(VIEWPORT));
+            .reserve(Room::of_copies(stone, ROOM), &gpu.device.limits())
+            .expect("the mesh has parts, and the device room for them");
+        provider.set_camera(&view().camera(VIEWPORT));
         let places: Vec<DAffine3> = (0..MESHES).map(|index| place(index, 0)).collect();
         provider
             .set_transforms(&places)

@@ -16,7 +16,7 @@ override first_sample: u32 = 0u;
 
 // A thread's rounds after which it looks for no other candidate: docs/light_buffer_area.md has why
 // sixteen threads in step then stay below 65,535, after which llvmpipe ends loops.
-const MOST_ROUNDS: u32 = 3200u;
+const MOST_ROUNDS: u32 = 3400u;
 const TOO_MANY: u32 = 0xffffffffu;
 // Wider lights than the bounds hold for: of more than 126 degrees.
 const WIDEST: f32 = 2.0;
@@ -93,6 +93,43 @@ struct Points {
     y: array<vec4<f32>, 16>,
 }
 
+// Unrolled: all but the jitter is known when the shader is compiled.
+fn points_of(sight: Sight, pixel: u32) -> Points {
+    var points: Points;
+    if samples > 0u { set_four(sight, pixel, 0u, &points); }
+    if samples > 4u { set_four(sight, pixel, 1u, &points); }
+    if samples > 8u { set_four(sight, pixel, 2u, &points); }
+    if samples > 12u { set_four(sight, pixel, 3u, &points); }
+    if samples > 16u { set_four(sight, pixel, 4u, &points); }
+    if samples > 20u { set_four(sight, pixel, 5u, &points); }
+    if samples > 24u { set_four(sight, pixel, 6u, &points); }
+    if samples > 28u { set_four(sight, pixel, 7u, &points); }
+    if samples > 32u { set_four(sight, pixel, 8u, &points); }
+    if samples > 36u { set_four(sight, pixel, 9u, &points); }
+    if samples > 40u { set_four(sight, pixel, 10u, &points); }
+    if samples > 44u { set_four(sight, pixel, 11u, &points); }
+    if samples > 48u { set_four(sight, pixel, 12u, &points); }
+    if samples > 52u { set_four(sight, pixel, 13u, &points); }
+    if samples > 56u { set_four(sight, pixel, 14u, &points); }
+    if samples > 60u { set_four(sight, pixel, 15u, &points); }
+    return points;
+}
+
+fn set_four(sight: Sight, pixel: u32, item: u32, points: ptr<function, Points>) {
+    let a = point_of(sight, pixel, 4u * item);
+    let b = point_of(sight, pixel, 4u * item + 1u);
+    let c = point_of(sight, pixel, 4u * item + 2u);
+    let d = point_of(sight, pixel, 4u * item + 3u);
+    (*points).x[item] = vec4(a.x, b.x, c.x, d.x);
+    (*points).y[item] = vec4(a.y, b.y, c.y, d.y);
+}
+
+fn point_of(sight: Sight, pixel: u32, i: u32) -> vec2<f32> {
+    let sample = first_sample + i;
+    let square = stratum_point(sample, samples, random_pair(pixel, sample));
+    return seen_point(sight, disk_point(square));
+}
+
 // A thread's way through its list.
 struct Walk {
     // The next entry.
@@ -117,20 +154,14 @@ fn lit_samples(asking: Asking, asked: Asked) -> u32 {
     var walk = Walk(asked.head, 0u, false, all_lit, none, vec4(0u), vec4(0u));
     var candidate = next_candidate(asking, asked, &walk);
     let sight = sight_of(asking.receiver, asked.t_min);
-    var points: Points;
-    let needed = select(asking.count, 0u, candidate == NO_PRIMITIVE);
-    for (var i = 0u; i < needed; i++) {
-        let point = seen_point(sight, sample_point(asking, i));
-        points.x[i / 4u][i % 4u] = point.x;
-        points.y[i / 4u][i % 4u] = point.y;
-    }
+    var points = points_of(sight, asking.pixel);
     loop {
         while candidate != NO_PRIMITIVE && any(walk.lit != vec2(0u))
             && walk.unsure.w == NO_PRIMITIVE {
             test(sight, candidate, &points, &walk);
             candidate = next_candidate(asking, asked, &walk);
         }
-        ask_tracer(asking, asked.t_min, &points, &walk);
+        ask_tracer(asking, asked.t_min, &walk);
         if candidate == NO_PRIMITIVE || all(walk.lit == vec2(0u)) {
             break;
         }
@@ -200,17 +231,12 @@ fn test(
 fn ask_tracer(
     asking: Asking,
     t_min: f32,
-    points: ptr<function, Points>,
     walk: ptr<function, Walk>,
 ) {
     while (*walk).unsure.x != NO_PRIMITIVE {
         let unsure = (*walk).lit & vec2((*walk).low.x, (*walk).high.x);
         let bit = first_bit(unsure);
-        let i = first_number(bit) % 64u;
-        var point = vec2((*points).x[i / 4u][i % 4u], (*points).y[i / 4u][i % 4u]);
-        if light_kind == LIGHT_SPOT {
-            point = sample_point(asking, i);
-        }
+        let point = sample_point(asking, first_number(bit) % 64u);
         if hides(asking.receiver, t_min, (*walk).unsure.x, point) {
             (*walk).lit &= ~bit;
         }
@@ -238,13 +264,22 @@ fn sides_of(cone: Cone, x: vec4<f32>, y: vec4<f32>) -> vec2<u32> {
     let ab = cone.at.x + cone.right.x * x + cone.up.x * y;
     let bc = cone.at.y + cone.right.y * x + cone.up.y * y;
     let ca = cone.at.z + cone.right.z * x + cone.up.z * y;
-    let least = min(ab, min(bc, ca));
-    let most = max(ab, max(bc, ca));
+    let least = lesser(ab, lesser(bc, ca));
+    let most = greater(ab, greater(bc, ca));
     let bits = vec4(1u, 2u, 4u, 8u);
     let hit = select(vec4(0u), bits, least > vec4(cone.error));
     let is_mixed = (least < vec4(-cone.error)) & (most > vec4(cone.error));
     let perhaps = select(bits, vec4(0u), is_mixed);
     return vec2(hit.x | hit.y | hit.z | hit.w, perhaps.x | perhaps.y | perhaps.z | perhaps.w);
+}
+
+// llvmpipe looks for NaN in `min` and `max`.
+fn lesser(a: vec4<f32>, b: vec4<f32>) -> vec4<f32> {
+    return select(b, a, a < b);
+}
+
+fn greater(a: vec4<f32>, b: vec4<f32>) -> vec4<f32> {
+    return select(b, a, a > b);
 }
 
 // The tracer's answer for the ray of a sample.

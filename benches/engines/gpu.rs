@@ -66,6 +66,14 @@ impl Provider for Given<'_> {
         Ok(device.create_buffer_init(&descriptor))
     }
 
+    fn submit_built(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+    ) -> Result<(), skiagraph_gpu::ProviderError> {
+        self.scene.submit_built(device, queue)
+    }
+
     fn build_acceleration_structure(
         &mut self,
         name: &str,
@@ -128,10 +136,7 @@ pub fn shadow_rays(gpu: &Gpu, name: &'static str, scene: &Arc<Scene>, edge: u32)
     let mut request = PlanRequest::new([edge; 2], &provider);
     let captured = ["rays", "ray_primitives", "ray_count"];
     for material in captured {
-        request.captures.push(Capture {
-            material: material.to_owned(),
-            after: None,
-        });
+        request.captures.push(Capture::new(material));
     }
     request.outputs = Some(vec![]);
     let plan = plan("pipelines/rt.ron", &EmbeddedSources, &request);

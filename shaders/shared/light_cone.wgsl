@@ -60,12 +60,13 @@ fn sight_of(receiver: vec3<f32>, t_min: f32) -> Sight {
 
 // A point of the light's unit disk on that of a receiver's sight.
 fn seen_point(sight: Sight, point: vec2<f32>) -> vec2<f32> {
-    if light_kind != LIGHT_SPOT || light_area.radius == 0.0 {
+    if light_kind != LIGHT_SPOT {
         return point;
     }
     let across = across_light(point, sight.to_light);
     let distance = 0.5 * (sight.nearest + sight.farthest) + dot(across, sight.to_light);
-    return vec2(dot(across, sight.x), dot(across, sight.y)) / (distance * sight.radius);
+    let seen = vec2(dot(across, sight.x), dot(across, sight.y)) / (distance * sight.radius);
+    return select(seen, point, light_area.radius == 0.0);
 }
 
 // Place across the light and distance towards it.
@@ -84,7 +85,7 @@ fn cone_of(sight: Sight, primitive: u32) -> Cone {
     let size = sqrt(max(dot(a, a), max(dot(b, b), dot(c, c))));
     let across = sqrt(max(dot(a.xy, a.xy), max(dot(b.xy, b.xy), dot(c.xy, c.xy))));
     let beside = across + radius * size;
-    let roundings = select(256.0, 128.0, light_kind == LIGHT_DIRECTIONAL);
+    let roundings = select(256.0, 144.0, light_kind == LIGHT_DIRECTIONAL);
     let error = roundings * HALF_ULP * (1.0 + radius) * size * beside;
 
     let at = vec3(

@@ -47,10 +47,7 @@ fn layers(scene: &Arc<Scene>, view: &View, preset: &str, params: Params) -> Vec<
             request
                 .params
                 .extend(params.map(|(name, value)| (name.to_owned(), value)));
-            request.captures.push(Capture {
-                material: "map_fits".into(),
-                after: None,
-            });
+            request.captures.push(Capture::new("map_fits"));
         },
     );
     let gpu = open();

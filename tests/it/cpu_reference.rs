@@ -91,10 +91,7 @@ impl<'a> Bench<'a> {
                 set("depth", choice(depth));
                 set("n", ParamValue::F32(cpu.n as f32));
             }
-            request.captures.push(Capture {
-                material: "primitive".into(),
-                after: None,
-            });
+            request.captures.push(Capture::new("primitive"));
         });
         let report = run_on(
             &self.gpu,

@@ -34,12 +34,7 @@ fn see(scene: &Arc<Scene>, preset: &str, params: Params) -> Seen {
     let captured = ["primitive", "position"];
     let plan = plan(&path, &provider, VIEWPORT, |request| {
         request.features = gpu.device.features() & wgpu::Features::FLOAT32_FILTERABLE;
-        request.captures = captured
-            .map(|material| Capture {
-                material: material.into(),
-                after: None,
-            })
-            .into();
+        request.captures = captured.map(Capture::new).into();
         let params = params.iter().cloned();
         request
             .params

@@ -56,10 +56,7 @@ fn map_of(scene: &Arc<Scene>, preset: &str, fit: &str, distance: f32) -> (MapFit
             ("fit_distance".to_owned(), ParamValue::F32(distance)),
             ("map_size".to_owned(), ParamValue::U32(100)),
         ]);
-        let captures = captured.map(|material| Capture {
-            material: material.into(),
-            after: None,
-        });
+        let captures = captured.map(Capture::new);
         request.captures.extend(captures);
     });
     let mut executor = Executor::on(&gpu, plan, &mut provider).unwrap();

@@ -231,12 +231,7 @@ fn the_two_lights_are_each_asked_by_itself() {
     let plan = plan("twolights/two.ron", &provider, PARK, |request| {
         let captures = lights.map(|light| format!("{light}.visibility"));
         let captures = captures.into_iter().chain(["sky.status".to_owned()]);
-        request.captures = captures
-            .map(|material| Capture {
-                material,
-                after: None,
-            })
-            .collect();
+        request.captures = captures.map(Capture::new).collect();
     });
     let names = [
         "visibility",
@@ -374,20 +369,9 @@ fn holds(probe: &str, part: &Content, expected: Texel) {
 }
 
 fn imports() -> [(String, Import); 2] {
-    let uvs = Import::Buffer {
-        bytes: 8,
-        items: None,
-        usage: wgpu::BufferUsages::STORAGE,
-    };
-    let albedo = Import::Texture {
-        format: wgpu::TextureFormat::R32Float,
-        size: [1, 1],
-        mips: 1,
-        layers: 1,
-        is_3d: false,
-        samples: 1,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-    };
+    let uvs = Import::buffer(8, None, wgpu::BufferUsages::STORAGE);
+    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+    let albedo = Import::plain_texture(wgpu::TextureFormat::R32Float, [1, 1], usage);
     [("uvs".to_owned(), uvs), ("albedo".to_owned(), albedo)]
 }
 

@@ -136,6 +136,11 @@ fn upload(gpu: &Gpu, contents: &[u8]) -> wgpu::Buffer {
 }
 
 fn stones(gpu: &Gpu) -> MegaBuffer {
+    stones_of(gpu, 3)
+}
+
+/// A floor, and a stone that is cut so many times.
+fn stones_of(gpu: &Gpu, cuts: u32) -> MegaBuffer {
     let floor = meshes::box_over_floor(1.0, Vec3::splat(0.3));
     let shrunk = |mesh: &Mesh| {
         let mut mesh = mesh.clone();
@@ -144,7 +149,7 @@ fn stones(gpu: &Gpu) -> MegaBuffer {
         mesh.positions.iter_mut().for_each(|at| *at /= most);
         Quantised::new(&mesh)
     };
-    let meshes = vec![shrunk(&floor), shrunk(&meshes::potato(3, 0.2, 1))];
+    let meshes = vec![shrunk(&floor), shrunk(&meshes::potato(cuts, 0.2, 1))];
     MegaBuffer::new(gpu, meshes)
 }
 
@@ -167,10 +172,15 @@ fn places(turn: usize) -> Vec<(usize, DAffine3)> {
 }
 
 /// A scene of parts of a host's buffers, in room for them, and one of the same parts uploaded.
-fn scenes(of: &MegaBuffer, places: &[(usize, DAffine3)]) -> [SceneProvider; 2] {
+fn scenes(
+    of: &MegaBuffer,
+    places: &[(usize, DAffine3)],
+    limits: &wgpu::Limits,
+) -> [SceneProvider; 2] {
     let mut host = SceneProvider::from_parts(Movable::joined(&[]), sun());
     let room = places.iter().map(|(mesh, _)| of.hosts[*mesh].room(1));
-    host.reserve(room.fold(Room::default(), Room::and)).unwrap();
+    let room = room.fold(Room::default(), Room::and);
+    host.reserve(room, limits).unwrap();
     for (mesh, map) in places {
         host.add_host_part(&of.hosts[*mesh], map).unwrap();
     }
@@ -200,7 +210,7 @@ fn part_of_the_document(gpu: &Gpu) -> Result<Work, Box<dyn std::error::Error>> {
     let stone = &stones(gpu).hosts[1];
     let place = DAffine3::from_translation(DVec3::Y);
     let mut provider = SceneProvider::from_parts(Movable::joined(&[]), sun());
-    provider.reserve(stone.room(20))?;
+    provider.reserve(stone.room(20), &gpu.device.limits())?;
     let part = provider.add_host_part(stone, &place)?;
     provider.set_camera(&camera(VIEWPORT));
     let mut executor = start(gpu, "light_buffer", &mut provider);
@@ -224,7 +234,7 @@ fn the_part_of_the_document_is_written_by_the_gpu() {
 #[test]
 fn parts_of_a_mega_buffer_are_traced_as_uploaded_ones() {
     let gpu = open();
-    let [mut host, mut uploaded] = scenes(&stones(&gpu), &places(0));
+    let [mut host, mut uploaded] = scenes(&stones(&gpu), &places(0), &gpu.device.limits());
     let seen = shown(&gpu, &mut start(&gpu, "rt", &mut host));
     let expected = shown(&gpu, &mut start(&gpu, "rt", &mut uploaded));
     assert!(expected.contains(&0) && expected.contains(&1));
@@ -273,6 +283,7 @@ fn half(bits: u16) -> f32 {
 /// Reads a buffer of the scene back, as tests may.
 fn contents(gpu: &Gpu, provider: &mut SceneProvider, name: &str) -> Vec<u32> {
     let buffer = provider.build(name, &gpu.device, &gpu.queue).unwrap();
+    provider.submit_built(&gpu.device, &gpu.queue).unwrap();
     let copy = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: None,
         size: buffer.size(),
@@ -399,10 +410,14 @@ fn frame_around() -> Mesh {
 }
 
 /// The scenes of [`scenes`], with the frame around both.
-fn framed(of: &MegaBuffer, places: &[(usize, DAffine3)]) -> [SceneProvider; 2] {
+fn framed(
+    of: &MegaBuffer,
+    places: &[(usize, DAffine3)],
+    limits: &wgpu::Limits,
+) -> [SceneProvider; 2] {
     let frame = frame_around();
-    scenes(of, places).map(|mut scene| {
-        scene.reserve(Room::of_copies(&frame, 1)).unwrap();
+    scenes(of, places, limits).map(|mut scene| {
+        scene.reserve(Room::of_copies(&frame, 1), limits).unwrap();
         scene.add_part(&frame, &DAffine3::IDENTITY).unwrap();
         scene
     })
@@ -413,7 +428,7 @@ fn framed(of: &MegaBuffer, places: &[(usize, DAffine3)]) -> [SceneProvider; 2] {
 fn every_preset_draws_parts_of_a_hosts_buffer_as_uploaded_ones() {
     let (gpu, size) = (open(), [48, 32]);
     let stones = stones(&gpu);
-    let [mut host, mut uploaded] = framed(&stones, &places(0));
+    let [mut host, mut uploaded] = framed(&stones, &places(0), &gpu.device.limits());
     for scene in [&mut host, &mut uploaded] {
         scene.set_camera(&camera(size));
     }
@@ -435,7 +450,7 @@ fn every_preset_draws_parts_of_a_hosts_buffer_as_uploaded_ones() {
 fn exact_presets_are_right_on_a_hosts_buffer() {
     let gpu = open();
     let stones = stones(&gpu);
-    let [mut host, mut uploaded] = scenes(&stones, &places(3));
+    let [mut host, mut uploaded] = scenes(&stones, &places(3), &gpu.device.limits());
     let mesh = {
         let _ = start(&gpu, "rt", &mut uploaded);
         uploaded.scene().mesh.clone()
@@ -492,7 +507,7 @@ fn exact_presets_are_right_on_a_hosts_buffer() {
 fn parts_of_a_hosts_buffer_move_without_their_vertices() {
     let gpu = open();
     let stones = stones(&gpu);
-    let [mut host, mut uploaded] = scenes(&stones, &places(0));
+    let [mut host, mut uploaded] = scenes(&stones, &places(0), &gpu.device.limits());
     let presets = ["rt", "light_buffer", "crsm"];
     let mut executors = presets.map(|preset| start(&gpu, preset, &mut host));
     let mut others = presets.map(|preset| start(&gpu, preset, &mut uploaded));
@@ -522,6 +537,58 @@ fn parts_of_a_hosts_buffer_move_without_their_vertices() {
         host.set_transforms(&maps).unwrap();
         executors[0].refresh(&mut host).unwrap();
         assert_eq!(host.work(), before, "nothing moved");
+    }
+}
+
+/// Uploaded parts move on both sides of one in a host's buffer that stays, and the other way round.
+#[test]
+fn parts_of_both_kinds_keep_off_each_other() {
+    let gpu = open();
+    // Few positions: a patch would otherwise write those between two parts along with them.
+    let stones = stones_of(&gpu, 1);
+    let meshes: Vec<Mesh> = stones.meshes.iter().map(Quantised::mesh).collect();
+    let begun = places(0);
+    let room = begun.iter().map(|(mesh, _)| stones.hosts[*mesh].room(1));
+    let room = room.fold(Room::default(), Room::and);
+    let [mut mixed, mut uploaded] = [true, false].map(|is_mixed| {
+        let mut scene = SceneProvider::from_parts(Movable::joined(&[]), sun());
+        scene.reserve(room, &gpu.device.limits()).unwrap();
+        for (index, (mesh, map)) in begun.iter().enumerate() {
+            if is_mixed && index.is_multiple_of(2) {
+                scene.add_host_part(&stones.hosts[*mesh], map).unwrap();
+            } else {
+                scene.add_part(&meshes[*mesh], map).unwrap();
+            }
+        }
+        scene.set_camera(&camera(VIEWPORT));
+        scene
+    });
+    let presets = ["rt", "light_buffer"];
+    let mut executors = presets.map(|preset| start(&gpu, preset, &mut mixed));
+    let mut others = presets.map(|preset| start(&gpu, preset, &mut uploaded));
+    let mut maps = places_of(&begun);
+    for turn in 1..6 {
+        for (index, (_, map)) in places(turn).into_iter().enumerate() {
+            if turn == 5 || index % 2 == turn % 2 {
+                maps[index] = map;
+            }
+        }
+        let before = mixed.work();
+        mixed.set_transforms(&maps).unwrap();
+        uploaded.set_transforms(&maps).unwrap();
+        for ((executor, other), preset) in executors.iter_mut().zip(&mut others).zip(presets) {
+            executor.refresh(&mut mixed).unwrap();
+            other.refresh(&mut uploaded).unwrap();
+            let (seen, expected) = (shown(&gpu, executor), shown(&gpu, other));
+            let wrong = seen.iter().zip(&expected).filter(|(a, b)| a != b);
+            assert_eq!(wrong.count(), 0, "{preset} {turn}");
+        }
+        assert!(mixed.work().since(before).copied > 0, "patched");
+        let [own, expected] = [&mut mixed, &mut uploaded].map(|scene| {
+            let bits = contents(&gpu, scene, "scene.positions").into_iter();
+            bits.map(f32::from_bits).collect::<Vec<f32>>()
+        });
+        assert!(own == expected, "{turn}");
     }
 }
 
@@ -618,7 +685,7 @@ fn a_part_that_the_host_has_rewritten_is_traced_as_it_is() {
     let stones = stones(&gpu);
     // The only part of its mesh.
     let places = &places(2)[..2];
-    let [mut host, _] = scenes(&stones, places);
+    let [mut host, _] = scenes(&stones, places, &gpu.device.limits());
     let part = host.parts().nth(1).unwrap();
     let presets = ["rt", "light_buffer"];
     let mut executors = presets.map(|preset| start(&gpu, preset, &mut host));
@@ -672,7 +739,7 @@ fn a_part_may_be_removed_while_frames_are_under_way() {
     let gpu = open();
     let stones = stones(&gpu);
     let places = places(1);
-    let [mut host, _] = scenes(&stones, &places);
+    let [mut host, _] = scenes(&stones, &places, &gpu.device.limits());
     let removed = host.parts().last().unwrap();
     let mut executor = start(&gpu, "rt", &mut host);
     let all = shown(&gpu, &mut executor);
@@ -688,7 +755,7 @@ fn a_part_may_be_removed_while_frames_are_under_way() {
     let under_way = values(&executor.finish().unwrap(), "visibility");
     let after = values(&executor.finish().unwrap(), "visibility");
     assert!(under_way == all && after != all);
-    let [mut without, _] = scenes(&stones, &places[..places.len() - 1]);
+    let [mut without, _] = scenes(&stones, &places[..places.len() - 1], &gpu.device.limits());
     assert!(after == shown(&gpu, &mut start(&gpu, "rt", &mut without)));
     // Its room is for another one.
     let (mesh, map) = &places[places.len() - 1];
@@ -701,7 +768,7 @@ fn a_part_may_be_removed_while_frames_are_under_way() {
 fn a_destroyed_buffer_is_an_error_of_refresh() {
     let gpu = open();
     let stones = stones(&gpu);
-    let [mut host, _] = scenes(&stones, &places(0));
+    let [mut host, _] = scenes(&stones, &places(0), &gpu.device.limits());
     let mut executor = start(&gpu, "rt", &mut host);
     stones.buffer.destroy();
     host.set_transforms(&places_of(&places(1))).unwrap();
@@ -715,7 +782,7 @@ fn a_destroyed_buffer_is_an_error_of_refresh() {
 #[test]
 fn engines_that_need_positions_on_the_cpu_name_the_part() {
     let gpu = open();
-    let [mut host, _] = scenes(&stones(&gpu), &places(0));
+    let [mut host, _] = scenes(&stones(&gpu), &places(0), &gpu.device.limits());
     let error = host.deform(Vec::new(), Vec::new()).unwrap_err().to_string();
     assert!(
         error.contains("deform") && error.contains("PartId"),

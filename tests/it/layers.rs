@@ -58,10 +58,7 @@ fn layers(preset: &str, scene: &Arc<Scene>, params: &[(&str, ParamValue)]) -> [V
         |request| {
             set(request, params);
             for layer in ["outer", "inner"] {
-                request.captures.push(Capture {
-                    material: layer.into(),
-                    after: None,
-                });
+                request.captures.push(Capture::new(layer));
             }
         },
     );
@@ -234,10 +231,7 @@ fn judge(
     );
     let mut request = PlanRequest::new(VIEWPORT, provider);
     set(&mut request, params);
-    request.captures.push(Capture {
-        material: "primitive".into(),
-        after: None,
-    });
+    request.captures.push(Capture::new("primitive"));
     let plan = graph
         .and_then(|graph| graph.plan(&request))
         .unwrap_or_else(|errors| panic!("{errors}"));
@@ -387,6 +381,14 @@ impl Provider for OtherLight {
             }),
         )
     }
+
+    fn submit_built(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+    ) -> Result<(), skiagraph_gpu::ProviderError> {
+        self.0.submit_built(device, queue)
+    }
 }
 
 #[test]
@@ -492,10 +494,7 @@ fn no_uncertain_pixel_is_no_ray_and_no_workgroup() {
             VIEWPORT,
             |request| {
                 // Arguments of the indirect dispatch of fix_pixels and trace_rays.
-                request.captures.push(Capture {
-                    material: "ray_groups".into(),
-                    after: None,
-                });
+                request.captures.push(Capture::new("ray_groups"));
             },
         );
         let report = run(plan, &mut provider, &["ray_count", "status", "ray_groups"]);

@@ -97,10 +97,9 @@ impl Bench {
                 let value = ParamValue::U32(*value);
                 request.params.insert((*name).to_owned(), value);
             }
-            request.captures.extend(captured.iter().map(|name| Capture {
-                material: (*name).to_owned(),
-                after: None,
-            }));
+            request
+                .captures
+                .extend(captured.iter().map(|name| Capture::new(*name)));
         });
         Executor::on(&self.gpu, plan, &mut self.provider).unwrap_or_else(|error| panic!("{error}"))
     }

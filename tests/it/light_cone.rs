@@ -114,7 +114,7 @@ fn shader() -> String {
     let mut text: String = modules
         .map(|module| format!("#import \"shared/{module}.wgsl\"\n"))
         .concat();
-    for name in ["sides_of", "hides"] {
+    for name in ["lesser", "greater", "sides_of", "hides"] {
         text += &function("shaders/test_samples.wgsl", name);
     }
     text + SHADER

@@ -27,6 +27,7 @@ mod cpu_one_rings;
 mod cpu_reference;
 mod cpu_status;
 mod cpu_triangles;
+mod default_limits;
 mod depth;
 mod dissertation;
 mod documents;

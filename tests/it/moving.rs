@@ -1,8 +1,11 @@
 //! Parts that a host moves: in which order it says so, what costs nothing, and what is refused.
 
-use crate::support::{
-    graphs::{self, open, values},
-    meshes,
+use crate::{
+    shadows::Shadows,
+    support::{
+        graphs::{self, open, values},
+        meshes,
+    },
 };
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 use skiagraph_gpu::{ExecuteError, Executor, Frame, Provider, device::Gpu};
@@ -10,7 +13,10 @@ use skiagraph_passes::{Error, How, PartId, Room, SceneProvider, Work};
 use skiagraph_reference::statistics::status;
 use skiagraph_scene::{
     DirectionalLight, Group, LightKind, Mesh, Movable, MoveError, PointLight, View,
+    texels::Texels,
+    texture::{Source, Texture, Wrap},
 };
+use std::sync::Arc;
 
 const VIEWPORT: [u32; 2] = [48, 32];
 const PRESETS: [&str; 3] = ["light_buffer", "rt", "nsm"];
@@ -170,6 +176,7 @@ fn the_trees_of_parts_that_lay_on_each_other_are_only_fitted() {
     assert!(shown(&gpu, &mut executor) == shown(&gpu, &mut made_apart));
     let nodes = |provider: &mut SceneProvider| {
         let buffer = provider.build("scene.bvh_nodes", &gpu.device, &gpu.queue);
+        provider.submit_built(&gpu.device, &gpu.queue).unwrap();
         contents(&gpu, &buffer.unwrap())
     };
     assert!(nodes(&mut provider) == nodes(&mut apart));
@@ -259,6 +266,46 @@ fn the_work_follows_the_parts_that_move() {
             "{preset}"
         );
         assert_eq!(work.uploaded, 144, "{preset}");
+    }
+}
+
+/// The program of docs/embedding.md says in each frame where all of the scene is; that is the same
+/// work as to move the parts one by one that are elsewhere.
+#[test]
+fn the_program_of_the_document_pays_for_what_moves() {
+    let (gpu, count) = (open(), 100);
+    let stone = meshes::potato(2, 0.2, 1);
+    let all = vec![&stone; count];
+    let mut program = Shadows::new((&gpu.device, &gpu.queue), VIEWPORT, &all).unwrap();
+    let (camera, mut maps) = (view().camera(VIEWPORT), rows(count));
+    let mut light = DirectionalLight::new(DVec3::NEG_Y);
+    let mut by_hand = SceneProvider::from_parts(stones(count), light);
+    by_hand.set_camera(&camera);
+    by_hand.set_transforms(&maps).unwrap();
+    let mut executor = start(&gpu, "light_buffer", &mut by_hand);
+    let parts: Vec<PartId> = by_hand.parts().collect();
+    let mut frame = |maps: &[DAffine3], light: DirectionalLight| {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let before = program.provider.work();
+        let seen = program.frame(&mut encoder, &camera, light.direction, maps);
+        seen.unwrap();
+        gpu.queue.submit([encoder.finish()]);
+        program.provider.work().since(before)
+    };
+    frame(&maps, light);
+    for (moving, turned) in [(0, 0.0), (1, 0.0), (5, 0.0), (5, 0.1), (0, 0.1)] {
+        for map in &mut maps[..moving] {
+            map.translation.y += 0.25;
+        }
+        light.direction.x += turned;
+        let least = work(&mut by_hand, &mut executor, |provider| {
+            provider.set_light(light.into());
+            for (part, map) in parts.iter().zip(&maps[..moving]) {
+                provider.set_transform(*part, map).unwrap();
+            }
+        });
+        assert_eq!(frame(&maps, light), least, "{moving}, {turned}");
+        assert_eq!(least == Work::default(), moving == 0 && turned == 0.0);
     }
 }
 
@@ -443,7 +490,7 @@ fn parts_that_are_added_and_removed_leave_the_mesh_of_the_others() {
         (&kinds[0], place(4.0, 3.0)),
     ];
     let room = Room::of_copies(&kinds[1], 4).and(Room::of_copies(&kinds[0], 1));
-    scene.reserve(room).unwrap();
+    scene.reserve(room, &gpu.device.limits()).unwrap();
     let maps: Vec<DAffine3> = there.iter().map(|of| of.1).collect();
     scene.set_transforms(&maps).unwrap();
     let mut handles: Vec<PartId> = scene.parts().collect();
@@ -495,7 +542,8 @@ fn parts_that_are_added_and_removed_leave_the_mesh_of_the_others() {
     branch.remove_part(handles[0]).unwrap();
     turn(&mut scene, &there, "the branch has one less");
     let mut later = provider(Movable::joined(&[&floor, &kinds[0]]));
-    later.reserve(Room::of_copies(&kinds[1], 2)).unwrap();
+    let room = Room::of_copies(&kinds[1], 2);
+    later.reserve(room, &gpu.device.limits()).unwrap();
     let first: Vec<PartId> = later.parts().collect();
     later.remove_part(first[1]).unwrap();
     later.add_part(&kinds[1], &there[3].1).unwrap();
@@ -517,7 +565,8 @@ fn a_part_that_is_added_is_work_of_its_own_size() {
     let size = [stone.positions.len(), stone.triangles.len()];
     for preset in PRESETS {
         let mut provider = provider(stones(count));
-        provider.reserve(Room::of_copies(&stone, 10)).unwrap();
+        let room = Room::of_copies(&stone, 10);
+        provider.reserve(room, &gpu.device.limits()).unwrap();
         provider.set_transforms(&rows(count)).unwrap();
         let mut executor = start(&gpu, preset, &mut provider);
         let mut added = Vec::new();
@@ -569,9 +618,9 @@ fn parts_of_the_document(gpu: &Gpu) -> Result<Vec<u32>, Box<dyn std::error::Erro
         meshes::box_over_floor(8.0, Vec3::splat(0.5)),
         meshes::potato(2, 0.2, 1),
     );
-    let light = sun();
+    let (light, device) = (sun(), &gpu.device);
     let mut provider = SceneProvider::from_parts(Movable::joined(&[&floor, &stone]), light);
-    provider.reserve(Room::of_copies(&stone, 20))?;
+    provider.reserve(Room::of_copies(&stone, 20), &device.limits())?;
     provider.set_camera(&view().camera(VIEWPORT));
     let places = &rows(2);
     provider.set_transforms(places)?;
@@ -648,6 +697,63 @@ fn leaves_are_added_to_a_scene_without_and_with_masks() {
     }
 }
 
+/// Only the materials of the part that is added are uploaded, behind the others: the buffers are
+/// those of a mesh that had the part from the start.
+#[test]
+fn materials_are_uploaded_of_the_part_that_is_added() {
+    let gpu = open();
+    let painted = |seed: u64, edge: u32| {
+        let mut mesh = meshes::foliage(60, 0.4, 3.0, seed);
+        let rgba = (0..edge * edge).map(|texel| (texel + edge).to_le_bytes());
+        let texels = Texels {
+            size: [edge; 2],
+            rgba: rgba.collect(),
+            has_alpha: true,
+        };
+        mesh.surfaces.materials[0].texture = Some(Texture::new(
+            "leaf".into(),
+            Source::Texels(Arc::new(texels)),
+            [Wrap::Mirror, Wrap::Clamp],
+        ));
+        mesh
+    };
+    let (trees, bush) = (painted(1, 32), painted(2, 8));
+    let names = [
+        "scene.uvs",
+        "scene.uv_indices",
+        "scene.materials",
+        "scene.material_indices",
+        "scene.texels",
+    ];
+    let all = |provider: &mut SceneProvider| {
+        let buffers = names.map(|name| provider.build(name, &gpu.device, &gpu.queue).unwrap());
+        provider.submit_built(&gpu.device, &gpu.queue).unwrap();
+        buffers.map(|buffer| contents(&gpu, &buffer))
+    };
+    let maps = rows(4);
+    let mut provider = provider(Movable::joined(&[&trees; 3]));
+    let room = Room::of_copies(&bush, 1);
+    provider.reserve(room, &gpu.device.limits()).unwrap();
+    provider.set_transforms(&maps[..3]).unwrap();
+    all(&mut provider);
+    let before = provider.work();
+    provider.add_part(&bush, &maps[3]).unwrap();
+    let seen = all(&mut provider);
+    let (surfaces, triangles) = (&bush.surfaces, bush.triangles.len());
+    let own =
+        8 * surfaces.uvs.len() + 32 * surfaces.materials.len() + (12 + 4) * triangles + 4 * 64;
+    assert_eq!(provider.work().since(before).uploaded, own as u64);
+    let mut whole = self::provider(Movable::joined(&[&trees, &trees, &trees, &bush]));
+    whole.set_transforms(&maps).unwrap();
+    for ((name, seen), expected) in names.iter().zip(seen).zip(all(&mut whole)) {
+        assert!(seen == expected, "{name}");
+    }
+    // Another mesh begins anew.
+    provider.set_parts(Movable::joined(&[&bush]));
+    let mut alone = self::provider(Movable::joined(&[&bush]));
+    assert!(all(&mut provider) == all(&mut alone));
+}
+
 /// A part that was cut out of a mesh is removed from between the others.
 #[test]
 fn a_part_that_was_cut_out_is_removed_alone() {
@@ -698,13 +804,71 @@ fn a_part_that_was_cut_out_is_removed_alone() {
     }
 }
 
+/// Bytes of the positions, normals and corners of a mesh on the device.
+fn bytes(mesh: &Mesh) -> [u64; 3] {
+    let [positions, normals] = [&mesh.positions, &mesh.normals].map(|list| 16 * list.len() as u64);
+    [positions, normals, 12 * mesh.triangles.len() as u64]
+}
+
+/// Room beyond the device's limits is refused before anything is allocated, and so is a part for
+/// which the mesh would have to grow beyond them.
+#[test]
+fn room_that_no_device_has_is_refused() {
+    let stone = meshes::potato(1, 0.2, 1);
+    let mut provider = provider(stones(3));
+    provider.set_transforms(&rows(3)).unwrap();
+    let counts = |provider: &SceneProvider| bytes(&provider.scene().mesh);
+    let (before, most) = (counts(&provider), usize::MAX);
+    let absurd = |set: fn(&mut Room, usize)| {
+        let mut room = Room::default();
+        set(&mut room, most);
+        room
+    };
+    let limits = wgpu::Limits::default();
+    for (room, named) in [
+        (Room::of_copies(&stone, most), "scene.bvh_nodes"),
+        (
+            absurd(|room, most| room.positions = most),
+            "scene.positions",
+        ),
+        (absurd(|room, most| room.normals = most), "scene.normals"),
+        (absurd(|room, most| room.triangles = most), "scene.indices"),
+        (absurd(|room, most| room.parts = most), "scene.bvh_nodes"),
+        (Room::of_copies(&stone, 1 << 20), "scene.positions"),
+    ] {
+        let error = provider.reserve(room, &limits).unwrap_err();
+        let text = error.to_string();
+        assert!(matches!(error, Error::TooLarge { .. }), "{text}");
+        assert!(text.contains(named), "{text}");
+        assert!(text.contains("max_storage_buffer_binding_size"), "{text}");
+        assert_eq!(counts(&provider), before);
+    }
+    // A mesh that is nearly full grows by what is left, and then no more.
+    let own = bytes(&Movable::joined(&[&stone]).rest);
+    let most = before.iter().zip(own).map(|(before, own)| before + own);
+    let limits = wgpu::Limits {
+        max_storage_buffer_binding_size: 16 + most.max().unwrap(),
+        ..limits
+    };
+    provider.reserve(Room::default(), &limits).unwrap();
+    provider.add_part(&stone, &rows(4)[3]).unwrap();
+    let full = counts(&provider);
+    let limit = limits.max_storage_buffer_binding_size;
+    assert!(full.iter().all(|bytes| *bytes <= limit), "{full:?}");
+    let error = provider.add_part(&stone, &rows(5)[4]).unwrap_err();
+    assert!(matches!(error, Error::TooLarge { .. }), "{error}");
+    assert_eq!(counts(&provider), full);
+    assert_eq!(provider.parts().count(), 4);
+}
+
 #[test]
 fn parts_that_there_are_not_are_named() {
     let stone = meshes::potato(1, 0.2, 1);
     let mut whole = SceneProvider::from_mesh(stone.clone(), sun());
     let error = whole.add_part(&stone, &DAffine3::IDENTITY).unwrap_err();
     assert!(matches!(error, Error::NoParts), "{error}");
-    let error = whole.reserve(Room::of_copies(&stone, 1)).unwrap_err();
+    let (room, limits) = (Room::of_copies(&stone, 1), wgpu::Limits::default());
+    let error = whole.reserve(room, &limits).unwrap_err();
     assert!(matches!(error, Error::NoParts), "{error}");
 
     let mut provider = provider(stones(3));

@@ -80,10 +80,7 @@ fn layers(scene: &Arc<Scene>) -> [Vec<f32>; 2] {
         ];
         let set = set.map(|(name, value)| (name.to_owned(), value));
         request.params.extend(set);
-        request.captures.extend(names.map(|layer| Capture {
-            material: layer.into(),
-            after: None,
-        }));
+        request.captures.extend(names.map(Capture::new));
     });
     let report = run(plan, &mut provider, &names);
     names.map(|layer| {

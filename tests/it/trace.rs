@@ -482,10 +482,7 @@ fn a_pixel_without_an_answer_is_neither_lit_nor_judged() {
     let viewport = [32, 32];
     let mut provider = graphs::provider(&scene, &view, viewport);
     let plan = graphs::plan("pipelines/rt.ron", &provider, viewport, |request| {
-        request.captures.push(Capture {
-            material: "primitive".into(),
-            after: None,
-        });
+        request.captures.push(Capture::new("primitive"));
     });
     let report = graphs::run(plan, &mut provider, &["visibility", "status", "primitive"]);
     let [visibility, status, primitives] =

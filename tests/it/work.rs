@@ -67,10 +67,7 @@ fn reached(preset: &str, scene: &Arc<Scene>, lines: &[(&str, &str)]) -> u32 {
     let mut request = PlanRequest::new(VIEWPORT, &provider);
     let params = params().map(|(name, value)| (name.to_owned(), value));
     request.params.extend(params);
-    request.captures.push(Capture {
-        material: "times".into(),
-        after: None,
-    });
+    request.captures.push(Capture::new("times"));
     let plan = graph
         .plan(&request)
         .unwrap_or_else(|error| panic!("{error}"));

@@ -37,7 +37,9 @@ use skiagraph_reference::OracleMode;
 use skiagraph_scene::{LightKind, Scene};
 use std::{collections::BTreeMap, sync::Arc};
 
-/// Settings of how methods are run, timed and judged.
+/// Settings of how methods are run, timed and judged. Defaults: 10 timed frames after 2 warm-up
+/// frames, 10 frames in which only the camera moves, no jitter, [`OracleMode::Exact`], 512
+/// reference samples, no files.
 #[derive(Clone, Copy, Debug)]
 pub struct Protocol {
     /// Number of timed frames of a still view. The frame that is judged and pictured is an extra
@@ -50,19 +52,20 @@ pub struct Protocol {
     /// run if passes were skipped, unless this is 0.
     pub cached_frames: u32,
     /// Number of sample positions within a pixel that the camera takes in turns along a camera
-    /// path, frame by frame; the reference samples the same ones. All frames of a still view
-    /// sample the first. `None` to sample the pixel's centre.
+    /// path, frame by frame; the [reference](crate#terms) samples the same ones. All frames of a
+    /// still view sample the first. `None` to sample the pixel's centre.
     pub jitter: Option<u32>,
-    /// Mode of the reference (the `f64` ray tracer that is the oracle): whether its shadow rays
-    /// start exactly on the visible surfaces or at an offset.
+    /// Mode of the reference, an `f64` ray tracer (the oracle): its shadow rays start exactly on
+    /// the visible surfaces, or at an offset from them.
     pub oracle: OracleMode,
-    /// Number of shadow rays that the reference traces from a pixel to a light with an extent;
-    /// other lights take one ray.
+    /// Number of shadow rays that the [reference](crate#terms) traces from a pixel to a light [with
+    /// an extent](crate#terms); other lights take one ray.
     pub reference_samples: u32,
     /// True if pictures of every run are written into the folder of the results.
     pub pictures: bool,
     /// Format of the files with the visibility and status of each pixel, by every run and by the
-    /// reference, that are written into the folder of the results; `None` to write none.
+    /// [reference](crate#terms), that are written into the folder of the results; `None` to write
+    /// none.
     pub data: Option<DataFormat>,
 }
 
@@ -104,13 +107,14 @@ pub struct Comparison {
     /// Records of the searches that chose params of methods, by the index of the method in
     /// `methods`: see [`tune`](crate::measuring::tune::tune). Empty if no search was made.
     pub tuned: BTreeMap<usize, Tuned>,
-    /// Graph that finds the visible triangle of each pixel for the reference.
+    /// Graph that finds on the GPU which triangle each pixel shows; the [reference](crate#terms)
+    /// then finds the exact shadow on that triangle.
     pub primary: PrimaryVisibility,
     /// Limits on frame time, wrong pixels and memory. They change no measurement: the results
     /// record them, and a report recommends no method that exceeds one.
     pub budgets: Budgets,
-    /// Figures that others have published, such as those of a paper. Those for the scene, view,
-    /// viewport, map size and preset of a run are shown beside the run's own figures.
+    /// Published figures, such as those of a paper. Figures for the scene, view, viewport, map size
+    /// and preset of a run are shown beside the run's own.
     pub published: Vec<Row>,
     /// Command line that the results record, so that the measurement can be repeated; `None` to
     /// record none.
@@ -169,8 +173,8 @@ impl Comparison {
         Ok(())
     }
 
-    /// Returns the methods with the params that they have on the session's GPU: default values may
-    /// depend on its features.
+    /// Returns the methods with the params that they have on the session's GPU
+    /// ([`Method::settled`]): default values may depend on its features.
     pub fn settled(&self, session: Session) -> Vec<Method> {
         let features = session.gpu.device.features();
         let methods = self.methods.iter().cloned();

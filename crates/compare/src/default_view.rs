@@ -64,8 +64,8 @@ struct Eye {
 /// A view that [`default_view`] chose for a mesh, with a position for a lamp.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DefaultView {
-    /// The view. Its far plane lies behind the whole mesh, its near plane at 1/10,000 of that
-    /// distance.
+    /// The chosen view. Its far plane lies behind the whole mesh, its near plane at 1/10,000 of the
+    /// far plane's distance.
     pub view: View,
     /// True if the eye is inside the mesh, with surfaces all around it.
     pub is_inside: bool,

@@ -95,7 +95,8 @@ pub fn rendered(faults: &[Vec<Diagnostic>], colour: bool) -> String {
 }
 
 /// True if an error leaves the device unusable for every graph: the device is lost, or a frame was
-/// abandoned before it was finished.
+/// given up ([`GpuRequest::timeout`](crate::measuring::device::GpuRequest::timeout)) before the GPU
+/// had finished it.
 pub fn is_fatal(error: &ExecuteError) -> bool {
     matches!(
         error,

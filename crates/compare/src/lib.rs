@@ -37,6 +37,37 @@
 //! - [`pictures`]: writes texels as pictures.
 //! - [`foreign`]: judges pictures of other renderers.
 //! - [`files`]: writes, locks and watches files.
+//!
+//! # Terms
+//!
+//! - *Method* ([`Method`](graphs::method::Method)): a shadow method in one setting of its params.
+//!   Its *preset* ([`Preset`](graphs::preset::Preset)) is the graph that it runs: one that ships
+//!   with Skiagraph, or a document of one's own with the output `visibility`.
+//! - *Run* ([`Run`](records::results::Run)): one method on one view or camera path, in one
+//!   viewport. *Cell*: the same, with the protocol, as it is known on every machine
+//!   ([`cell::id`](measuring::cell::id)).
+//! - *Reference*, *ground truth*, *truth*: the exact answer that methods are judged against. The
+//!   *oracle*, a ray tracer in f64, finds it ([`skiagraph_reference`]).
+//! - *Receiver*: the point of a surface that a pixel shows. *Caster*: a triangle that may keep the
+//!   light from it. A pixel *faces the light* if its receiver does.
+//! - *Band*: the *indeterminate* pixels, whose right answer flips when receiver or casters move
+//!   within the rounding error of f32. Errors there do not count against a method, so that tables
+//!   count wrong pixels *outside the band*.
+//! - *Certain*, *uncertain*: a method's own verdict on each pixel, its output
+//!   [`status`](skiagraph_reference::status): certain where its shadow map decides the answer.
+//! - *Light with an extent*: a sun with an angular diameter, or a lamp with a radius. *Share of
+//!   light*: the part of the light that arrives at a pixel, 0 in shadow to 1 in full light. Answers
+//!   that are shares are *graded*, answers of 0 and 1 *hard*.
+//! - *Step* of a method: its passes with the same name up to the first dot
+//!   ([`step`](records::results::step())).
+//! - Times are of frames in which *every pass runs*, or of frames in which *only the camera moves*,
+//!   so that passes with unchanged inputs are skipped. Methods are timed *in turns*, frame by
+//!   frame.
+//! - *Early end*: the work stops because [`Sink::stop`](sink::Sink::stop) asks for it; the error is
+//!   [`CompareError::Interrupted`](error::CompareError::Interrupted).
+//! - *Steady state* ([`Steady`](records::steady::Steady)): some methods reuse results of earlier
+//!   frames. On a still view their pictures change at first and then repeat; the pictures that
+//!   repeat are the steady state.
 
 pub mod comparison;
 pub mod default_view;

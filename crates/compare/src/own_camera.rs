@@ -20,21 +20,21 @@ use skiagraph_scene::{Mesh, View};
 /// A depth buffer of 32-bit floats tells depths apart well over this range.
 const NEAR_TO_FAR: f64 = 1e4;
 
-/// Parts of a camera that replace those of a view. `None` keeps the view's part. Lengths are in the
-/// scene's units.
+/// Parts of a camera that replace the same parts of a view's camera. `None` keeps the view's part.
+/// Lengths are in the scene's units, positions and directions in world space.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct OwnCamera {
-    /// Position of the eye.
+    /// Position of the eye, world space.
     pub eye: Option<DVec3>,
-    /// Direction in which the eye looks, of any length above 0.
+    /// Direction in which the eye looks, world space, of any length above 0.
     pub direction: Option<DVec3>,
-    /// Up direction, of any length above 0.
+    /// Direction up in the picture, world space, of any length above 0.
     pub up: Option<DVec3>,
     /// Vertical field of view in degrees, between 0 and 180.
     pub fov_y_degrees: Option<f64>,
-    /// Distance of the near plane from the eye.
+    /// Distance of the near plane from the eye, in scene units.
     pub near: Option<f64>,
-    /// Distance of the far plane from the eye.
+    /// Distance of the far plane from the eye, in scene units.
     pub far: Option<f64>,
 }
 
@@ -44,9 +44,9 @@ impl OwnCamera {
         *self == Self::default()
     }
 
-    /// Returns a view whose camera has these parts instead of its own. If `fits` is true, clip
-    /// planes that are `None` are fitted to the mesh: far just behind it, near at a ten-thousandth
-    /// of far.
+    /// Returns a copy of `view` whose camera has these parts instead of its own. If `fits` is true,
+    /// a clip plane that is `None` here is fitted to the mesh: far just behind the mesh, near at a
+    /// ten-thousandth of far.
     pub fn of_view(&self, view: &View, mesh: &Mesh, fits: bool) -> View {
         let mut own = View {
             eye: self.eye.unwrap_or(view.eye),

@@ -42,8 +42,8 @@ pub struct MeshSceneOptions {
     /// Parts of the camera of the view that is chosen for a file without cameras; `near` and `far`
     /// are ignored here.
     pub camera: OwnCamera,
-    /// Direction in which the light of a sun travels, for a file without lights; `None` chooses a
-    /// sun or a lamp.
+    /// Direction in which the light of a sun travels, world space, for a file without lights;
+    /// `None` chooses a sun or a lamp.
     pub sun: Option<DVec3>,
     /// True to add a ground, a square slab, below a mesh that has no floor.
     pub ground: bool,
@@ -58,11 +58,13 @@ impl MeshSceneOptions {
 /// Parts of a scene that its mesh file lacked, and facts about the mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Chosen {
-    /// True if the file has no camera, and the only view was chosen.
+    /// True if the file has no camera, so that the scene's only view was
+    /// [chosen](crate::default_view::default_view).
     pub view: bool,
     /// True if the chosen view is from inside the mesh, with surfaces all around the eye.
     pub is_inside: bool,
-    /// True if the file has no light, and the only light was chosen or is the options' sun.
+    /// True if the file has no light: the scene's only light was chosen, or is
+    /// [`MeshSceneOptions::sun`].
     pub light: bool,
     /// Size of the mesh's box along x, y and z in scene units, without an added ground; `None` for
     /// a mesh without triangles.
@@ -83,7 +85,7 @@ pub struct OwnScene {
     pub report: ImportReport,
     /// The parts that were chosen because the mesh file lacks them.
     pub chosen: Chosen,
-    /// Animations of the mesh file; empty for other scenes.
+    /// Animations of the mesh file; empty for a built-in scene or a scene file.
     pub clips: Vec<Clip>,
 }
 
@@ -218,7 +220,7 @@ impl OwnScene {
     }
 
     /// Returns the camera paths of the scene's animations, and the reasons why other animations
-    /// have none. A path without a moving camera is seen from `standing`.
+    /// have none. An animation that moves no camera is seen from the view `standing`.
     pub fn paths(&self, standing: &View) -> (Vec<CameraPath>, Vec<String>) {
         let Scene { views, lights, .. } = &self.scene;
         let clips = self.clips.iter();

@@ -193,8 +193,8 @@ fn enumerate(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {
 }
 
 /// Lists the adapters of all backends in the order in which [`open`] prefers them: discrete GPUs,
-/// integrated ones, virtual ones, software adapters, others. GL adapters, which [`open`] skips by
-/// default, stand behind the other adapters of their device type.
+/// integrated ones, virtual ones, software adapters, others. Among adapters of one type, GL
+/// adapters come last; [`open`] skips them by default.
 pub fn adapters() -> Vec<wgpu::AdapterInfo> {
     enumerate(&instance(wgpu::Backends::all()))
         .iter()

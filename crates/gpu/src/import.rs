@@ -25,15 +25,16 @@ use skiagraph_graph::Import;
 /// [`Executor::import_texture`](crate::Executor::import_texture): its format, size, mips, layers,
 /// samples and usages.
 pub fn texture(texture: &wgpu::Texture) -> Import {
-    Import::Texture {
+    Import::texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: texture.size(),
+        mip_level_count: texture.mip_level_count(),
+        sample_count: texture.sample_count(),
+        dimension: texture.dimension(),
         format: texture.format(),
-        size: [texture.width(), texture.height()],
-        mips: texture.mip_level_count(),
-        layers: texture.depth_or_array_layers(),
-        is_3d: texture.dimension() == wgpu::TextureDimension::D3,
-        samples: texture.sample_count(),
         usage: texture.usage(),
-    }
+        view_formats: &[],
+    })
 }
 
 /// Returns the description of a buffer that the host will hand over with
@@ -41,9 +42,5 @@ pub fn texture(texture: &wgpu::Texture) -> Import {
 /// `items` is the number of array items that it holds; `None` is enough unless a pass of the graph
 /// is dispatched over the items or uses their number.
 pub fn buffer(buffer: &wgpu::Buffer, items: Option<u64>) -> Import {
-    Import::Buffer {
-        bytes: buffer.size(),
-        items,
-        usage: buffer.usage(),
-    }
+    Import::buffer(buffer.size(), items, buffer.usage())
 }

@@ -35,7 +35,9 @@ pub trait Provider: Describe {
     /// [usages](skiagraph_graph::ProvidedBinding::usages) of its description's binding, and
     /// `COPY_SRC` if it may be read back or is read as `.previous` (as it was in the frame before).
     ///
-    /// A frame reads the content that the buffer has when the frame is submitted. A provider that
+    /// The commands that fill the buffer are submitted when this method returns, or by
+    /// [`submit_built`](Self::submit_built). A frame reads the content that the buffer has when the
+    /// frame is submitted. A provider that
     /// changes a content while encoded frames wait for submission must return a new buffer for it.
     ///
     /// # Errors
@@ -69,11 +71,29 @@ pub trait Provider: Describe {
         )))
     }
 
-    /// Makes the work for the CPU of a resource that is described as
-    /// [`CPU_WORK`](skiagraph_graph::Provided::CPU_WORK), or returns the one made before.
+    /// Submits the commands that [`build`](Self::build) has recorded and not submitted, such as
+    /// copies into the buffers that it returned. An executor calls it once after it has asked for
+    /// all resources, also if one of them failed. So what is recorded for several resources is one
+    /// submission. The default implementation does nothing: it is that of providers whose `build`
+    /// submits by itself. A provider around another one must hand the call on.
     ///
     /// # Errors
-    /// If it cannot be made. The default implementation always fails.
+    /// If the commands are refused. The executor then asks for all these resources again at the
+    /// next [`refresh`](crate::Executor::refresh).
+    fn submit_built(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+    ) -> Result<(), ProviderError> {
+        let _ = (device, queue);
+        Ok(())
+    }
+
+    /// Makes the work for the CPU of the resource `name`, which [`Describe::describe`] describes as
+    /// [`CPU_WORK`](skiagraph_graph::Provided::CPU_WORK), or returns the work made before.
+    ///
+    /// # Errors
+    /// If the work cannot be made. The default implementation always fails.
     fn build_cpu_work(&mut self, name: &str) -> Result<Arc<dyn CpuWork>, ProviderError> {
         Err(ProviderError::new(format!(
             "this provider has no work for the CPU `{name}`"
@@ -81,21 +101,23 @@ pub trait Provider: Describe {
     }
 }
 
-/// Work that the CPU does in the middle of a frame, called by passes with a
-/// [`CpuCall`](skiagraph_graph::step::CpuCall).
+/// Work that the CPU does in the middle of a frame: [`Executor::submit`](crate::Executor::submit)
+/// calls it for passes with a [`CpuCall`](skiagraph_graph::step::CpuCall).
 pub trait CpuWork: Debug + Send + Sync {
-    /// Does what `entry` names on the items of buffers. `reads` holds the bytes of each buffer that
-    /// the call reads, `writes` those of the one that it writes, zero at first: as many items of
-    /// each.
+    /// Does the task that `entry` names
+    /// ([`CpuCall::entry`](skiagraph_graph::step::CpuCall::entry)). `reads` has the bytes of the
+    /// items of each buffer that the call reads, in the order of
+    /// [`CpuCall::reads`](skiagraph_graph::step::CpuCall::reads). `writes` is for the items of the
+    /// buffer that the call writes, and zero at first. Each has the same number of items.
     ///
     /// # Errors
     /// If the work cannot be done; the executor reports
-    /// [`ExecuteError::Provider`](crate::ExecuteError::Provider).
+    /// [`ExecuteError::CpuWork`](crate::ExecuteError::CpuWork).
     fn run(&self, entry: &str, reads: &[&[u8]], writes: &mut [u8]) -> Result<(), ProviderError>;
 }
 
-/// Reason why a [`Provider`] could not build a resource: a text for the user, and the error behind
-/// it, if there is one.
+/// Reason why a [`Provider`] could not build a resource, or why [`CpuWork`] failed: a text for the
+/// user, and the error that caused it, if there is one.
 #[derive(Clone, Debug)]
 pub struct ProviderError {
     why: String,
@@ -111,7 +133,8 @@ impl ProviderError {
         }
     }
 
-    /// Creates the error from another one, which becomes its source and lends it its text.
+    /// Creates the error from `error`, which becomes its [source](Error::source); both have the
+    /// same text.
     pub fn from_error(error: impl Error + Send + Sync + 'static) -> Self {
         Self {
             why: error.to_string(),

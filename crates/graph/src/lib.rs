@@ -33,6 +33,28 @@
 //!
 //! The crate knows no scenes and no shadows. A provider describes the resources that a graph does
 //! not make itself ([`Describe`]); the crate `skiagraph-gpu` makes them on a device.
+//!
+//! # Terms
+//!
+//! - *Document*: a RON file that describes a graph. [`Graph::load`] reads it with the documents
+//!   that it *extends* (takes over and edits) and *includes* (uses as parts).
+//! - *Host*: the program that loads a graph and runs it in its own frames.
+//! - *Material*: a texture, buffer or sampler that a document declares; in a plan a [`Resource`]. A
+//!   buffer consists of *items*, the elements of the array that shaders declare.
+//! - *Pass*: an entry of a document that does work, such as `Raster(…)`. Its *kind* ([`PassKind`])
+//!   turns it into *steps* ([`step::Step`]): draws, dispatches, copies, clears.
+//! - *Group*: an entry that puts passes under one name. *Full name*: the name of a pass or material
+//!   with the names of the includes and groups around it in front: `left.depth`.
+//! - *Param* ([`Param`]): a typed setting of a graph, read by shaders and expressions.
+//! - *Provided resource*: a buffer or acceleration structure that the host's *provider* makes
+//!   ([`Describe`]), such as the scene's positions. *Import* ([`Import`]): a texture, buffer or
+//!   sampler that the host hands over for an *input* of the document.
+//! - *Output*: a result that the document lists. *Capture* ([`Capture`]): another content that the
+//!   host asks for.
+//! - *Plan* ([`Plan`]): a graph for one viewport, device and set of param values. Its *live* passes
+//!   run, because an output, a capture or the host needs their results; the others are *culled*.
+//! - *Executor*: the type of `skiagraph-gpu` that runs a plan on a device.
+//! - *`.previous`*: the content of a material at the end of the frame before.
 
 mod compose;
 pub mod diagnostics;

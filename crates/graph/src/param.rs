@@ -153,17 +153,19 @@ impl fmt::Display for ParamValue {
 /// the host sets in [`Request::params`](crate::Request::params). The document declares the param,
 /// or exposes it from a document that it includes.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Param {
     /// Name, as in `params.NAME` of a shader and `--set NAME=…` on the command line, with its place
-    /// in the document. A param that a named include exposes has the include's name before it:
-    /// `left.radius`, `params.left_radius` in a shader.
+    /// in the document. A param that a named include exposes has the [include](crate#terms)'s name
+    /// before it: `left.radius`, `params.left_radius` in a shader.
     pub name: Located<String>,
     /// Type of the param's values; for a `Choice` with its words.
     pub ty: ParamType,
     /// Expression for the value that the param has unless it is set; `None` if the document gives
-    /// none. A param of an included document must then be set by the include, or be a param of the
-    /// including document, too. A param of the loaded document that has no default and is not set
-    /// has its `min`, or 1 (at most its `max`) without one; false; or its first allowed word.
+    /// none. A param of an included document must then be set by the [include](crate#terms), or be
+    /// a param of the including document, too. A param of the loaded document that has no default
+    /// and is not set has its `min`, or 1 (at most its `max`) without one; false; or its first
+    /// allowed word.
     pub default: Option<Expr>,
     /// Least allowed value of the param if it is a number, or of each of its components if it is a
     /// vector; `None` for no lower bound.

@@ -1,8 +1,8 @@
 //! Kinds of provided resources, such as kinds of light.
 
-/// Kind of a resource that the host's provider describes, such as the kind of a light. An
-/// expression of a document reads it as a word, `light.kind`; a shader reads it as a number,
-/// `override light_kind: u32`.
+/// Kind of a resource that the host's [provider](crate#terms) describes, such as the kind of a
+/// light. An expression of a document reads it as a word, `light.kind`; a shader reads it as a
+/// number, `override light_kind: u32`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProvidedKind {
     /// Words for all kinds that the resource can have, such as `directional` and `spot`. The index

@@ -9,8 +9,8 @@ use std::collections::BTreeMap;
 ///
 /// Names have dots, such as `scene.positions`. A shader's global has underscores in their place:
 /// `scene_positions`. A list whose items differ in kind is described as a whole, as `lights` with
-/// its number of items, and item by item as `lights.0`, `lights.1` and so on: a document's
-/// `lights[1]` is the resource `lights.1`.
+/// its number of [items](crate#terms), and item by item as `lights.0`, `lights.1` and so on: a
+/// document's `lights[1]` is the resource `lights.1`.
 pub trait Describe {
     /// Returns every name that [`Describe::describe`] knows. Error messages suggest names from this
     /// list.
@@ -33,8 +33,8 @@ pub trait Describe {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Provided {
-    /// Number of items of the buffer; `None` if it is not known before the buffer is built, and for
-    /// an acceleration structure.
+    /// Number of [items](crate#terms) of the buffer; `None` if it is not known before the buffer is
+    /// built, and for an acceleration structure.
     pub items: Option<u64>,
     /// Size in bytes of one item of the buffer, or of the whole buffer for one that is bound as a
     /// uniform; 0 for what is not a buffer.
@@ -75,7 +75,7 @@ impl Provided {
     }
 
     /// Description of work for the CPU, which a [`CpuCall`](crate::step::CpuCall) calls and no
-    /// shader can bind.
+    /// shader can bind; it has no items and no kind.
     pub const CPU_WORK: Self = Self {
         binding: ProvidedBinding::CpuWork,
         ..Self::ACCELERATION_STRUCTURE
@@ -92,10 +92,11 @@ pub enum ProvidedBinding {
     /// The whole array or some of its items, as `var<storage, read>`, or one of its items, such as
     /// `lights[2]`, as `var<uniform>`.
     Both,
-    /// The acceleration structure, as `acceleration_structure`, for ray queries. The resource is
-    /// not a buffer.
+    /// The whole acceleration structure, as `acceleration_structure`, for ray queries. The resource
+    /// is not a buffer.
     AccelerationStructure,
-    /// By no shader: a [`CpuCall`](crate::step::CpuCall) calls it. The resource is not a buffer.
+    /// In no way: the resource is work for the CPU, which a [`CpuCall`](crate::step::CpuCall)
+    /// calls. It is not a buffer.
     CpuWork,
 }
 
@@ -118,6 +119,7 @@ impl ProvidedBinding {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Import {
     /// A texture, which the host has created.
+    #[non_exhaustive]
     Texture {
         /// Format of the texture's texels.
         format: wgt::TextureFormat,
@@ -136,17 +138,19 @@ pub enum Import {
         usage: wgt::TextureUsages,
     },
     /// A buffer, which the host has created.
+    #[non_exhaustive]
     Buffer {
         /// Size of the buffer in bytes.
         bytes: u64,
-        /// Number of items of the buffer; may be `None` unless a pass is dispatched over the items
-        /// or an expression asks for their `count`.
+        /// Number of [items](crate#terms) of the buffer; may be `None` unless a pass is dispatched
+        /// over the items or an expression asks for their `count`.
         items: Option<u64>,
         /// Usages that the buffer was created with. Planning reports an error if a pass needs
         /// others.
         usage: wgt::BufferUsages,
     },
     /// A sampler, which the host has created.
+    #[non_exhaustive]
     Sampler {
         /// Filter that the sampler was created with.
         filter: Filter,
@@ -154,6 +158,54 @@ pub enum Import {
         /// true`).
         compare: bool,
     },
+}
+
+impl Import {
+    /// Describes the texture that a descriptor creates.
+    pub fn texture<L, V>(descriptor: &wgt::TextureDescriptor<L, V>) -> Self {
+        Self::Texture {
+            format: descriptor.format,
+            size: [descriptor.size.width, descriptor.size.height],
+            mips: descriptor.mip_level_count,
+            layers: descriptor.size.depth_or_array_layers,
+            is_3d: descriptor.dimension == wgt::TextureDimension::D3,
+            samples: descriptor.sample_count,
+            usage: descriptor.usage,
+        }
+    }
+
+    /// Describes a 2D texture of one mip, one layer and one sample. `size` is width and height in
+    /// texels.
+    pub fn plain_texture(
+        format: wgt::TextureFormat,
+        size: [u32; 2],
+        usage: wgt::TextureUsages,
+    ) -> Self {
+        Self::Texture {
+            format,
+            size,
+            mips: 1,
+            layers: 1,
+            is_3d: false,
+            samples: 1,
+            usage,
+        }
+    }
+
+    /// Describes a buffer of so many bytes. `items` is their number of array items; `None` is
+    /// enough unless a pass is dispatched over the items or an expression uses their number.
+    pub fn buffer(bytes: u64, items: Option<u64>, usage: wgt::BufferUsages) -> Self {
+        Self::Buffer {
+            bytes,
+            items,
+            usage,
+        }
+    }
+
+    /// Describes a sampler; `compare` is true for a comparison sampler.
+    pub fn sampler(filter: Filter, compare: bool) -> Self {
+        Self::Sampler { filter, compare }
+    }
 }
 
 impl std::fmt::Debug for dyn Describe + '_ {

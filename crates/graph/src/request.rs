@@ -68,10 +68,11 @@ pub struct Request<P> {
     /// Descriptions of the textures, buffers and samplers that the host hands over, each under the
     /// name of an input of the loaded document ([`Graph::inputs`](crate::Graph::inputs)).
     pub imports: BTreeMap<String, Import>,
-    /// Number of items that growing buffers (with `grow`) need, or of layers that growing textures
-    /// need, by full name of the material ([`Resource::name`](crate::Resource::name)). Each is made
-    /// at least that large, but not larger than its `max`. To keep grown sizes when a graph is
-    /// loaded again, pass the result of [`Plan::grown`].
+    /// Number of [items](crate#terms) that growing buffers (with `grow`) need, or of layers that
+    /// growing textures need, by [full name](crate#terms) of the material
+    /// ([`Resource::name`](crate::Resource::name)). Each is made at least that large, but not
+    /// larger than its `max`. To keep grown sizes when a graph is loaded again, pass the result of
+    /// [`Plan::grown`].
     ///
     /// [`Plan::grown`]: crate::Plan::grown
     pub grown: BTreeMap<String, u64>,
@@ -140,7 +141,7 @@ impl<'a> PlanRequest<'a> {
         self
     }
 
-    /// Adds a capture ([`captures`](Request::captures)).
+    /// Adds a [capture](crate#terms) ([`captures`](Request::captures)).
     #[must_use]
     pub fn with_capture(mut self, capture: Capture) -> Self {
         self.captures.push(capture);
@@ -195,19 +196,36 @@ impl<P> Request<P> {
 /// A material (texture or buffer) whose content is to be read back after a frame, as it is at the
 /// end of the frame or after one of its passes.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
 pub struct Capture {
-    /// Full name of a material ([`Resource::name`](crate::Resource::name)), such as `left.depth`
-    /// for the output `depth` of the include `left`, or a part of one, such as `maps[2]`. Without
-    /// `after` also the name of an output; with `after` also the name of a provided buffer.
+    /// [Full name](crate#terms) of a material ([`Resource::name`](crate::Resource::name)), such as
+    /// `left.depth` for the output `depth` of the [include](crate#terms) `left`, or a part of one,
+    /// such as `maps[2]`. Without `after` also the name of an output; with `after` also the name of
+    /// a provided buffer.
     pub material: String,
-    /// Full name of the pass after which the content is captured, as in
+    /// [Full name](crate#terms) of the pass after which the content is captured, as in
     /// [`PassSummary::name`](crate::PassSummary::name); `None` captures it at the end of the frame.
     pub after: Option<String>,
 }
 
 impl Capture {
+    /// Creates the capture of a [`material`](Self::material) at the end of the frame.
+    pub fn new(material: impl Into<String>) -> Self {
+        Self {
+            material: material.into(),
+            after: None,
+        }
+    }
+
+    /// Sets the pass [`after`](Self::after) which the content is captured.
+    #[must_use]
+    pub fn with_after(mut self, pass: impl Into<String>) -> Self {
+        self.after = Some(pass.into());
+        self
+    }
+
     /// Returns the name under which the content is read back: `material`, or `material@pass` for a
-    /// capture after a pass.
+    /// [capture](crate#terms) after a pass.
     pub fn name(&self) -> String {
         match &self.after {
             Some(pass) => format!("{}@{pass}", self.material),

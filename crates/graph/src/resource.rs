@@ -25,10 +25,10 @@ impl ResourceId {
 #[derive(Clone, Debug)]
 pub struct Resource {
     /// Full name of the resource: the name by which the loaded document knows it, `left.depth` for
-    /// the output `depth` of the include `left`. A material that an included document keeps to
-    /// itself has the names of the includes and groups around it in front: `gbuffer.scratch`. An
-    /// include without a name counts by the name of its file. The content of the frame before has
-    /// `.previous` behind the name.
+    /// the output `depth` of the [include](crate#terms) `left`. A material that an included
+    /// document keeps to itself has the names of the includes and groups around it in front:
+    /// `gbuffer.scratch`. An include without a name counts by the name of its file. The content of
+    /// the frame before has `.previous` behind the name.
     pub name: String,
     /// Place where a document declares the resource. `None` for a resource that no document
     /// declares, such as one that the host's provider describes ([`Describe`](crate::Describe)) or
@@ -38,8 +38,8 @@ pub struct Resource {
     pub kind: ResourceKind,
     /// Origin of the resource's content: the graph, the document, the host, or the frame before.
     pub origin: Origin,
-    /// Growth of the number of items of a buffer, or of layers of a texture, between frames (`grow`
-    /// in the document); `None` if the number is fixed.
+    /// Growth of the number of [items](crate#terms) of a buffer, or of layers of a texture, between
+    /// frames (`grow` in the document); `None` if the number is fixed.
     pub growth: Option<Growth>,
     /// True if the resource's content stays from frame to frame until a pass overwrites it (`keep:
     /// true` in the document).
@@ -90,9 +90,10 @@ pub enum ResourceKind {
     /// A buffer that the host's provider makes, such as the scene's indices or the camera
     /// ([`Describe`](crate::Describe)).
     Provided(Provided),
-    /// An acceleration structure, for ray queries, that the host's provider makes.
+    /// An acceleration structure, for ray queries, that the host's [provider](crate#terms) makes.
     AccelerationStructure,
-    /// Work for the CPU that the host's provider makes.
+    /// Work for the CPU that the host's [provider](crate#terms) makes, called by a
+    /// [`CpuCall`](crate::step::CpuCall).
     CpuWork,
     /// The uniform buffer `frame`, which is filled before each frame: index, seconds and flags
     /// ([`FRAME_BYTES`]).
@@ -233,16 +234,17 @@ pub struct Buffer {
     pub content: Option<Arc<[u8]>>,
 }
 
-/// Rule by which a buffer gets more items, or a texture more layers, in later frames (`grow` in
-/// documents). If `counter` tells that a frame needed more than there are, the executor, which runs
-/// the plan on a device, replaces the resource by one with the needed number and a quarter more.
-/// Its content is lost unless it has `keep`.
+/// Rule by which a buffer gets more [items](crate#terms), or a texture more layers, in later frames
+/// (`grow` in documents). If `counter` tells that a frame needed more than there are, the executor,
+/// which runs the plan on a device, replaces the resource by one with the needed number and a
+/// quarter more. Its content is lost unless it has `keep`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Growth {
-    /// Buffer, or item of a buffer, whose first `u32` holds after a frame the number of items or
-    /// layers that the frame would have needed.
+    /// Buffer, or item of a buffer, whose first `u32` holds after a frame the number of
+    /// [items](crate#terms) or layers that the frame would have needed.
     pub counter: Target,
-    /// Greatest number of items or layers, which the growing buffer or texture never exceeds.
+    /// Greatest number of [items](crate#terms) or layers, which the growing buffer or texture never
+    /// exceeds.
     pub max: u64,
 }
 
@@ -258,7 +260,8 @@ pub struct Sampler {
 }
 
 /// Part of a texture or buffer: a range of mips and layers of a texture (slices, if it is 3D), or a
-/// range of items of a buffer. The items are in the field `layers`. Ends of ranges are excluded.
+/// range of [items](crate#terms) of a buffer. The items are in the field `layers`. Ends of ranges
+/// are excluded.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SubresourceRange {
     /// Range of a texture's mip levels, counted from 0, the end excluded; `0..1` for a buffer.
@@ -295,8 +298,8 @@ impl SubresourceRange {
         self.mips.len() == 1 && self.layers.len() == 1
     }
 
-    /// Returns the range of items, the end excluded, if this is a part of a buffer; `None` if it is
-    /// the whole buffer. Call it for buffers only.
+    /// Returns the range of [items](crate#terms), the end excluded, if this is a part of a buffer;
+    /// `None` if it is the whole buffer. Call it for buffers only.
     pub fn items(&self) -> Option<Range<u32>> {
         (*self != Self::WHOLE).then(|| self.layers.clone())
     }
@@ -316,6 +319,6 @@ impl SubresourceRange {
 pub struct Target {
     /// Id of the resource that is meant, whole or in part.
     pub id: ResourceId,
-    /// Mips and layers of the texture, or items of the buffer, that are meant.
+    /// Mips and layers of the texture, or [items](crate#terms) of the buffer, that are meant.
     pub part: SubresourceRange,
 }

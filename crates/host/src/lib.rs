@@ -35,9 +35,10 @@
 //! # }
 //! ```
 //!
-//! The names that a host needs first stand here; all others are in the modules. Matrices and
-//! vectors cross as arrays, whatever library for them the program has: vectors by
-//! `[x, y, z].into()`, matrices by [`matrix`] and [`transform`].
+//! The names that a host needs first are re-exported here; all others are in the modules. A program
+//! with another library for matrices and vectors hands them over as arrays: vectors by `[x, y,
+//! z].into()`, matrices by [`matrix`] and [`transform`]. [`graph`](skiagraph_graph#terms) and
+//! [`passes`](skiagraph_passes#terms) explain the terms: document, plan, provider, preset.
 
 pub use glam;
 pub use naga;
@@ -55,8 +56,8 @@ pub use skiagraph_passes::{
     EmbeddedSources, Eye, SceneProvider, SceneView, load_unit_visibility, presets, registry,
 };
 
-/// Returns a matrix of four columns, as WGSL and glam have them, for
-/// [`Eye::new`](skiagraph_passes::Eye::new).
+/// Returns the matrix with these four columns, for [`Eye::new`](skiagraph_passes::Eye::new). It
+/// multiplies column vectors, the convention of WGSL and glam: a translation is in the last column.
 ///
 /// ```
 /// let [x, y, z] = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
@@ -67,9 +68,10 @@ pub fn matrix(columns: [[f64; 4]; 4]) -> glam::DMat4 {
     glam::DMat4::from_cols_array_2d(&columns)
 }
 
-/// Returns the affine map of a matrix of four columns, for
-/// [`SceneProvider::set_transforms`](skiagraph_passes::SceneProvider::set_transforms). The last row
-/// of the matrix must be 0, 0, 0, 1; it is not looked at.
+/// Returns the affine map of the matrix with these four columns, for
+/// [`SceneProvider::set_transforms`](skiagraph_passes::SceneProvider::set_transforms). The matrix
+/// multiplies column vectors: a translation is in the last column. Its last row must be 0, 0, 0, 1,
+/// and is ignored.
 ///
 /// ```
 /// let [x, y, z] = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];

@@ -11,8 +11,8 @@ use std::collections::HashMap;
 pub struct MaterialRecord {
     /// Base colour: linear red, green and blue. Shaders multiply it by the texture.
     pub base_color: [f32; 3],
-    /// Index in the buffer `scene.texels` of the texture's first texel; the others follow row by
-    /// row from the top left. 0 if the material has no texture.
+    /// Index in the buffer `scene.texels` of the texture's first texel, at the top left; the rest
+    /// of the texture follows row by row. 0 if the material has no texture.
     pub first_texel: u32,
     /// Width and height of the texture in texels; both 0 if the material has no texture.
     pub size: [u32; 2],
@@ -21,23 +21,22 @@ pub struct MaterialRecord {
 }
 
 /// All textures in one buffer.
+#[derive(Clone, Default)]
 pub(crate) struct Atlas {
     pub records: Vec<MaterialRecord>,
     pub texels: Vec<u32>,
+    /// First texel of each texture.
+    places: HashMap<SourceKey, u32>,
 }
 
 impl Atlas {
-    /// Packs the materials of a mesh, and reads each texture once.
+    /// Packs those materials of a mesh that came behind the packed ones, and reads each texture
+    /// once.
     ///
     /// # Errors
     /// [`Error::Texture`] for a texture that cannot be read.
-    pub fn new(surfaces: &Surfaces) -> Result<Self, Error> {
-        let mut atlas = Self {
-            records: Vec::new(),
-            texels: Vec::new(),
-        };
-        let mut places: HashMap<SourceKey, u32> = HashMap::new();
-        for material in &surfaces.materials {
+    pub fn append(&mut self, surfaces: &Surfaces) -> Result<(), Error> {
+        for material in &surfaces.materials[self.records.len()..] {
             let mut record = MaterialRecord {
                 base_color: material.base_color,
                 ..MaterialRecord::default()
@@ -46,17 +45,17 @@ impl Atlas {
                 let read = texture.texels();
                 let texels = read.map_err(|why| Error::Texture(why.to_owned()))?;
                 let key = texture.source.key();
-                record.first_texel = *places.entry(key).or_insert_with(|| {
-                    let first = atlas.texels.len() as u32;
+                record.first_texel = *self.places.entry(key).or_insert_with(|| {
+                    let first = self.texels.len() as u32;
                     let words = texels.rgba.iter().copied().map(u32::from_le_bytes);
-                    atlas.texels.extend(words);
+                    self.texels.extend(words);
                     first
                 });
                 record.size = texels.size;
                 record.wrap = texture.wrap.map(|wrap| wrap as u32);
             }
-            atlas.records.push(record);
+            self.records.push(record);
         }
-        Ok(atlas)
+        Ok(())
     }
 }

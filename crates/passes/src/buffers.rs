@@ -34,6 +34,22 @@ pub(crate) struct Buffers {
     pub keeps_gaps: bool,
     /// Bytes that were brought to the device so far.
     pub work: Work,
+    recorded: Recorded,
+}
+
+/// Copies of buffers, and kernels that write them, which are submitted together. A clone has none
+/// of its own: it shares the buffers.
+#[derive(Default)]
+struct Recorded {
+    encoder: Option<wgpu::CommandEncoder>,
+    /// Names of the buffers.
+    names: Vec<String>,
+}
+
+impl Clone for Recorded {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
 }
 
 /// Items that a patch has written.
@@ -91,20 +107,31 @@ impl Buffers {
         let items = if items.is_empty() { &dummy } else { items };
         let content: &[u8] = bytemuck::cast_slice(items);
         let bytes = content.len() as u64;
-        let limit = binding_limit(on.device);
-        if bytes > limit {
-            return Err(Error::TooLarge {
-                name: name.to_owned(),
-                bytes,
-                limit,
-            });
-        }
+        check_size(name, bytes, binding_limit(&on.device.limits()))?;
         let buffer = create(name, bytes, on.device);
         // Nothing that was encoded reads it yet.
         on.queue.write_buffer(&buffer, 0, content);
         self.work.uploaded += bytes;
         self.hold(name, buffer, version);
         Ok(())
+    }
+
+    /// Submits what was recorded.
+    ///
+    /// # Errors
+    /// If the device refuses them; the buffers are then made anew when they are asked for.
+    pub fn submit(&mut self, on: On) -> Result<(), Error> {
+        let Recorded { encoder, names } = std::mem::take(&mut self.recorded);
+        let Some(encoder) = encoder else {
+            return Ok(());
+        };
+        match refused(on.device, || on.queue.submit([encoder.finish()])) {
+            Err(why) => {
+                names.iter().for_each(|name| drop(self.held.remove(name)));
+                Err(Error::Copies { names, why })
+            }
+            Ok(_) => Ok(()),
+        }
     }
 
     /// Keeps a buffer as the last one of that name.
@@ -171,16 +198,60 @@ impl Buffers {
             self.make(name, &all, version, on)?;
             return Ok(Patched::All);
         };
-        let buffer = create(name, known.size(), on.device);
-        let mut encoder = on.device.create_command_encoder(&Default::default());
-        encoder.copy_buffer_to_buffer(&known, 0, &buffer, 0, known.size());
         let mut content = Vec::with_capacity(written);
         for range in &ranges {
             items(range.clone(), &mut content);
         }
+        self.succeed(name, &known, (count, &ranges, &content), version, on);
+        Ok(Patched::Some)
+    }
+
+    /// Makes the buffer of that name with these items, of which the first ones are those of the one
+    /// that there is.
+    pub fn extend<T: bytemuck::NoUninit + bytemuck::Zeroable>(
+        &mut self,
+        name: &str,
+        items: &[T],
+        version: u64,
+        on: On,
+    ) -> Result<(), Error> {
+        let known = self.last(name).map(|(buffer, _)| buffer.clone());
+        // One item may stand for none.
+        let known = known.map(|known| (known.size() as usize / size_of::<T>(), known));
+        match known.filter(|(there, _)| *there > 1 && *there <= items.len()) {
+            Some((there, _)) if there == items.len() => self.still_hold(name, version),
+            Some((there, known)) => {
+                check_size(
+                    name,
+                    size_of_val(items) as u64,
+                    binding_limit(&on.device.limits()),
+                )?;
+                let (range, content) = (there..items.len(), &items[there..]);
+                let changed = (items.len(), std::slice::from_ref(&range), content);
+                self.succeed(name, &known, changed, version, on);
+            }
+            None => return self.make(name, items, version, on),
+        }
+        Ok(())
+    }
+
+    /// Makes the buffer that follows `known`: of `count` items, of which `content` has those in
+    /// `ranges`.
+    fn succeed<T: bytemuck::NoUninit>(
+        &mut self,
+        name: &str,
+        known: &wgpu::Buffer,
+        (count, ranges, content): (usize, &[Range<usize>], &[T]),
+        version: u64,
+        on: On,
+    ) {
+        let stride = size_of::<T>();
+        let buffer = create(name, (count * stride) as u64, on.device);
+        let encoder = self.record(name, on);
+        encoder.copy_buffer_to_buffer(known, 0, &buffer, 0, known.size());
         let staging = on.device.create_buffer_init(&BufferInitDescriptor {
             label: Some("changed items"),
-            contents: bytemuck::cast_slice(&content),
+            contents: bytemuck::cast_slice(content),
             usage: wgpu::BufferUsages::COPY_SRC,
         });
         let mut from = 0;
@@ -190,10 +261,19 @@ impl Buffers {
             from += size;
         }
         self.work.uploaded += from;
-        on.queue.submit([encoder.finish()]);
         self.work.copied += known.size();
         self.hold(name, buffer, version);
-        Ok(Patched::Some)
+    }
+
+    /// The encoder of what [`submit`](Self::submit) submits, of which some writes the buffer of
+    /// that name.
+    pub fn record(&mut self, name: &str, on: On) -> &mut wgpu::CommandEncoder {
+        self.recorded.names.push(name.to_owned());
+        self.recorded.encoder.get_or_insert_with(|| {
+            let label = Some("changed items");
+            let begun = wgpu::CommandEncoderDescriptor { label };
+            on.device.create_command_encoder(&begun)
+        })
     }
 
     /// Drops what was made of that name.
@@ -209,9 +289,8 @@ impl Buffers {
             return Some(known);
         }
         let buffer = create(name, known.size(), on.device);
-        let mut encoder = on.device.create_command_encoder(&Default::default());
+        let encoder = self.record(name, on);
         encoder.copy_buffer_to_buffer(&known, 0, &buffer, 0, known.size());
-        on.queue.submit([encoder.finish()]);
         self.work.copied += known.size();
         self.hold(name, buffer.clone(), version);
         Some(buffer)
@@ -235,6 +314,19 @@ fn joined(ranges: &[Range<usize>], gap: usize) -> Vec<Range<usize>> {
         }
     }
     joined
+}
+
+/// Does something with a device, or returns why the device refuses it, if that is known at once: on
+/// native platforms it is.
+pub(crate) fn refused<T>(device: &wgpu::Device, act: impl FnOnce() -> T) -> Result<T, String> {
+    let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
+    let done = act();
+    let mut told = std::pin::pin!(scope.pop());
+    let mut context = std::task::Context::from_waker(std::task::Waker::noop());
+    match told.as_mut().poll(&mut context) {
+        std::task::Poll::Ready(Some(why)) => Err(why.to_string()),
+        _ => Ok(done),
+    }
 }
 
 /// Makes a buffer as graphs and later contents need it.
@@ -273,9 +365,20 @@ fn usage_of(name: &str, device: &wgpu::Device) -> wgpu::BufferUsages {
 }
 
 /// The most bytes that a storage buffer can have and be bound whole.
-pub(crate) fn binding_limit(device: &wgpu::Device) -> u64 {
-    let limits = device.limits();
+pub(crate) fn binding_limit(limits: &wgpu::Limits) -> u64 {
     limits
         .max_buffer_size
         .min(limits.max_storage_buffer_binding_size)
+}
+
+/// Refuses a buffer of more bytes than the limit.
+pub(crate) fn check_size(name: &str, bytes: u64, limit: u64) -> Result<(), Error> {
+    if bytes <= limit {
+        return Ok(());
+    }
+    Err(Error::TooLarge {
+        name: name.to_owned(),
+        bytes,
+        limit,
+    })
 }

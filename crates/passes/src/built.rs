@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-/// Record of the builds of one resource by a [`SceneProvider`](crate::SceneProvider). It describes
-/// the last of them.
+/// Record of how a [`SceneProvider`](crate::SceneProvider) has built one resource: the kind and
+/// time of the last build, and the number of all builds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Built {
@@ -29,26 +29,29 @@ pub enum How {
 }
 
 /// Work that a [`SceneProvider`](crate::SceneProvider) has done since it was created, by counters
-/// that only grow. The difference between two frames is the work of one: all of it is 0 for a frame
-/// in which nothing moves.
+/// that only grow. The work of one frame is the difference of two values ([`since`](Self::since));
+/// it is 0 for a frame in which nothing moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Work {
     /// Number of bytes that the CPU has written to buffers of the GPU.
     pub uploaded: u64,
-    /// Number of bytes that the GPU has copied from a buffer to its successor, of which only some
-    /// items are other.
+    /// Number of bytes that the GPU has copied from a buffer into the new one that replaces it,
+    /// when only some of its items have changed.
     pub copied: u64,
-    /// Number of positions that were moved.
+    /// Number of positions in the parts of the mesh (or in the whole mesh, if it has no parts) that
+    /// were moved, deformed or added.
     pub moved: u64,
-    /// Number of nodes of hierarchies whose boxes were fitted or built.
+    /// Number of nodes of bounding-volume hierarchies whose boxes were fitted or built.
     pub nodes: u64,
-    /// Number of positions that the boxes of lights were laid around.
+    /// Number of positions that were visited to fit the light space of a light (the space of its
+    /// shadow map) around the mesh.
     pub laid: u64,
 }
 
 impl Work {
-    /// Returns the work that was done after `before`, an earlier value of the same provider.
+    /// Returns the work that was done since `before`, which is an earlier value of the same
+    /// provider's [`work`](crate::SceneProvider::work).
     pub fn since(self, before: Self) -> Self {
         Self {
             uploaded: self.uploaded - before.uploaded,

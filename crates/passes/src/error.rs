@@ -13,8 +13,8 @@ pub enum Error {
     Unknown {
         /// Name that was requested.
         name: String,
-        /// Names of the resources that every provider has, without those of single lights and their
-        /// lists.
+        /// Names of the resources that every provider has; `lights`, `light_areas` and their items,
+        /// such as `lights[2]`, are not listed.
         known: Vec<String>,
     },
     /// The mesh has more triangles than an acceleration structure of the device holds, so the
@@ -119,21 +119,22 @@ pub enum Error {
         /// Position or normal that was given.
         value: glam::Vec3,
     },
-    /// Transforms were set with
-    /// [`SceneProvider::set_transforms`](crate::SceneProvider::set_transforms), but the mesh was
-    /// not given in parts.
+    /// The call needs a mesh in parts, but the mesh of the provider was not given in parts
+    /// ([`SceneProvider::set_parts`](crate::SceneProvider::set_parts),
+    /// [`from_parts`](crate::SceneProvider::from_parts)).
     #[error(
         "the provider's mesh has no parts to be moved: make it with `SceneProvider::from_parts`, \
          or give it parts with `set_parts`"
     )]
     NoParts,
-    /// A part was named that the mesh does not have (any more).
+    /// The mesh has no part with the given handle: the part was removed, or belongs to another
+    /// mesh.
     #[error(
         "the mesh has no part {0:?}: it was removed, or is of a mesh that was replaced; \
          `SceneProvider::parts` lists those that there are"
     )]
     NoPart(
-        /// Handle of the part.
+        /// Handle that was given.
         PartId,
     ),
     /// A part was said to be rewritten whose vertices are in no buffer of the host.
@@ -194,8 +195,20 @@ pub enum Error {
     /// number of transforms is not the number of parts.
     #[error(transparent)]
     Move(#[from] skiagraph_scene::MoveError),
+    /// The device has refused to copy what has not changed into the next buffers of resources, for
+    /// example because it has no memory for them.
+    #[error("{} could not be copied: {why}", names.join(", "))]
+    Copies {
+        /// Names of the resources.
+        names: Vec<String>,
+        /// Reason that wgpu gives.
+        why: String,
+    },
     /// A resource needs a larger buffer than the device can bind.
-    #[error("`{name}` needs a buffer of {bytes} bytes, but the device binds at most {limit}")]
+    #[error(
+        "`{name}` needs a buffer of {bytes} bytes, but the device binds at most {limit}: the \
+         smaller of its limits `max_buffer_size` and `max_storage_buffer_binding_size`"
+    )]
     TooLarge {
         /// Name of the resource, such as `scene.positions`.
         name: String,

@@ -60,8 +60,9 @@ pub enum EyeError {
         far: f64,
     },
     /// The plane that this [`Depth`] takes for the near one is not the nearer one, or is not before
-    /// the eye. It is returned for perspective cameras alone: the planes of an orthographic camera
-    /// may lie behind it, and with the wrong `Depth` it looks the other way without an error.
+    /// the eye. Only perspective cameras are checked: the planes of an orthographic camera may lie
+    /// behind the eye, so that a wrong `Depth` gives a camera that looks in the opposite direction,
+    /// without an error.
     #[error("the depth of the projection is not {0:?}: its near plane is not before the eye")]
     Depth(Depth),
 }

@@ -3,11 +3,12 @@
 
 use crate::{
     adjacencies::Adjacencies,
+    buffers::check_size,
     built::{How, Work},
     error::Error,
     hierarchies::{Hierarchies, Tree},
     host_buffers::{HostMesh, HostWrite},
-    names::next_version,
+    names::{BVH_NODES, INDICES, NORMALS, POSITIONS, next_version},
     outlines::Outlines,
     part::{HostPart, Part, placed},
     parts::{Free, PartId, Room},
@@ -23,6 +24,15 @@ use std::{collections::BTreeMap, ops::Range, sync::Arc};
 
 /// Number of ranges of cleared triangles that are kept apart.
 const CLEARED: usize = 256;
+
+/// Buffers that grow with a [`Room`], each with the bytes of one of its
+/// [numbers](Room::numbers): two nodes of the top level for a part.
+const GROWING: [(&str, u64); 4] = [
+    (BVH_NODES, 2 * size_of::<BvhNode>() as u64),
+    (POSITIONS, 16),
+    (NORMALS, 16),
+    (INDICES, 12),
+];
 
 /// Pieces of a mesh: its parts, and all that is in none of them. A mesh without parts is one piece.
 #[derive(Clone, Default)]
@@ -50,6 +60,8 @@ pub(crate) struct Geometry {
     triangles: Free,
     /// All room that was asked for.
     room: Room,
+    /// The most bytes of a buffer that the device binds, once that is known.
+    pub limit: Option<u64>,
     bvh: Option<Kept>,
     hierarchies: Hierarchies,
     outlines: Outlines,
@@ -161,8 +173,14 @@ impl Geometry {
     pub fn replaced_by(&self, other: Self) -> Self {
         Self {
             work: self.work,
+            limit: self.limit,
             ..other
         }
+    }
+
+    /// True for a mesh in parts.
+    pub fn is_in_parts(&self) -> bool {
+        self.first.is_some()
     }
 
     /// True if parts are in spaces of their own and have no places yet.
@@ -313,13 +331,28 @@ impl Geometry {
         true
     }
 
+    /// The numbers of the items that a mesh in parts has, in the order of [`GROWING`].
+    fn numbers(&self, mesh: &Mesh) -> [usize; 4] {
+        [
+            self.pieces.len() + self.room.parts,
+            mesh.positions.len(),
+            mesh.normals.len(),
+            mesh.triangles.len(),
+        ]
+    }
+
     /// Makes room for parts in the scene's mesh, and in the hierarchy over it.
     ///
     /// # Errors
-    /// [`Error::NoParts`].
+    /// [`Error::NoParts`], [`Error::TooLarge`].
     pub fn reserve(&mut self, room: Room, scene: &mut Arc<Scene>) -> Result<(), Error> {
         if self.first.is_none() {
             return Err(Error::NoParts);
+        }
+        let numbers = self.numbers(&scene.mesh).into_iter().zip(room.numbers());
+        for ((there, more), (name, bytes)) in numbers.zip(GROWING) {
+            let bytes = bytes.saturating_mul(there.saturating_add(more) as u64);
+            check_size(name, bytes, self.limit.unwrap_or(u64::MAX))?;
         }
         let mesh = &mut Arc::make_mut(scene).mesh;
         // Triangles that no part has yet have a corner, and a normal.
@@ -348,7 +381,7 @@ impl Geometry {
     /// Adds a part to the scene's mesh, which grows if it has no room for it.
     ///
     /// # Errors
-    /// [`Error::NoParts`], [`Error::Move`].
+    /// [`Error::NoParts`], [`Error::Move`], [`Error::TooLarge`].
     pub fn add(
         &mut self,
         mesh: &Mesh,
@@ -446,15 +479,14 @@ impl Geometry {
             && needed.normals <= self.normals.longest()
             && needed.triangles <= self.triangles.longest();
         if !has_room {
-            let mesh = &scene.mesh;
-            let more = |needed: usize, there: usize| needed.max(there / 2);
-            let room = Room {
-                parts: 1 + self.pieces.len() / 2,
-                positions: more(needed.positions, mesh.positions.len()),
-                normals: more(needed.normals, mesh.normals.len()),
-                triangles: more(needed.triangles, mesh.triangles.len()),
-            };
-            self.reserve(room, scene)?;
+            let there = self.numbers(&scene.mesh);
+            let most = GROWING.map(|(_, bytes)| self.limit.map(|limit| (limit / bytes) as usize));
+            let needed = needed.numbers();
+            let more = std::array::from_fn(|at| {
+                let left = most[at].map_or(usize::MAX, |most| most.saturating_sub(there[at]));
+                needed[at].max((there[at] / 2).min(left))
+            });
+            self.reserve(Room::from_numbers(more), scene)?;
         }
         let mut take = |free: fn(&mut Self) -> &mut Free, count: usize| free(self).take(count);
         let at = PartPlace {
@@ -570,9 +602,14 @@ impl Geometry {
         self.cleared.push((triangles, next_version()));
     }
 
+    /// True if the mesh was given its items after that version.
+    pub fn is_begun_after(&self, version: u64) -> bool {
+        version < self.begun
+    }
+
     /// The ranges of positions that are others than in a version of the shape.
     pub fn positions_since(&self, version: u64, mesh: &Mesh) -> Vec<Range<usize>> {
-        if version < self.begun {
+        if self.is_begun_after(version) {
             return all(mesh.positions.len());
         }
         let moved = self.moved_here(version);
@@ -581,7 +618,7 @@ impl Geometry {
 
     /// The ranges of normals that are others than in a version of the shape.
     pub fn normals_since(&self, version: u64, mesh: &Mesh) -> Vec<Range<usize>> {
-        if version < self.begun {
+        if self.is_begun_after(version) {
             return all(mesh.normals.len());
         }
         let moved = self.moved_here(version);
@@ -596,7 +633,7 @@ impl Geometry {
 
     /// The ranges of triangles that have other corners than in a version of the winding.
     pub fn triangles_since(&self, version: u64, mesh: &Mesh) -> Vec<Range<usize>> {
-        if version < self.begun {
+        if self.is_begun_after(version) {
             return all(mesh.triangles.len());
         }
         let turned = self.pieces.iter().filter(|piece| piece.turned > version);

@@ -3,8 +3,9 @@
 use skiagraph_scene::{Mesh, Movable};
 use std::ops::Range;
 
-/// Handle of a part of a provider's mesh: of [`SceneProvider::add_part`], or in the list of
-/// [`SceneProvider::parts`]. It stays the part's own when others are added or removed.
+/// Handle of a part of a provider's mesh, as [`SceneProvider::add_part`] and
+/// [`SceneProvider::parts`] return it. It names the same part after other parts were added or
+/// removed.
 ///
 /// [`SceneProvider::add_part`]: crate::SceneProvider::add_part
 /// [`SceneProvider::parts`]: crate::SceneProvider::parts
@@ -23,35 +24,50 @@ impl PartId {
 }
 
 /// Room in the buffers of a mesh for parts that are added later
-/// ([`SceneProvider::reserve`](crate::SceneProvider::reserve)). Triangles that no part has yet are
-/// drawn, and have no area.
+/// ([`SceneProvider::reserve`](crate::SceneProvider::reserve)). Until a part takes them, the
+/// triangles in this room are drawn, but cover no pixel: they have no area.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Room {
-    /// Number of parts.
+    /// Number of parts that the room is for.
     pub parts: usize,
-    /// Number of positions of all these parts.
+    /// Number of positions of all these parts together.
     pub positions: usize,
-    /// Number of normals: for each part one for each pair of a position and a normal that meet at a
-    /// corner.
+    /// Number of normals of all these parts together. A part has one for each pair of a position
+    /// and a normal that meet at a corner of its triangles.
     pub normals: usize,
-    /// Number of triangles.
+    /// Number of triangles of all these parts together.
     pub triangles: usize,
 }
 
 impl Room {
-    /// Returns the room that so many copies of a mesh need.
+    /// Returns the room that `copies` parts need, each a copy of `mesh`.
     pub fn of_copies(mesh: &Mesh, copies: usize) -> Self {
         Self::of(&Movable::joined(&[mesh]).rest, copies)
     }
 
-    /// Returns the room for the parts of both.
+    /// Returns the room that the parts of both rooms need together.
     pub fn and(self, other: Self) -> Self {
         Self {
-            parts: self.parts + other.parts,
-            positions: self.positions + other.positions,
-            normals: self.normals + other.normals,
-            triangles: self.triangles + other.triangles,
+            parts: self.parts.saturating_add(other.parts),
+            positions: self.positions.saturating_add(other.positions),
+            normals: self.normals.saturating_add(other.normals),
+            triangles: self.triangles.saturating_add(other.triangles),
+        }
+    }
+
+    /// The numbers of parts, positions, normals and triangles.
+    pub(crate) fn numbers(self) -> [usize; 4] {
+        [self.parts, self.positions, self.normals, self.triangles]
+    }
+
+    /// The room of these [numbers](Self::numbers).
+    pub(crate) fn from_numbers([parts, positions, normals, triangles]: [usize; 4]) -> Self {
+        Self {
+            parts,
+            positions,
+            normals,
+            triangles,
         }
     }
 
@@ -59,9 +75,9 @@ impl Room {
     pub(crate) fn of(rest: &Mesh, copies: usize) -> Self {
         Self {
             parts: copies,
-            positions: copies * rest.positions.len(),
-            normals: copies * rest.normals.len(),
-            triangles: copies * rest.triangles.len(),
+            positions: copies.saturating_mul(rest.positions.len()),
+            normals: copies.saturating_mul(rest.normals.len()),
+            triangles: copies.saturating_mul(rest.triangles.len()),
         }
     }
 }

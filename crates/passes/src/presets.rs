@@ -53,7 +53,8 @@ impl Sources for EmbeddedSources {
     }
 }
 
-/// Preset: a shadow method that ships with Skiagraph, as a graph document with a short name.
+/// Preset: a shadow method that ships with Skiagraph, as a graph document (a RON file that
+/// describes the method's passes) with a short name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Preset {
     /// Name of the preset on the command line: the document's file name without `.ron`, such as
@@ -80,11 +81,12 @@ pub fn presets() -> Vec<Preset> {
     presets
 }
 
-/// Loads the document at `path`, a shadow method, with one more output, `unit_visibility`: its
-/// `visibility` in one format, R8Unorm, whatever the method's own is. 1 is lit, 0 in shadow; each
-/// layer of `visibility` has one. It costs one pass over the picture, and none in a plan without
-/// that output ([`PlanRequest::outputs`](skiagraph_graph::PlanRequest)). `sources` must have
-/// `pipelines/shared/unit_visibility.ron`, as [`EmbeddedSources`] has.
+/// Loads the document at `path`, a shadow method, and adds the output `unit_visibility`: the
+/// method's `visibility` as a texture of the format R8Unorm, whatever format the method's own has.
+/// It is the share of the light that arrives at each pixel, 0 in shadow to 1 in full light, and has
+/// as many layers as `visibility`. The conversion costs one pass over the picture, or none in a
+/// plan that does not compute this output ([`PlanRequest::outputs`](skiagraph_graph::PlanRequest)).
+/// `sources` must hold `pipelines/shared/unit_visibility.ron`; [`EmbeddedSources`] does.
 ///
 /// ```
 /// use skiagraph_passes::{EmbeddedSources, load_unit_visibility, registry};
@@ -95,7 +97,7 @@ pub fn presets() -> Vec<Preset> {
 /// ```
 ///
 /// # Errors
-/// Those of [`Graph::load`], and mistakes of a method without a `visibility`.
+/// Those of [`Graph::load`], and an error if the document has no output `visibility`.
 pub fn load_unit_visibility(
     path: &str,
     registry: &Registry,
@@ -110,8 +112,8 @@ pub fn load_unit_visibility(
     )
 }
 
-/// Creates a registry of the standard pass kinds and [`Trace`], with which
-/// [`Graph::load`](skiagraph_graph::Graph::load) reads the presets.
+/// Creates a registry of the [standard](Registry::standard) pass kinds and [`Trace`], which
+/// [`Graph::load`](skiagraph_graph::Graph::load) needs to read the presets.
 pub fn registry() -> Registry {
     let mut registry = Registry::standard();
     registry.register::<Trace>("Trace");

@@ -8,7 +8,7 @@ use crate::{
     eye::Eye,
     geometry::{Change, Geometry, nodes_to_walk},
     hierarchies::Tree,
-    host_buffers::{HostMesh, HostWrite, Kernels, Written},
+    host_buffers::{Bound, HostMesh, HostWrite, Kernels, Written},
     lights,
     names::*,
     parts::{PartId, Room},
@@ -66,7 +66,8 @@ use std::{ops::Range, sync::Arc, time::Instant};
 /// refreshed and encoded for one submission, each with a light, a camera and a mesh of its own.
 /// Setting the same value again changes nothing for an executor that has seen it. Where a few parts
 /// of many have moved, the next buffer gets only those from the CPU; the GPU copies the rest from
-/// the buffer before, in a submission of the provider's own.
+/// the buffer before, in one submission of the provider's own
+/// ([`submit_built`](Provider::submit_built)).
 ///
 /// wgpu cannot bind a buffer of size zero. An array of an empty scene therefore holds one zero
 /// item, and its hierarchy one leaf around a triangle without area, which no ray hits.
@@ -85,14 +86,17 @@ pub struct SceneProvider {
     embree: Option<(Arc<crate::embree::Embree>, u64)>,
     pub(crate) geometry: Geometry,
     kernels: Kernels,
+    /// Materials of the mesh, once they were asked for.
+    atlas: Arc<Atlas>,
     pub(crate) built: Vec<Built>,
 }
 
 impl SceneProvider {
-    /// Creates a provider of `scene` without building any resource. Until
-    /// [`set_view`](Self::set_view), [`set_camera`](Self::set_camera) or [`set_eye`](Self::set_eye)
-    /// is called, the resource `camera` is all zeros. Until [`set_view`](Self::set_view) or
-    /// [`set_light`](Self::set_light) is called, the resource `light` is the scene's default light.
+    /// Creates a provider of `scene` without building any resource; each is built when an executor,
+    /// or [`prepare`](Self::prepare), first needs it. Until [`set_view`](Self::set_view),
+    /// [`set_camera`](Self::set_camera) or [`set_eye`](Self::set_eye) is called, the resource
+    /// `camera` is all zeros. Until [`set_view`](Self::set_view) or [`set_light`](Self::set_light)
+    /// is called, the resource `light` is the scene's default light.
     pub fn new(scene: Arc<Scene>) -> Self {
         let lights = lights::from_scene(&scene);
         Self {
@@ -105,6 +109,7 @@ impl SceneProvider {
             embree: None,
             geometry: Geometry::whole(),
             kernels: Kernels::default(),
+            atlas: Arc::default(),
             built: Vec::new(),
         }
     }
@@ -118,10 +123,10 @@ impl SceneProvider {
         self.clone()
     }
 
-    /// Builds the resources that a plan's passes read and that are missing or out of date, so that
-    /// [`refresh`](skiagraph_gpu::Executor::refresh) has nothing left to build. Passes whose
-    /// results are not needed are left out, and so are resources of a mesh whose parts have no
-    /// transforms yet.
+    /// Builds the resources that the passes of a [`Plan`] read and that are missing or out of date,
+    /// so that [`refresh`](skiagraph_gpu::Executor::refresh) has nothing left to build. Passes
+    /// whose results are not needed are left out, and so are resources of a mesh whose parts have
+    /// no transforms yet.
     ///
     /// # Errors
     /// Those of [`Provider::build`] and [`Provider::build_acceleration_structure`].
@@ -142,7 +147,7 @@ impl SceneProvider {
                 _ => {}
             }
         }
-        Ok(())
+        self.submit_built(device, queue)
     }
 
     /// Lists the resources that this provider has built: an entry for each, in the order of their
@@ -151,7 +156,8 @@ impl SceneProvider {
         &self.built
     }
 
-    /// Returns the work that this provider has done so far, by counters.
+    /// Returns counters of the work that this provider has done so far: bytes uploaded, positions
+    /// moved, nodes fitted.
     pub fn work(&self) -> Work {
         let (uploads, rest) = (self.buffers.work, self.geometry.work);
         Work {
@@ -211,7 +217,7 @@ impl SceneProvider {
     fn upload_hierarchy(&mut self, on: On) -> Result<How, Error> {
         // Beyond some four million triangles the boxes of all leaves exceed what Vulkan promises
         // to bind, and so the smallest leaves are joined.
-        let most = binding_limit(on.device) / size_of::<BvhNode>() as u64;
+        let most = binding_limit(&on.device.limits()) / size_of::<BvhNode>() as u64;
         let (version, known) = (self.version(BVH_NODES), self.buffers.version(BVH_NODES));
         let mesh = &self.scene.mesh;
         let fitted = self.geometry.bvh(mesh, most as usize, version, known);
@@ -276,21 +282,26 @@ impl SceneProvider {
         let Some(buffer) = self.buffers.renew(name, patched, on) else {
             return Ok(());
         };
-        let written = self.host_parts_written((name, &buffer), HostWrite::sorted(writes), on);
-        if written.is_err() {
-            // It has not what its version says.
-            self.buffers.forget(name);
+        match self.bind_host_parts((name, &buffer), HostWrite::sorted(writes), on) {
+            Ok(bound) => {
+                let uploaded = bound.record(self.buffers.record(name, on));
+                self.buffers.work.uploaded += uploaded;
+                Ok(())
+            }
+            Err(error) => {
+                // It has not what its version says.
+                self.buffers.forget(name);
+                Err(error)
+            }
         }
-        self.buffers.work.uploaded += written?;
-        Ok(())
     }
 
-    fn host_parts_written(
+    fn bind_host_parts(
         &mut self,
         (name, buffer): (&str, &wgpu::Buffer),
         writes: Vec<HostWrite>,
         on: On,
-    ) -> Result<u64, Error> {
+    ) -> Result<Bound, Error> {
         let primitives;
         let [positions, indices] = match name {
             POSITIONS => [buffer, buffer].map(Clone::clone),
@@ -314,20 +325,40 @@ impl SceneProvider {
                 }
             }
         };
-        self.kernels.write(written, &writes, on)
+        self.kernels.bind(written, &writes, on.device)
     }
 
     /// Uploads the numbers of those triangles that have other corners than before.
-    fn upload_triangles(&mut self, name: &str, items: &[[u32; 3]], on: On) -> Result<How, Error> {
+    fn upload_triangles<const N: usize>(
+        &mut self,
+        name: &str,
+        items: &[[u32; N]],
+        on: On,
+    ) -> Result<How, Error> {
         let (version, known) = (self.version(name), self.buffers.version(name));
         let mesh = &self.scene.mesh;
         let turned = self
             .geometry
             .triangles_since(known.unwrap_or_default(), mesh);
-        let turned = turned.iter().map(|range| 3 * range.start..3 * range.end);
+        let turned = turned.iter().map(|range| N * range.start..N * range.end);
         let (items, changed) = (items.as_flattened(), turned.collect::<Vec<_>>());
         self.buffers
             .patch_list(name, items, &changed, version, on)?;
+        Ok(How::Made)
+    }
+
+    /// Uploads the items behind those that were there, of a list that only grows.
+    fn upload_appended<T: bytemuck::NoUninit + bytemuck::Zeroable>(
+        &mut self,
+        name: &str,
+        items: &[T],
+        on: On,
+    ) -> Result<How, Error> {
+        let (version, known) = (self.version(name), self.buffers.version(name));
+        if known.is_none_or(|known| self.geometry.is_begun_after(known)) {
+            return self.upload_items(name, items, on);
+        }
+        self.buffers.extend(name, items, version, on)?;
         Ok(How::Made)
     }
 
@@ -375,7 +406,7 @@ impl SceneProvider {
             centre: light.centre,
         };
         // As in the other hierarchy, leaves are joined where there are too many nodes to bind.
-        let most = binding_limit(on.device) / size_of::<LightSpaceNode>() as u64;
+        let most = binding_limit(&on.device.limits()) / size_of::<LightSpaceNode>() as u64;
         let mesh = &self.scene.mesh;
         let tree = self.geometry.light_space(space, mesh, most as usize)?;
         self.upload_tree([LIGHT_SPACE_NODES, LIGHT_SPACE_PRIMITIVES], tree, on)
@@ -391,7 +422,7 @@ impl SceneProvider {
             NORMAL_INDICES => self.upload_triangles(name, &mesh.normal_indices, on),
             ADJACENCY => {
                 let opposite = self.geometry.adjacency(mesh, self.version(name));
-                self.upload_triangles(name, opposite.as_chunks().0, on)
+                self.upload_triangles(name, opposite.as_chunks::<3>().0, on)
             }
             MASKS => {
                 let words = std::mem::take(&mut self.masks);
@@ -399,11 +430,23 @@ impl SceneProvider {
                 self.masks = words;
                 done
             }
-            UVS => self.upload_items(name, &mesh.surfaces.uvs, on),
-            UV_INDICES => self.upload_items(name, mesh.surfaces.uv_indices.as_flattened(), on),
-            MATERIAL_INDICES => self.upload_items(name, &mesh.surfaces.of, on),
-            MATERIALS => self.upload_items(name, &Atlas::new(&mesh.surfaces)?.records, on),
-            TEXELS => self.upload_items(name, &Atlas::new(&mesh.surfaces)?.texels, on),
+            UVS => self.upload_appended(name, &mesh.surfaces.uvs, on),
+            UV_INDICES => self.upload_triangles(name, &mesh.surfaces.uv_indices, on),
+            MATERIAL_INDICES => {
+                self.upload_triangles(name, mesh.surfaces.of.as_chunks::<1>().0, on)
+            }
+            MATERIALS | TEXELS => {
+                Arc::make_mut(&mut self.atlas).append(&mesh.surfaces)?;
+                let atlas = Arc::clone(&self.atlas);
+                if !self.geometry.is_in_parts() {
+                    // No other materials come, so that it is not worth its memory.
+                    self.atlas = Arc::default();
+                }
+                match name {
+                    MATERIALS => self.upload_appended(name, &atlas.records, on),
+                    _ => self.upload_appended(name, &atlas.texels, on),
+                }
+            }
             CAMERA => self.upload_items(name, &[self.versions.eye.now.finite()?.camera], on),
             UNPROJECTION => {
                 self.upload_items(name, &[self.versions.eye.now.finite()?.unprojection], on)
@@ -454,8 +497,8 @@ impl SceneProvider {
         provider
     }
 
-    /// Returns the scene that the provider serves, with the mesh that was set last in its current
-    /// shape.
+    /// Returns the provider's scene. Its mesh is the one that was set last, in its current shape:
+    /// with parts moved and positions deformed.
     pub fn scene(&self) -> &Arc<Scene> {
         &self.scene
     }
@@ -501,25 +544,26 @@ impl SceneProvider {
     }
 
     /// Returns the lights that the resources `lights` and `light_areas` describe: those of
-    /// [`set_lights`](Self::set_lights), if it was called. Otherwise these are all lights of the
-    /// scene in its order (its default light if it has none), or the light of a view alone, if
-    /// [`set_view`](Self::set_view) was given a view whose own light is none of these.
+    /// [`set_lights`](Self::set_lights), if it was called. Otherwise the list has all lights of the
+    /// scene, in the scene's order (its default light if it has none); or only a view's own light,
+    /// if [`set_view`](Self::set_view) was given a view with a light that the scene does not list.
     pub fn lights(&self) -> &[LightKind] {
         &self.versions.lights.now
     }
 
     /// Sets the light that the resources `light` and `light_area` describe;
-    /// [`lights`](Self::lights) stay as they are. A plan depends on the kind of its light: after a
-    /// change of kind, graphs must be planned anew. Until then
-    /// [`refresh`](skiagraph_gpu::Executor::refresh) fails with
+    /// [`lights`](Self::lights) stay as they are. A plan depends on the kind of its light
+    /// (directional, spot or point): after a change of kind, graphs must be planned anew. Until
+    /// then [`refresh`](skiagraph_gpu::Executor::refresh) fails with
     /// [`ExecuteError::OtherThanPlanned`](skiagraph_gpu::ExecuteError::OtherThanPlanned).
     pub fn set_light(&mut self, light: LightKind) {
         self.versions.set_light(light);
     }
 
     /// Sets the lights that the resources `lights` and `light_areas` describe, all at once;
-    /// [`light`](Self::light) stays as it is. They may be others in each frame. What a pass makes
-    /// from `lights[2]` alone is made anew only if that light has changed, or the mesh.
+    /// [`light`](Self::light) stays as it is. The lights may differ from frame to frame. A pass
+    /// with `run: OnChange` that reads `lights[2]` but no other light runs again only if that light
+    /// or the mesh has changed.
     ///
     /// A plan depends on the number of the lights and the kind of each: after a change of these,
     /// graphs that read them must be planned anew. Until then
@@ -541,6 +585,7 @@ impl SceneProvider {
     pub fn set_mesh(&mut self, mesh: Mesh) {
         self.masks = mask_words(&mesh);
         Arc::make_mut(&mut self.scene).mesh = mesh;
+        self.atlas = Arc::default();
         self.geometry = self.geometry.replaced_by(Geometry::whole());
         self.versions.change_mesh();
     }
@@ -593,9 +638,9 @@ impl SceneProvider {
 
     /// Moves each part of the mesh: `maps[n]` takes part number n from its original place, as given
     /// to [`set_parts`](Self::set_parts) or [`from_parts`](Self::from_parts), to its new place in
-    /// world space. Only parts whose map has changed are moved, and equal maps cost nothing. The
-    /// triangles of a part that its map mirrors are wound the other way, as in glTF, so that its
-    /// outside stays outside.
+    /// world space. Only parts whose map has changed are moved, and equal maps cost nothing. If a
+    /// map mirrors its part, the winding of the part's triangles is reversed (the rule of glTF), so
+    /// that the outside stays the front face.
     ///
     /// # Errors
     /// [`Error::NoParts`] if the mesh has no parts; [`Error::Move`] if the number of maps is not
@@ -619,19 +664,23 @@ impl SceneProvider {
     }
 
     /// Returns the handles of the mesh's parts, in the order in which
-    /// [`set_transforms`](Self::set_transforms) takes their maps: those of
-    /// [`set_parts`](Self::set_parts), then those that were added later.
+    /// [`set_transforms`](Self::set_transforms) takes their maps: first the parts that
+    /// [`set_parts`](Self::set_parts) or [`from_parts`](Self::from_parts) was given, then the parts
+    /// that were [added](Self::add_part) later.
     pub fn parts(&self) -> impl Iterator<Item = PartId> {
         self.geometry.parts().iter().copied()
     }
 
     /// Makes room for parts that [`add_part`](Self::add_part) adds. The numbers of positions,
     /// triangles and other items become larger, on which plans depend (see
-    /// [`set_mesh`](Self::set_mesh)): reserve before graphs are planned.
+    /// [`set_mesh`](Self::set_mesh)): reserve before graphs are planned. `limits` are those of the
+    /// device that the provider is used with.
     ///
     /// # Errors
-    /// [`Error::NoParts`] if the mesh has no parts.
-    pub fn reserve(&mut self, room: Room) -> Result<(), Error> {
+    /// [`Error::NoParts`] if the mesh has no parts, [`Error::TooLarge`] if the device cannot bind
+    /// the mesh with that room. The mesh then stays as it was.
+    pub fn reserve(&mut self, room: Room, limits: &wgpu::Limits) -> Result<(), Error> {
+        self.geometry.limit = Some(binding_limit(limits));
         self.geometry.reserve(room, &mut self.scene)?;
         self.masks = mask_words(&self.scene.mesh);
         self.versions.change_mesh();
@@ -639,16 +688,18 @@ impl SceneProvider {
     }
 
     /// Adds a part to a mesh in parts, and returns its handle. `map` takes it from its own space to
-    /// its place in world space. Within the [room](Self::reserve) that there is, only this mesh is
-    /// uploaded and gets a hierarchy, its primitive ids are numbers that no triangle had, or that
-    /// those of removed parts had, and plans stay. Without room the mesh grows by a half, all of it
-    /// is uploaded, and graphs must be planned anew, as after [`set_mesh`](Self::set_mesh). In a
-    /// scene with materials, those of all parts are uploaded, and a graph that reads
-    /// `scene.materials` or `scene.uvs` must be planned anew.
+    /// its place in world space. If it fits into the [room](Self::reserve) that is left, only this
+    /// part is uploaded and gets a hierarchy, plans stay valid, and its triangles get primitive ids
+    /// that are unused or that a removed part had. If it does not fit, the mesh grows by a half,
+    /// all of it is uploaded, and graphs must be planned anew, as after
+    /// [`set_mesh`](Self::set_mesh). In a scene with materials the part's own are uploaded, in a
+    /// scene with masks those of all parts; a graph that reads `scene.materials`, `scene.uvs` or
+    /// `scene.masks` must be planned anew.
     ///
     /// # Errors
     /// [`Error::NoParts`] if the mesh has no parts, [`Error::Move`] for a map that cannot move the
-    /// part. The mesh then stays as it was.
+    /// part, [`Error::TooLarge`] if the mesh must grow and the device cannot bind a larger one. The
+    /// mesh then stays as it was.
     pub fn add_part(&mut self, mesh: &Mesh, map: &DAffine3) -> Result<PartId, Error> {
         let (part, change) = self.geometry.add(mesh, map, &mut self.scene)?;
         self.note_change(change);
@@ -657,9 +708,9 @@ impl SceneProvider {
 
     /// Adds a part whose vertices are in a buffer of the host, as [`add_part`](Self::add_part)
     /// does. Refreshes read the buffer if the part has moved or was
-    /// [rewritten](Self::rewrite_part), by submissions of their own, and write its positions and
-    /// normals for all passes. No frame brings them to the CPU: the light is laid around the mesh's
-    /// bounds, and [`scene`](Self::scene) has the part's positions at rest.
+    /// [rewritten](Self::rewrite_part), and write its positions and normals for all passes. No
+    /// frame brings them to the CPU: the light is laid around the mesh's bounds, and
+    /// [`scene`](Self::scene) has the part's positions at rest.
     ///
     /// The host keeps the buffer, and does not write it but as told there.
     ///
@@ -708,9 +759,10 @@ impl SceneProvider {
         self.kernels.check_bounds(&writes, On { device, queue })
     }
 
-    /// Removes a part. Its triangles have no area from the next
-    /// [`refresh`](skiagraph_gpu::Executor::refresh) on, and their place is for parts that are
-    /// added later. Frames that are encoded show it still.
+    /// Removes a part. From the next [`refresh`](skiagraph_gpu::Executor::refresh) of an executor
+    /// on, the part's triangles have no area, so that they cover no pixel; frames that are already
+    /// encoded still show it. The memory of a part that was added, or [joined](Movable::joined)
+    /// with others, is reused for parts that are added later.
     ///
     /// # Errors
     /// [`Error::NoPart`] for a part that the mesh does not have.
@@ -815,6 +867,15 @@ impl Provider for SceneProvider {
         buffer.map_err(ProviderError::from_error)
     }
 
+    fn submit_built(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+    ) -> Result<(), ProviderError> {
+        let submitted = self.buffers.submit(On { device, queue });
+        submitted.map_err(ProviderError::from_error)
+    }
+
     fn build_acceleration_structure(
         &mut self,
         name: &str,
@@ -834,6 +895,8 @@ impl Provider for SceneProvider {
         let on = On { device, queue };
         let vertices = self.buffer(POSITIONS, on).map_err(why)?;
         let indices = self.buffer(INDICES, on).map_err(why)?;
+        // It is built of what they hold.
+        self.submit_built(device, queue)?;
         let began = Instant::now();
         let of = [&vertices, &indices];
         let tlas = ray_query::build(&self.scene.mesh, of, device, queue).map_err(why)?;

@@ -16,7 +16,8 @@ use skiagraph_graph::{
 pub enum Mode {
     /// The first hit found, in no particular order: enough to know that the ray is blocked.
     Any,
-    /// The hit with the least t.
+    /// The nearest hit: the one with the least t, the distance from the ray's origin in units of
+    /// its direction's length.
     Closest,
 }
 
@@ -33,8 +34,9 @@ pub enum Engine {
     /// A hierarchy for rays that all go towards one directional light; watertight, the same hits as
     /// `Hierarchy`, on every device. Needs `direction: Light`.
     LightSpace,
-    /// Embree 3 on all cores of the CPU, for which the frame waits: its hierarchy and its test of
-    /// triangles, whose rounding is its own. Where the host has it, and runs frames that wait.
+    /// Embree 3, with its own hierarchy, triangle test and rounding, on all cores of the CPU. The
+    /// frame waits for it. Needs the feature `embree` of `skiagraph-passes`, and a host that runs
+    /// frames by `Executor::submit`.
     Embree,
 }
 
@@ -95,8 +97,8 @@ fn hierarchy() -> Chosen<Engine> {
 /// )
 /// ```
 ///
-/// Triangles are two-sided; those without area are never hit, and a masked one only where its mask
-/// is opaque.
+/// docs/authoring.md describes the fields and the layout of the buffers. Triangles are two-sided;
+/// those without area are never hit, and a masked one only where its mask is opaque.
 #[derive(Clone, Debug, Deserialize)]
 #[cfg_attr(
     feature = "schema",

@@ -31,27 +31,28 @@ use skiagraph_scene::{
 pub struct CameraUniform {
     /// Eye position, world space, rounded to f32.
     pub eye: Vec3,
-    /// Distance of the near plane from the eye, along `forward`.
+    /// Distance of the near plane from the eye, along `forward`, in scene units.
     pub near: f32,
-    /// Exact eye position minus `eye`, so that corners far from the origin keep their distance to
-    /// the eye.
+    /// Exact eye position minus `eye`, in scene units, with which shaders compute positions
+    /// relative to the eye without losing detail far from the origin.
     pub eye_low: Vec3,
-    /// Distance of the far plane from the eye, along `forward`.
+    /// Distance of the far plane from the eye, along `forward`, in scene units.
     pub far: f32,
-    /// Unit vector to the right of the image.
+    /// Unit vector to the right of the image, world space.
     pub right: Vec3,
     /// Half the image's width at distance 1 from the eye, in scene units.
     pub half_width: f32,
-    /// Unit vector to the top of the image.
+    /// Unit vector to the top of the image, world space.
     pub up: Vec3,
     /// Half the image's height at distance 1 from the eye, in scene units.
     pub half_height: f32,
-    /// Unit viewing direction, from the eye into the image.
+    /// Unit viewing direction, from the eye into the image, world space.
     pub forward: Vec3,
     /// near / (far − near): clip z (before the division by w) per unit of distance from the far
     /// plane towards the eye. Clip z is 0 at the far plane.
     pub depth_scale: f32,
-    /// Offset of each pixel's ray from the pixel's centre, in pixels, y down; 0 without jitter.
+    /// Offset of each pixel's ray from the pixel's centre, in pixels, x right, y down, within ±0.5;
+    /// 0 without jitter.
     pub jitter: Vec2,
     /// The offset `jitter` in clip space (−1 to 1 across the image), y up; 0 without jitter.
     pub jitter_clip: Vec2,
@@ -89,7 +90,7 @@ pub struct UnprojectionUniform {
     pub origin: Vec3,
     /// 1 if the near plane has depth 1 in the depth buffer, 0 if it has depth 0.
     pub is_reversed: u32,
-    /// Exact eye position minus `origin`.
+    /// Exact eye position minus `origin`, in scene units.
     pub origin_low: Vec3,
     /// Unused filler at the end of the struct.
     pub padding: f32,
@@ -107,8 +108,8 @@ pub struct LightUniform {
     /// −w to w across the map, and z, which is not divided by w, is w / `range`. For a point light
     /// the matrix is 0.
     pub clip_from_relative: Mat4,
-    /// Unit vector towards a directional light; for a spot light, the reverse of its axis; for a
-    /// point light, 0.
+    /// Unit vector, world space: towards a directional light; for a spot light, the reverse of its
+    /// axis; for a point light, 0.
     pub to_light: Vec3,
     /// Upper bound on the distance between any two points of the scene's mesh, in scene units.
     pub max_distance: f32,
@@ -117,20 +118,21 @@ pub struct LightUniform {
     /// detail of a far-off scene.
     pub centre: Vec3,
     /// Largest sum of |matrix entry · coordinate| in the computation of clip x or clip y, over all
-    /// points of the scene's bounding box. It bounds the rounding error of clip x and y, which is a
-    /// share of it. 0 for other lights than directional ones.
+    /// points of the scene's bounding box. The f32 rounding error of clip x and y is proportional
+    /// to it. 0 for spot and point lights.
     pub corner_across: f32,
-    /// World units per unit of the light's clip x, y and z; for a spot light, at the distance
+    /// Scene units per unit of the light's clip x, y and z; for a spot light, at the distance
     /// `range`. For a point light each is `range`.
     pub extent: Vec3,
-    /// The same sum as `corner_across`, for clip z. 0 for other lights than directional ones.
+    /// Largest sum of |matrix entry · coordinate| in the computation of clip z, over the same
+    /// points as for `corner_across`. 0 for spot and point lights.
     pub corner_along: f32,
     /// Position of a spot or point light, world space, rounded to f32; 0 for a directional light.
     pub position: Vec3,
     /// Cosine of the angle between a spot light's axis and the edge of its cone; 0 for other
     /// lights.
     pub edge_cosine: f32,
-    /// Exact light position minus `position`; 0 for a directional light.
+    /// Exact light position minus `position`, in scene units; 0 for a directional light.
     pub position_low: Vec3,
     /// Upper bound on the distance from a spot or point light to any point of the scene, in scene
     /// units; 0 for a directional light.

@@ -47,7 +47,7 @@ impl SceneView {
         }
     }
 
-    /// Creates a view from a [`Camera`], which has the size, under a light.
+    /// Creates a view from a [`Camera`], whose viewport is the view's size, under a light.
     pub fn from_camera(camera: &Camera, light: impl Into<LightKind>) -> Self {
         Self::new(camera.viewport, &Eye::from(camera), light)
     }
@@ -67,7 +67,8 @@ impl SceneView {
         self.light
     }
 
-    /// Sets width and height in pixels. [`refresh`](Self::refresh) changes the plan.
+    /// Sets width and height in pixels. The next [`refresh`](Self::refresh) plans the executor's
+    /// graph for this size.
     pub fn set_size(&mut self, size: [u32; 2]) {
         self.size = size;
     }
@@ -77,14 +78,14 @@ impl SceneView {
         self.eye = *eye;
     }
 
-    /// Sets camera and size to those of a [`Camera`].
+    /// Sets the view's camera and its size from a [`Camera`], whose viewport is the size.
     pub fn set_camera(&mut self, camera: &Camera) {
         self.eye = Eye::from(camera);
         self.size = camera.viewport;
     }
 
-    /// Sets the light. One of another kind needs another plan, as after
-    /// [`SceneProvider::set_light`].
+    /// Sets the light. After a change of its kind (directional, spot, point) graphs must be planned
+    /// anew, as [`SceneProvider::set_light`] says.
     ///
     /// # Errors
     /// [`Error::Light`] for a light that cannot be used; the view then keeps its light.
@@ -95,7 +96,7 @@ impl SceneView {
         Ok(())
     }
 
-    /// Sets camera and light of a provider to those of this view, and returns it.
+    /// Sets the camera and the light of `provider` to this view's, and returns `provider`.
     pub fn apply<'p>(&self, provider: &'p mut SceneProvider) -> &'p mut SceneProvider {
         provider.set_eye(&self.eye);
         provider.set_light(self.light);
@@ -105,7 +106,7 @@ impl SceneView {
     /// Brings an executor up to date with the scene as this view sees it:
     /// [resizes](Executor::resize) it if the size of the view is another one, and
     /// [refreshes](Executor::refresh) it. Call it before [`encode`](Executor::encode); frames that
-    /// are already encoded show what they showed.
+    /// are already encoded keep their content.
     ///
     /// # Errors
     /// Those of [`Executor::resize`] and [`Executor::refresh`].

@@ -86,7 +86,7 @@ pub enum Error {
     OffsetTooLong {
         /// The offset, in scene units.
         length: f64,
-        /// Longest offset for this mesh: a million times the diagonal of its box.
+        /// Longest offset for this mesh, in scene units: a million times the diagonal of its box.
         most: f64,
     },
     /// This text was to be read as an [`OracleMode`](crate::OracleMode), but is neither `exact` nor

@@ -27,6 +27,21 @@
 //! assert_eq!(counts.wrong.total, 0);
 //! # Ok::<(), skiagraph_reference::Error>(())
 //! ```
+//!
+//! # Terms
+//!
+//! - *Primitive*: a triangle of the mesh. Its *id* is its index in
+//!   [`Mesh::triangles`](skiagraph_scene::Mesh::triangles).
+//! - *G-buffer*: the primitive id that each pixel shows, row by row from the top left.
+//! - *Receiver* ([`Receiver`]): the point of a surface that a pixel shows. *Caster*: a triangle
+//!   that may keep the light from it.
+//! - *PFL*: the pixels that face the light ([`Class::faces_light`]). Shares of errors are shares of
+//!   their number.
+//! - *Band*: the indeterminate pixels ([`GroundTruthPixels::indeterminate`]). Errors there are
+//!   excused.
+//! - *Certain*, *uncertain*: a method's own verdict on a pixel, its output [`status`].
+//! - *Light with extent*, *area light*: a sun with an angular diameter, or a lamp with a radius. A
+//!   pixel sees a *share* of it, 0 to 1.
 
 pub mod area;
 pub mod attribution;

@@ -18,8 +18,8 @@ const TIME: &str = "GPU ms of a frame less its G-buffer";
 /// for each method and map size. The time is the GPU time of a frame without its G-buffer, in
 /// milliseconds. The error is the wrong pixels outside the band (the pixels whose answer rounding
 /// decides), in percent of all pixels. Marks of several views show the mean of the views. Runs
-/// whose answers are shares of light, or whose light has an extent, are not drawn. `viewport`
-/// (pixels) limits the chart to one viewport; `None` draws all.
+/// whose answers are [shares of light](skiagraph_compare#terms), or whose light has an extent, are
+/// not drawn. `viewport` (pixels) limits the chart to one viewport; `None` draws all.
 ///
 /// # Errors
 /// If a drawn run has no GPU times.
@@ -224,7 +224,7 @@ pub fn growth(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, Compa
 }
 
 /// Builds the chart of errors over the frames of camera paths: a panel for each folder, path, light
-/// and viewport, and a line for each method and map size. The error is that of [`path_panels`].
+/// and viewport, and a line for each method and map size. The error is defined at [`path_panels`].
 /// `viewport` (pixels) limits the chart to one viewport; `None` draws all.
 ///
 /// # Errors
@@ -257,10 +257,11 @@ pub fn frames_of_paths(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figu
 
 /// Returns a panel for each camera path and light among `runs`, with a series for each run and a
 /// mark for the error of each frame. The error is the percentage of the pixels facing the light
-/// that are wrong outside the band (the pixels whose answer rounding decides); under a light with
-/// an extent it is the root mean square error of the shares of light. Runs of still views are
-/// skipped. All runs must have one viewport. A series is named after its method. The size of its
-/// marks is the index of the run's map size in `maps` (texels), or 0.
+/// that are wrong outside the band (the pixels whose answer rounding decides); under a light [with
+/// an extent](skiagraph_compare#terms) it is the root mean square error of the [shares of
+/// light](skiagraph_compare#terms). Runs of still views are skipped. All runs must have one
+/// viewport. A series is named after its method. The size of its marks is the index of the run's
+/// map size in `maps` (texels), or 0.
 pub fn path_panels<'a>(
     runs: impl Iterator<Item = (&'a Run, &'a Measured)>,
     maps: &[u32],

@@ -26,7 +26,8 @@ pub enum Figure {
     /// Wrong pixels, in percent of the pixels that face the light, both summed over the views.
     /// Pixels whose answer rounding decides (the band) do not count as wrong.
     Wrong,
-    /// Root mean square error of the shares of light, which are 0 to 1, over all views.
+    /// Root mean square error of the [shares of light](skiagraph_compare#terms), which are 0 to 1,
+    /// over all views.
     Rmse,
     /// FLIP error (perceptual difference) of the shaded pictures, 0 to 1, as the mean of the views.
     Flip,
@@ -109,8 +110,9 @@ impl Gate {
         lines
     }
 
-    /// Checks that the limit is of one of these pictures, and of a figure that pictures have. Its
-    /// `method` is the path of a picture, or its file name without the ending.
+    /// Checks that [`method`](Self::method) names one of the pictures `files` (its path, or its
+    /// file name without the ending), and that [`figure`](Self::figure) is one that judged pictures
+    /// have.
     ///
     /// # Errors
     /// Text that names the picture or the figure.
@@ -133,7 +135,7 @@ impl Gate {
 
     /// Returns a line of text for each judged picture that is beyond this limit, which
     /// [`check_pictures`](Self::check_pictures) accepts. Wrong pixels and RMSE are those outside
-    /// the band and attributable.
+    /// the [band](skiagraph_compare#terms) and attributable.
     pub fn picture_failures(&self, judged: &JudgedPictures) -> Vec<String> {
         let facing = judged.pixels.facing_light.max(1) as f64;
         let pictures = judged.pictures.iter().filter(|of| self.is_of(&of.file));

@@ -5,9 +5,9 @@ use skiagraph_compare::records::results::{AreaReference, Run};
 use skiagraph_compare::wording::thousands;
 use skiagraph_reference::Graded;
 
-/// Describes the reference of a light with an extent: its samples per pixel, its standard error,
-/// and the number of pixels in penumbra. `band` is the number of pixels in the band, whose answer
-/// rounding decides.
+/// Describes the [reference](skiagraph_compare#terms) of a light [with an
+/// extent](skiagraph_compare#terms): its samples per pixel, its standard error, and the number of
+/// pixels in penumbra. `band` is the number of pixels in the band, whose answer rounding decides.
 pub fn area_reference(area: &AreaReference, band: u64) -> String {
     format!(
         "the light has an extent: reference of {} samples per pixel, standard error {:.5} (root \
@@ -21,9 +21,10 @@ pub fn area_reference(area: &AreaReference, band: u64) -> String {
     )
 }
 
-/// Returns remarks on the runs whose answers are shares of light, 0 to 1, a line each: the methods
-/// by error under a light with an extent, invalid shares, and the meaning of the colours of error
-/// pictures. Empty if there are no such runs.
+/// Returns remarks on the runs whose answers are [shares of light](skiagraph_compare#terms), 0 to
+/// 1, a line each: the methods by error under a light [with an extent](skiagraph_compare#terms),
+/// invalid shares, and the meaning of the colours of error pictures. Empty if there are no such
+/// runs.
 pub fn graded(runs: &[Run]) -> Vec<String> {
     let mut notes: Vec<String> = ranks(runs).into_iter().collect();
     notes.extend(runs.iter().filter_map(no_shares));

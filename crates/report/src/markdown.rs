@@ -75,9 +75,9 @@ pub fn view(name: &str) -> String {
     format!("\n### {name}\n")
 }
 
-/// Returns the section of one view and viewport in Markdown: the reference's pixel counts, a table
-/// of the runs with measurements, and notes. `runs` are those of this view and viewport; without
-/// runs the text is empty.
+/// Returns the section of one view and viewport in Markdown: the
+/// [reference](skiagraph_compare#terms)'s pixel counts, a table of the runs with measurements, and
+/// notes. `runs` are those of this view and viewport; without runs the text is empty.
 pub fn viewport(results: &Results, runs: &[Run]) -> String {
     let Some(first) = runs.first() else {
         return String::new();

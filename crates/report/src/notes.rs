@@ -156,8 +156,9 @@ pub fn blocked_by(counts: &[(u64, BlockerCounts)]) -> String {
     parts.join(", ")
 }
 
-/// Returns the notes on runs of `results`, a line each: certain but wrong pixels, shares of light,
-/// steady states, costs of camera paths, and missing GPU times if the adapter measures them.
+/// Returns the notes on runs of `results`, a line each: certain but wrong pixels, [shares of
+/// light](skiagraph_compare#terms), steady states, costs of camera paths, and missing GPU times if
+/// the adapter measures them.
 pub fn of_runs(results: &Results, runs: &[Run]) -> Vec<String> {
     let mut notes = certain_wrong(runs);
     notes.extend(graded(runs));

@@ -34,8 +34,9 @@ pub struct Matrix {
     pub viewport: [u32; 2],
     /// A row for each method and a column for each scene and light. Cells show the percentage of
     /// the pixels facing the light that are wrong outside the band (the pixels whose answer
-    /// rounding decides), with a star if there are none, or under a light with an extent the root
-    /// mean square error, and in a second line the milliseconds of a frame.
+    /// rounding decides), with a star if there are none, or under a light [with an
+    /// extent](skiagraph_compare#terms) the root mean square error, and in a second line the
+    /// milliseconds of a frame.
     pub table: Table,
     /// For each column behind the methods, the index of its summary in the list given to
     /// [`Overview::new`].

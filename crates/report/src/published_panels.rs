@@ -49,8 +49,7 @@ pub fn published<'a>(run: &'a Run, quantity: &str) -> Option<&'a Published> {
     figures.find(|figure| figure.quantity == quantity)
 }
 
-/// Grouping of the bars in a panel: by viewport, with a pair of panels for each map size, or the
-/// other way round.
+/// Grouping of the bars in panels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Groups {
     /// A group of bars for each viewport, a pair of panels for each map size.
@@ -129,8 +128,8 @@ pub struct PanelRow<'a> {
     bars: Vec<([u32; 2], Bar<'a>)>,
 }
 
-/// Returns the contents of the pairs of panels that have at least two groups of bars. `bar` returns
-/// the bars of a run; `None` leaves the run out.
+/// Groups the runs of `cells` into pairs of panels, and returns the contents of the pairs that have
+/// at least two groups of bars. `bar` returns the bar of a run; `None` leaves the run out.
 pub fn rows<'a>(
     cells: &'a [Cell<'a>],
     groups: Groups,

@@ -87,9 +87,10 @@ impl<'a> Row<'a> {
         self.runs.len()
     }
 
-    /// Returns the numbers of wrong pixels, summed over the views; a share of light of one half or
-    /// more counts as lit. For a method that reuses results of earlier frames they are means over
-    /// its steady state (the pictures that it repeats), rounded up.
+    /// Returns the numbers of wrong pixels, summed over the views; a [share of
+    /// light](skiagraph_compare#terms) of one half or more counts as lit. For a method that reuses
+    /// results of earlier frames they are means over its steady state (the pictures that it
+    /// repeats), rounded up.
     pub fn wrong(&self) -> Wrong {
         self.runs.iter().fold(Wrong::default(), |sum, (run, of)| {
             let (outside, in_band) = match cycle(of) {
@@ -124,7 +125,8 @@ impl<'a> Row<'a> {
     }
 
     /// True if the visibility of every pixel outside the band (the pixels whose answer rounding
-    /// decides) equals the reference's, also as a share of light.
+    /// decides) equals the [reference](skiagraph_compare#terms)'s, also as a [share of
+    /// light](skiagraph_compare#terms).
     pub fn is_exact(&self) -> bool {
         let is_exact = |(_, of): &(&Run, &Measured)| {
             of.wrong_outside_band() == 0 && of.graded.rmse_outside_band == 0.0
@@ -151,9 +153,9 @@ impl<'a> Row<'a> {
         steps
     }
 
-    /// Returns the root mean square error of the shares of light, 0 to 1, over all views; `None`
-    /// without runs. For a method that reuses results of earlier frames the error of a view is the
-    /// mean over its steady state, the pictures that it repeats.
+    /// Returns the root mean square error of the [shares of light](skiagraph_compare#terms), 0 to
+    /// 1, over all views; `None` without runs. For a method that reuses results of earlier frames
+    /// the error of a view is the mean over its steady state, the pictures that it repeats.
     pub fn rmse(&self) -> Option<f64> {
         let rmse = |of: &Measured| cycle(of).map_or(of.graded.rmse, |cycle| cycle.rmse_mean);
         self.mean(|_, of| Some(rmse(of).powi(2))).map(f64::sqrt)
@@ -165,7 +167,8 @@ impl<'a> Row<'a> {
         self.mean(|_, of| Some(cycle(of).map_or(of.graded.flip, |cycle| cycle.flip_mean)))
     }
 
-    /// True if the light has an extent. Then methods are judged by their shares of light.
+    /// True if the light has an extent. Then methods are judged by their [shares of
+    /// light](skiagraph_compare#terms).
     pub fn is_soft(&self) -> bool {
         self.runs.iter().any(|(run, _)| run.area.is_some())
     }
@@ -290,9 +293,10 @@ impl<'a> Row<'a> {
         bytes.max().unwrap_or_default()
     }
 
-    /// Returns the estimated standard error of the reference's shares of light under a light with
-    /// an extent, as the root mean square over the pixels: the greatest of the views. `None` under
-    /// other lights.
+    /// Returns the estimated standard error of the [reference](skiagraph_compare#terms)'s [shares
+    /// of light](skiagraph_compare#terms) under a light [with an extent](skiagraph_compare#terms),
+    /// as the root mean square over the pixels: the greatest of the views. `None` under other
+    /// lights.
     pub fn reference_error(&self) -> Option<f64> {
         let errors = self.runs.iter().filter_map(|(run, _)| run.area);
         errors.map(|area| area.standard_error_rms).reduce(f64::max)
@@ -350,9 +354,10 @@ fn median(times: &FrameTimes, by_wall: bool) -> Option<f64> {
     Some(times.spread(by_wall)?.median)
 }
 
-/// Combines those of `runs` in one viewport (pixels) into rows by method, setting and map size, the
-/// fastest first. Give it the runs under one light: it does not keep lights apart. Rows that could
-/// not run come last. A tuned method stands behind the one that it is a setting of.
+/// Combines the runs of `runs` that are in the viewport `viewport` (pixels) into rows by method,
+/// setting and map size, the fastest first. Give it the runs under one light: it does not keep
+/// lights apart. Rows that could not run come last. A tuned method stands behind the one that it is
+/// a setting of.
 pub fn rows<'a>(runs: impl IntoIterator<Item = &'a Run>, viewport: [u32; 2]) -> Vec<Row<'a>> {
     let mut cells: Vec<(String, Vec<&Run>)> = Vec::new();
     for run in runs.into_iter().filter(|run| run.viewport == viewport) {

@@ -93,7 +93,7 @@ impl<'a> Summary<'a> {
     }
 
     /// True if the light of a measured run has an extent, so that methods are judged by their
-    /// shares of light.
+    /// [shares of light](skiagraph_compare#terms).
     pub fn is_soft(&self) -> bool {
         self.rows.iter().any(Row::is_soft)
     }

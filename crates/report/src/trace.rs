@@ -153,17 +153,12 @@ mod tests {
 
     fn frame(passes: &[(u64, u64)]) -> TimedFrame {
         use skiagraph_gpu::{FrameTiming, PassTiming};
-        let pass = |&(begin, gpu): &(u64, u64)| PassTiming {
-            name: format!("p{begin}"),
-            begin: Some(us(begin)),
-            gpu: Some(us(gpu)),
-            cpu: us(1),
+        let pass = |&(begin, gpu): &(u64, u64)| {
+            PassTiming::new(format!("p{begin}"), us(1)).with_gpu(us(begin), us(gpu))
         };
         TimedFrame {
             began: Duration::ZERO,
-            timing: FrameTiming {
-                passes: passes.iter().map(pass).collect(),
-            },
+            timing: FrameTiming::new(passes.iter().map(pass).collect()),
             wall: us(20),
             skipped: Vec::new(),
         }

@@ -16,7 +16,7 @@ pub(crate) const MAX_BAND: f64 = 0.01;
 pub struct Verdict {
     /// Index of the row that is fastest in frames in which every pass runs, among those without a
     /// wrong pixel outside the band (the pixels whose answer rounding decides). `None` if there is
-    /// no such row, or shares of light are compared.
+    /// no such row, or [shares of light](skiagraph_compare#terms) are compared.
     pub fastest_exact: Option<usize>,
     /// Indices of the recommended rows, or if none is right enough of the least wrong ones: the
     /// fastest, then those whose times cannot be told apart from it. Times are of frames in which
@@ -83,8 +83,8 @@ pub fn verdict(rows: &[Row], budgets: &Budgets) -> Verdict {
     verdict
 }
 
-/// True if rounding decides the right answer of more than 1 % of the pixels facing the light, so
-/// that a verdict holds for the others only.
+/// True if rounding decides the right answer of more than 1 % of the pixels facing the light. A
+/// verdict then holds only for the rest of the pixels.
 pub fn is_conditioned(wrong: Wrong) -> bool {
     Condition::new(wrong).is_some()
 }

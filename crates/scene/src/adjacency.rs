@@ -3,13 +3,14 @@
 use crate::mesh::Mesh;
 use std::collections::HashMap;
 
-/// Entry of [`Adjacency::opposite`] for an edge without exactly one neighbouring triangle, or
-/// beside a masked one.
+/// Entry of [`Adjacency::opposite`] for an edge that has no neighbouring triangle or several, or
+/// that a masked triangle touches.
 pub const NO_NEIGHBOUR: u32 = u32::MAX;
 
-/// Edge adjacency of a mesh, in which equal positions are one (welded): the *corner table* of
-/// Rossignac, Safonova and Szymczak ("3D Compression Made Simple", SMI 2001).
+/// Edge adjacency of a mesh: for each edge of a triangle the triangle on its other side. It is the
+/// *corner table* of Rossignac, Safonova and Szymczak ("3D Compression Made Simple", SMI 2001).
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Adjacency {
     /// Corner opposite each triangle edge, three entries per triangle. Entry `3 * p + i` belongs to
     /// the edge of triangle `p` from corner `i` to its next corner. Its value is `3 * q + k`: `q`

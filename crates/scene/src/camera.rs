@@ -52,16 +52,16 @@ pub const LEAST_DEPTH: f64 = 1e-30;
 pub struct Camera {
     /// Eye position, world space.
     pub eye: DVec3,
-    /// Unit vector to the right of the image.
+    /// Unit vector to the right of the image, world space.
     pub right: DVec3,
-    /// Unit vector to the top of the image.
+    /// Unit vector to the top of the image, world space.
     pub up: DVec3,
-    /// Unit viewing direction, from the eye into the image.
+    /// Unit viewing direction, from the eye into the image, world space.
     pub forward: DVec3,
-    /// Half the image width at distance 1 from the eye: tan(fov/2) · width / height, where fov is
-    /// the vertical field of view.
+    /// Half the image width at distance 1 from the eye, in scene units: tan(fov/2) · width /
+    /// height, where fov is the vertical field of view.
     pub half_width: f64,
-    /// Half the image height at distance 1 from the eye: tan(fov/2).
+    /// Half the image height at distance 1 from the eye, in scene units: tan(fov/2).
     pub half_height: f64,
     /// Distance of the near plane from the eye along `forward`, in scene units.
     pub near: f64,
@@ -69,7 +69,7 @@ pub struct Camera {
     pub far: f64,
     /// Viewport width and height in pixels.
     pub viewport: [u32; 2],
-    /// Offset of each pixel's ray from the pixel's centre, in pixels, y down, each component within
+    /// Offset of each pixel's ray from the pixel's centre, in pixels, x right, y down, each within
     /// ±0.5. It is 0 unless the frame is one of several to be blended
     /// ([`jittered`](Self::jittered)).
     pub jitter: DVec2,

@@ -23,6 +23,7 @@ const COVERED: f64 = 0.5;
 
 /// Height and size of a ground that [`add_ground`] added below a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Ground {
     /// Height of the ground's upper side: the dot product of its points with the unit vector up, in
     /// scene units.

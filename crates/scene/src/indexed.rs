@@ -1,4 +1,5 @@
-//! Triangle meshes in a program's memory, to be welded into a [`Mesh`].
+//! Triangle meshes in a program's memory, to be made into a [`Mesh`], in which equal positions are
+//! one (welded).
 
 use crate::{
     mesh::{Group, Mesh, names_one_twice},
@@ -19,7 +20,7 @@ pub struct Indexed<'a> {
     pub indices: &'a [u32],
 }
 
-/// Reason why an [`Indexed`] mesh cannot be welded.
+/// Reason why [`Indexed::mesh`] cannot make a mesh.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum IndexedError {

@@ -5,7 +5,9 @@
 //!
 //! The crate does not use the GPU. World space is right-handed and in scene units, of any length.
 //! Positions are `f32` (the precision of mesh files and of the GPU); cameras and lights are `f64`,
-//! so that an exact reference starts from unrounded input.
+//! so that an exact reference starts from unrounded input. A *primitive* is a triangle, and its
+//! *id* the index in [`Mesh::triangles`]. A *receiver* is a point that is lit, a *caster* a
+//! triangle that may keep the light from it. *Light space* is the space of a shadow map.
 //!
 //! ```
 //! use skiagraph_scene::{Bvh, DirectionalLight, Indexed};

@@ -298,9 +298,10 @@ impl SceneLibrary {
         self.locate(argument).map(|(_, text)| text)
     }
 
-    /// Finds the file in the scenes folder that is read in the place of the built-in scene
-    /// `argument` (a name, which a number of triangles may follow). Returns `None` for another
-    /// name, if there is no such file, or if its text equals that of the built-in scene.
+    /// Returns the path of the file in the folder [`scenes`](Self::scenes) that replaces the
+    /// built-in scene `argument`: a name such as `park`, or with a number of triangles
+    /// `city:100000`. Returns `None` if `argument` is not the name of a built-in scene, if there is
+    /// no such file, or if the file's text equals that of the built-in scene.
     pub fn stand_in(&self, argument: &str) -> Option<PathBuf> {
         let name = sized(argument).0;
         let (_, text) = BUILT_IN.iter().find(|(built_in, _)| *built_in == name)?;

@@ -29,7 +29,8 @@ const WIDEST_DEGREES: f64 = 90.0;
 /// to wgpu clip space. Depth z in 0..1 grows away from the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightFit {
-    /// Matrix from world space to the light's clip space (affine: w stays 1).
+    /// Matrix from world space to the light's clip space: x and y from −1 to 1, z from 0 at the
+    /// side of the box towards the light to 1 at its far side. It is affine: w stays 1.
     pub view_projection: DMat4,
     /// World units per unit of light-space clip x, y and z: half the box's width, half its height,
     /// its whole depth.
@@ -38,7 +39,7 @@ pub struct LightFit {
 
 impl DirectionalLight {
     /// Creates a light without extent, whose shadows are hard. `direction` is the direction in
-    /// which it travels.
+    /// which it travels, world space, of any length above 0.
     pub const fn new(direction: DVec3) -> Self {
         Self {
             direction,
@@ -51,16 +52,18 @@ impl DirectionalLight {
         self.angle_degrees > 0.0
     }
 
-    /// Returns two vectors from the light's centre to its rim, for a light disk at distance 1 from
-    /// the receiver. The directions to the disk's points are `to_light() + across()[0] · x +
-    /// across()[1] · y`, with (x, y) in the unit disk. Both are 0 for a light without extent.
+    /// Returns two vectors, world space, from the light's centre to its rim, for a light disk at
+    /// distance 1 from the receiver (the point that is lit). The directions to the disk's points
+    /// are `to_light() + across()[0] · x + across()[1] · y`, with (x, y) in the unit disk. Both are
+    /// 0 for a light without extent.
     pub fn across(&self) -> [DVec3; 2] {
         let (right, up) = self.to_light().any_orthonormal_pair();
         let radius = (self.angle_degrees.to_radians() * 0.5).tan();
         [right, up].map(|axis| axis * radius)
     }
 
-    /// Returns the unit vector from any point to the light, the reverse of `direction`.
+    /// Returns the unit vector, world space, from any point to the light: the reverse of
+    /// `direction`.
     pub fn to_light(&self) -> DVec3 {
         -self.direction.normalize()
     }
@@ -96,7 +99,8 @@ impl DirectionalLight {
         self.fit_outline(&self.outline(points))
     }
 
-    /// Returns the outline of points in world space as the light sees them.
+    /// Returns the outline of points in world space as the light sees them, for
+    /// [`fit_outline`](Self::fit_outline).
     pub fn outline(&self, points: impl IntoIterator<Item = Vec3>) -> Outline {
         let forward = self.direction.normalize();
         let (right, up) = across(forward);
@@ -115,8 +119,8 @@ impl DirectionalLight {
         }
     }
 
-    /// Returns the box of [`fit`](Self::fit) around the points of an outline, which this light's
-    /// [`outline`](Self::outline) has made.
+    /// Returns the box that [`fit`](Self::fit) would return for the points of `outline`, which must
+    /// come from [`outline`](Self::outline) of a light with this direction.
     pub fn fit_outline(&self, outline: &Outline) -> LightFit {
         let forward = self.direction.normalize();
         let (right, up) = across(forward);

@@ -54,14 +54,14 @@ pub struct PointLight {
 /// Direction and distance from a point to a light, as [`LightKind::towards`] returns them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Towards {
-    /// Unit vector to the light; zero for a point at the light's position.
+    /// Unit vector to the light, world space; zero for a point at the light's position.
     pub direction: DVec3,
     /// Distance to the light, in scene units; infinite for a directional light.
     pub distance: f64,
 }
 
-/// Name of the only light of a scene whose scene file has the field `light` instead of the list
-/// `lights`.
+/// Name that a scene's light gets if the scene file has the field `light`, for a single light,
+/// instead of the list `lights`.
 pub const ONLY_LIGHT: &str = "light";
 
 /// A positional light farther from the origin is as good as directional, and f32 cannot square the
@@ -131,8 +131,8 @@ impl LightKind {
         }
     }
 
-    /// Returns the radius of a spot or point light, a length of the scene; `None` for a directional
-    /// light.
+    /// Returns the radius of a spot or point light in scene units, 0 if it has no extent; `None`
+    /// for a directional light.
     pub fn radius(&self) -> Option<f64> {
         match self {
             Self::Directional(_) => None,
@@ -150,7 +150,8 @@ impl LightKind {
         }
     }
 
-    /// Returns the position of a spot or point light, or `None` for a directional light.
+    /// Returns the position of a spot or point light, world space, or `None` for a directional
+    /// light.
     pub fn position(&self) -> Option<DVec3> {
         match self {
             Self::Directional(_) => None,
@@ -160,7 +161,7 @@ impl LightKind {
         }
     }
 
-    /// Returns the direction and distance from a world-space point to the light.
+    /// Returns the direction and distance from `point`, world space, to the light.
     pub fn towards(&self, point: DVec3) -> Towards {
         match (self, self.position()) {
             (Self::Directional(light), _) => Towards {

@@ -14,21 +14,21 @@ use glam::DVec2;
 pub struct Mask {
     /// Width and height in texels, neither 0.
     pub size: [u32; 2],
-    /// Treatment of u and of v outside 0…1.
+    /// Wrapping of the texture coordinates u and v outside 0…1, in this order.
     pub wrap: [Wrap; 2],
     /// Bits of all texels, 1 for opaque: row by row from the top left without gaps between rows, 32
     /// to a word, lowest bit first. Unused bits of the last word are 0.
     pub opaque: Vec<u32>,
 }
 
-/// Result of [`Mask::ask`]: the texel at texture coordinates, and a flag for other texels within
-/// their error.
+/// Result of [`Mask::ask`]: the texel at the given texture coordinates, and a flag that tells if
+/// their error may lead to another texel with another answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Asked {
     /// True if the texel at the texture coordinates is opaque.
     pub opaque: bool,
-    /// True if a texel within the error differs from the texel at the texture coordinates, or if
-    /// more than 4,096 texels lie within the error.
+    /// True if a texel within the error of the texture coordinates has the opposite answer to
+    /// [`opaque`](Self::opaque), or if more than 4,096 texels lie within the error.
     pub flips: bool,
 }
 
@@ -80,8 +80,8 @@ impl Mask {
         self.opaque[texel / 32] >> (texel % 32) & 1 == 1
     }
 
-    /// Looks up the mask at the texture coordinates `uv` (1 is the mask's whole width or height),
-    /// whose components may be wrong by up to those of `error`.
+    /// Looks up the mask at the texture coordinates `uv`. `error` is the greatest error of u and of
+    /// v. In both, 1 is the mask's whole width or height.
     pub fn ask(&self, uv: DVec2, error: DVec2) -> Asked {
         let (uv, error) = (uv.to_array(), error.to_array());
         // Texels of each axis from low to high, before they are wrapped.

@@ -67,8 +67,9 @@ impl Surfaces {
         self.of.extend(other.of.iter().map(|of| material + of));
     }
 
-    /// Gives surfaces to triangles that a mesh has got behind those that it had, so that there are
-    /// `triangles` of them: the first material. Nothing is done for a mesh without materials.
+    /// Adds surfaces for triangles that were appended to the mesh, which now has `triangles`
+    /// triangles: the appended ones get the first material. Does nothing for a mesh without
+    /// materials.
     pub fn pad(&mut self, triangles: usize) {
         if !self.of.is_empty() {
             self.of.resize(triangles, 0);
@@ -76,9 +77,9 @@ impl Surfaces {
         }
     }
 
-    /// Gives the triangles of a mesh from `first` on the surfaces of `other`, a mesh of so many
-    /// `triangles`; `all` is the number of the triangles of the mesh. Materials and texture
-    /// coordinates are appended.
+    /// Gives `triangles` triangles of the mesh, from the primitive id `first` on, the surfaces of
+    /// `other`, which is of another mesh with that many triangles. `all` is the number of triangles
+    /// of this mesh. The materials and texture coordinates of `other` are appended to the lists.
     ///
     /// # Panics
     /// If `first` and `triangles` together are more than `all`.

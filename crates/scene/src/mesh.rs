@@ -14,7 +14,7 @@ pub struct Mesh {
     /// Three indices into `positions` per triangle, counter-clockwise seen from outside. A
     /// triangle's index in this list is its *primitive id*.
     pub triangles: Vec<[u32; 3]>,
-    /// Vertex normals, unit length, indexed by `normal_indices`.
+    /// Vertex normals, world space, unit length, indexed by `normal_indices`.
     pub normals: Vec<Vec3>,
     /// Three indices into `normals` per triangle, parallel to `triangles`.
     pub normal_indices: Vec<[u32; 3]>,
@@ -35,7 +35,7 @@ pub struct Group {
 }
 
 impl Mesh {
-    /// Returns the corner positions of triangle `primitive`, in f64 (exact).
+    /// Returns the corner positions of triangle `primitive`, world space, in f64 (exact).
     ///
     /// # Panics
     /// If `primitive` is not below `triangles.len()`.
@@ -43,7 +43,7 @@ impl Mesh {
         self.triangles[primitive as usize].map(|index| self.positions[index as usize].as_dvec3())
     }
 
-    /// Returns the vertex normals of triangle `primitive`, in f64, corner by corner.
+    /// Returns the vertex normals of triangle `primitive`, world space, in f64, corner by corner.
     ///
     /// # Panics
     /// If `primitive` is not below `triangles.len()`.
@@ -51,8 +51,8 @@ impl Mesh {
         self.normal_indices[primitive as usize].map(|index| self.normals[index as usize].as_dvec3())
     }
 
-    /// Winds a triangle the other way: its second and third corner change places, with their
-    /// normals and texture coordinates.
+    /// Reverses the winding of triangle `primitive`: its second and third corner change places,
+    /// with their normals and texture coordinates.
     ///
     /// # Panics
     /// If `primitive` is not below `triangles.len()`.
@@ -82,8 +82,8 @@ impl Mesh {
         all.filter(|(_, is_used)| *is_used).map(|(place, _)| *place)
     }
 
-    /// Returns the smallest box around all positions that triangles use, as its low and high
-    /// corner. Returns `None` for a mesh without triangles.
+    /// Returns the smallest axis-aligned box, in world space, around all positions that triangles
+    /// use, as its low and high corner. Returns `None` for a mesh without triangles.
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
         bounds(self.corner_positions())
     }

@@ -236,8 +236,8 @@ fn folds(axis: DVec3, up: DVec3, degrees: f64) -> bool {
 }
 
 /// Returns the mesh of `movable` with its parts moved to their places at the time `at`, in seconds
-/// on the clock of the keyframes of the [`CameraPath`](crate::CameraPath). Part number n follows
-/// `motions[n]`; the part's name in that motion is ignored.
+/// on the clock of the keyframes of the [`CameraPath`](crate::CameraPath). Part number n of
+/// `movable` follows `motions[n]`; the name in that motion ([`PartMotion::part`]) is ignored.
 ///
 /// # Errors
 /// [`MoveError::Count`] if there is not one motion for each part; other errors for a part that its

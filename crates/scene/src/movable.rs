@@ -36,6 +36,7 @@ struct Part {
 /// Part of a [`Movable`] after it was moved, as [`Movable::moved_part`] returns it, to be written
 /// into a mesh by [`Movable::put`].
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct MovedPart {
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
@@ -55,24 +56,25 @@ impl MovedPart {
     }
 }
 
-/// Place of the lists of a [`Movable`] within those of a larger mesh, for [`Movable::put_at`]: the
-/// indices of its first position, normal and triangle there.
+/// Indices at which the positions, normals and triangles of a [`Movable`] begin in the lists of a
+/// larger mesh, for [`Movable::put_at`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PartPlace {
-    /// Index of the first position.
+    /// Index of the movable's first position in the positions of the larger mesh.
     pub position: usize,
-    /// Index of the first normal.
+    /// Index of the movable's first normal in the normals of the larger mesh.
     pub normal: usize,
-    /// Primitive id of the first triangle.
+    /// Index of the movable's first triangle in the triangles of the larger mesh.
     pub triangle: usize,
 }
 
-/// Changes that [`Movable::put`] made to a mesh.
+/// Changes that a call of [`Movable::put`] or [`Movable::put_at`] made to a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct PartChange {
-    /// True if a position or normal of the part was changed.
+    /// True if the call changed a position or normal of the part.
     pub is_elsewhere: bool,
-    /// True if the triangles of the part were wound the other way.
+    /// True if the call reversed the winding of the part's triangles.
     pub is_turned: bool,
 }
 
@@ -134,7 +136,8 @@ pub enum MoveError {
 }
 
 impl MoveError {
-    /// Returns the error of the same part under another number; an error of no part as it is.
+    /// Returns the error with `part` as the number of its part. [`Count`](Self::Count), which names
+    /// no part, is returned unchanged.
     pub fn renumbered(self, part: usize) -> Self {
         match self {
             error @ Self::Count { .. } => error,
@@ -222,8 +225,8 @@ impl Movable {
         [around(part.positions.iter().copied()), around(normals)]
     }
 
-    /// Returns the number of the first part that is of the same mesh, if the parts were
-    /// [joined](Self::joined): the number itself if that mesh was not given before.
+    /// Returns the number of the first part that was [joined](Self::joined) from the same mesh as
+    /// part number `part`; `part` itself if no earlier part was.
     ///
     /// # Panics
     /// If there is no part of that number.
@@ -397,8 +400,8 @@ impl Movable {
         self.put_at(part, moved, was_mirrored, mesh, PartPlace::default())
     }
 
-    /// Writes a moved part as [`put`](Self::put) does, into a mesh that holds the positions,
-    /// normals and triangles of [`rest`](Self::rest) among others, each list from a place on.
+    /// Writes a moved part as [`put`](Self::put) does, but into a larger mesh: its lists contain
+    /// the positions, normals and triangles of [`rest`](Self::rest) from the indices of `at` on.
     ///
     /// # Panics
     /// If there is no part of that number, or if `mesh` is too small.

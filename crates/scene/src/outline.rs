@@ -2,9 +2,11 @@
 
 use glam::DVec2;
 
-/// Outline of points as a directional light sees them, of
-/// [`DirectionalLight::outline`](crate::DirectionalLight::outline). Outlines of parts of a scene
-/// are kept, and [joined](Self::joined) when some of the parts have moved.
+/// Outline of points as a directional light sees them: their convex hull across the light, and
+/// their least and greatest depth. [`DirectionalLight::outline`](crate::DirectionalLight::outline)
+/// makes it, and [`DirectionalLight::fit_outline`](crate::DirectionalLight::fit_outline) fits the
+/// light space to it. A caller keeps the outlines of a scene's parts, and [joins](Self::joined)
+/// them when some parts have moved.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outline {
     /// Convex hull across the light, counter-clockwise; empty for no points.
@@ -23,10 +25,11 @@ impl Outline {
         }
     }
 
-    /// Returns the outline of the points of parts, by outlines that one light has made. `known`
-    /// holds those of parts that are known. Of the others `loose` returns one around more than the
-    /// part, such as around its box, and `exact` its own, which is asked for and kept only if the
-    /// part may reach the border.
+    /// Returns the outline of the points of all parts together; all outlines are of the same light.
+    /// `known` has an entry for each part: its outline, or `None` if the part has moved since. For
+    /// such a part, `loose` returns a rough outline that contains the part, such as that of its
+    /// box, and `exact` returns the part's own outline. `exact` is called only for a part that may
+    /// reach the border of the result; its outline is then written into `known`.
     pub fn joined(
         known: &mut [Option<Self>],
         mut loose: impl FnMut(usize) -> Self,

@@ -92,8 +92,8 @@ impl CameraPath {
         self.keys.first().map_or(0.0, |key| key.at) + f64::from(frame) / self.frames_per_second
     }
 
-    /// Cuts a mesh into the parts that move on this path, in the order of [`moves`](Self::moves).
-    /// Returns `None` if no part moves.
+    /// Cuts a mesh into the parts that move on this path, in the order of [`moves`](Self::moves),
+    /// for [`shape`](Self::shape). Returns `None` if no part moves.
     ///
     /// # Errors
     /// A sentence that names the path, if a part is not in the mesh or shares positions with other

@@ -5,6 +5,7 @@ use std::{fmt, path::PathBuf};
 
 /// Counts and warnings of the import of a mesh file. The report of a generated mesh is empty.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct ImportReport {
     /// Path of the mesh file; `None` for a mesh that is not from a file.
     pub file: Option<PathBuf>,
@@ -28,9 +29,10 @@ pub struct ImportReport {
     /// Number of corners whose normal had no direction (zero or not finite) and was replaced by the
     /// geometric normal.
     pub normals_replaced: usize,
-    /// Triangles dropped because two of their corners are the same point.
+    /// Triangles that are not in the mesh because two of their corners are the same point.
     pub dropped: Degenerate,
-    /// Triangles kept although their area is zero (three different points on a line).
+    /// Triangles that are in the mesh although their area is zero: three different points on a
+    /// line.
     pub zero_area: Degenerate,
     /// One message for each colour or texture that could not be read; surfaces are then shown
     /// without it.

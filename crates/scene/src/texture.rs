@@ -82,7 +82,7 @@ pub struct Texture {
     pub name: String,
     /// Source of the texels.
     pub source: Source,
-    /// Treatment of u and of v outside 0…1.
+    /// Wrapping of the texture coordinates u and v outside 0…1, in this order.
     pub wrap: [Wrap; 2],
     texels: Arc<OnceLock<Result<Arc<Texels>, String>>>,
 }

@@ -12,8 +12,8 @@ pub struct Welder<V = Vec3, const N: usize = 3> {
     by_bits: HashMap<[u32; N], u32>,
 }
 
-/// Lookup table from vectors to their indices in [`Welder::values`], to be exchanged by
-/// [`Welder::weld_to`]. The default table is empty.
+/// Lookup table of a [`Welder`], from vectors to their indices in [`Welder::values`].
+/// [`Welder::weld_to`] exchanges it. The default table is empty.
 #[derive(Clone, Debug, Default)]
 pub struct Known(HashMap<[u32; 3], u32>);
 

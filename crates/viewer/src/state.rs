@@ -303,10 +303,9 @@ impl Viewer {
     pub fn steps(&self, index: usize) -> Vec<Capture> {
         let passes = self.method(index).into_iter().flat_map(|it| &it.passes);
         let captures = passes.flat_map(|pass| {
-            pass.writes.iter().map(|material| Capture {
-                material: material.clone(),
-                after: Some(pass.name.clone()),
-            })
+            pass.writes
+                .iter()
+                .map(|material| Capture::new(material).with_after(&pass.name))
         });
         captures.collect()
     }

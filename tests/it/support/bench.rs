@@ -80,10 +80,7 @@ impl<'a> Bench<'a> {
             &self.provider,
             self.viewport,
             |request| {
-                request.captures.push(Capture {
-                    material: "primitive".into(),
-                    after: None,
-                });
+                request.captures.push(Capture::new("primitive"));
                 allow_ray_queries(request);
                 request.params.extend(
                     params

@@ -87,6 +87,14 @@ impl Provider for Extended {
             }),
         )
     }
+
+    fn submit_built(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+    ) -> Result<(), skiagraph_gpu::ProviderError> {
+        self.scene.submit_built(device, queue)
+    }
 }
 
 /// Paths and texts before the embedded files.

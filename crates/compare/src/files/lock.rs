@@ -73,7 +73,7 @@ pub fn wait_for(folder: &Path, files: &str, sink: &dyn Sink) -> Result<Locked, C
 }
 
 /// Locks the lock file named `files` ([`RESULTS`] or [`STRESS`]) in `folder` without waiting;
-/// `None` if another process holds it. Tells the sink if the file system has no locks.
+/// `None` if it is held already, by this process or another. Tells the sink if the file system has no locks.
 ///
 /// # Errors
 /// The lock file cannot be created or locked.

@@ -22,8 +22,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Writes a scene file whole or not at all, with the views `first` before its own ones, of which
-/// those with the same names are left out. The path of its mesh is written relative to the file's
+/// Writes a scene file to `path`, whole or not at all. Its views are `first`, then the views of
+/// `scene` whose names are not among these. The path of its mesh is written relative to the file's
 /// folder if the mesh is below that folder, otherwise as an absolute path. Returns false, and
 /// writes nothing, if the file exists already with this content.
 ///

@@ -27,15 +27,15 @@ pub struct CameraRecord {
     pub view: String,
     /// Width and height in pixels. Pixel centres lie at half pixels, counted from the top left.
     pub viewport: [u32; 2],
-    /// Handedness and units of world space.
+    /// Handedness and units of world space: `right-handed, in scene units`.
     pub world: String,
     /// Position of the eye, world space.
     pub eye: [f64; 3],
-    /// Unit viewing direction.
+    /// Unit viewing direction, world space.
     pub forward: [f64; 3],
-    /// Unit vector to the right of the picture.
+    /// Unit vector to the right of the picture, world space.
     pub right: [f64; 3],
-    /// Unit vector to the top of the picture.
+    /// Unit vector to the top of the picture, world space.
     pub up: [f64; 3],
     /// Vertical field of view in degrees.
     pub fov_y_degrees: f64,
@@ -47,11 +47,13 @@ pub struct CameraRecord {
     pub near: f64,
     /// Distance of the far plane along `forward`, scene units.
     pub far: f64,
-    /// The light under which the truth was found.
+    /// The light of the view, under which its shadows were computed.
     pub light: LightRecord,
-    /// Matrices from world space to the camera's space.
+    /// Matrices from world space to the camera's space, one for each direction (−z or +z) in which
+    /// the camera may look.
     pub views: Vec<NamedMatrix>,
-    /// Matrices from a camera's space to clip space, with those from world space.
+    /// Matrices from the camera's space to clip space, and from world space to clip space, one pair
+    /// for each convention of axes and depths.
     pub projections: Vec<Projection>,
 }
 
@@ -60,8 +62,8 @@ pub struct CameraRecord {
 pub struct LightRecord {
     /// `directional`, `spot` or `point`.
     pub kind: String,
-    /// Unit direction in which the light travels, or the axis of a spot light's cone; absent for a
-    /// point light.
+    /// Unit vector, world space: the direction in which a directional light travels, or the axis of
+    /// a spot light's cone, away from the light; absent for a point light.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub direction: Option<[f64; 3]>,
     /// Position of a spot or point light, world space; absent for a directional light.
@@ -70,23 +72,25 @@ pub struct LightRecord {
     /// Whole angle of a spot light's cone in degrees; absent for other lights.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cone_degrees: Option<f64>,
-    /// Angular diameter of a directional light in degrees, 0 without extent; absent for others.
+    /// Angular diameter of a directional light in degrees, 0 for hard shadows; absent for other
+    /// lights.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub angle_degrees: Option<f64>,
-    /// Radius of a spot or point light in scene units, 0 without extent; absent for a directional
+    /// Radius of a spot or point light in scene units, 0 for hard shadows; absent for a directional
     /// light.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub radius: Option<f64>,
 }
 
-/// A matrix M for column vectors (M · p), in both orders in which files and engines hold it.
+/// A matrix M for column vectors (M · p), in both orders in which files and engines store it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Matrix {
-    /// Its four rows. For row vectors (p · M, as DirectXMath has it) take `column_major` as rows.
+    /// The matrix's four rows. For row vectors (p · M, the convention of DirectXMath) read
+    /// `column_major` as the rows.
     pub rows: [[f64; 4]; 4],
-    /// Its sixteen numbers column by column, as OpenGL, glam and WGSL hold it.
+    /// The matrix's sixteen numbers column by column, the order of OpenGL, glam and WGSL.
     pub column_major: [f64; 16],
-    /// Its sixteen numbers row by row, as HLSL's `row_major` holds it.
+    /// The matrix's sixteen numbers row by row, the order of HLSL's `row_major`.
     pub row_major: [f64; 16],
 }
 
@@ -95,9 +99,10 @@ pub struct Matrix {
 pub struct NamedMatrix {
     /// `looks_along_minus_z` (right-handed) or `looks_along_plus_z` (left-handed).
     pub name: String,
-    /// Axes of the camera's space: x, y and z.
+    /// Directions of the x, y and z axis of the camera's space as seen by the camera, such as
+    /// `right`, `up` and `back`.
     pub axes: [String; 3],
-    /// From world space to the camera's space.
+    /// Matrix from world space to the camera's space.
     pub world_to_camera: Matrix,
 }
 
@@ -108,19 +113,20 @@ pub struct Projection {
     pub name: String,
     /// Engines and interfaces with this convention; empty for a rarer one.
     pub used_by: String,
-    /// Name in `views` of the camera's space that it takes.
+    /// [Name](NamedMatrix::name) of the camera's space that the projection takes positions in, an
+    /// entry of [`CameraRecord::views`].
     pub camera_space: String,
     /// Side of the picture to which y grows in clip space: `up` or `down`.
     pub clip_y: String,
     /// Depth (z divided by w) at the near plane.
     pub depth_near: f64,
-    /// Depth at the far plane; infinitely far away if `is_infinite`.
+    /// Depth (z divided by w) at the far plane, or infinitely far away if `is_infinite`.
     pub depth_far: f64,
-    /// True if there is no far plane.
+    /// True if the projection has no far plane.
     pub is_infinite: bool,
-    /// From the camera's space to clip space.
+    /// Matrix from the camera's space to clip space.
     pub camera_to_clip: Matrix,
-    /// From world space to clip space.
+    /// Matrix from world space to clip space.
     pub world_to_clip: Matrix,
 }
 

@@ -18,12 +18,14 @@ use crate::error::CompareError;
 use crate::foreign::raster::{Raster, check_size};
 use std::{path::Path, str::FromStr};
 
-/// Ways in which a picture is read differently from how it lies in its file.
+/// Conventions of a picture of the light factor that differ from the default: first row at the top,
+/// linear numbers, 1 for full light. The [`Default`] sets none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Reading {
-    /// True if the first row of the file is the lowest of the picture.
+    /// True if the first row of the file is the lowest row of the picture, so that rows are
+    /// reversed.
     pub flipped: bool,
-    /// True if numbers are encoded by the transfer function of sRGB.
+    /// True if numbers are encoded by the transfer function of sRGB, which [`linear`] undoes.
     pub srgb: bool,
     /// True if 1 is full shadow and 0 is full light.
     pub inverted: bool,
@@ -47,30 +49,34 @@ impl FromStr for Reading {
     }
 }
 
-/// Light factor of each pixel of a picture.
+/// Light factor of each pixel of a picture: the share of the light that arrives, 0 in shadow to 1
+/// in full light.
 #[derive(Clone, Debug)]
 pub struct Factor {
     /// Path of the picture's file.
     pub file: String,
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Share of the light that arrives at each pixel, row by row from the top left; not a share of
-    /// 0 to 1 where the picture is faulty.
+    /// Share of the light that arrives at each pixel, row by row from the top left, 0 to 1. A
+    /// faulty picture may have NaN or numbers outside that range.
     pub shares: Vec<f32>,
     /// Description of the file's format: `PNG, 8 bits, grey`.
     pub format: String,
-    /// True if the file holds integers, of which the greatest stands for 1.
+    /// True if the file holds integers, of which the greatest that the format can hold stands for
+    /// 1.
     pub is_integer: bool,
-    /// Pixels that are black in the picture without shadows, as `true`; empty without one.
+    /// True for each pixel that is black in the picture without shadows, so that its factor is
+    /// unknown; empty without such a picture.
     pub is_black: Vec<bool>,
-    /// Warnings about the file.
+    /// Warnings about the file, such as an alpha channel that was left out.
     pub warnings: Vec<String>,
 }
 
 impl Factor {
-    /// Reads the factor from a grey picture; with `unshadowed`, the same picture rendered without
-    /// shadows, as the quotient of both, whose colour channels are summed up. A quotient above 1 is
-    /// 1; where both pictures are black it is 0.
+    /// Reads the light factor from the picture at `path`. Without `unshadowed` the picture must be
+    /// grey, and is the factor itself. `unshadowed` is the same picture rendered without shadows:
+    /// the factor is then the quotient of the two pictures' sums of colour channels. A quotient
+    /// above 1 is 1; where the picture without shadows is black it is 0.
     ///
     /// # Errors
     /// The errors of [`Raster::read`]; a picture in colours without `unshadowed`; pictures of
@@ -157,7 +163,7 @@ pub fn linear(encoded: f64) -> f64 {
     }
 }
 
-/// Returns the values of pixels with the last row first.
+/// Returns the values of pixels, row by row, with the rows in reverse order: the last row first.
 pub fn flipped<T: Copy>(values: &[T], [width, _]: [u32; 2]) -> Vec<T> {
     let rows = values.chunks_exact(width as usize).rev();
     rows.flatten().copied().collect()

@@ -57,10 +57,14 @@ use std::{
 /// Source of the surface that each pixel shows.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Surfaces {
-    /// This program's G-buffer. Pixels may show other surfaces within a sixteenth of a pixel.
+    /// Skiagraph rasterises the scene. The other renderer may show another surface that lies within
+    /// a sixteenth of a pixel of the pixel's centre: a pixel whose right answer depends on this
+    /// choice is [unattributable](JudgedPictures::unattributable).
     #[default]
     Rasterised,
-    /// A file with the id of each pixel's triangle: nothing is left open, and no GPU is needed.
+    /// A file with the id of each pixel's triangle, in the form that
+    /// [`ids`](crate::foreign::surfaces::ids) reads. The surface is then known, and no GPU is
+    /// needed.
     Ids(PathBuf),
     /// A file with the depth of each pixel, in one of the forms of
     /// [`DepthForm`](crate::foreign::surfaces::DepthForm).
@@ -72,18 +76,19 @@ pub enum Surfaces {
 pub struct Judging {
     /// Files of the pictures, all of one size: PNG, OpenEXR or NPY.
     pub pictures: Vec<PathBuf>,
-    /// File of the same picture without shadows; with it the factor is the quotient of both. `None`
-    /// if pictures are the factor themselves.
+    /// File of the same picture without shadows; the light factor of a picture is then its quotient
+    /// by this one. `None` if the pictures show the light factor itself.
     pub unshadowed: Option<PathBuf>,
-    /// Ways in which pictures are read differently from how they lie in their files.
+    /// Conventions of the pictures' rows, numbers and sense.
     pub reading: Reading,
     /// Source of the surface that each pixel shows.
     pub surfaces: Surfaces,
-    /// Mode of the reference's shadow rays.
+    /// Mode of the [reference](crate#terms)'s shadow rays; by default [`OracleMode::Exact`].
     pub oracle: OracleMode,
-    /// Number of shadow rays from a pixel to a light with an extent.
+    /// Number of shadow rays that the [reference](crate#terms) traces from a pixel to a light [with
+    /// an extent](crate#terms); by default [`REFERENCE_SAMPLES`].
     pub reference_samples: u32,
-    /// True to draw pictures of the errors.
+    /// True to draw pictures of the errors, for [`Judged::files`].
     pub draws: bool,
 }
 
@@ -105,12 +110,13 @@ impl Default for Judging {
 pub struct Judged {
     /// The figures, as `judge.json` holds them.
     pub record: JudgedPictures,
-    /// Pictures that were drawn, each once.
+    /// Pictures that were drawn, no file name twice; empty unless [`Judging::draws`] is set.
     pub files: Vec<PictureFile>,
 }
 
 impl Judged {
-    /// Writes `judge.json` and the pictures into a folder, which is made if it is missing.
+    /// Writes `judge.json` ([`record`](Self::record)) and the pictures ([`files`](Self::files))
+    /// into a folder, which is made if it is missing.
     ///
     /// # Errors
     /// A file that cannot be written.
@@ -130,11 +136,12 @@ pub(crate) struct Truth<'a> {
     pub(crate) surfaces: &'static str,
 }
 
-/// Judges pictures of a view of a scene. A GPU is opened unless ids are given.
+/// Judges pictures of a view of a scene against the [reference](crate#terms). A GPU is opened
+/// unless [`Surfaces::Ids`] gives the surfaces.
 ///
 /// # Errors
 /// A file that cannot be read or is not such a picture; pictures of different sizes; ids or depths
-/// that are not those of the scene under this camera; no GPU; an early end.
+/// that are not those of the scene under this camera; no GPU; an [early end](crate#terms).
 pub fn judge(
     judging: &Judging,
     scene: Scene,

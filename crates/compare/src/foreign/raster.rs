@@ -37,12 +37,14 @@ pub struct Raster {
     pub size: [u32; 2],
     /// Numbers per pixel: 1, or 3 if red, green and blue differ somewhere.
     pub channels: usize,
-    /// Numbers as the file holds them: those of a pixel together, row by row from the top left.
+    /// Numbers as the file holds them, pixel after pixel, row by row from the top left. A pixel has
+    /// `channels` numbers.
     pub values: Vec<f64>,
-    /// Number that stands for 1 in a format of integers, such as 255; `None` if numbers are shares
-    /// themselves.
+    /// Number that stands for 1 in a format of integers, such as 255; `None` for floats, in which 1
+    /// stands for 1.
     pub whole: Option<f64>,
-    /// Greatest relative error of a number by rounding; that of `whole`, where there is one.
+    /// Greatest error of a number by rounding: for integers one step as a share of `whole`, such as
+    /// 1/255; for floats relative to the number.
     pub precision: f64,
     /// Description of the format: `PNG, 8 bits, grey`.
     pub format: String,
@@ -171,7 +173,7 @@ fn samples(picture: &DynamicImage, bits: u32) -> Vec<f64> {
     }
 }
 
-/// Checks that a picture has the size of another one.
+/// Checks that two pictures have the same size.
 ///
 /// # Errors
 /// [`CompareError::Input`] that names both files with their sizes.

@@ -63,7 +63,7 @@ fn one_channel(raster: &Raster, what: &str) -> Result<(), CompareError> {
     )))
 }
 
-/// Form in which depths may be given.
+/// Meaning of the numbers in a picture of depths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DepthForm {
     /// Distance along the viewing direction, in scene units.
@@ -137,24 +137,28 @@ impl DepthForm {
     }
 }
 
-/// Surfaces of the pixels by depths.
+/// Surface that each pixel shows, as [`by_depth`] finds it from a picture of depths.
 #[derive(Debug)]
 pub struct ByDepth {
-    /// The form of the depths, which is found out: the one that most pixels agree with.
+    /// Form of the depths: the one in which the most pixels have the depth of a surface of the
+    /// scene.
     pub form: DepthForm,
-    /// Primitive id of each pixel.
+    /// Primitive id (index of a triangle of the mesh) that each pixel shows, row by row from the
+    /// top left.
     pub primitives: Vec<u32>,
-    /// Number of pixels whose depth is that of no surface that may be seen there.
+    /// Number of pixels whose depth fits no surface that may be seen there; these have their
+    /// rasterised surface.
     pub astray: u64,
 }
 
-/// Keeps, of each pixel's candidates, those that lie at its depth. The pixel's surface is its
-/// `rasterised` one if that is among them, or else the nearest to the depth; a pixel whose depth
-/// fits none has its rasterised surface.
+/// Finds the surface that each pixel shows, by the depths in `raster`. `candidates` has the
+/// surfaces that each pixel may show ([`candidates`](skiagraph_reference::candidates())); of these
+/// only those at the pixel's depth are kept, unless none is. `rasterised` is the primitive that
+/// Skiagraph's own G-buffer has for each pixel. It is the pixel's surface if it lies at the depth,
+/// or if no candidate does; otherwise the candidate nearest to the depth is.
 ///
 /// # Errors
-/// [`CompareError::Input`] if fewer than nine tenths of the depths are those of surfaces, in
-/// whichever form.
+/// [`CompareError::Input`] if no [`DepthForm`] makes nine tenths of the depths those of surfaces.
 pub fn by_depth(
     raster: &Raster,
     camera: &Camera,

@@ -29,21 +29,24 @@ use skiagraph_reference::{OracleMode, Receiver, shimmer::Seen};
 use skiagraph_scene::{LightKind, Scene, View};
 use std::{path::Path, sync::Arc};
 
-/// Size, oracle and format of the truth that is written.
+/// Settings of [`write_truth`]: size of the picture, mode of the [reference](crate#terms), format
+/// of the files.
 #[derive(Clone, Copy, Debug)]
 pub struct TruthRequest {
     /// Width and height in pixels.
     pub viewport: [u32; 2],
-    /// Mode of the reference's shadow rays.
+    /// Mode of the [reference](crate#terms)'s shadow rays; [`new`](Self::new) sets
+    /// [`OracleMode::Exact`].
     pub oracle: OracleMode,
-    /// Number of shadow rays from a pixel to a light with an extent.
+    /// Number of shadow rays from a pixel to a light [with an extent](crate#terms).
     pub reference_samples: u32,
     /// Format of the arrays.
     pub format: DataFormat,
 }
 
 impl TruthRequest {
-    /// Requests the truth in a size as OpenEXR, by the exact oracle.
+    /// Requests the [reference](crate#terms)'s answers in a picture of `viewport` pixels as OpenEXR
+    /// files, with [`OracleMode::Exact`].
     pub fn new(viewport: [u32; 2]) -> Self {
         Self {
             viewport,
@@ -54,11 +57,13 @@ impl TruthRequest {
     }
 }
 
-/// Writes the arrays and `camera.json` into a folder, which is made if it is missing. Returns a
-/// line for each file with its meaning.
+/// Writes the [reference](crate#terms)'s answers for a view as arrays, one number for each pixel,
+/// and `camera.json` ([`CameraRecord`]) into a folder, which is made if it is missing. Returns a
+/// line of text for each file: its name and meaning.
 ///
 /// # Errors
-/// A scene without a truth, no GPU, an early end, a file that cannot be written.
+/// A view for which the reference cannot be computed, no GPU, an [early end](crate#terms), a file
+/// that cannot be written.
 pub fn write_truth(
     request: &TruthRequest,
     scene: Scene,

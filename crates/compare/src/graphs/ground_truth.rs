@@ -27,7 +27,8 @@ pub struct Judgement {
     /// Counts of right and wrong pixels of the frame. If the method answers in shares of light (0
     /// in shadow to 1 in full light), a share of 0.5 or more counts as lit.
     pub counts: Statistics,
-    /// Errors of the shares of light, 0 to 1, that the frame shows, against those of the reference.
+    /// Errors of the [shares of light](crate#terms), 0 to 1, that the frame shows, against those of
+    /// the [reference](crate#terms).
     pub graded: Graded,
     /// True if the method answers only 0 or 1 and the light has no extent: each pixel is then lit
     /// or in shadow, and right or wrong.
@@ -38,7 +39,8 @@ impl Judgement {
     /// Compares a frame's decoded outputs with the ground truth of the same view and viewport.
     ///
     /// # Errors
-    /// Outputs that differ in size from the reference, or hold values that are not allowed.
+    /// Outputs that differ in size from the [reference](crate#terms), or hold values that are not
+    /// allowed.
     pub fn new(
         outputs: &Outputs,
         ground_truth: &GroundTruth,
@@ -89,9 +91,10 @@ pub fn judged(
     Ok((outputs, judgement))
 }
 
-/// Returns how wrong a preset's decoded outputs are, in pixels. Under a light without an extent it
-/// is the number of wrong pixels, without those whose right answer rounding to f32 may flip; under
-/// a light with an extent it is the sum of the squared errors of the pixels' shares of light.
+/// Returns how wrong a preset's decoded outputs are, in pixels. Under a light [without an
+/// extent](crate#terms) it is the number of wrong pixels, without those whose right answer rounding
+/// to f32 may flip; under a light with an extent it is the sum of the squared errors of the pixels'
+/// [shares of light](crate#terms).
 ///
 /// # Errors
 /// Those of [`judged`].

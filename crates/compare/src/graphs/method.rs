@@ -33,8 +33,8 @@ pub type ParamValues = BTreeMap<String, ParamValue>;
 /// runs with.
 #[derive(Clone)]
 pub struct Method {
-    /// Name in results: that of the preset, with the assignments that tell this setting of its
-    /// params from others in the same comparison, such as `crsm@n=1`.
+    /// Name of the method in results: the preset's name, with the assignments that tell this
+    /// setting of its params from others in the same comparison, such as `crsm@n=1`.
     pub name: String,
     /// The preset, with its graph.
     pub preset: Arc<Preset>,
@@ -62,7 +62,7 @@ impl Method {
     /// Creates a method of a preset with `params`, for a viewport in pixels on an adapter with
     /// `features`. Params are checked when the method is planned. The method is named like the
     /// preset, without `params`: results are kept by name, so give each of several settings of a
-    /// preset its own with [`named`](Self::named).
+    /// preset a name of its own with [`named`](Self::named).
     pub fn on(
         preset: Arc<Preset>,
         params: ParamValues,
@@ -154,8 +154,8 @@ impl Method {
         self.values.get(name)
     }
 
-    /// Returns the values that were set for all methods of a comparison (`--set`): those of
-    /// [`params`](Self::params) without the params in the method's name (`bias` in `nsm@bias=0`)
+    /// Returns the values that were set for all methods of a comparison (`--set`): the entries of
+    /// [`params`](Self::params), without the params in the method's name (`bias` in `nsm@bias=0`)
     /// and without `map_size`.
     pub fn given(&self) -> ParamValues {
         let words = self.name.split_once('@').map_or("", |(_, words)| words);

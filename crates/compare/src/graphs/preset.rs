@@ -128,8 +128,8 @@ pub const SHIPPED: [&str; 8] = [
     "crsm",
 ];
 
-/// Returns the names of the presets that a comparison takes by default: [`SHIPPED`], then those of
-/// `sources` that are not built in, the user's own in `./pipelines`.
+/// Returns the names of the presets that a comparison takes by default: [`SHIPPED`], then the
+/// presets of `sources` that are not built in: the user's own, in the folder `pipelines`.
 pub fn shipped_and_own(sources: &dyn Sources) -> Vec<String> {
     let built_in = built_in();
     let own = names(sources).into_iter();

@@ -47,8 +47,11 @@ pub fn load_all(names: &[String], sources: &dyn Sources) -> Result<Vec<Arc<Prese
     none_or_error(incomplete).map(|()| presets)
 }
 
-/// Loads the shadow methods that `words` name, in the settings of `params` and with each of
-/// `map_sizes`, as [`method::load`] does.
+/// Loads the shadow methods that `words` name, such as `nsm` or `crsm@n=1`
+/// ([`MethodArgument`](crate::graphs::argument::MethodArgument)). `params` are set in every method
+/// that has them. Each method is returned once for each setting, and for each of `map_sizes`,
+/// widths of the shadow map in texels. A method without a shadow map, or any method if that list is
+/// empty, is returned once for each setting.
 ///
 /// # Errors
 /// The errors of [`method::load`]; graphs that are not shadow methods.
@@ -226,8 +229,8 @@ impl Outputs {
     }
 
     /// Decodes the outputs that were read back from a frame of one light, by name. If the graph has
-    /// no output `status`, the reference `truth` says which pixels face the light, and these count
-    /// as certainly lit or certainly in shadow.
+    /// no output `status`, the [reference](crate#terms) `truth` says which pixels face the light,
+    /// and these count as certainly lit or certainly in shadow.
     ///
     /// # Errors
     /// An output that is not there or not in one of the allowed formats.
@@ -260,8 +263,10 @@ impl Outputs {
         })
     }
 
-    /// Takes shares of light, 0 to 1, as the outputs of a frame without a status, as
-    /// [`decode`](Self::decode) does. They are a hard answer if each is 0 or 1.
+    /// Creates outputs from [shares of light](crate#terms), 0 to 1, one per pixel. There is no
+    /// `status`: pixels that face the light by the [reference](crate#terms) `truth` count as
+    /// certainly lit or certainly in shadow. If each share is 0 or 1, the answer is hard, and
+    /// [`shares`](Self::shares) is `None`.
     pub fn from_shares(shares: Vec<f32>, truth: &GroundTruthPixels) -> Self {
         let is_hard = shares.iter().all(|share| matches!(share, 0.0 | 1.0));
         let visibility: Vec<u32> = shares.iter().map(|&it| u32::from(it >= 0.5)).collect();
@@ -273,8 +278,8 @@ impl Outputs {
         }
     }
 
-    /// Returns the share of light that each pixel shows, 0 to 1: the method's shares, or exactly 0
-    /// or 1 if it answers only 0 or 1.
+    /// Returns the [share of light](crate#terms) that each pixel shows, 0 to 1: the method's
+    /// shares, or exactly 0 or 1 if it answers only 0 or 1.
     pub fn shown(&self) -> Cow<'_, [f32]> {
         match &self.shares {
             Some(shares) => Cow::Borrowed(shares),

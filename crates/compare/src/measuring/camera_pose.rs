@@ -17,8 +17,8 @@
 use skiagraph_passes::SceneProvider;
 use skiagraph_scene::{Camera, View};
 
-/// Camera of one frame without a viewport: its view, and the jitter (the place within a pixel at
-/// which the frame samples).
+/// Camera of one frame, without a viewport: the frame's view, and its jitter (the place within a
+/// pixel at which the frame samples).
 #[derive(Clone, Debug)]
 pub struct CameraPose {
     /// The view of the frame.

@@ -70,7 +70,7 @@ pub fn settled(
 /// sizes. `graph` is the graph's name for messages.
 ///
 /// # Errors
-/// [`CompareError::Gpu`] if the graph cannot run; an early end.
+/// [`CompareError::Gpu`] if the graph cannot run; an [early end](crate#terms).
 pub fn render(
     session: Session,
     graph: &str,

@@ -105,15 +105,16 @@ impl PrimaryVisibility {
     }
 }
 
-/// Counts the reference's pixels in the way in which [`Statistics::judged`] counts those of a
-/// method, as if a method had given exactly the reference's answers.
+/// Counts the [reference](crate#terms)'s pixels as [`Statistics::judged`] would count the pixels of
+/// a method that gave exactly the reference's answers.
 pub fn own_counts(truth: &GroundTruthPixels) -> Statistics {
     let (visibility, status) = (truth.visibility(), truth.status());
     // Its own buffers are as large as it is and hold values that are allowed.
     Statistics::judged(&visibility, &status, truth).unwrap_or_default()
 }
 
-/// Default number of shadow rays that the reference traces from a pixel to a light with an extent.
+/// Default number of shadow rays that the [reference](crate#terms) traces from a pixel to a light
+/// [with an extent](crate#terms).
 pub const REFERENCE_SAMPLES: u32 = 512;
 
 /// Ground truth of one view in one viewport, with the scene data from which it was traced.
@@ -123,7 +124,8 @@ pub struct GroundTruthView<'a> {
     light: LightKind,
     primitives: Vec<u32>,
     mode: OracleMode,
-    /// The reference's answer for each pixel: lit, in shadow, or a share of light.
+    /// The [reference](crate#terms)'s answer for each pixel: lit, in shadow, or a [share of
+    /// light](crate#terms).
     pub ground_truth: GroundTruth,
     /// Number of pixels that the GPU rasterised with a surface that is hidden behind another one by
     /// more than rounding. Methods are judged on the rasterised surface nevertheless.
@@ -133,11 +135,11 @@ pub struct GroundTruthView<'a> {
 impl<'a> GroundTruthView<'a> {
     /// Runs the oracle (the `f64` ray tracer) for a camera and a light. `primitives` is the visible
     /// primitive of each pixel, row by row from the top left. `how` is the oracle's mode, and the
-    /// number of rays from a pixel to a light with an extent. The sink receives the progress under
-    /// the name `what`.
+    /// number of rays from a pixel to a light [with an extent](crate#terms). The sink receives the
+    /// progress under the name `what`.
     ///
     /// # Errors
-    /// An early end, primitive ids of another mesh, an invalid light.
+    /// An [early end](crate#terms), primitive ids of another mesh, an invalid light.
     pub fn new(
         oracle: Rc<Oracle<'a>>,
         camera: Camera,
@@ -178,7 +180,7 @@ impl<'a> GroundTruthView<'a> {
     }
 
     /// Returns the mesh, camera and visible primitives (triangles) of the view, as functions of the
-    /// reference take them.
+    /// [reference](crate#terms) take them.
     pub fn seen(&self) -> Seen<'_> {
         Seen {
             mesh: self.oracle.mesh(),
@@ -191,7 +193,7 @@ impl<'a> GroundTruthView<'a> {
     /// the kind of caster that blocks the light there. The light must have no extent.
     ///
     /// # Errors
-    /// Outputs of another size than the reference.
+    /// Outputs of another size than the [reference](crate#terms).
     pub fn blockers(&self, outputs: &Outputs) -> Result<BlockerCounts, CompareError> {
         self.blockers_of(outputs, &self.ground_truth.pixels)
     }
@@ -237,7 +239,7 @@ impl<'a> GroundTruthView<'a> {
     /// [`nearest_blockers`] does.
     ///
     /// # Errors
-    /// An early end.
+    /// An [early end](crate#terms).
     pub fn nearest_blockers(&self, progress: Progress) -> Result<Vec<u32>, CompareError> {
         let (camera, primitives) = (&self.camera, &self.primitives);
         let found = nearest_blockers(
@@ -251,7 +253,8 @@ impl<'a> GroundTruthView<'a> {
         found.map_err(|_| CompareError::interrupted())
     }
 
-    /// Measures how far a method's wrong pixels lie from the edges of the reference's shadows.
+    /// Measures how far a method's wrong pixels lie from the edges of the
+    /// [reference](crate#terms)'s shadows.
     ///
     /// # Errors
     /// Outputs of another size than the reference.
@@ -275,7 +278,7 @@ impl<'a> GroundTruthView<'a> {
     /// output `texel_density`, the map's texels per square unit of the scene at each pixel.
     ///
     /// # Errors
-    /// A density of another length than the reference's pixels.
+    /// A density of another length than the [reference](crate#terms)'s pixels.
     pub fn footprints(&self, density: &[f32]) -> Result<Vec<Option<Footprint>>, CompareError> {
         let truth = &self.ground_truth.pixels;
         let footprints = texels::footprints(self.seen(), &self.light, density, truth);
@@ -287,7 +290,7 @@ impl<'a> GroundTruthView<'a> {
     /// the top left. Returns `None` if no neighbouring pixels read different layers.
     ///
     /// # Errors
-    /// Outputs or layers of another size than the reference.
+    /// Outputs or layers of another size than the [reference](crate#terms).
     pub fn layer_jump(
         &self,
         outputs: &Outputs,
@@ -344,7 +347,8 @@ impl<'a> GroundTruthFrames<'a> {
             .sum()
     }
 
-    /// Counts the pixels of the reference itself over all frames, as [`own_counts`] does for one.
+    /// Counts the pixels of the [reference](crate#terms) itself over all frames, as [`own_counts`]
+    /// does for one.
     pub fn own_counts(&self) -> Statistics {
         let mut all = Statistics::default();
         for truth_view in &self.truth_views {
@@ -355,7 +359,7 @@ impl<'a> GroundTruthFrames<'a> {
 }
 
 /// Creates the progress callback of an oracle. It calls `rows_done` with the number of finished
-/// rows of pixels, and stops the oracle when the sink asks for an early end.
+/// rows of pixels, and stops the [oracle](crate#terms) when the sink asks for an early end.
 pub fn heard<'a>(sink: &'a dyn Sink, rows_done: &'a (dyn Fn(u64) + Sync)) -> Progress<'a> {
     Progress {
         rows_done,

@@ -28,8 +28,8 @@ use crate::wording::did_you_mean;
 const CLAIMS: [Guarantee; 2] = [Guarantee::Exact, Guarantee::Certain];
 
 /// Finds the strongest guarantee that a method's document claims under the method's params, and the
-/// reason that it gives; `None` if it claims none. A method that `exact` names, by its own name or
-/// its preset's, counts as guaranteed to be exact.
+/// reason that it gives; `None` if it claims none. `exact` is a list of names of methods or
+/// presets: a method in it counts as guaranteed to be exact, whatever its document claims.
 ///
 /// # Errors
 /// A claim that is not a [`Guarantee`], or whose condition cannot be evaluated.

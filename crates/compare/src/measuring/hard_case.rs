@@ -67,8 +67,8 @@ pub struct MethodRun {
 }
 
 impl MethodRun {
-    /// Prepares a method that this adapter can run. A method that `exact` names, by its own name or
-    /// its preset's, is judged as guaranteed to be exact.
+    /// Prepares a method that this adapter can run. `exact` is a list of names of methods or
+    /// presets: a method in it is judged as guaranteed to be exact.
     ///
     /// # Errors
     /// The errors of [`guarantee::find`].
@@ -152,7 +152,7 @@ impl Sink for WithoutSteps<'_> {
 pub struct HardCaseContext<'a> {
     /// The GPU, and the sink for progress.
     pub session: Session<'a>,
-    /// Graph that finds the visible triangle of each pixel, for the reference.
+    /// Graph that finds the visible triangle of each pixel, for the [reference](crate#terms).
     pub primary: &'a PrimaryVisibility,
     /// The methods to run on each case.
     pub methods: &'a [MethodRun],
@@ -167,8 +167,8 @@ impl HardCaseContext<'_> {
     /// method.
     ///
     /// # Errors
-    /// An early end, a lost device, a picture that cannot be written. All other errors are part of
-    /// the result.
+    /// An [early end](crate#terms), a lost device, a picture that cannot be written. All other
+    /// errors are part of the result.
     pub fn run(&self, hard: &HardCase) -> Result<Case, CompareError> {
         let scene = Arc::new(hard.scene());
         let mut provider = SceneProvider::new(scene.clone());

@@ -35,7 +35,7 @@ use std::sync::Arc;
 /// end, the frames timed until then are returned.
 ///
 /// # Errors
-/// The graph cannot be planned or run here; an early end before any frame was timed.
+/// The graph cannot be planned or run here; an [early end](crate#terms) before any frame was timed.
 pub fn profile(
     session: Session,
     [warmup, frames]: [u32; 2],

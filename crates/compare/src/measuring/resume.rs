@@ -34,8 +34,8 @@ pub enum Kept {
     /// Runs of other methods, views, viewports and map sizes than this comparison measures are
     /// kept.
     Others,
-    /// Those of [`Others`](Self::Others) are kept, and those of this comparison's runs whose
-    /// params, graph, shaders, scene and view have not changed.
+    /// Runs that [`Others`](Self::Others) keeps, and runs of this comparison whose params, graph,
+    /// shaders, scene and view have not changed since.
     All,
 }
 

@@ -30,7 +30,7 @@ use skiagraph_reference::{
 };
 use std::cell::RefCell;
 
-/// Context shared by all methods on one view and viewport.
+/// Data that all methods share when they are measured on one view or path in one viewport.
 pub struct MeasureContext<'a> {
     /// The GPU, and the sink for progress.
     pub session: Session<'a>,
@@ -44,7 +44,7 @@ pub struct MeasureContext<'a> {
     pub truth_view: &'a GroundTruthView<'a>,
     /// Index, among the view's lights, of the light under which methods are judged.
     pub light: usize,
-    /// Counts of the reference's pixels over all frames, as if a method had given its answers.
+    /// Counts of the reference's pixels over all frames ([`GroundTruthFrames::own_counts`]).
     pub own: Statistics,
     /// Settings of how methods are run and timed.
     pub protocol: Protocol,
@@ -95,7 +95,7 @@ pub struct Prepared {
 
 impl MeasureContext<'_> {
     /// Runs and judges a method on one still view by `plan`, its plan there; [`times`](Self::times)
-    /// times it together with others. `planned` is its run with nothing measured. `provider` has
+    /// times it together with others. `planned` is its [`Run`] without measurements. `provider` has
     /// the context's view and light already. A method that reuses results of earlier frames runs
     /// first until its picture repeats, at most 256 frames. Of the pictures of one period (16
     /// pictures if none repeats) the worst is judged, and [`Steady`] has the means of all.
@@ -258,7 +258,7 @@ impl MeasureContext<'_> {
     /// it reuses results of earlier frames, its picture repeats.
     ///
     /// # Errors
-    /// A method that the device refuses, An early end, a lost device.
+    /// A method that the device refuses, an early end, a lost device.
     pub fn prepare(&self, plan: Plan, provider: &mut dyn Provider) -> Result<Prepared, Stop> {
         let mut executor = frame::executor(self.session, plan, provider)?;
         frame::grow(self.session, &mut executor, provider)?;
@@ -329,7 +329,7 @@ impl MeasureContext<'_> {
         }
     }
 
-    /// Creates the run of a method from `planned`, its run with nothing measured, and its
+    /// Creates the run of a method from `planned`, its [`Run`] without measurements, and its
     /// measurements.
     pub fn run(&self, method: &Method, planned: &Run, measured: Measured) -> Run {
         Run {
@@ -338,8 +338,8 @@ impl MeasureContext<'_> {
         }
     }
 
-    /// Creates the run of a method from `planned`, its run with nothing measured, and the reason
-    /// why there are no measurements.
+    /// Creates the run of a method from `planned`, its [`Run`] without measurements, and the reason
+    /// why there are none.
     pub fn unavailable(&self, method: &Method, planned: &Run, reason: String) -> Run {
         Run {
             unavailable: Some(reason),
@@ -434,5 +434,10 @@ pub fn scene_bytes(
         })?;
         bytes += buffer.size();
     }
+    let submitted = provider.submit_built(&session.gpu.device, &session.gpu.queue);
+    submitted.map_err(|why| ExecuteError::Provider {
+        name: "what the provider copies".to_owned(),
+        why,
+    })?;
     Ok(bytes)
 }

@@ -27,7 +27,7 @@ pub enum Trial {
 /// A param of the search, with the number and kind of its values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Axis {
-    /// Number of its values, the default included.
+    /// Number of the param's values, the default included.
     pub values: usize,
     /// True if the values are words or booleans. Their combinations with numbers are tried first.
     pub is_word: bool,
@@ -36,9 +36,9 @@ pub struct Axis {
 /// The best combination that a search found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
-    /// The combination, as indices of values.
+    /// The best combination: for each param the index of its value.
     pub point: Point,
-    /// Its error; infinite if no combination could run.
+    /// Error of the combination `point`; infinite if no combination could run.
     pub error: f64,
     /// Number of combinations that were tried, the defaults included.
     pub tried: u32,

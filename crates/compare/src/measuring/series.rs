@@ -178,8 +178,8 @@ impl<'a> Series<'a> {
         self.planned.len()
     }
 
-    /// Returns all planned runs with nothing measured, in the order of views, in these of
-    /// viewports, in these of methods.
+    /// Returns all planned runs, without measurements. They are ordered by view, then by viewport,
+    /// then by method, each in the order of the [`Comparison`].
     pub fn planned_runs(&self) -> &[Run] {
         &self.planned
     }
@@ -203,8 +203,8 @@ impl<'a> Series<'a> {
     /// [`Comparison::viewports`].
     ///
     /// # Errors
-    /// An early end, a lost device, a file that cannot be written, a reference that cannot be
-    /// computed.
+    /// An [early end](crate#terms), a lost device, a file that cannot be written, a reference that
+    /// cannot be computed.
     pub fn measure(&mut self, view: usize, viewport: usize) -> Result<(), CompareError> {
         let places = self.places(view, viewport);
         let (view, viewport) = (
@@ -407,8 +407,8 @@ impl<'a> Series<'a> {
         self.save(pictures)
     }
 
-    /// Returns the finished runs, and behind them the kept runs in the folder that are not of this
-    /// comparison.
+    /// Returns the results of this comparison's finished runs, followed by the earlier runs in the
+    /// folder that are kept although this comparison does not measure them ([`Kept`]).
     pub fn whole(&self) -> Results {
         match &self.folder {
             Some(folder) => folder.whole(&self.results),
@@ -420,8 +420,8 @@ impl<'a> Series<'a> {
     /// nothing if results stay in memory.
     ///
     /// # Errors
-    /// An early end; a file that cannot be written; a results.json that another process has
-    /// meanwhile written of another adapter, scene or protocol.
+    /// An [early end](crate#terms); a file that cannot be written; a results.json that another
+    /// process has meanwhile written of another adapter, scene or protocol.
     pub fn save(&mut self, pictures: &[PictureFile]) -> Result<(), CompareError> {
         match &mut self.folder {
             Some(folder) => folder.save(&self.results, pictures, self.session.sink),

@@ -142,8 +142,8 @@ impl Pictures {
 }
 
 /// Draws the pictures of one period of a steady state (16 if it has none), and judges each by
-/// `judge`, which gets the contents of the outputs `names`. Returns the worst, and writes the means
-/// of all into `steady`.
+/// `judge`, which gets the contents of the outputs `names`. The state must be reached already.
+/// Returns the worst by [`Judgement::is_worse_than`], and writes the means of all into `steady`.
 ///
 /// # Errors
 /// An early end; the errors of the executor and of `judge`.

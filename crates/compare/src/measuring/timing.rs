@@ -168,9 +168,9 @@ impl Times {
 
 /// Times frames in which only the camera moves: one frame of each executor to find out if it skips
 /// a pass, then `frames` timed ones, the executors taking turns. Returns an entry per executor, in
-/// the same order: its times, or the error that ended it. `None` for an executor that skips no pass
-/// in such a frame, as its times would be those of any frame, and for all executors if `frames` is
-/// 0.
+/// the same order: its times, or the error that ended it. The entry is `None` for an executor that
+/// skips no pass in such a frame, as its times would equal those of frames in which every pass
+/// runs; all are `None` if `frames` is 0.
 ///
 /// # Errors
 /// An early end.

@@ -21,9 +21,9 @@ use std::collections::BTreeMap;
 
 /// A view on which settings are tried, with its ground truth.
 pub struct TrialView<'a> {
-    /// The view.
+    /// The view on which settings are tried.
     pub view: View,
-    /// Its light.
+    /// Light under which the view is drawn.
     pub light: LightKind,
     /// The ground truth of the view in the viewport of the trials.
     pub truth: GroundTruthView<'a>,
@@ -276,7 +276,7 @@ impl<'a> Trials<'a> {
             }
             let wrong = self.error_on(set, view)?;
             errors.push((wrong, view));
-            error += wrong / self.facing_light.max(1.0);
+            error += wrong / self.counted(view);
             if error > best {
                 return Ok(Trial::Worse);
             }
@@ -284,6 +284,17 @@ impl<'a> Trials<'a> {
         errors.sort_by(|(one, _), (other, _)| other.total_cmp(one));
         self.views = errors.into_iter().map(|(_, view)| view).collect();
         Ok(Trial::Error(error))
+    }
+
+    /// The number that the wrong pixels of a view are divided by: views count alike, however many of
+    /// their pixels face the light, but for those with hardly any, of which one pixel says little.
+    fn counted(&self, view: &TrialView) -> f64 {
+        let views = self.views.len() as f64;
+        views
+            * view
+                .facing_light()
+                .max(self.facing_light / (4.0 * views))
+                .max(1.0)
     }
 
     /// Plans a setting under the light of the provider; false if it cannot run, or if it remembers

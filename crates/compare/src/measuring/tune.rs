@@ -55,23 +55,24 @@ const RESERVE: u64 = 8;
 /// Cost of a comparison with a search, as a multiple of that of the same comparison without one.
 const MOST_COST: u64 = 10;
 
-/// Views on which settings are chosen where a comparison has fewer than two: several, so that one
-/// odd view does not decide.
+/// Least number of views on which settings are chosen: several, so that one odd view does not
+/// decide.
 const OTHERS: usize = 3;
 
-/// Searches good values of the params that documents mark with `tune`, and adds each method with
-/// the best ones as a method of its own behind it. If the comparison has several views, every
-/// second one is taken out of it, and settings are chosen on these; otherwise they are chosen on
-/// other views of the scene, and on generated ones where it has fewer than three. Params that a
-/// method sets stay as they are. A method whose document promises exact shadows for all casters is
-/// not searched. Values are chosen in the first of the comparison's viewports, and run in all.
+/// Searches good values of the params that documents mark with `tune`, and adds to the comparison,
+/// behind each method, the same method with the best values found. If the comparison has several
+/// views, every second one is taken out of it, and settings are chosen on these; otherwise they are
+/// chosen on other views of the scene. Where these are fewer than three, views are generated that
+/// show from other sides what the judged ones show. Params that a method sets stay as they are. A
+/// method whose document promises exact shadows for all casters is not searched. Values are chosen
+/// in the first of the comparison's viewports, and run in all.
 ///
 /// The work is bounded: plans and frames of a method, those of its tuned setting included, are at
 /// most ten times those of its part in the comparison.
 ///
 /// # Errors
-/// A comparison of camera paths; no method with params to tune; an early end, a lost device, a
-/// reference that cannot be computed.
+/// A comparison of camera paths; no method with params to tune; an [early end](crate#terms), a lost
+/// device, a reference that cannot be computed.
 pub fn tune(comparison: &mut Comparison, session: Session) -> Result<(), CompareError> {
     comparison.check(Session::new(session.gpu, &Silent))?;
     let scene = comparison.scene.clone();
@@ -217,19 +218,28 @@ impl Split {
         let is_one = places.len() < 2;
         let (mut judged, mut chosen_on) = (Vec::new(), Vec::new());
         for (index, (_, views)) in places.into_iter().enumerate() {
+            let views: Vec<View> = views.into_iter().cloned().collect();
             let part = if is_one || index % 2 == 0 {
                 &mut judged
             } else {
                 &mut chosen_on
             };
-            part.extend(views.into_iter().cloned());
+            part.push(views);
         }
+        let missing = OTHERS.saturating_sub(chosen_on.len());
+        let mut chosen_on = chosen_on.concat();
         if is_one {
-            chosen_on = others(&judged, scene)?;
+            chosen_on = others(&judged.concat(), scene)?;
+        } else {
+            // The others of a few may show nothing like those that are judged.
+            let each = missing.div_ceil(judged.len());
+            let like = judged.iter().enumerate();
+            let like = like.flat_map(|(index, views)| generated(views, scene, index * each, each));
+            chosen_on.extend(like.take(missing).flatten());
         }
         Ok(Self {
             chosen_on,
-            judged: judged.into_iter().map(ViewOrPath::Still).collect(),
+            judged: judged.concat().into_iter().map(ViewOrPath::Still).collect(),
         })
     }
 }
@@ -240,20 +250,9 @@ fn others(views: &[View], scene: &Scene) -> Result<Vec<View>, CompareError> {
     let none = || CompareError::Input("no view of the scene to tune methods on".into());
     let like = views.first().ok_or_else(none)?;
     let is_other = |other: &&View| (other.eye, other.direction) != (like.eye, like.direction);
-    let mut others: Vec<View> = scene
-        .views
-        .iter()
-        .filter(is_other)
-        .take(OTHERS)
-        .cloned()
-        .collect();
-    let missing = OTHERS.saturating_sub(others.len());
-    let generated = more_views(&scene.mesh, &scene.light_of(like), like, missing);
-    let generated = generated.into_iter().enumerate();
-    others.extend(generated.map(|(number, view)| View {
-        name: format!("generated {}", number + 1),
-        ..view
-    }));
+    let own = scene.views.iter().filter(is_other).take(OTHERS);
+    let mut others: Vec<Vec<View>> = own.map(|other| under_lights(other, views)).collect();
+    others.extend(generated(views, scene, 0, OTHERS - others.len()));
     if others.is_empty() {
         return Err(CompareError::Input(format!(
             "view `{}` is the only one that shows the scene: settings are chosen on other views \
@@ -261,7 +260,27 @@ fn others(views: &[View], scene: &Scene) -> Result<Vec<View>, CompareError> {
             like.name
         )));
     }
-    let under = |(other, view): (&View, &View)| View {
+    Ok(others.concat())
+}
+
+/// At most `count` views like a given one, which stands there once for each of its lights: the
+/// first two show the same from other sides. Each stands there once for each light, too. Their
+/// numbers follow `before`.
+fn generated(views: &[View], scene: &Scene, before: usize, count: usize) -> Vec<Vec<View>> {
+    let Some(like) = views.first() else {
+        return Vec::new();
+    };
+    let more = more_views(&scene.mesh, &scene.light_of(like), like, count);
+    let named = more.into_iter().enumerate().map(|(number, view)| View {
+        name: format!("generated {}", before + number + 1),
+        ..view
+    });
+    named.map(|view| under_lights(&view, views)).collect()
+}
+
+/// A view under each of the lights that views of one place are under.
+fn under_lights(other: &View, views: &[View]) -> Vec<View> {
+    let under = |view: &View| View {
         name: match (views.len(), &view.light) {
             (2.., Some(light)) => format!("{}@{}", other.name, light.name),
             _ => other.name.clone(),
@@ -269,7 +288,7 @@ fn others(views: &[View], scene: &Scene) -> Result<Vec<View>, CompareError> {
         light: view.light.clone().or_else(|| other.light.clone()),
         ..other.clone()
     };
-    Ok(others.iter().cartesian_product(views).map(under).collect())
+    views.iter().map(under).collect()
 }
 
 /// The ground truth of views in a viewport.

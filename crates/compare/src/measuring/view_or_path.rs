@@ -53,9 +53,9 @@ impl ViewOrPath {
         self.view().light.as_ref()
     }
 
-    /// Returns the name of the view's or path's own light if its name ends in `@` and that name, as
-    /// views and paths under several lights are named by [`under_lights`] and
-    /// [`paths`](Self::paths); `None` otherwise.
+    /// Returns the name of the view's or path's own light, if this is one of several views or paths
+    /// that differ only in their light: [`under_lights`] and [`paths`](Self::paths) name these
+    /// `NAME@LIGHT`. Returns `None` for any other.
     pub fn one_of_lights(&self) -> Option<&str> {
         let view = self.view();
         let light = &view.light.as_ref()?.name;

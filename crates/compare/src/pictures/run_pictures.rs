@@ -59,9 +59,10 @@ impl PicturePlace<'_> {
     }
 }
 
-/// Draws the pictures of a method's frame and of the reference. `footprints` has one entry per
-/// pixel, row by row from the top left: its footprint in the shadow map; with it, pictures of the
-/// texels per pixel are drawn as well. Returns the names of the files, and the files to write.
+/// Draws the pictures of a method's frame and of the [reference](crate#terms). `footprints` has one
+/// entry per pixel, row by row from the top left: its footprint in the shadow map; with it,
+/// pictures of the texels per pixel are drawn as well. Returns the names of the files, and the
+/// files to write.
 ///
 /// # Errors
 /// Outputs of another size than the reference; a picture that cannot be encoded.
@@ -122,7 +123,7 @@ pub fn draw_pictures(
 }
 
 /// Encodes the arrays of [`data::judged`]: visibility and status of each pixel, of a method's frame
-/// and of the reference. Returns the files to write.
+/// and of the [reference](crate#terms). Returns the files to write.
 ///
 /// # Errors
 /// A file that cannot be encoded.
@@ -197,7 +198,8 @@ pub fn stem(method: &Method, view: &str, viewport: [u32; 2]) -> String {
     )
 }
 
-/// Returns the beginning of the file name of the reference's picture: `reference-main-512x512`.
+/// Returns the beginning of the file name of the [reference](crate#terms)'s picture:
+/// `reference-main-512x512`.
 pub fn reference_stem(view: &str, viewport: [u32; 2]) -> String {
     format!("reference-{}-{}", slug(view), size(viewport))
 }
@@ -207,7 +209,7 @@ pub fn graph_name(method: &str) -> String {
     format!("graph-{}.svg", slug(method))
 }
 
-/// Returns the file name of the reference's picture of a still view:
+/// Returns the file name of the [reference](crate#terms)'s picture of a still view:
 /// `reference-main-512x512-visibility.png`.
 pub fn reference_name(view: &str, viewport: [u32; 2]) -> String {
     format!("{}-visibility.png", reference_stem(view, viewport))

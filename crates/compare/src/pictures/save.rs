@@ -83,9 +83,10 @@ impl FromStr for Save {
                 ));
             }
         };
-        let material = material.to_owned();
+        let mut capture = Capture::new(material);
+        capture.after = after;
         Ok(Self {
-            capture: Capture { material, after },
+            capture,
             file,
             encoding,
         })

@@ -18,7 +18,7 @@
 use crate::records::statistics::Series;
 use serde::Serialize;
 
-/// Comparison of a profile with an older one.
+/// Comparison of a profile with an older one of `profile --baseline`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Comparison {
     /// Path of the older profile's file.
@@ -74,9 +74,9 @@ pub struct FrameRatio {
 /// Ratio of a new time to an old one, with its spread and a verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Ratio {
-    /// Old median, milliseconds.
+    /// Median of the older profile's times, one per frame, in milliseconds.
     pub old_ms: f64,
-    /// New median, milliseconds.
+    /// Median of the new profile's times, one per frame, in milliseconds.
     pub new_ms: f64,
     /// New median divided by old median.
     pub ratio: f64,
@@ -84,7 +84,7 @@ pub struct Ratio {
     pub low: f64,
     /// Upper end of the ratio's spread: Q3(new) / Q1(old).
     pub high: f64,
-    /// Verdict: faster, slower, or no difference.
+    /// Verdict on the new time: faster, slower, or no difference that can be told.
     pub verdict: Verdict,
 }
 
@@ -92,11 +92,11 @@ pub struct Ratio {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// The whole spread lies below 1.
+    /// The new time is shorter: the ratio's whole spread, `low` to `high`, lies below 1.
     Faster,
-    /// The whole spread lies above 1.
+    /// The new time is longer: the ratio's whole spread, `low` to `high`, lies above 1.
     Slower,
-    /// 1 lies in the spread.
+    /// The times cannot be told apart: 1 lies in the ratio's spread, `low` to `high`.
     Same,
     /// One of the profiles has fewer than [`MIN_FRAMES`] frames: their quartiles say nothing.
     TooFewFrames,

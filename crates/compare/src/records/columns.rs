@@ -424,7 +424,7 @@ pub struct Column {
     /// Head of the column.
     pub head: &'static str,
     /// Name of the column's quantity in files of published figures, such as `wrong_percent`; empty
-    /// if such files cannot have it.
+    /// if such files cannot have the column's quantity.
     pub quantity: &'static str,
     source: &'static Source,
 }
@@ -487,7 +487,7 @@ pub fn csv() -> Vec<Column> {
 }
 
 /// Returns the columns of the terminal's table of `runs`, in order. Those for map sizes, camera
-/// paths or shares of light are left out if no run has them.
+/// paths or [shares of light](crate#terms) are left out if no run has them.
 pub fn terminal(runs: &[&Run]) -> Vec<Column> {
     let has_maps = runs.iter().any(|run| run.map_size.is_some());
     let entries = TERMINAL.iter().filter(|(name, ..)| {

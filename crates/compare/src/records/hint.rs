@@ -17,12 +17,14 @@ pub struct Hint {
     pub cause: Cause,
     /// Number of the pixels of `wrong` that have this cause.
     pub explained: u64,
-    /// Number of wrong pixels, without those whose right answer rounding may flip.
+    /// Number of wrong pixels of the method on the view, without those whose right answer rounding
+    /// may flip.
     pub wrong: u64,
     /// The method with the setting to try and what `--set` gave to it, as an argument of `compare`:
     /// `nsm@cull=none,slope_bias=1`.
     pub set: String,
-    /// Number of wrong pixels with that setting, counted as `wrong` is.
+    /// Number of wrong pixels with the setting `set`, without those whose right answer rounding may
+    /// flip.
     pub wrong_then: u64,
 }
 

@@ -12,18 +12,19 @@ use crate::records::results::{Answer, AreaReference, Images, Scene};
 use serde::{Deserialize, Serialize};
 use skiagraph_reference::{BlockerCounts, EdgeDistances, Graded, PixelCounts, WrongCounts};
 
-/// Share of the pixels facing the light that may be unattributable in a picture with a rank.
+/// Greatest share of the pixels facing the light that may be
+/// [unattributable](JudgedPictures::unattributable): with more of them pictures get no rank.
 pub const MOST_UNATTRIBUTABLE: f64 = 0.01;
 
-/// Content of `judge.json`: pictures of one view of a scene, with the truth that they were held
-/// against.
+/// Content of `judge.json`: pictures of one view of a scene, with the [truth](crate#terms) that
+/// they were held against.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct JudgedPictures {
     /// Version of this schema: 1.
     pub schema: u32,
     /// The program that judged, `skiagraph 0.1.0`.
     pub program: String,
-    /// The scene that the pictures show.
+    /// Name and triangles of the scene that the pictures show.
     pub scene: Scene,
     /// Name of the view.
     pub view: String,
@@ -32,23 +33,28 @@ pub struct JudgedPictures {
     pub light: Option<String>,
     /// Width and height of the pictures in pixels.
     pub viewport: [u32; 2],
-    /// Mode of the reference's shadow rays: `exact`, or `offset:LENGTH` in scene units.
+    /// Mode of the [reference](crate#terms)'s shadow rays: `exact`, or `offset:LENGTH` in scene
+    /// units.
     pub oracle: String,
-    /// Numbers of pixels by the reference's answer.
+    /// Numbers of pixels by the [reference](crate#terms)'s answer.
     pub pixels: PixelCounts,
-    /// Number of pixels facing the light whose answer flips within the rounding error of receiver
-    /// and casters: the band.
+    /// Number of pixels in the [band](crate#terms): those facing the light whose right answer flips
+    /// when the receiver (the point that the pixel shows) or the casters move within their f32
+    /// rounding error.
     pub band: u64,
-    /// Number of pixels whose surface is hidden behind another one by more than rounding.
+    /// Number of pixels whose surface, as [`surfaces`](Self::surfaces) says, is hidden behind
+    /// another one by more than rounding explains.
     pub wrong_surface: u64,
-    /// Sampling of the reference for a light with an extent; absent for other lights.
+    /// Number of samples and estimated error of the [reference](crate#terms) under a light [with an
+    /// extent](crate#terms); absent for other lights.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub area: Option<AreaReference>,
     /// Source of the surface that each pixel shows: `rasterised` by this program, `ids` or `depth`
     /// of the other renderer.
     pub surfaces: String,
-    /// Number of pixels facing the light, outside the band, whose truth is not unique among the
-    /// surfaces that they may show.
+    /// Number of *unattributable* pixels: they face the light and are not in the
+    /// [band](crate#terms), but the picture may show one of several surfaces there, whose right
+    /// answers differ. A picture's rank does not count them.
     pub unattributable: u64,
     /// The pictures, in the order of the command.
     pub pictures: Vec<JudgedPicture>,
@@ -63,23 +69,27 @@ pub struct JudgedPicture {
     pub format: String,
     /// Kind of the answers: `hard` if all are 0 and 1.
     pub answer: Answer,
-    /// Rank among the pictures, 1 for the best: by wrong pixels, under a light with an extent by
-    /// `rmse_outside_band`. Null if more than 1 % of the pixels facing the light are
-    /// unattributable, or the picture hardly agrees with the truth.
+    /// Rank among the pictures, 1 for the best: by wrong pixels, under a light [with an
+    /// extent](crate#terms) by `rmse_outside_band`. Null if more than 1 % of the pixels facing the
+    /// light are unattributable, or the picture hardly agrees with the [truth](crate#terms).
     pub rank: Option<u32>,
     /// Numbers of pixels on which picture and reference disagree; of shares, one half or more
     /// counts as lit. Unattributable ones are included.
     pub wrong: WrongCounts,
-    /// Pixels of `wrong.total` that are unattributable; none of them is in the band.
+    /// Number of the pixels of `wrong.total` that are
+    /// [unattributable](JudgedPictures::unattributable); none of them is in the
+    /// [band](crate#terms).
     pub wrong_unattributable: u64,
-    /// Errors of the shares of light, over all pixels facing the light; `rmse_outside_band` and
-    /// `soft` without those that are unattributable.
+    /// Errors of the [shares of light](crate#terms), over all pixels facing the light. The fields
+    /// `rmse_outside_band` and `soft` leave out pixels in the band and
+    /// [unattributable](JudgedPictures::unattributable) ones.
     pub graded: Graded,
-    /// Distances of the wrong pixels, outside the band and attributable, from the edges of the
-    /// reference's shadows.
+    /// Distances of the wrong pixels, outside the [band](crate#terms) and attributable, from the
+    /// edges of the [reference](crate#terms)'s shadows.
     pub edges: EdgeDistances,
-    /// Wrong pixels, outside the band and attributable, by the caster that blocks their light;
-    /// absent if there are none, or if answers are graded.
+    /// Numbers of the wrong pixels that are outside the [band](crate#terms) and attributable, by
+    /// the kind of caster that blocks their light; absent if there are no such pixels, or if
+    /// answers are [shares of light](crate#terms).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wrong_blockers: Option<BlockerCounts>,
     /// Warnings: what was left out of the file, and mistakes that are suspected.
@@ -98,7 +108,8 @@ impl JudgedPictures {
 }
 
 impl JudgedPicture {
-    /// Returns the number of wrong pixels outside the band whose surface is known.
+    /// Returns the number of wrong pixels outside the [band](crate#terms) that are not
+    /// [unattributable](JudgedPictures::unattributable).
     pub fn wrong_attributable(&self) -> u64 {
         let apart = self.wrong.in_band + self.wrong_unattributable;
         self.wrong.total.saturating_sub(apart)

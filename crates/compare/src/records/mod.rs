@@ -1,5 +1,6 @@
 //! Holds measurements as plain data. The types of the JSON files are their schemas: scripts rely on
-//! them, so fields are added and never renamed.
+//! them, so fields are added and never renamed. A field that is `None` is `null` in the file where
+//! its comment says *null*, and left out of the file where it says *absent*.
 //!
 //! ```
 //! use skiagraph_compare::records::read_back;

@@ -60,7 +60,7 @@ pub struct Conditions {
     pub build: String,
     /// Time of the measurement, ISO 8601 in UTC.
     pub date: String,
-    /// GPU that was measured. Its field `gpu_unavailable` gives the reason if GPU times are null.
+    /// GPU that was measured. [`Adapter::gpu_unavailable`] gives the reason if GPU times are null.
     pub adapter: Adapter,
     /// The scene that was drawn.
     pub scene: Scene,

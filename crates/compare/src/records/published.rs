@@ -56,15 +56,15 @@ pub fn read(files: &[PublishedFile]) -> Result<Vec<Row>, CompareError> {
     })
 }
 
-/// Replaces the published figures of a run by those of the `rows` that [apply to
-/// it](Row::applies_to). `scene` is the name of the run's scene.
+/// Sets [`Run::published`] of a run to the figures of the `rows` that [apply to the
+/// run](Row::applies_to). `scene` is the name of the run's scene.
 pub fn attach(rows: &[Row], scene: &str, run: &mut Run) {
     let figures = rows.iter().filter(|row| row.applies_to(scene, run));
     run.published = figures.map(|row| row.figure.clone()).collect();
 }
 
-/// Replaces the published figures of each run of `results` by those of the `rows` that [apply to
-/// it](Row::applies_to). Runs of [`Results::others`] stay as they are.
+/// Sets [`Run::published`] of each run of `results` to the figures of the `rows` that [apply to the
+/// run](Row::applies_to). Runs of [`Results::others`] stay as they are.
 pub fn attach_all(rows: &[Row], results: &mut Results) {
     for run in &mut results.runs {
         attach(rows, &results.scene.name, run);

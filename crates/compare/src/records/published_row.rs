@@ -61,10 +61,11 @@ pub struct Row {
     view: String,
     viewport: [u32; 2],
     map_size: Option<u32>,
-    /// Name of the preset; empty for a figure of the reference, such as its number of lit pixels.
-    /// In a row from [`Row::read`] it is all preset names of the line, separated by spaces.
+    /// Name of the preset; empty for a figure of the [reference](crate#terms), such as its number
+    /// of lit pixels. In a row from [`Row::read`] it is all preset names of the line, separated by
+    /// spaces.
     pub preset: String,
-    /// Names of all presets on the row's line; empty for a figure of the reference.
+    /// Names of all presets on the row's line; empty for a figure of the [reference](crate#terms).
     pub named: Vec<String>,
     /// The figure, with its quantity and source.
     pub figure: Published,
@@ -83,7 +84,7 @@ impl Row {
     }
 
     /// Returns one row for each preset that the line names; the row itself for a figure of the
-    /// reference.
+    /// [reference](crate#terms).
     pub fn of_each_preset(self) -> Vec<Self> {
         if self.preset.is_empty() {
             return vec![self];
@@ -96,7 +97,7 @@ impl Row {
     }
 
     /// True if the figure was published for the scene named `scene`, the view and viewport of
-    /// `run`, and, unless it is of the reference, for its preset and map size.
+    /// `run`, and, unless it is of the [reference](crate#terms), for its preset and map size.
     pub fn applies_to(&self, scene: &str, run: &Run) -> bool {
         let of_run = self.preset == run.preset && self.map_size == run.map_size;
         (self.scene.as_str(), &self.view, self.viewport) == (scene, &run.view, run.viewport)

@@ -51,9 +51,9 @@ pub struct Results {
     pub machine: Machine,
     /// The scene that was drawn.
     pub scene: Scene,
-    /// Mode of the reference's shadow rays: `exact` (from the visible surface, whose own triangle
-    /// is excluded) or `offset:LENGTH` (the origin is moved towards the light by so many scene
-    /// units).
+    /// Mode of the [reference](crate#terms)'s shadow rays: `exact` (from the visible surface, whose
+    /// own triangle is excluded) or `offset:LENGTH` (the origin is moved towards the light by
+    /// LENGTH scene units).
     pub oracle: String,
     /// Number of timed frames of a still view. Of a camera path each frame is timed.
     pub frames: u32,
@@ -63,7 +63,8 @@ pub struct Results {
     pub cached_frames: u32,
     /// Start of the comparison that measured the newest runs, in UTC: `2026-11-21T04:30:12Z`.
     pub began: String,
-    /// Limits on frame time, errors and memory that the user set; absent if there are none.
+    /// Limits on frame time, wrong pixels and memory that the user set; left out of the file if
+    /// there are none.
     #[serde(default, skip_serializing_if = "Budgets::is_empty")]
     pub budgets: Budgets,
     /// Commands that measured the runs, the first one first.
@@ -71,7 +72,7 @@ pub struct Results {
     /// One entry per view, viewport, preset and map size, in this order.
     pub runs: Vec<Run>,
     /// Results of other machines, adapters, scenes or protocols that `merge` put into the same
-    /// file; absent where all runs were measured alike. None of them has others of its own.
+    /// file; absent where all runs were measured alike. The `others` of each entry are empty.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub others: Vec<Results>,
 }
@@ -109,7 +110,7 @@ pub struct Adapter {
 /// Machine on which something was measured, as it was when the comparison began.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Machine {
-    /// Name of the machine in its network; null where the system does not say.
+    /// Host name of the machine; null where the system does not say.
     pub host: Option<String>,
     /// Name of the processor; empty where the system does not say.
     pub processor: String,
@@ -128,7 +129,8 @@ impl Machine {
             .is_some_and(|load| load >= 0.5 * f64::from(self.cores))
     }
 
-    /// True if both are the same machine, whatever its load was.
+    /// True if `self` and `other` have the same host name, processor and number of cores; their
+    /// loads may differ.
     pub fn is_same(&self, other: &Self) -> bool {
         let Self {
             host,
@@ -207,7 +209,8 @@ impl fmt::Display for Scene {
     }
 }
 
-/// One preset in one setting on one view and viewport, with its measurements or why there are none.
+/// One method (a preset in one setting of its params) on one view or camera path in one viewport,
+/// with its measurements, or the reason why there are none.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Run {
     /// Name of the preset, or path of the graph, with what tells one setting of it from its others:
@@ -226,12 +229,13 @@ pub struct Run {
     /// All params of the graph, defaults included, with the values that it ran with.
     pub params: BTreeMap<String, serde_json::Value>,
     /// Hash of everything but the params that the run depends on: the files of the graph, its
-    /// includes and shaders; those of the graph that finds the visible triangles; mesh, light and
-    /// view.
+    /// includes and shaders; the files of the graph that finds the visible triangles; the mesh,
+    /// light and view.
     pub fingerprint: String,
     /// Day on which the run was measured, `2026-11-21` (UTC).
     pub date: String,
-    /// Start of the comparison that measured the run, in UTC: `2026-11-21T04:30:12Z`.
+    /// Start of the comparison that measured the run, in UTC: `2026-11-21T04:30:12Z`. Runs of one
+    /// comparison have the same.
     pub session: String,
     /// Id of the cell (the method with its params on the view, in the viewport, under the
     /// protocol), 16 hexadecimal digits, the same on every machine
@@ -242,7 +246,7 @@ pub struct Run {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub commit: Option<String>,
     /// Machine on which the run was measured, with its load at the start of the comparison; absent
-    /// in results of older versions, whose machine is that of the results.
+    /// in results of older versions, for which [`Results::machine`] holds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub machine: Option<Machine>,
     /// Record of the search that chose these params; absent for a method that was not tuned.
@@ -252,22 +256,25 @@ pub struct Run {
     /// none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub promise: Option<Promise>,
-    /// Numbers of pixels by the reference's answer, over all frames of a camera path.
+    /// Numbers of pixels by the [reference](crate#terms)'s answer, over all frames of a camera
+    /// path.
     pub pixels: PixelCounts,
-    /// Number of pixels facing the light whose answer flips within the rounding error of receiver
-    /// and casters: the band.
+    /// Number of pixels in the [band](crate#terms): those facing the light whose right answer flips
+    /// when the receiver (the point that the pixel shows) or the casters move within their f32
+    /// rounding error. Summed over all frames of a camera path.
     pub band: u64,
-    /// Number of pixels whose primitive, as rasterised, is hidden behind another one by more than
-    /// rounding. All methods are judged on the rasterised one.
+    /// Number of pixels for which the GPU rasterised a triangle that is hidden behind another one,
+    /// by more than rounding explains. All methods are judged on the rasterised triangle.
     pub wrong_surface: u64,
-    /// Sampling of the reference for a light with an extent; absent for other lights.
+    /// Number of samples and estimated error of the [reference](crate#terms) under a light [with an
+    /// extent](crate#terms); absent for other lights.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub area: Option<AreaReference>,
     /// The measurements; absent where the method could not run.
     #[serde(flatten)]
     pub measured: Option<Measured>,
-    /// Reason why the method could not run on this adapter, or its outputs are not those of a
-    /// shadow method; absent where it was measured.
+    /// Reason why the method could not run on this adapter, or its outputs do not have the size,
+    /// format or values of a shadow method's; absent where it was measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unavailable: Option<String>,
     /// Figures that others have published about the run, from the files of `--beside`.
@@ -283,7 +290,7 @@ impl Run {
         self.area.is_none() && measured.is_none_or(|of| of.answer == Answer::Hard)
     }
 
-    /// True unless only a single frame of the run was timed before an early end.
+    /// False if the work ended early, after a single timed frame of this run; otherwise true.
     pub fn is_whole(&self) -> bool {
         let measured = self.measured.as_ref();
         measured.is_none_or(|of| of.sequence.is_some() || of.turns.is_some())
@@ -314,8 +321,8 @@ impl Run {
         Some(Part { count: shadow, of })
     }
 
-    /// True if both runs have the same preset, view, viewport and map size, so that one replaces
-    /// the other in results.
+    /// True if `self` and `other` have the same preset, view, viewport and map size. Results keep
+    /// only one of two such runs.
     pub fn is_in_place_of(&self, other: &Self) -> bool {
         (&self.preset, &self.view, self.viewport, self.map_size)
             == (&other.preset, &other.view, other.viewport, other.map_size)
@@ -371,8 +378,8 @@ pub enum Answer {
     /// Answers 0 and 1: the output `visibility` is a texture of integers.
     #[default]
     Hard,
-    /// Answers that are shares of light, 0 to 1: the output `visibility` is a texture of floats or
-    /// normalised integers.
+    /// Answers that are [shares of light](crate#terms), 0 to 1: the output `visibility` is a
+    /// texture of floats or normalised integers.
     Graded,
 }
 
@@ -386,23 +393,25 @@ impl Answer {
     }
 }
 
-/// Sampling of the reference for a light with an extent. The run's `pixels` count a pixel as lit if
-/// it sees half of the light or more.
+/// Number of samples and estimated error of the [reference](crate#terms) under a light [with an
+/// extent](crate#terms). The run's `pixels` count a pixel as lit if it sees half of the light or
+/// more.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AreaReference {
     /// Number of shadow rays per pixel that faces the light.
     pub samples: u32,
-    /// Estimated standard error of the reference's shares of light, root mean square over the
-    /// pixels that face the light.
+    /// Estimated standard error of the [reference](crate#terms)'s [shares of light](crate#terms),
+    /// root mean square over the pixels that face the light.
     pub standard_error_rms: f64,
-    /// Greatest estimated standard error of a pixel's share of light.
+    /// Greatest estimated standard error of a pixel's [share of light](crate#terms).
     pub standard_error_worst: f64,
     /// Number of pixels facing the light that see only a part of it.
     pub penumbra: u64,
 }
 
 impl AreaReference {
-    /// Takes the figures from the oracle's answer for a light with an extent.
+    /// Takes the figures from the [oracle](crate#terms)'s answer for a light [with an
+    /// extent](crate#terms).
     pub fn new(area: &AreaVisibility, truth: &GroundTruthPixels) -> Self {
         let [standard_error_rms, standard_error_worst] = area.standard_error(truth);
         let partial = area
@@ -446,14 +455,14 @@ pub struct Published {
 /// Measurements of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
-    /// Numbers of pixels facing the light that the method calls certain, since its shadow map
-    /// decides them.
+    /// Numbers of pixels facing the light that the method calls certain by its output `status`: its
+    /// shadow map decides them.
     pub certain: CertainCounts,
     /// Number of pixels facing the light that the method calls uncertain: its shadow map does not
     /// decide them, so that it traces rays or guesses.
     pub uncertain: u64,
     /// Counts of the certain and the uncertain pixels, and of the wrong ones among them, separately
-    /// for pixels that the reference lights and pixels in its shadow.
+    /// for pixels that the [reference](crate#terms) lights and pixels in its shadow.
     pub split: Split,
     /// Number of rays traced in the frame, for a camera path in all frames together; null where the
     /// graph does not count them.
@@ -466,19 +475,20 @@ pub struct Measured {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub certain_wrong_blockers: Option<BlockerCounts>,
     /// A setting that makes most wrong pixels right; absent if none was found, if methods were
-    /// tuned, if answers are shares of light, and for a camera path.
+    /// tuned, if answers are [shares of light](crate#terms), and for a camera path.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hint: Option<Hint>,
-    /// Number of pixels that face the light by the reference but not by the method's output
-    /// `status`, or the other way round.
+    /// Number of pixels that face the light by the [reference](crate#terms) but not by the method's
+    /// output `status`, or the other way round.
     pub facing_mismatch: u64,
-    /// Kind of the answers: 0 and 1, or shares of light. Of shares, `certain`, `split` and `wrong`
-    /// count one half or more as lit.
+    /// Kind of the answers: 0 and 1, or [shares of light](crate#terms). Of shares, `certain`,
+    /// `split` and `wrong` count one half or more as lit.
     pub answer: Answer,
-    /// Errors of the shares of light that the method shows, against the reference; a hard answer
-    /// shows 0 or 1.
+    /// Errors of the [shares of light](crate#terms) that the method shows, against the
+    /// [reference](crate#terms); a hard answer shows 0 or 1.
     pub graded: Graded,
-    /// Distances in pixels of wrong pixels from the edges of the reference's shadows.
+    /// Distances in pixels of wrong pixels from the edges of the [reference](crate#terms)'s
+    /// shadows.
     pub edges: EdgeDistances,
     /// Times of each pass over the timed frames, in the order in which they ran.
     pub passes: Vec<Pass>,
@@ -581,8 +591,8 @@ impl Measured {
     }
 
     /// Returns the number of wrong pixels outside the band (the pixels whose right answer rounding
-    /// may flip). For a method that reuses results of earlier frames it is that of the worst
-    /// picture of its steady state; the mean, by which reports rank, is in
+    /// may flip). For a method that reuses results of earlier frames it counts the worst picture of
+    /// its steady state; the mean over all these pictures, by which reports rank, is in
     /// [`steady`](Self::steady).
     pub fn wrong_outside_band(&self) -> u64 {
         self.wrong.total.saturating_sub(self.wrong.in_band)
@@ -594,9 +604,10 @@ impl Measured {
 pub struct Pass {
     /// Name of the pass in the graph.
     pub name: String,
-    /// Milliseconds between the pass's GPU timestamps; null where they cannot be had or trusted.
+    /// Milliseconds between the pass's GPU timestamps; null if the device has none or they cannot
+    /// be trusted.
     pub gpu_ms: Option<Spread>,
-    /// Milliseconds of encoding the pass on the CPU.
+    /// Milliseconds that the CPU took to encode the pass's commands.
     pub cpu_ms: Spread,
 }
 
@@ -617,15 +628,16 @@ pub struct Images {
     /// file names contain it. Absent for a still view.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frame: Option<usize>,
-    /// File name of the picture of the reference's shadows, the same for all methods.
+    /// File name of the picture of the [reference](crate#terms)'s shadows, the same for all
+    /// methods.
     pub reference: String,
     /// File name of the picture of the scene, shaded with the method's shadows.
     pub shaded: String,
     /// File name of the picture of the output `visibility`.
     pub visibility: String,
     /// File name of the picture of the errors: blue where wrongly lit, red where wrongly in shadow,
-    /// paler where rounding may flip the right answer. For shares of light the colour grows with
-    /// the error, and is full from an error of a quarter on.
+    /// paler where rounding may flip the right answer. For [shares of light](crate#terms) the
+    /// colour grows with the error, and is full from an error of a quarter on.
     pub error: String,
     /// File name of the picture `shaded` with uncertain pixels in purple; absent where the method
     /// calls no pixel certain or uncertain.
@@ -636,11 +648,13 @@ pub struct Images {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub texels: Option<String>,
     /// File name of the picture of the factor of the texels per pixel that distances and the map's
-    /// resolution cause (perspective aliasing); absent as `texels` is.
+    /// resolution cause (perspective aliasing); absent where the graph has no output
+    /// `texel_density`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub perspective: Option<String>,
     /// File name of the picture of the factor of the texels per pixel that the surface's angles to
-    /// eye and light cause (projection aliasing); absent as `texels` is.
+    /// eye and light cause (projection aliasing); absent where the graph has no output
+    /// `texel_density`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub projection: Option<String>,
 }

@@ -89,9 +89,9 @@ pub struct Figures {
     /// for a method that reuses results of earlier frames the mean over its steady state, rounded
     /// up.
     pub wrong: u64,
-    /// Root mean square error of the shares of light, 0 to 1, without pixels whose answer rounding
-    /// decides; for a method that reuses results of earlier frames the mean over its steady state,
-    /// of all pixels.
+    /// Root mean square error of the [shares of light](crate#terms), 0 to 1, without pixels whose
+    /// answer rounding decides; for a method that reuses results of earlier frames the mean over
+    /// its steady state, of all pixels.
     pub rmse: f64,
     /// Median milliseconds of a frame in which every pass runs: GPU time, or wall time without it.
     pub ms: f64,
@@ -113,7 +113,7 @@ pub enum Change {
 pub struct Tolerance {
     /// Difference of the numbers of wrong pixels.
     pub pixels: u64,
-    /// Difference of the root mean square errors of the shares of light, 0 to 1.
+    /// Difference of the root mean square errors of the [shares of light](crate#terms), 0 to 1.
     pub rmse: f64,
 }
 
@@ -190,8 +190,8 @@ impl Baseline {
     /// anything is measured.
     ///
     /// # Errors
-    /// The scene has changed: the reference counts other numbers of lit and shadowed pixels, by
-    /// more than the [`Tolerance`].
+    /// The scene has changed: the [reference](crate#terms) counts other numbers of lit and shadowed
+    /// pixels, by more than the [`Tolerance`].
     pub fn against(&self, now: &Results) -> Result<Changes, CompareError> {
         let mut changes = Changes {
             baseline: self.name.clone(),
@@ -334,7 +334,7 @@ impl CellChange {
     }
 
     /// Returns the verdict on the method on this view: worse if errors or frame times are worse
-    /// than in the baseline, otherwise better if one of both is better.
+    /// than in the baseline, otherwise better if errors or frame times are better.
     pub fn verdict(&self) -> Change {
         let both = [self.errors, self.times()];
         let is = |change: &Change| both.contains(change);

@@ -7,7 +7,7 @@
 //!
 //! let frame = |index: u64| TimedFrame {
 //!     began: Duration::from_millis(20 * index),
-//!     timing: FrameTiming { passes: Vec::new() },
+//!     timing: FrameTiming::new(Vec::new()),
 //!     wall: Duration::from_millis(16),
 //!     skipped: Vec::new(),
 //! };

@@ -48,7 +48,7 @@ pub struct SequenceFrame {
     /// Number of wrong pixels facing the light outside the band, which is the set of pixels whose
     /// answer rounding decides.
     pub wrong_outside_band: u64,
-    /// Errors of the shares of light, 0 to 1, that the frame shows.
+    /// Errors of the [shares of light](crate#terms), 0 to 1, that the frame shows.
     pub graded: Graded,
     /// Number of rays traced in the frame; null where the graph does not count them.
     pub rays: Option<u64>,
@@ -61,8 +61,8 @@ pub struct SequenceFrame {
     /// Names of the passes that did not run, because none of their inputs had changed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub skipped: Vec<String>,
-    /// Resources of the scene that were built again before the frame, because something that they
-    /// depend on had changed.
+    /// Resources of the scene (such as its bounding-volume hierarchy) that were built again before
+    /// the frame, because something that they depend on had changed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub remade: Vec<Remade>,
     /// Times of the frame when no pass is skipped, measured in a second walk along the path; absent
@@ -102,8 +102,8 @@ impl FrameCost {
 }
 
 impl SequenceFrame {
-    /// Returns the error by which frames are ranked: the root mean square error of the shares of
-    /// light.
+    /// Returns the error by which frames are ranked: the root mean square error of the [shares of
+    /// light](crate#terms).
     pub fn error(&self) -> f64 {
         self.graded.rmse
     }

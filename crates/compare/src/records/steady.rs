@@ -22,8 +22,8 @@ pub struct Steady {
     /// Number of frames that were run, the first without earlier ones to reuse, until the picture
     /// had repeated over 32 frames; 256 if it did not.
     pub frames: u32,
-    /// Number of frames after which the picture repeats, at most 16; shares of light may differ by
-    /// 1/1024. Null if the picture did not repeat within `frames`.
+    /// Number of frames after which the picture repeats, at most 16; [shares of light](crate#terms)
+    /// may differ by 1/1024. Null if the picture did not repeat within `frames`.
     pub period: Option<u32>,
     /// Means over the pictures that were judged in the steady state; absent for a camera path that
     /// begins in it.
@@ -35,16 +35,17 @@ pub struct Steady {
 /// of the worst picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Cycle {
-    /// Number of pictures: those of one period, or 16 if the picture did not repeat.
+    /// Number of pictures over which the means are taken: one period, or 16 if the picture did not
+    /// repeat.
     pub pictures: u32,
     /// Mean number of all wrong pixels of a picture.
     pub wrong_mean: f64,
     /// Mean number of wrong pixels of a picture outside the band (the pixels whose answer rounding
     /// decides).
     pub wrong_outside_band_mean: f64,
-    /// Mean of the pictures' root mean square errors of the shares of light, 0 to 1.
+    /// Mean of the pictures' root mean square errors of the [shares of light](crate#terms), 0 to 1.
     pub rmse_mean: f64,
-    /// Mean of the pictures' FLIP errors (perceptual difference to the reference's picture, 0 to
-    /// 1).
+    /// Mean of the pictures' FLIP errors (perceptual difference to the [reference](crate#terms)'s
+    /// picture, 0 to 1).
     pub flip_mean: f64,
 }

@@ -104,13 +104,14 @@ pub struct Case {
     /// Reason why the case has no reference, and so no results of methods; absent where it has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failed: Option<String>,
-    /// Numbers of the viewport's pixels by the reference's answer.
+    /// Numbers of the viewport's pixels by the [reference](crate#terms)'s answer.
     pub pixels: PixelCounts,
-    /// Number of pixels facing the light whose answer flips within the rounding error of receiver
-    /// and casters: the band.
+    /// Number of pixels in the [band](crate#terms): those facing the light whose right answer flips
+    /// when the receiver (the point that the pixel shows) or the casters move within their f32
+    /// rounding error.
     pub band: u64,
-    /// Number of pixels whose primitive, as rasterised, is hidden behind another one by more than
-    /// rounding.
+    /// Number of pixels for which the GPU rasterised a triangle that is hidden behind another one,
+    /// by more than rounding explains.
     pub wrong_surface: u64,
     /// Results of the methods, in the order of [`Report::methods`]. A method that is `unavailable`
     /// or does not take the case's kind of light has none; one that failed on this case has one,
@@ -182,11 +183,11 @@ pub struct Counts {
 /// Numbers of the wrong pixels outside the band (the pixels whose answer rounding decides).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct OutsideBand {
-    /// Number of pixels that are lit by the method, but not by the reference, without those whose
-    /// answer rounding decides.
+    /// Number of pixels that are lit by the method, but not by the [reference](crate#terms),
+    /// without those whose answer rounding decides.
     pub lit: u64,
-    /// Number of pixels that are in shadow by the method, but lit by the reference, without those
-    /// whose answer rounding decides.
+    /// Number of pixels that are in shadow by the method, but lit by the [reference](crate#terms),
+    /// without those whose answer rounding decides.
     pub shadow: u64,
     /// Number of wrong pixels of both kinds that the method called certain by its output `status`,
     /// without those whose answer rounding decides.
@@ -228,9 +229,9 @@ impl Verdict {
 
 impl Counts {
     /// Creates the counts of a picture. `whole` counts the method's answers as they are. `settled`
-    /// counts them with the reference's answer at each pixel in the band (the pixels whose answer
-    /// rounding decides), so that its wrong pixels are those outside the band. `rays` is the number
-    /// of rays traced; `None` if the graph does not count them.
+    /// counts them with the [reference](crate#terms)'s answer at each pixel in the band (the pixels
+    /// whose answer rounding decides), so that its wrong pixels are those outside the band. `rays`
+    /// is the number of rays traced; `None` if the graph does not count them.
     pub fn new(whole: &Statistics, settled: &Statistics, rays: Option<u64>) -> Self {
         let outside = settled.wrong;
         Self {

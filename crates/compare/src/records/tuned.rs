@@ -23,7 +23,8 @@ use std::collections::BTreeMap;
 /// Record of a search for good settings of one method: what was found, and on which views.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Tuned {
-    /// Name of the method as it was before the search: `nsm`. Its runs stand beside the tuned ones.
+    /// Name of the method before the search, such as `nsm`. The results have runs of that method,
+    /// too, beside the tuned ones.
     pub of: String,
     /// Values of the params that were set for all methods of the comparison (`--set`), by name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
@@ -39,9 +40,11 @@ pub struct Tuned {
     /// True if the search ended because no change helps; false if it ended at the limit of its
     /// cost.
     pub is_whole: bool,
-    /// Error of the defaults on the views of `chosen_on`, from 0 to 1: the share of the pixels
-    /// facing the light that are wrong, without those whose right answer rounding may flip; under
-    /// lights with an extent the mean square error of the shares of light.
+    /// Error of the defaults, from 0 to 1, the mean over the views of `chosen_on`: the share of the
+    /// pixels facing the light that are wrong, without those whose right answer rounding may flip;
+    /// under lights [with an extent](crate#terms) the mean square error of the [shares of
+    /// light](crate#terms). A view with less than a quarter of the mean number of such pixels counts
+    /// less.
     pub default_error: f64,
     /// Error of the tuned setting on the views of `chosen_on`, in the same unit.
     pub error: f64,

@@ -18,24 +18,26 @@
 use crate::records::statistics::FrameTimes;
 use serde::{Deserialize, Serialize};
 
-/// The group of a run. The runs of a group took turns frame by frame: in each turn the method of
-/// each run drew one frame, so frame `i` of one run and frame `i` of another belong to one turn.
+/// Group of runs that took turns: in each turn the method of each run drew one frame. Frame `i` of
+/// one run and frame `i` of another were therefore drawn under the same conditions.
 ///
 /// Two runs are in one group if they have the same [`session`](super::results::Run::session), view,
-/// viewport and [`group`](Self::group). Runs of two groups of a session are compared by their
-/// anchor, the first method of both groups: multiply the time of frame `i` of the one by the ratio
-/// of the other group's to its own `anchor` in frame `i`.
+/// viewport and [`group`](Self::group). Two runs of different groups with the same session, view
+/// and viewport are compared by the anchor, a method that drew in both groups: multiply the time of
+/// frame `i` of a run in group A by `anchor[i]` of group B divided by `anchor[i]` of group A, and
+/// compare it with frame `i` of the run in group B.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Turns {
     /// Index of the group among the groups of the same session, view and viewport, from 0. A group
     /// holds as many methods as fit into the memory at once.
     pub group: u32,
     /// Times of the frames that the anchor drew in this group, one per turn. The anchor is the
-    /// first method of each group, the same in all groups of the session, view and viewport.
+    /// first of the methods that were timed; it takes part in every group of the session, view and
+    /// viewport.
     pub anchor: FrameTimes,
 }
 
-/// The ratio of the times of two methods over their turns.
+/// Ratio of the frame times of two methods that took turns, with an interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PairedRatio {
     /// Lower end of the interval that contains the true median of the ratio with a confidence of at
@@ -43,7 +45,7 @@ pub struct PairedRatio {
     pub low: f64,
     /// Median of the ratios, one per turn.
     pub median: f64,
-    /// Upper end of that interval.
+    /// Upper end of the interval whose lower end is `low`.
     pub high: f64,
 }
 
@@ -62,8 +64,8 @@ pub(crate) const LEVEL: f64 = 0.03;
 pub(crate) const RESOLUTION_MS: f64 = 1e-6;
 
 impl PairedRatio {
-    /// Divides the times of `one` by those of `other`, which are in the order of the same turns.
-    /// Returns `None` for fewer than [`LEAST_TURNS`].
+    /// Divides the time of each frame of `one` by that of the same turn of `other`; entry `i` of
+    /// both lists is of turn `i`. Returns `None` for fewer than [`LEAST_TURNS`] turns.
     pub fn new(one: &[f64], other: &[f64]) -> Option<Self> {
         let pairs = one.iter().zip(other);
         let ratio = |(one, other): (&f64, &f64)| one.max(RESOLUTION_MS) / other.max(RESOLUTION_MS);

@@ -20,7 +20,7 @@ pub struct UnpairedRatio {
     pub low: f64,
     /// Median of the ratios of every frame of one run to every frame of the other.
     pub median: f64,
-    /// Upper end of that interval.
+    /// Upper end of the interval whose lower end is `low`.
     pub high: f64,
 }
 
@@ -32,10 +32,11 @@ const QUANTILE: f64 = 3.290_53;
 const MOST: usize = 1000;
 
 impl UnpairedRatio {
-    /// Divides the times of `one` by those of `other`, every frame by every frame (Hodges and
-    /// Lehmann 1963); the interval is that of the test of Mann and Whitney (1947), by its normal
-    /// approximation, which is the wider one for few frames. Of more than 1,000 frames the first
-    /// 1,000 count. `None` if one of both has fewer than [`LEAST_TURNS`].
+    /// Divides every frame's time in `one` by every frame's time in `other`; both are in the same
+    /// unit. The median of these ratios is the estimate of Hodges and Lehmann (1963), the interval
+    /// that of the test of Mann and Whitney (1947) in its normal approximation. Only the first
+    /// 1,000 frames of each list count. Returns `None` if a list has fewer than [`LEAST_TURNS`]
+    /// frames.
     pub fn new(one: &[f64], other: &[f64]) -> Option<Self> {
         let [one, other] = [one, other].map(|ms| &ms[..ms.len().min(MOST)]);
         if one.len().min(other.len()) < LEAST_TURNS {

@@ -80,10 +80,7 @@ fn the_nodes_and_links_of_a_small_graph() {
 fn a_capture_is_seen_too() {
     let mut request = PlanRequest::new([64, 32], &Triangle);
     request.outputs = Some(vec!["result".to_owned()]);
-    request.captures = vec![Capture {
-        material: "shown".to_owned(),
-        after: Some("show".to_owned()),
-    }];
+    request.captures = vec![Capture::new("shown").with_after("show")];
     let drawing = from_plan(&right(right(load(&small())).plan(&request)));
     assert!(drawing.passes.iter().all(|pass| pass.culled.is_none()));
     let copy = drawing.passes.iter().find(|pass| pass.kind == "Capture");

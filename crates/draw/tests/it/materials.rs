@@ -87,20 +87,10 @@ fn drawing() -> Drawing {
         .with("mark.wgsl", MARK)
         .with("blend.wgsl", BLEND);
     let mut request = PlanRequest::new([64, 32], &Triangle);
-    let tint = Import::Texture {
-        format: wgt::TextureFormat::Rgba8Unorm,
-        size: [64, 32],
-        mips: 1,
-        layers: 1,
-        is_3d: false,
-        samples: 1,
-        usage: wgt::TextureUsages::TEXTURE_BINDING,
-    };
+    let usage = wgt::TextureUsages::TEXTURE_BINDING;
+    let tint = Import::plain_texture(wgt::TextureFormat::Rgba8Unorm, [64, 32], usage);
     request.imports.insert("tint".to_owned(), tint);
-    request.captures = vec![Capture {
-        material: "fog.mip[1]".to_owned(),
-        after: Some("sample[1].fill".to_owned()),
-    }];
+    request.captures = vec![Capture::new("fog.mip[1]").with_after("sample[1].fill")];
     from_plan(&right(right(load(&files)).plan(&request)))
 }
 
@@ -238,10 +228,7 @@ fn clusters_follow_groups_and_includes() {
         .document("eye.ron", eye)
         .with("map.wgsl", MAP);
     let mut request = PlanRequest::new([8, 8], &Triangle);
-    request.captures = vec![Capture {
-        material: "sample[1].eye.image".to_owned(),
-        after: Some("sample[1].eye.draw".to_owned()),
-    }];
+    request.captures = vec![Capture::new("sample[1].eye.image").with_after("sample[1].eye.draw")];
     let drawing = from_plan(&right(right(load(&files)).plan(&request)));
     let dot = to_dot(&drawing);
     let mut clusters: Vec<&str> = Vec::new();

@@ -65,13 +65,6 @@ fn encode_dispatch(
     encoder: &mut wgpu::CommandEncoder,
     Meters { timer, counters }: Meters<'_>,
 ) {
-    let GpuProgram {
-        pipeline: PipelineKind::Compute(pipeline),
-        groups,
-    } = &dispatch.program
-    else {
-        return;
-    };
     let query = timer.map(|timer| timer.profiler().begin_pass_query(name, encoder));
     {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
@@ -83,25 +76,72 @@ fn encode_dispatch(
         if let Some(timer) = timer {
             timer.open_compute(&mut pass);
         }
-        pass.set_pipeline(pipeline);
-        for (index, group) in groups {
-            pass.set_bind_group(*index, group, &[]);
-        }
         let counted = counters.and_then(Counters::next);
         if let Some((set, index)) = counted {
             pass.begin_pipeline_statistics_query(set, index);
         }
-        match &dispatch.groups {
-            Groups::Direct([x, y, z]) => pass.dispatch_workgroups(*x, *y, *z),
-            Groups::Indirect((buffer, offset)) => {
-                pass.dispatch_workgroups_indirect(buffer, *offset);
-            }
-        }
+        run(dispatch, &mut pass);
         if counted.is_some() {
             pass.end_pipeline_statistics_query();
         }
     }
     end(timer, query, encoder);
+}
+
+/// Encodes a dispatch into an open compute pass.
+fn run(dispatch: &Dispatch<Handles>, pass: &mut wgpu::ComputePass<'_>) {
+    let GpuProgram {
+        pipeline: PipelineKind::Compute(pipeline),
+        groups,
+    } = &dispatch.program
+    else {
+        return;
+    };
+    pass.set_pipeline(pipeline);
+    for (index, group) in groups {
+        pass.set_bind_group(*index, group, &[]);
+    }
+    match &dispatch.groups {
+        Groups::Direct([x, y, z]) => pass.dispatch_workgroups(*x, *y, *z),
+        Groups::Indirect((buffer, offset)) => pass.dispatch_workgroups_indirect(buffer, *offset),
+    }
+}
+
+/// The compute pass that several passes in a row share if they only dispatch and are not measured:
+/// a compute pass of its own costs wgpu two command buffers.
+#[derive(Default)]
+pub(super) struct SharedPass(Option<wgpu::ComputePass<'static>>);
+
+impl SharedPass {
+    /// Encodes the steps of a pass under its name in captures of graphics debuggers; returns false
+    /// if a step is no dispatch.
+    pub fn encode(
+        &mut self,
+        steps: &[Step<Handles>],
+        name: &str,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> bool {
+        if !steps.iter().all(|step| matches!(step, Step::Dispatch(_))) {
+            return false;
+        }
+        let pass = self.0.get_or_insert_with(|| {
+            let pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            pass.forget_lifetime()
+        });
+        pass.push_debug_group(name);
+        for step in steps {
+            if let Step::Dispatch(dispatch) = step {
+                run(dispatch, pass);
+            }
+        }
+        pass.pop_debug_group();
+        true
+    }
+
+    /// Ends the compute pass, so that the encoder takes other commands.
+    pub fn end(&mut self) {
+        self.0 = None;
+    }
 }
 
 fn copy(from: &GpuOperand, to: &GpuOperand, encoder: &mut wgpu::CommandEncoder) {

@@ -28,7 +28,7 @@ use crate::{
     presence::Presence,
     provider::Provider,
 };
-use skiagraph_graph::{Origin, ParamValue, Plan, Resource, ResourceKind};
+use skiagraph_graph::{Origin, ParamValue, Plan, Resource, ResourceId, ResourceKind};
 use std::{
     sync::Arc,
     time::{Duration, Instant},
@@ -91,7 +91,7 @@ impl Executor {
         Self::with_pipelines(&Pipelines::new(device), queue, plan, provider)
     }
 
-    /// Creates an executor of a plan on an open device. Those of one [`Gpu`] share its
+    /// Creates an executor of a plan on an open device. Executors of one [`Gpu`] share its
     /// [pipelines](Gpu::pipelines).
     ///
     /// # Errors
@@ -422,8 +422,10 @@ impl Executor {
         self.import(name, Physical::Texture(texture.clone()))
     }
 
-    /// Sets the buffer of the import `name`. It works as [`import_texture`](Self::import_texture)
-    /// does.
+    /// Sets the buffer of the import `name`, which
+    /// [`PlanRequest::imports`](skiagraph_graph::PlanRequest::imports) describes. Its content
+    /// counts as changed, even if the buffer is the one set before: passes with `run: OnChange`
+    /// that read it run in the next frame. The buffer may have more usages than described.
     ///
     /// # Errors
     /// Those of [`import_texture`](Self::import_texture).
@@ -431,9 +433,10 @@ impl Executor {
         self.import(name, Physical::Buffer(buffer.clone()))
     }
 
-    /// Sets the sampler of the import `name`. It works as [`import_texture`](Self::import_texture)
-    /// does. wgpu does not tell how a sampler filters, so a wrong one is refused only when a pass
-    /// binds it.
+    /// Sets the sampler of the import `name`, which
+    /// [`PlanRequest::imports`](skiagraph_graph::PlanRequest::imports) describes. Passes with `run:
+    /// OnChange` that use it run in the next frame. wgpu does not tell how a sampler filters, so a
+    /// wrong one is refused only when a pass binds it.
     ///
     /// # Errors
     /// Those of [`import_texture`](Self::import_texture).
@@ -515,7 +518,9 @@ impl Executor {
     /// of light), or the device is lost. The remaining resources stay as they are; the next call
     /// asks for them again.
     pub fn refresh(&mut self, provider: &mut dyn Provider) -> Result<(), ExecuteError> {
-        let refreshed = self.refresh_live(provider);
+        let mut built = Vec::new();
+        let refreshed = self.refresh_live(provider, &mut built);
+        let refreshed = refreshed.and(self.submit_built(provider, &built));
         if refreshed.is_ok() {
             self.note_changes(provider);
         } else {
@@ -532,7 +537,36 @@ impl Executor {
         }
     }
 
-    fn refresh_live(&mut self, provider: &mut dyn Provider) -> Result<(), ExecuteError> {
+    /// Has the provider submit what it has recorded; without it those resources are not there.
+    fn submit_built(
+        &mut self,
+        provider: &mut dyn Provider,
+        built: &[ResourceId],
+    ) -> Result<(), ExecuteError> {
+        if built.is_empty() {
+            return Ok(());
+        }
+        let mut factory = ResourceFactory {
+            device: &self.device,
+            queue: &self.queue,
+            provider,
+        };
+        let submitted = factory.submit_built();
+        if let Err(why) = &submitted {
+            for &id in built {
+                self.state.memory.forget(id, why);
+                self.state.unbind(id);
+            }
+        }
+        submitted
+    }
+
+    /// Refreshes the resources of live passes and lists them in `built`, that which fails, too.
+    fn refresh_live(
+        &mut self,
+        provider: &mut dyn Provider,
+        built: &mut Vec<ResourceId>,
+    ) -> Result<(), ExecuteError> {
         for (id, version) in self.state.memory.provided().clone() {
             let state = &mut self.state;
             if Ok(provider.version(&state.plan.resource(id).name)) == version {
@@ -545,6 +579,7 @@ impl Executor {
                 queue: &self.queue,
                 provider: &mut *provider,
             };
+            built.push(id);
             state.memory.refresh(id, &state.plan, None, &mut factory)?;
             state.contents.touch(id);
             let now = state.memory.host(id);

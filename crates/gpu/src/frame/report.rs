@@ -30,7 +30,7 @@ pub struct Frame<'a> {
 }
 
 impl<'a> Frame<'a> {
-    /// Creates the settings of a frame without a report, as [`Default`] does.
+    /// Creates the settings of a frame without a report, equal to the [`Default`].
     pub const fn new() -> Self {
         Self {
             timing: false,

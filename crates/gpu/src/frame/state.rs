@@ -3,7 +3,7 @@
 use super::{
     contents::{Contents, HostCopy},
     cpu::CpuTurn,
-    encode::{Meters, encode_all},
+    encode::{Meters, SharedPass, encode_all},
     fetch::Readable,
     growth_readback::GrowthReadback,
     in_flight::FrameInFlight,
@@ -179,16 +179,23 @@ impl State {
             .as_ref()
             .filter(|_| frame_in_flight.is_timed);
         let counters = &mut frame_in_flight.counters;
+        let is_measured = timer.is_some() || counters.is_some();
+        let mut shared = SharedPass::default();
         for (at, pass) in self.passes.iter().enumerate() {
             if !decision.runs[at] {
                 frame_in_flight.skipped.push(pass.name.clone());
                 continue;
             }
+            let steps = pass.steps(&decision.ping_pong).unwrap_or_default();
+            let may_share = !is_measured && self.poison.is_none();
+            if may_share && shared.encode(steps, &pass.name, encoder) {
+                continue;
+            }
+            shared.end();
             let start = timer.map(|_| Instant::now());
             if let Some(poison) = &self.poison {
                 poison.fill(at, &decision.ping_pong, encoder);
             }
-            let steps = pass.steps(&decision.ping_pong).unwrap_or_default();
             let first = counters.as_ref().map_or(0, Counters::used);
             let meters = Meters {
                 timer,

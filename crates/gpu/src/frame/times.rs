@@ -4,6 +4,7 @@ use std::time::Duration;
 
 /// GPU and CPU times of one frame.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct FrameTiming {
     /// Times of the passes that ran, in the order in which they ran.
     pub passes: Vec<PassTiming>,
@@ -11,6 +12,7 @@ pub struct FrameTiming {
 
 /// GPU and CPU times of one pass in one frame.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct PassTiming {
     /// Name of the pass, as in [`PassSummary::name`](skiagraph_graph::PassSummary::name).
     pub name: String,
@@ -21,12 +23,36 @@ pub struct PassTiming {
     /// last. `None` if there are no valid timestamps, for example because the adapter has none.
     /// For a pass that works on the CPU, it is the time that the GPU waits for it.
     pub gpu: Option<Duration>,
-    /// CPU time that the encoding of the pass's commands took, or the work itself of a pass that
-    /// works on the CPU.
+    /// CPU time that the encoding of the pass's commands took; for a pass that works on the CPU the
+    /// time of that work.
     pub cpu: Duration,
 }
 
+impl PassTiming {
+    /// Creates the times of a pass that took so long on the CPU, and has no times on the GPU.
+    pub fn new(name: impl Into<String>, cpu: Duration) -> Self {
+        Self {
+            name: name.into(),
+            begin: None,
+            gpu: None,
+            cpu,
+        }
+    }
+
+    /// Sets [`begin`](Self::begin) and [`gpu`](Self::gpu).
+    #[must_use]
+    pub fn with_gpu(mut self, begin: Duration, gpu: Duration) -> Self {
+        (self.begin, self.gpu) = (Some(begin), Some(gpu));
+        self
+    }
+}
+
 impl FrameTiming {
+    /// Creates the times of a frame from those of its passes, in the order in which they ran.
+    pub fn new(passes: Vec<PassTiming>) -> Self {
+        Self { passes }
+    }
+
     /// Returns the GPU time from the earliest begin of a pass to the latest end; `None` if no pass
     /// has GPU times. It differs from the sum of the passes: passes may overlap, and there are
     /// gaps.
@@ -40,7 +66,7 @@ impl FrameTiming {
         Some(end - begin)
     }
 
-    /// Returns the CPU time that the encoding of commands took: the sum over all passes that ran.
+    /// Returns the sum of [`PassTiming::cpu`] over all passes that ran.
     pub fn cpu(&self) -> Duration {
         self.passes.iter().map(|pass| pass.cpu).sum()
     }

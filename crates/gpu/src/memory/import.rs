@@ -20,6 +20,7 @@ pub(crate) fn differs(physical: &Physical, described: &Import) -> Option<String>
                 is_3d,
                 samples,
                 usage,
+                ..
             },
         ) => {
             vec![

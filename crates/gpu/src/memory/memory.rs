@@ -42,6 +42,19 @@ pub(crate) struct ResourceFactory<'a> {
     pub provider: &'a mut dyn Provider,
 }
 
+impl ResourceFactory<'_> {
+    /// Has the provider submit what it has recorded.
+    pub fn submit_built(&mut self) -> Result<(), ExecuteError> {
+        let name = "what the provider copies";
+        let submit = || self.provider.submit_built(self.device, self.queue);
+        let submitted = scoped(self.device, name, submit)?;
+        submitted.map_err(|why| ExecuteError::Provider {
+            name: name.to_owned(),
+            why,
+        })
+    }
+}
+
 impl Memory {
     /// Creates every resource that a live pass uses, and asks the provider for the provided ones.
     /// Resources of `old` with the same name and properties are reused with their content.
@@ -68,9 +81,10 @@ impl Memory {
                 GpuAllocation::new(plan, aliases, &mut known, factory.device, factory.queue)?;
             memory.allocations.push(made);
         }
-        for &id in plan.schedule().lifetimes.keys() {
-            memory.enter(plan, id, old, factory)?;
-        }
+        let mut lifetimes = plan.schedule().lifetimes.keys();
+        let entered = lifetimes.try_for_each(|&id| memory.enter(plan, id, old, factory));
+        let submitted = factory.submit_built();
+        entered.and(submitted)?;
         let used = |name: &String| plan.used().any(|used| used.name == *name);
         for name in plan.imports().keys().filter(|name| !used(name)) {
             if let Some(import) = old.and_then(|old| kept_import(plan, name, old)) {
@@ -258,6 +272,13 @@ impl Memory {
             ..wgpu::TextureViewDescriptor::default()
         };
         Ok(texture.create_view(&descriptor))
+    }
+
+    /// Gives up a provided resource whose content is not there, so that the provider is asked for
+    /// it again.
+    pub fn forget(&mut self, id: ResourceId, why: &ExecuteError) {
+        self.host.remove(&id);
+        self.provided.insert(id, Err(why.to_string()));
     }
 
     /// Asks the provider for a resource, unless `old` has it in the same version.

@@ -81,10 +81,9 @@ impl Pipelines {
     /// creates `cache` on the same device (feature `PIPELINE_CACHE`), and reads its
     /// [`get_data`](wgpu::PipelineCache::get_data) after the executors are made.
     ///
-    /// Old data are the business of
-    /// [`create_pipeline_cache`](wgpu::Device::create_pipeline_cache): with `fallback` wgpu takes
-    /// broken data, and those of another driver or wgpu, for none. Data of another adapter are an
-    /// error there, so keep a file for each
+    /// [`create_pipeline_cache`](wgpu::Device::create_pipeline_cache) takes the data of an earlier
+    /// run. With `fallback` it ignores data that are broken or come from another driver or version
+    /// of wgpu. Data of another adapter are an error, so keep a file for each
     /// [`pipeline_cache_key`](wgpu::util::pipeline_cache_key). With an invalid cache, or one of
     /// another device, executors fail to be made with
     /// [`ExecuteError::Gpu`](crate::ExecuteError::Gpu), which names the first pass.
@@ -105,13 +104,14 @@ impl Pipelines {
         &self.0.device
     }
 
-    /// Returns the cache given to [`with_cache`](Self::with_cache).
+    /// Returns the cache given to [`with_cache`](Self::with_cache); `None` if the object was
+    /// created by [`new`](Self::new).
     pub fn cache(&self) -> Option<&wgpu::PipelineCache> {
         self.0.cache.as_ref()
     }
 
-    /// Returns the number of pipelines that were made so far, those that were dropped since
-    /// included.
+    /// Returns the number of pipelines that were made so far, including pipelines that were dropped
+    /// since.
     pub fn made(&self) -> u64 {
         self.store().made
     }

@@ -309,10 +309,7 @@ fn samplers_slices_and_layers_come_in() {
         wgpu::TextureFormat::R32Uint,
         bytemuck::cast_slice(&numbers),
     );
-    let soft = Import::Sampler {
-        filter: Filter::Linear,
-        compare: false,
-    };
+    let soft = Import::sampler(Filter::Linear, false);
     let mut request = request(&NoProvider);
     request.imports.extend([
         ("soft".to_owned(), soft),

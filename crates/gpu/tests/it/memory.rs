@@ -63,10 +63,7 @@ fn memory_is_shared_by_what_is_not_needed_at_once() {
     assert_eq!(pool(&chain(&NAMES, "run: OnChange,")), (5 * texture, 0));
     // Memory handed out by a capture or an output is not written again in the frame.
     let mut wanted = request(&NoProvider);
-    wanted.captures.push(Capture {
-        material: "b".to_owned(),
-        after: None,
-    });
+    wanted.captures.push(Capture::new("b"));
     let mut executor = executor(&files, &wanted);
     assert_eq!(number(&mut executor, "b"), 1);
     assert_eq!(executor.plan().saved_bytes(), texture);

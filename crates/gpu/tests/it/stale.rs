@@ -214,10 +214,7 @@ fn a_capture_after_a_skipped_pass_is_of_this_frame() {
     .with("make.wgsl", writes(SEED, "params.seed"));
     let mut wanted = request(&NoProvider);
     for pass in ["once", "when"] {
-        wanted.captures.push(Capture {
-            material: "m".to_owned(),
-            after: Some(pass.to_owned()),
-        });
+        wanted.captures.push(Capture::new("m").with_after(pass));
     }
     let mut executor = executor(&files, &wanted);
     for seed in 1..4 {

@@ -1,6 +1,6 @@
-//! Diagnostics of mistakes in documents and shaders, as `Graph` returns them.
+//! Diagnostics of mistakes in documents and shaders, as [`Graph`](crate::Graph) returns them.
 //!
-//! The phases report typed mistakes; `errors/` turns them into diagnostics.
+//! A diagnostic has a stable [`Code`], a message, the places that it is about, and help.
 //!
 //! ```
 //! use skiagraph_graph::{Code, FolderSources, Graph, Registry};

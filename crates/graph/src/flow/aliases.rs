@@ -14,6 +14,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// One allocation: a texture or buffer on the device, and the resources that use it one after the
 /// other in a frame.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Allocation {
     /// Resources that use the allocation, at least one, in the order of their first use in a frame.
     /// Each is first used after the last use of the one before.
@@ -25,12 +26,14 @@ pub struct Allocation {
 /// Allocations on the device for the textures and buffers of a plan that the host does not make,
 /// and the resources that share them.
 #[derive(Clone, Debug, Default)]
+#[non_exhaustive]
 pub struct Aliases {
     /// All allocations, in the order of their first use in a frame. Each texture and buffer that a
     /// [live](crate::Plan::live) pass uses, except the host's, is in exactly one of them.
     pub list: Vec<Allocation>,
     /// Index in [`list`](Self::list) of the allocation of each resource. A resource that is not a
-    /// key has no allocation: no live pass uses it, it is a sampler, or the host makes it.
+    /// key has no allocation: no [live](crate#terms) pass uses it, it is a sampler, or the host
+    /// makes it.
     pub of: BTreeMap<ResourceId, usize>,
 }
 

@@ -27,7 +27,7 @@ pub enum When {
     /// changed since the pass last ran, and when the content that the pass wrote is lost.
     OnChange,
     /// In frames where another pass of its group (see [`Conditions`]) runs: the pass copies a
-    /// material for a capture between two passes that write the material.
+    /// material for a [capture](crate#terms) between two passes that write the material.
     Follows,
 }
 

@@ -15,6 +15,7 @@ pub type Lifetimes = BTreeMap<ResourceId, Lifetime>;
 /// First and last use of one resource in a schedule, and the usages to create it with on the
 /// device.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Lifetime {
     /// Usages that the resource must be created with on the device if it is a texture; without
     /// meaning for other resources.

@@ -9,9 +9,11 @@ use std::{
     collections::{BTreeSet, BinaryHeap},
 };
 
-/// The live passes of a plan (those that an output or the host needs) in the order in which they
-/// run, with the lifetimes, run conditions and allocations that follow from this order.
+/// The [live](crate#terms) passes of a plan (those that an output or the host needs) in the order
+/// in which they run, with the lifetimes, run conditions and allocations that follow from this
+/// order.
 #[derive(Clone, Debug, Default)]
+#[non_exhaustive]
 pub struct Schedule {
     /// Ids of the [live](crate::Plan::live) passes in the order in which they run in a frame. A
     /// *position* is an index into this list.
@@ -23,9 +25,9 @@ pub struct Schedule {
     /// Allocations of textures and buffers on the device, and the resources that share each of
     /// them.
     pub aliases: Aliases,
-    /// Textures and buffers of the graph that a live pass also reads as they were in the frame
-    /// before (`.previous`). Two of each are made on the device, which take turns from frame to
-    /// frame.
+    /// Textures and buffers of the graph that a [live](crate#terms) pass also reads as they were in
+    /// the frame before (`.previous`). The device holds two of each. A frame writes one and reads
+    /// the other as `.previous`; in the next frame they change places.
     pub ping_pong: BTreeSet<ResourceId>,
 }
 

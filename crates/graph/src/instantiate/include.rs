@@ -206,7 +206,8 @@ impl<'e> Call<'e> {
         Ok(())
     }
 
-    /// Returns the params of the included document with their values.
+    /// Returns the params of the included document with their values, and reports mistakes in `set`
+    /// to `at`, the place of the include.
     pub fn params(&self, at: &mut At<'_, '_>) -> Params {
         let mut set: BTreeMap<String, SetParam> = BTreeMap::new();
         for (name, expr, place) in &self.set {

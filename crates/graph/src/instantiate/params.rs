@@ -20,6 +20,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// graph's outputs, under a condition. This crate does not know the meaning of the property; a
 /// host, such as a test, checks it.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Claim {
     /// Name of the property, as the document writes it, such as `exact`.
     pub name: String,

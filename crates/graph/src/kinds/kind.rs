@@ -22,8 +22,8 @@ pub trait PassKind: fmt::Debug + Send + Sync {
     /// Lowers the body to steps: appends the pass's GPU work to `pass`, step by step
     /// ([`Lowering::step`]). Called more than once, and without a GPU: when the document is loaded,
     /// and for every plan. It must depend only on the body and on values that it asks `pass` for. A
-    /// shader that it uses for some of these values only must be announced by
-    /// [`Lowering::alternative`].
+    /// shader that it uses with some of these values and not with others must be announced by
+    /// [`Lowering::alternative`] in every call.
     fn lower(&self, pass: &mut Lowering<'_>);
 }
 
@@ -121,14 +121,15 @@ impl<'a> Lowering<'a> {
 
     /// Adds a buffer of `bytes` bytes, a multiple of 4, that only this pass uses, and returns its
     /// handle for steps. A step must write it before another reads it. A capture reads it as the
-    /// material `pass/name`, where `pass` is the full name of the pass.
+    /// material `pass/name`, where `pass` is the [full name](crate#terms) of the pass.
     pub fn scratch(&mut self, name: &str, bytes: u64) -> Scratch {
         self.scratch.push((name.to_owned(), bytes));
         Scratch(self.scratch.len() - 1)
     }
 
-    /// Announces a shader that the pass runs only for other values of its expressions, so that the
-    /// shader is loaded with the document. `shader` is the name of a WGSL file that comes with the
+    /// Announces a shader that the pass runs with some values of its expressions and not with
+    /// others, whether this call appends a step with it or not. So it is loaded with the document,
+    /// and a plan with other values finds it. `shader` is the name of a WGSL file that comes with the
     /// pass kind, without folder and ending. Each pair in `imports` is the path that an `#import`
     /// names and the path of the module that is imported instead. `features` are device features
     /// that the pass uses if the device has them.
@@ -156,8 +157,8 @@ impl<'a> Lowering<'a> {
     }
 
     /// Reports an error of kind `code` at the place of the expression `expr`, whose value is not
-    /// allowed. `what` is the message. As by [`report`](Self::report), it is ignored while a
-    /// document is loaded: substitutes of values need no check.
+    /// allowed. `what` is the message. It is ignored while a document is loaded, when expressions
+    /// have no value yet.
     pub fn report_value(&mut self, code: Code, expr: &Expr, what: impl Into<String>) {
         self.report(Diagnostic::error(code, what).at(expr.span.clone(), ""));
     }
@@ -175,9 +176,9 @@ impl<'a> Lowering<'a> {
         }
     }
 
-    /// Returns the number of items of the buffer `name` that the host's provider describes, such as
-    /// `scene.indices`. Returns 0 if the provider does not know the name or the number, and while a
-    /// document is loaded.
+    /// Returns the number of [items](crate#terms) of the buffer `name` that the host's
+    /// [provider](crate#terms) describes, such as `scene.indices`. Returns 0 if the provider does
+    /// not know the name or the number, and while a document is loaded.
     pub fn provided_items(&self, name: &str) -> u64 {
         let environment = self.environment.as_ref();
         environment
@@ -215,9 +216,9 @@ impl<'a> Lowering<'a> {
         self.evaluate(false, |environment| eval::boolean(expr, environment))
     }
 
-    /// Returns the word for the kind of the resource `name` that the host's provider describes,
-    /// such as `spot` for a `light`. Returns `None` if the provider does not know the name or the
-    /// resource has no kind, and while a document is loaded.
+    /// Returns the word for the kind of the resource `name` that the host's [provider](crate#terms)
+    /// describes, such as `spot` for a `light`. Returns `None` if the provider does not know the
+    /// name or the resource has no kind, and while a document is loaded.
     pub fn kind_of(&mut self, name: &str) -> Option<&'static str> {
         let environment = self.environment.as_mut()?;
         environment.kind(name).map(|kind| kind.word())

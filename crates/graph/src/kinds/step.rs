@@ -1,7 +1,6 @@
 //! Steps of passes: draws, dispatches, copies, clears and work for the CPU. The types are generic
-//! over a [`Stage`]: a
-//! step refers to resources and shaders by name as a pass kind lowers it, by id once it is linked,
-//! and by GPU handle once it is made on a device.
+//! over a [`Stage`]: a step refers to resources and shaders by name when a pass kind makes it, by
+//! id in a plan, and by GPU handle in an executor.
 //!
 //! A pass kind of a host adds steps in [`PassKind::lower`](crate::PassKind::lower):
 //!
@@ -85,8 +84,8 @@ impl Stage for Names {
 /// the step's pass uses.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Operand {
-    /// A material or input of the document, a resource that the host's provider describes, or a
-    /// part of one of these.
+    /// A material or input of the document, a resource that the host's [provider](crate#terms)
+    /// describes, or a part of one of these.
     Named(Reference),
     /// A buffer that only this pass uses, which [`Lowering::scratch`](crate::Lowering::scratch) has
     /// added.
@@ -291,8 +290,8 @@ pub struct ColorTarget<S: Stage> {
     /// Texture that a multisampled `target` is resolved into after the draw; `None` if it is not
     /// resolved.
     pub resolve: Option<S::Attachment>,
-    /// Red, green, blue and alpha that the target is cleared to before the draw; `None` keeps the
-    /// target's content.
+    /// Red, green, blue and alpha that the target is cleared to before the draw, linear, or whole
+    /// numbers for an integer format; `None` keeps the target's content.
     pub clear: Option<[f64; 4]>,
     /// Blending of the drawn colour with the colour in the target; `None` replaces the colour in
     /// the target.
@@ -352,28 +351,31 @@ pub enum Groups<S: Stage> {
     Indirect(S::Arguments),
 }
 
-/// Work of the CPU on the items of buffers, a [`Step`]. The frame waits for it: an executor ends
-/// the GPU's work before it, copies the items back, has the work done, and uploads what it wrote.
-/// Only `Executor::submit` of `skiagraph-gpu` runs passes with such a step.
+/// Work of the CPU on the [items](crate#terms) of buffers, a [`Step`]. The frame waits for it: an
+/// [executor](crate#terms) ends the GPU's work before it, copies the items back, has the work done,
+/// and uploads what it wrote. Only `Executor::submit` of `skiagraph-gpu` runs passes with such a
+/// step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CpuCall<S: Stage> {
     /// Provided resource that does the work: one that is described as
     /// [`CPU_WORK`](crate::Provided::CPU_WORK).
     pub work: S::Work,
-    /// Name of what the work is to do, as an entry point is that of a shader.
+    /// Name of the task to do, one of those that the work knows. `CpuWork::run` of `skiagraph-gpu`
+    /// gets it.
     pub entry: String,
-    /// Buffer of one u32, the number of items; those beyond the end of a buffer are left out.
+    /// Buffer of one u32: the number of [items](crate#terms) that the work reads of each buffer and
+    /// writes. Items beyond the end of the shortest buffer are left out.
     pub count: S::Operand,
-    /// Buffers whose items the work reads.
+    /// Buffers whose first `count` [items](crate#terms) the work reads.
     pub reads: Vec<CpuItems<S>>,
-    /// Buffer whose items the work writes, all of them.
+    /// Buffer whose first `count` [items](crate#terms) the work writes, every one of them.
     pub writes: CpuItems<S>,
 }
 
-/// Buffer of a [`CpuCall`].
+/// Buffer whose items a [`CpuCall`] reads or writes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CpuItems<S: Stage> {
-    /// The buffer.
+    /// The buffer, whole or in part.
     pub buffer: S::Operand,
     /// Size of an item in bytes, a multiple of 4.
     pub bytes: u64,

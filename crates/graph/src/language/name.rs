@@ -88,8 +88,8 @@ impl fmt::Debug for Name {
     }
 }
 
-/// Returns the WGSL identifier under which shaders find the resource or param with the full name
-/// `name`: `sample[3].rays` becomes `sample_3_rays`.
+/// Returns the WGSL identifier under which shaders find the resource or param with the [full
+/// name](crate#terms) `name`: `sample[3].rays` becomes `sample_3_rays`.
 pub fn wgsl_identifier(name: &str) -> String {
     name.replace(['.', '@', '['], "_").replace(']', "")
 }

@@ -119,8 +119,8 @@ spelt! {
 }
 
 /// A parsed reference to a material or a part of one: `maps[2].mip[0]` (a mip of a layer),
-/// `left.position` (an output of the include `left`), `history.previous` (the content at the end of
-/// the frame before), or one of two by a condition, `is_large ? many : few`.
+/// `left.position` (an output of the [include](crate#terms) `left`), `history.previous` (the
+/// content at the end of the frame before), or one of two by a condition, `is_large ? many : few`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reference {
     pub(crate) segments: Vec<Segment>,

@@ -42,9 +42,10 @@ impl fmt::Display for Scalar {
 }
 
 /// A word as the value of an expression: a word of a [`Choice`](crate::ParamType::Choice) param, or
-/// the word for the kind of a resource that the host's provider describes, such as `spot`. Two
-/// words are equal if their fields `word` are equal.
+/// the word for the kind of a resource that the host's [provider](crate#terms) describes, such as
+/// `spot`. Two words are equal if their fields `word` are equal.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Word {
     /// The word itself, such as `spot`.
     pub word: Name,
@@ -68,7 +69,7 @@ pub enum Value {
     /// A boolean.
     Bool(bool),
     /// A word of a [`Choice`](crate::ParamType::Choice) param, or the word for the kind of a
-    /// resource that the host's provider describes.
+    /// resource that the host's [provider](crate#terms) describes.
     Word(Word),
     /// Several numbers: a size, which is width, height and, for a 3D texture, depth in texels, or a
     /// vector with its components x, y, z, w.

@@ -29,11 +29,12 @@ pub const CAPTURE: &str = "Capture";
 
 /// A pass of a plan. Its steps refer to resources by [`ResourceId`] and hold their parsed shaders.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct LinkedPass {
     /// Full name with its place in the document: the name there, with the names of the groups and
     /// includes around the pass in front, `blur.x`, and the index of a repetition behind,
     /// `fill[0]`. An include without a name counts by the name of its file. `material@pass` for a
-    /// capture.
+    /// [capture](crate#terms).
     pub name: Located<String>,
     /// Kind of the pass, as the document writes it, such as `Compute`; [`CAPTURE`] for a pass that
     /// planning added.
@@ -71,8 +72,8 @@ impl LinkedPass {
 pub struct Access {
     /// Id of the resource that the access reads or writes.
     pub resource: ResourceId,
-    /// Part of the resource that the access reads or writes: mips and layers of a texture, or items
-    /// of a buffer.
+    /// Part of the resource that the access reads or writes: mips and layers of a texture, or
+    /// [items](crate#terms) of a buffer.
     pub part: SubresourceRange,
     /// True if the access reads its [`part`](Self::part) of the resource.
     pub reads: bool,
@@ -82,9 +83,8 @@ pub struct Access {
     /// the resource: as a clear, a copy or a cleared attachment does, or because the document
     /// promises it (`overwrites`).
     pub fully_overwrites: bool,
-    /// True if a change of the resource's content, of which the step uses something, is a reason
-    /// for a pass with [`Run::OnChange`] to run. False only for the uniform `frame` if the shader
-    /// reads just its flags.
+    /// True if a change of the resource's content makes a pass with [`Run::OnChange`] run. False
+    /// only for the uniform `frame` if the shader reads no more of it than its flags.
     pub triggers: bool,
     /// Usage that the resource must be created with on the device for this access.
     pub usage: Usage,
@@ -134,6 +134,7 @@ pub struct Attachment {
 
 /// A shader of a draw or dispatch, with its entry points, constants and bindings.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct LinkedProgram {
     /// The program's shader, which holds the naga module and its reflection.
     pub shader: Arc<Shader>,
@@ -170,6 +171,7 @@ impl LinkedProgram {
 
 /// One binding of a program: its numbers, and the resource or bytes bound to it.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct LinkedBinding {
     /// Index of the bind group that holds the binding, counted from 0 (`@group`).
     pub group: u32,
@@ -186,7 +188,7 @@ pub struct LinkedBinding {
 /// Resource or bytes that a [`LinkedBinding`] binds.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BindTarget {
-    /// A buffer, or a range of its items, bound as a uniform or storage buffer.
+    /// A buffer, or a range of its [items](crate#terms), bound as a uniform or storage buffer.
     Buffer(Target),
     /// A texture or a part of one, bound as a sampled or storage texture.
     Texture {

@@ -9,25 +9,25 @@ use crate::{
 };
 use std::{collections::BTreeSet, ops::Range};
 
-/// Mips, layers or items that an output or capture holds of a texture or buffer, as ranges whose
-/// ends are excluded, and their numbers in the whole texture or buffer.
+/// Mips, layers or [items](crate#terms) that an output or [capture](crate#terms) holds of a texture
+/// or buffer, as ranges whose ends are excluded, and their numbers in the whole texture or buffer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PartSummary {
-    /// Range of mip levels that the output or capture holds, counted from 0, the end excluded;
-    /// `0..1` for a buffer.
+    /// Range of mip levels that the output or [capture](crate#terms) holds, counted from 0, the end
+    /// excluded; `0..1` for a buffer.
     pub mips: Range<u32>,
     /// Range of array layers, of slices of a 3D texture, or of items of a buffer that the output or
-    /// capture holds, counted from 0, the end excluded. It ends at `u32::MAX` for a whole buffer
-    /// whose document gives no `count`.
+    /// [capture](crate#terms) holds, counted from 0, the end excluded. It ends at `u32::MAX` for a
+    /// whole buffer whose document gives no `count`.
     pub layers: Range<u32>,
     /// Number of mips of the whole texture or buffer (1 for a buffer), then its number of layers,
-    /// slices or items. The second number is `u32::MAX` for a buffer whose document gives no
-    /// `count`.
+    /// slices or [items](crate#terms). The second number is `u32::MAX` for a buffer whose document
+    /// gives no `count`.
     pub of: [u32; 2],
 }
 
 impl PartSummary {
-    /// True if the output or capture holds less than the whole texture or buffer.
+    /// True if the output or [capture](crate#terms) holds less than the whole texture or buffer.
     pub fn is_less(&self) -> bool {
         (self.mips.len(), self.layers.len()) != (self.of[0] as usize, self.of[1] as usize)
     }

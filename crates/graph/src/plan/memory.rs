@@ -16,7 +16,7 @@ const ROWS: usize = 12;
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct MemoryEntry {
-    /// Full name of the material, or of a buffer or texture that only one pass uses
+    /// [Full name](crate#terms) of the material, or of a buffer or texture that only one pass uses
     /// ([`Resource::name`]).
     pub name: String,
     /// Format of the texture that takes the memory; `None` for a buffer.
@@ -33,8 +33,8 @@ pub struct MemoryEntry {
     /// size also if the memory is shared. Doubled if a pass also reads the resource as it was in
     /// the frame before (`.previous`).
     pub bytes: u64,
-    /// Full names of the other materials that use the same memory at other times of the frame, in
-    /// the order of their first use; empty if the memory is not shared.
+    /// [Full names](crate#terms) of the other materials that use the same memory at other times of
+    /// the frame, in the order of their first use; empty if the memory is not shared.
     pub shared_with: Vec<String>,
 }
 

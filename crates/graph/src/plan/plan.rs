@@ -83,8 +83,8 @@ impl Plan {
         &self.0.passes[id.0]
     }
 
-    /// Iterates over the live passes, those that an output, a capture or the host needs, in the
-    /// order in which they run.
+    /// Iterates over the [live](crate#terms) passes, those that an output, a [capture](crate#terms)
+    /// or the host needs, in the order in which they run.
     pub fn live(&self) -> impl Iterator<Item = &LinkedPass> + Clone {
         self.0.schedule.passes.iter().map(|id| self.pass(*id))
     }
@@ -97,7 +97,7 @@ impl Plan {
 
     /// Returns the name of every output and capture that can be read back after a frame, with the
     /// texture or buffer, or part of it, that holds its content: first the outputs in the order of
-    /// the document, then the captures in the order of the request.
+    /// the document, then the [captures](crate#terms) in the order of the request.
     pub fn readable(&self) -> &[(String, Target)] {
         &self.0.readable
     }
@@ -125,9 +125,9 @@ impl Plan {
         &self.0.request.imports
     }
 
-    /// Returns the [`grown`](crate::Request::grown) of the request: the number of items that
-    /// growing buffers need, and of layers that growing textures need, by full name of the material
-    /// ([`Resource::name`]).
+    /// Returns the [`grown`](crate::Request::grown) of the request: the number of
+    /// [items](crate#terms) that growing buffers need, and of layers that growing textures need, by
+    /// [full name](crate#terms) of the material ([`Resource::name`]).
     pub fn grown(&self) -> &BTreeMap<String, u64> {
         &self.0.request.grown
     }
@@ -155,8 +155,8 @@ impl Plan {
 
     /// Returns the buffers and textures that [live](Self::live) passes use and that may grow
     /// (`grow`), in the order of [`resources`](Self::resources), each with its counter and its
-    /// greatest number of items or layers. The device's limits may lower the number that the
-    /// document gives.
+    /// greatest number of [items](crate#terms) or layers. The device's limits may lower the number
+    /// that the document gives.
     pub fn growing(&self) -> Vec<(ResourceId, Growth)> {
         self.own_memory().growing(&self.0.request.limits)
     }
@@ -182,8 +182,8 @@ impl Plan {
     }
 
     /// Returns the number of textures or buffers that are made on the device for a resource of the
-    /// graph: 2, which take turns from frame to frame, if a pass also reads it as it was in the
-    /// frame before (`.previous`); otherwise 1.
+    /// graph: 2 if a pass also reads it as it was in the frame before (`.previous`), otherwise 1.
+    /// Of two, a frame writes one and reads the other.
     pub fn versions(&self, id: ResourceId) -> usize {
         self.own_memory().versions(id)
     }
@@ -238,33 +238,34 @@ impl Plan {
                 .eq(other.used().map(|it| &it.kind))
     }
 
-    /// Returns the names of the buffers of the host's provider that are bound by the passes that
-    /// write the output or capture called `output`. For example, if these passes bind a `camera`,
-    /// depths in the output are that camera's. Empty for an unknown name.
+    /// Returns the names of the buffers of the host's [provider](crate#terms) that are bound by the
+    /// passes that write the output or [capture](crate#terms) called `output`. For example, if
+    /// these passes bind a `camera`, depths in the output are that camera's. Empty for an unknown
+    /// name.
     pub fn provided_behind(&self, output: &str) -> BTreeSet<&str> {
         let target = self.readable_target(output);
         let behind = |target| items::provided_behind(self.live(), target, &self.0.resources);
         target.map_or_else(BTreeSet::new, behind)
     }
 
-    /// Returns the layout of one item of the buffer that holds the output or capture called
-    /// `output`, as a shader declares it. Returns `None` for a texture or an unknown name, or if no
-    /// [live](Self::live) pass binds the whole buffer with items of 32-bit numbers, at most 64 in
-    /// an item.
+    /// Returns the layout of one item of the buffer that holds the output or [capture](crate#terms)
+    /// called `output`, as a shader declares it. Returns `None` for a texture or an unknown name,
+    /// or if no [live](Self::live) pass binds the whole buffer with items of 32-bit numbers, at
+    /// most 64 in an item.
     pub fn item(&self, output: &str) -> Option<Item> {
         items::item_of(self.live(), self.readable_target(output)?)
     }
 
-    /// Returns the mips and layers of a texture, or the items of a buffer, that the output or
-    /// capture called `output` holds; `None` for an unknown name. A capture after a pass holds only
-    /// the part that has been written by then.
+    /// Returns the mips and layers of a texture, or the [items](crate#terms) of a buffer, that the
+    /// output or [capture](crate#terms) called `output` holds; `None` for an unknown name. A
+    /// capture after a pass holds only the part that has been written by then.
     pub fn part(&self, output: &str) -> Option<PartSummary> {
         let target = self.readable_target(output)?;
         Some(items::part(self.live(), target, &self.0.resources))
     }
 
-    /// Returns the texture or buffer, or part of it, that holds the output or capture called
-    /// `output`; `None` for an unknown name.
+    /// Returns the texture or buffer, or part of it, that holds the output or
+    /// [capture](crate#terms) called `output`; `None` for an unknown name.
     pub fn readable_target(&self, output: &str) -> Option<&Target> {
         let (_, target) = self.0.readable.iter().find(|(name, _)| name == output)?;
         Some(target)

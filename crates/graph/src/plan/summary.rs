@@ -27,13 +27,13 @@ pub struct OutputSummary {
     /// Name of the output, or of the capture ([`Capture::name`](crate::Capture::name)), by which it
     /// is read back.
     pub name: String,
-    /// Format of the texture that holds the output or capture; `None` for a buffer.
+    /// Format of the texture that holds the output or [capture](crate#terms); `None` for a buffer.
     pub format: Option<wgt::TextureFormat>,
     /// Width and height in texels of the first mip that is read back of a texture; for a buffer
     /// `[n, 1]`, where n is the number of bytes that are read back.
     pub size: [u32; 2],
-    /// Number of layers of the output or capture, or of slices of a 3D texture, that are read back;
-    /// 1 for a buffer.
+    /// Number of layers of the output or [capture](crate#terms), or of slices of a 3D texture, that
+    /// are read back; 1 for a buffer.
     pub layers: u32,
 }
 

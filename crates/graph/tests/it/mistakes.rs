@@ -160,21 +160,15 @@ fn asked() -> Files {
 
 /// Imports of the host.
 fn given() -> Import {
-    Import::Texture {
-        format: wgt::TextureFormat::R32Float,
-        size: [1, 1],
-        mips: 1,
-        layers: 1,
-        is_3d: false,
-        samples: 1,
-        usage: wgt::TextureUsages::TEXTURE_BINDING,
-    }
+    let usage = wgt::TextureUsages::TEXTURE_BINDING;
+    Import::plain_texture(wgt::TextureFormat::R32Float, [1, 1], usage)
 }
 
 fn capture(material: &str, after: Option<&str>) -> Capture {
-    Capture {
-        material: material.to_owned(),
-        after: after.map(str::to_owned),
+    let capture = Capture::new(material);
+    match after {
+        Some(pass) => capture.with_after(pass),
+        None => capture,
     }
 }
 

@@ -49,10 +49,7 @@ fn plan(captures: &[(&str, &str)]) -> Plan {
         .with("draw.wgsl", DRAW)
         .with("gather.wgsl", GATHER);
     let mut request = PlanRequest::new([8, 8], &Triangle);
-    let capture = |(material, after): &(&str, &str)| Capture {
-        material: (*material).to_owned(),
-        after: Some((*after).to_owned()),
-    };
+    let capture = |(material, after): &(&str, &str)| Capture::new(*material).with_after(*after);
     request.captures = captures.iter().map(capture).collect();
     right(right(load(&files)).plan(&request))
 }

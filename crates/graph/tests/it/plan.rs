@@ -49,9 +49,12 @@ fn plan(
     );
     let graph = right(load(&Files::new(SHADERS).document("graph.ron", &sections)));
     let mut request = PlanRequest::new([8, 4], &Triangle);
-    let capture = |(material, after): &(&str, Option<&str>)| Capture {
-        material: (*material).to_owned(),
-        after: after.map(str::to_owned),
+    let capture = |(material, after): &(&str, Option<&str>)| {
+        let capture = Capture::new(*material);
+        match after {
+            Some(pass) => capture.with_after(*pass),
+            None => capture,
+        }
     };
     request.captures = captures.iter().map(capture).collect();
     right(graph.plan(&request))
@@ -164,10 +167,7 @@ fn an_output_on_request_costs_only_those_that_name_it() {
     assert_eq!(graph.default_outputs(), ["a"]);
     let mut request = PlanRequest::new([8, 4], &Triangle);
     assert_eq!(names(&right(graph.plan(&request))), ["fill_a"]);
-    request.captures = vec![Capture {
-        material: "second".into(),
-        after: None,
-    }];
+    request.captures = vec![Capture::new("second")];
     let captured = right(graph.plan(&request));
     assert_eq!(names(&captured), ["fill_a", "fill_b"]);
     assert_eq!(captured.outputs().len(), 2);

@@ -1,42 +1,31 @@
-//! A window with shadows, to start from: `cargo run -p skiagraph-host --example window`.
+//! A window with shadows, to start from: `cargo run -p skiagraph-host --example window`. The first
+//! argument is a preset, or `none`; the second one stops time at that many seconds.
 //!
 //! `scene.rs` and `renderer.rs` stand for what a program has anyway. `shadows.rs` is all that it
-//! adds, and `Program::frame` below where it calls it. Without a window,
-//! `--frames 90 --save OUT.png` writes the last of so many pictures, a 30th of a second apart.
-
-use skiagraph_host::wgpu;
-use std::{collections::VecDeque, error::Error, process::ExitCode, thread::JoinHandle};
+//! adds, and [`Shown::draw`] calls it.
 
 mod renderer;
-mod save;
 mod scene;
 mod shadows;
-mod window;
 
-use renderer::Renderer;
+use renderer::{Renderer, texture};
 use scene::Moment;
 use shadows::Shadows;
+use skiagraph_host::wgpu::{self, CurrentSurfaceTexture as Current};
+use std::{error::Error, process::ExitCode, sync::Arc, time::Instant};
+use winit::{
+    application::ApplicationHandler,
+    dpi::PhysicalSize,
+    event::WindowEvent,
+    event_loop::{ActiveEventLoop, EventLoop, OwnedDisplayHandle},
+    keyboard::{Key, NamedKey},
+    window::{Window, WindowId},
+};
 
 type Failed = Box<dyn Error + Send + Sync>;
 
-const USAGE: &str = "usage: window [--preset NAME, or `none`] [--size WIDTHxHEIGHT] [--frames N] \
-                     [--save FILE.png]";
-
-struct Options {
-    preset: String,
-    size: [u32; 2],
-    /// Number of frames after which the program ends.
-    frames: Option<u32>,
-    /// File of the last picture; no window is opened then.
-    save: Option<String>,
-}
-
 fn main() -> ExitCode {
-    let run = |options: Options| match &options.save {
-        Some(path) => save::run(&options, path),
-        None => window::run(options),
-    };
-    match options().and_then(run) {
+    match run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("{error}");
@@ -45,117 +34,177 @@ fn main() -> ExitCode {
     }
 }
 
-fn options() -> Result<Options, Failed> {
-    let mut options = Options {
-        preset: "light_buffer".into(),
-        size: [960, 600],
-        frames: None,
-        save: None,
-    };
+fn run() -> Result<(), Failed> {
     let mut arguments = std::env::args().skip(1);
-    while let Some(name) = arguments.next() {
-        let value = arguments.next().ok_or(USAGE)?;
-        match name.as_str() {
-            "--preset" => options.preset = value,
-            "--size" => {
-                let (width, height) = value.split_once('x').ok_or(USAGE)?;
-                options.size = [width.parse()?, height.parse()?];
-            }
-            "--frames" => options.frames = Some(value.parse()?),
-            "--save" => options.save = Some(value),
-            _ => return Err(USAGE.into()),
-        }
-    }
-    if options.size.contains(&0) || options.frames == Some(0) {
-        return Err("a picture has at least one pixel, and a run one frame".into());
-    }
-    Ok(options)
+    let preset = arguments.next().unwrap_or_else(|| "light_buffer".into());
+    let stopped = arguments.next().map(|seconds| seconds.parse());
+    let events = EventLoop::new()?;
+    let mut app = App {
+        preset,
+        stopped: stopped.transpose()?,
+        display: events.owned_display_handle(),
+        shown: None,
+        failed: None,
+    };
+    events.run_app(&mut app)?;
+    app.failed.map_or(Ok(()), Err)
 }
 
-/// The device with all that draws on it.
-struct Program {
+struct App {
+    preset: String,
+    /// The time at which everything stands still, in seconds.
+    stopped: Option<f64>,
+    display: OwnedDisplayHandle,
+    shown: Option<Shown>,
+    failed: Option<Failed>,
+}
+
+/// A window that is there, with its surface and all that draws into it.
+struct Shown {
+    window: Arc<Window>,
+    instance: wgpu::Instance,
+    surface: wgpu::Surface<'static>,
+    config: wgpu::SurfaceConfiguration,
     device: wgpu::Device,
     queue: wgpu::Queue,
     renderer: Renderer,
+    shadows: Option<Shadows>,
     /// Visibility of a sun that nothing hides: one texel of 1.
     unshaded: wgpu::TextureView,
-    /// The thread that makes the shadows, until they are there.
-    starting: Option<JoinHandle<Result<Shadows, Failed>>>,
-    shadows: Option<Shadows>,
-    in_flight: VecDeque<wgpu::SubmissionIndex>,
+    began: Instant,
 }
 
-impl Program {
-    /// Opens a device for textures of a format, and starts to make the shadows of a preset.
-    fn new(
-        adapter: &wgpu::Adapter,
-        format: wgpu::TextureFormat,
-        options: &Options,
-    ) -> Result<Self, Failed> {
+impl Shown {
+    fn new(events: &ActiveEventLoop, app: &App) -> Result<Self, Failed> {
+        let attributes = Window::default_attributes()
+            .with_title("Skiagraph in a program of its own")
+            .with_inner_size(PhysicalSize::new(960, 600));
+        let window = Arc::new(events.create_window(attributes)?);
+        let display = Box::new(app.display.clone());
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+            // Groups of `Indirect` passes are checked. Not a debug build's own flags: Mesa 22.3
+            // crashes on labels.
+            flags: wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL,
+            ..wgpu::InstanceDescriptor::new_with_display_handle(display)
+        });
+        let surface = instance.create_surface(Arc::clone(&window))?;
+        let asked = wgpu::RequestAdapterOptions {
+            compatible_surface: Some(&surface),
+            ..Default::default()
+        };
+        let adapter = pollster::block_on(instance.request_adapter(&asked))?;
         let (device, queue) =
             pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
                 required_limits: adapter.limits(),
                 ..Default::default()
             }))?;
-        let models = scene::models();
-        let renderer = Renderer::new(&device, format, &models);
-        let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
-        let texel = renderer::texture(&device, [1, 1], wgpu::TextureFormat::R8Unorm, usage);
-        queue.write_texture(
-            texel.as_image_copy(),
-            &[255],
-            Default::default(),
-            texel.size(),
-        );
+        let config = surface.get_default_config(&adapter, 960, 600);
+        let mut config = config.ok_or("the adapter cannot draw into the window")?;
+        let formats = surface.get_capabilities(&adapter).formats;
+        let srgb = formats.into_iter().find(wgpu::TextureFormat::is_srgb);
+        config.format = srgb.unwrap_or(config.format);
 
-        let pipelines = skiagraph_host::Pipelines::new(&device);
-        let (on, preset, size) = (queue.clone(), options.preset.clone(), options.size);
-        let start = move || {
-            let first = (&Moment::new(0.0, size), size);
-            Shadows::new((&pipelines, &on), &preset, &models, first)
-        };
-        Ok(Self {
-            renderer,
+        let first = Moment::new(0.0, [960, 600]);
+        let make = |preset| Shadows::new((&device, &queue), preset, &first);
+        let preset = (app.preset != "none").then_some(app.preset.as_str());
+        let shadows = preset.map(make).transpose()?;
+        let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+        let texel = texture(&device, [1, 1], wgpu::TextureFormat::R8Unorm, usage);
+        let layout = wgpu::TexelCopyBufferLayout::default();
+        queue.write_texture(texel.as_image_copy(), &[255], layout, texel.size());
+        let mut shown = Self {
+            renderer: Renderer::new(&device, config.format),
+            shadows,
             unshaded: texel.create_view(&Default::default()),
-            starting: (options.preset != "none").then(|| std::thread::spawn(start)),
-            shadows: None,
-            in_flight: VecDeque::new(),
+            began: Instant::now(),
+            window,
+            instance,
+            surface,
+            config,
             device,
             queue,
-        })
+        };
+        shown.resize(shown.window.inner_size());
+        Ok(shown)
     }
 
-    /// True if no shadows are being made; a finished thread hands them over, `wait` waits for it.
-    fn is_ready(&mut self, wait: bool) -> Result<bool, Failed> {
-        if let Some(done) = self.starting.take_if(|it| wait || it.is_finished()) {
-            let made = done
-                .join()
-                .map_err(|_| "the thread of the shadows panicked")?;
-            self.shadows = Some(made?);
+    /// A minimised window has no size: the surface stays as it was, and nothing is drawn.
+    fn resize(&mut self, size: PhysicalSize<u32>) {
+        if size.width > 0 && size.height > 0 {
+            (self.config.width, self.config.height) = (size.width, size.height);
+            self.surface.configure(&self.device, &self.config);
+            self.window.request_redraw();
         }
-        Ok(self.starting.is_none())
     }
 
-    /// Draws and submits a frame. Waits while two are in flight, so that the CPU is not far ahead.
-    fn frame(&mut self, target: &wgpu::Texture, seconds: f64) -> Result<(), Failed> {
-        if self.in_flight.len() == 2 {
-            self.device.poll(wgpu::PollType::Wait {
-                submission_index: self.in_flight.pop_front(),
-                timeout: None,
-            })?;
+    fn draw(&mut self, stopped: Option<f64>) -> Result<(), Failed> {
+        let size = self.window.inner_size();
+        if size.width == 0 || size.height == 0 {
+            return Ok(()); // `Resized` goes on
         }
-        let size = [target.width(), target.height()];
-        let moment = Moment::new(seconds, size);
+        let image = match self.surface.get_current_texture() {
+            Current::Success(image) | Current::Suboptimal(image) => image,
+            Current::Occluded => return Ok(()), // `Occluded(false)` goes on
+            Current::Validation => return Err("the surface is not valid".into()),
+            why @ (Current::Timeout | Current::Outdated | Current::Lost) => {
+                if matches!(why, Current::Lost) {
+                    self.surface = self.instance.create_surface(Arc::clone(&self.window))?;
+                }
+                self.resize(size);
+                return Ok(());
+            }
+        };
+        let seconds = stopped.unwrap_or_else(|| self.began.elapsed().as_secs_f64());
+        let moment = Moment::new(seconds, [image.texture.width(), image.texture.height()]);
         let mut encoder = self.device.create_command_encoder(&Default::default());
         let visibility = match &mut self.shadows {
-            Some(shadows) => shadows.encode(&mut encoder, (&moment, size))?,
+            Some(shadows) => shadows.encode(&mut encoder, &moment)?,
             None => self.unshaded.clone(),
         };
-        let on = (&self.device, &self.queue);
+        let (device, target) = (&self.device, &image.texture);
         self.renderer
-            .draw(on, &mut encoder, target, &moment, &visibility);
-        self.in_flight
-            .push_back(self.queue.submit([encoder.finish()]));
+            .draw(device, &mut encoder, target, &moment, &visibility);
+        self.queue.submit([encoder.finish()]);
+        self.window.pre_present_notify();
+        self.queue.present(image);
+        self.window.request_redraw();
         Ok(())
+    }
+}
+
+impl ApplicationHandler for App {
+    fn resumed(&mut self, events: &ActiveEventLoop) {
+        if self.shown.is_none() {
+            match Shown::new(events, self) {
+                Ok(shown) => self.shown = Some(shown),
+                Err(error) => self.failed = Some(error),
+            }
+        }
+        if self.failed.is_some() {
+            events.exit();
+        }
+    }
+
+    fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        let Some(shown) = &mut self.shown else {
+            return;
+        };
+        match event {
+            WindowEvent::CloseRequested => events.exit(),
+            WindowEvent::KeyboardInput { event, .. }
+                if event.logical_key == Key::Named(NamedKey::Escape) =>
+            {
+                events.exit();
+            }
+            WindowEvent::Resized(size) => shown.resize(size),
+            WindowEvent::Occluded(false) => shown.window.request_redraw(),
+            WindowEvent::RedrawRequested => {
+                self.failed = shown.draw(self.stopped).err();
+                if self.failed.is_some() {
+                    events.exit();
+                }
+            }
+            _ => {}
+        }
     }
 }

@@ -1,63 +1,46 @@
 //! The program's own renderer: one forward pass with reversed depth. It knows nothing of Skiagraph.
 
-use crate::scene::{Model, Moment};
+use crate::scene::{Moment, PARTS, models};
 use skiagraph_host::wgpu::{self, util::DeviceExt};
 use std::ops::Range;
 
 const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+const SKY: wgpu::Color = wgpu::Color {
+    r: 0.45,
+    g: 0.6,
+    b: 0.8,
+    a: 1.0,
+};
 
 pub struct Renderer {
     pipeline: wgpu::RenderPipeline,
-    uniform: wgpu::Buffer,
     vertices: wgpu::Buffer,
     indices: wgpu::Buffer,
-    parts: Vec<Part>,
+    /// Range of each model in the index buffer, and the number of its first vertex.
+    models: Vec<(Range<u32>, i32)>,
     depth: wgpu::Texture,
 }
 
-/// A model's range in the index buffer, and the number of its first vertex.
-struct Part {
-    indices: Range<u32>,
-    base_vertex: i32,
-    color: [f32; 4],
-}
-
 impl Renderer {
-    pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat, models: &[Model]) -> Self {
-        let (mut vertices, mut indices, mut parts) = (vec![], Vec::<u32>::new(), vec![]);
-        for model in models {
-            let first = indices.len() as u32;
-            parts.push(Part {
-                indices: first..first + model.indices.len() as u32,
-                base_vertex: vertices.len() as i32,
-                color: model.color,
-            });
-            vertices.extend(
-                model
-                    .positions
-                    .iter()
-                    .zip(&model.normals)
-                    .map(|(p, n)| [*p, *n]),
-            );
+    pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
+        let (mut vertices, mut indices, mut ranges) = (vec![], Vec::<u32>::new(), vec![]);
+        for model in models() {
+            let range = indices.len() as u32..(indices.len() + model.indices.len()) as u32;
+            ranges.push((range, vertices.len() as i32));
+            let normals = model.normals.iter();
+            vertices.extend(model.positions.iter().zip(normals).map(|(p, n)| [*p, *n]));
             indices.extend(&model.indices);
         }
-        let buffer = |contents: &[u8], usage| {
-            let label = None;
-            let descriptor = wgpu::util::BufferInitDescriptor {
-                label,
-                contents,
-                usage,
-            };
-            device.create_buffer_init(&descriptor)
-        };
-        let floats = 16 + 4 + 20 * models.len();
-        let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+        let vertex = wgpu::BufferUsages::VERTEX;
         Self {
             pipeline: pipeline(device, format),
-            uniform: buffer(&vec![0; 4 * floats], usage),
-            vertices: buffer(bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX),
-            indices: buffer(bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX),
-            parts,
+            vertices: buffer(device, bytemuck::cast_slice(&vertices), vertex),
+            indices: buffer(
+                device,
+                bytemuck::cast_slice(&indices),
+                wgpu::BufferUsages::INDEX,
+            ),
+            models: ranges,
             depth: texture(
                 device,
                 [1, 1],
@@ -70,7 +53,7 @@ impl Renderer {
     /// Draws the scene at a moment into `target`, lit by a sun of that visibility.
     pub fn draw(
         &mut self,
-        (device, queue): (&wgpu::Device, &wgpu::Queue),
+        device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
         target: &wgpu::Texture,
         moment: &Moment,
@@ -79,44 +62,34 @@ impl Renderer {
         let clip_from_world = (moment.projection * moment.view).as_mat4();
         let mut uniform = clip_from_world.to_cols_array().to_vec();
         uniform.extend(moment.to_sun.as_vec3().extend(0.0).to_array());
-        for (part, place) in self.parts.iter().zip(&moment.places) {
-            let place = skiagraph_host::glam::DMat4::from(*place).as_mat4();
+        for ((_, color), place) in PARTS.iter().zip(moment.places) {
+            let place = skiagraph_host::glam::DMat4::from(place).as_mat4();
             uniform.extend(place.to_cols_array());
-            uniform.extend(part.color);
+            uniform.extend(color);
         }
-        // Frames that were submitted before keep what was written for them.
-        queue.write_buffer(&self.uniform, 0, bytemuck::cast_slice(&uniform));
+        let uniform = bytemuck::cast_slice(&uniform);
+        let uniform = buffer(device, uniform, wgpu::BufferUsages::UNIFORM);
         if self.depth.size() != target.size() {
-            let size = [target.width(), target.height()];
-            self.depth = texture(device, size, DEPTH, wgpu::TextureUsages::RENDER_ATTACHMENT);
+            let usage = wgpu::TextureUsages::RENDER_ATTACHMENT;
+            self.depth = texture(device, moment.size, DEPTH, usage);
         }
+        let resources = [
+            uniform.as_entire_binding(),
+            wgpu::BindingResource::TextureView(visibility),
+        ];
+        let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
         let bound = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: None,
             layout: &self.pipeline.get_bind_group_layout(0),
-            entries: &[
-                wgpu::BindGroupEntry {
-                    binding: 0,
-                    resource: self.uniform.as_entire_binding(),
-                },
-                wgpu::BindGroupEntry {
-                    binding: 1,
-                    resource: wgpu::BindingResource::TextureView(visibility),
-                },
-            ],
+            entries: &[0, 1].map(|at| entry((at, resources[at as usize].clone()))),
         });
-        let color = wgpu::Color {
-            r: 0.45,
-            g: 0.6,
-            b: 0.8,
-            a: 1.0,
-        };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
                 view: &target.create_view(&Default::default()),
                 depth_slice: None,
                 resolve_target: None,
                 ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(color),
+                    load: wgpu::LoadOp::Clear(SKY),
                     store: wgpu::StoreOp::Store,
                 },
             })],
@@ -134,8 +107,9 @@ impl Renderer {
         pass.set_bind_group(0, &bound, &[]);
         pass.set_vertex_buffer(0, self.vertices.slice(..));
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
-        for (number, part) in (0..).zip(&self.parts) {
-            pass.draw_indexed(part.indices.clone(), part.base_vertex, number..number + 1);
+        for (number, (model, _)) in (0..).zip(PARTS) {
+            let (indices, first) = self.models[model].clone();
+            pass.draw_indexed(indices, first, number..number + 1);
         }
     }
 }
@@ -178,6 +152,14 @@ fn pipeline(device: &wgpu::Device, format: wgpu::TextureFormat) -> wgpu::RenderP
     })
 }
 
+fn buffer(device: &wgpu::Device, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        label: None,
+        contents,
+        usage,
+    })
+}
+
 pub fn texture(
     device: &wgpu::Device,
     [width, height]: [u32; 2],
@@ -189,7 +171,7 @@ pub fn texture(
         size: wgpu::Extent3d {
             width,
             height,
-            ..Default::default()
+            depth_or_array_layers: 1,
         },
         mip_level_count: 1,
         sample_count: 1,

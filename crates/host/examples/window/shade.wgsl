@@ -26,13 +26,14 @@ fn vertex(
 ) -> Seen {
     let part = moment.parts[index];
     let world = part.world_from_model * vec4(position, 1.0);
-    let turned = part.world_from_model * vec4(normal, 0.0); // parts are turned, not stretched
+    // Boxes are stretched along their own edges, which leaves the directions of their normals.
+    let turned = part.world_from_model * vec4(normal, 0.0);
     return Seen(moment.clip_from_world * world, turned.xyz, part.color.rgb);
 }
 
 @fragment
 fn fragment(seen: Seen) -> @location(0) vec4<f32> {
-    // Until there are shadows, the texture is a single texel.
+    // Without shadows the texture is a single texel.
     let texel = min(vec2<u32>(seen.position.xy), textureDimensions(visibility) - 1u);
     let normal = normalize(seen.normal);
     let sun = textureLoad(visibility, texel, 0).r * max(dot(normal, moment.to_sun.xyz), 0.0);

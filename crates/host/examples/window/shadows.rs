@@ -1,11 +1,13 @@
 //! All that is Skiagraph's: the visibility of the sun, from any preset.
 
-use crate::{Failed, scene::Model, scene::Moment};
-use skiagraph_host::passes::Depth;
+use crate::{
+    Failed,
+    scene::{Moment, PARTS, models},
+};
 use skiagraph_host::scene::{DirectionalLight, Indexed, Mesh, Movable};
 use skiagraph_host::{
-    EmbeddedSources, Executor, Eye, Frame, Pipelines, PlanRequest, SceneProvider, SceneView,
-    load_unit_visibility, registry, wgpu,
+    EmbeddedSources, Executor, Eye, Frame, PlanRequest, SceneProvider, SceneView,
+    load_unit_visibility, passes::Depth, registry, wgpu,
 };
 
 pub struct Shadows {
@@ -15,16 +17,14 @@ pub struct Shadows {
 }
 
 impl Shadows {
-    /// Reads the preset, plans it and compiles its shaders, which takes most of a program's start:
-    /// on a thread of its own, while frames are drawn without it. `moment` has the first frame's
-    /// camera, sun and places, `size` its width and height.
+    /// Reads a preset, plans it for the first frame's `moment` and compiles its shaders, which
+    /// takes most of a program's start. It may run on a thread, while frames have no shadows.
     pub fn new(
-        (pipelines, queue): (&Pipelines, &wgpu::Queue),
+        (device, queue): (&wgpu::Device, &wgpu::Queue),
         preset: &str,
-        models: &[Model],
-        (moment, size): (&Moment, [u32; 2]),
+        moment: &Moment,
     ) -> Result<Self, Failed> {
-        let meshes = models.iter().map(|model| {
+        let meshes = models().map(|model| {
             let indexed = Indexed {
                 positions: &model.positions,
                 normals: &model.normals,
@@ -32,23 +32,19 @@ impl Shadows {
             };
             indexed.mesh()
         });
-        let meshes: Vec<Mesh> = meshes.collect::<Result<_, _>>()?;
-        let joined = Movable::joined(&meshes.iter().collect::<Vec<_>>());
-        let mut provider = SceneProvider::from_parts(joined, sun(moment));
-        provider.set_transforms(&moment.places)?;
-        let view = SceneView::new(size, &eye(moment)?, sun(moment));
+        let meshes: Vec<Mesh> = meshes.into_iter().collect::<Result<_, _>>()?;
+        let parts = Movable::joined(&PARTS.map(|(model, _)| &meshes[model]));
+        let mut provider = SceneProvider::from_parts(parts, sun(moment));
+        let view = SceneView::new(moment.size, &eye(moment)?, sun(moment));
 
         let path = format!("pipelines/{preset}.ron");
         let graph = load_unit_visibility(&path, &registry(), &EmbeddedSources)?;
-        let device = pipelines.device();
-        let request = PlanRequest::new(size, view.apply(&mut provider))
-            .with_device(device.limits(), device.features());
-        let plan = graph.plan(&request)?;
-        let executor = Executor::with_pipelines(pipelines, queue, plan, &mut provider)?;
+        let request = PlanRequest::new(moment.size, view.apply(&mut provider));
+        let plan = graph.plan(&request.with_device(device.limits(), device.features()))?;
         Ok(Self {
+            executor: Executor::new(device, queue, plan, &mut provider)?,
             provider,
             view,
-            executor,
         })
     }
 
@@ -57,10 +53,10 @@ impl Shadows {
     pub fn encode(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
-        (moment, size): (&Moment, [u32; 2]),
+        moment: &Moment,
     ) -> Result<wgpu::TextureView, Failed> {
         self.provider.set_transforms(&moment.places)?;
-        self.view.set_size(size);
+        self.view.set_size(moment.size);
         self.view.set_eye(&eye(moment)?);
         self.view.set_light(sun(moment))?;
         self.view.refresh(&mut self.executor, &mut self.provider)?;

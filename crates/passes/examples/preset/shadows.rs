@@ -8,7 +8,7 @@ use wgpu::{CommandEncoder, Device, Queue, TextureView};
 type Failed = Box<dyn std::error::Error>;
 
 pub struct Shadows {
-    provider: SceneProvider,
+    pub provider: SceneProvider,
     executor: Executor,
 }
 
@@ -18,10 +18,8 @@ impl Shadows {
         let light = DirectionalLight::new(DVec3::NEG_Y);
         let mut provider = SceneProvider::from_parts(Movable::joined(of), light);
         let graph = Graph::load("pipelines/light_buffer.ron", &registry(), &EmbeddedSources)?;
-        let mut request = PlanRequest::new(size, &provider);
-        request.limits = on.0.limits();
-        request.features = on.0.features();
-        let plan = graph.plan(&request)?;
+        let request = PlanRequest::new(size, &provider);
+        let plan = graph.plan(&request.with_device(on.0.limits(), on.0.features()))?;
         Ok(Self {
             executor: Executor::new(on.0, on.1, plan, &mut provider)?,
             provider,

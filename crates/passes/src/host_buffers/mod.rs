@@ -10,4 +10,4 @@ mod writes;
 pub use error::HostMeshError;
 pub use layout::HostVertices;
 pub use mesh::{HostIndices, HostMesh};
-pub(crate) use writes::{HostWrite, Kernels, Written};
+pub(crate) use writes::{Bound, HostWrite, Kernels, Written};

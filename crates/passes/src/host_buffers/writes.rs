@@ -2,17 +2,13 @@
 
 use super::mesh::HostMesh;
 use crate::{
-    buffers::{On, binding_limit},
+    buffers::{On, binding_limit, refused},
     error::Error,
     host,
     parts::PartId,
 };
 use glam::{DAffine3, DVec3, Vec3};
-use std::{
-    future::Future,
-    sync::{Arc, OnceLock},
-    task::{Context, Poll, Waker},
-};
+use std::sync::{Arc, OnceLock};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 /// Items that a workgroup of a kernel writes at once.
@@ -112,53 +108,61 @@ pub(crate) struct Kernels {
     made: Option<Arc<Made>>,
 }
 
+/// Kernel with all that it reads and writes.
+pub(crate) struct Bound {
+    pipeline: wgpu::ComputePipeline,
+    /// Each with its workgroups, and the bytes that were uploaded for it.
+    groups: Vec<(wgpu::BindGroup, [u32; 2], u64)>,
+}
+
+impl Bound {
+    /// Records the kernel; the number of bytes that were uploaded for it.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) -> u64 {
+        let mut pass = encoder.begin_compute_pass(&Default::default());
+        pass.set_pipeline(&self.pipeline);
+        for (group, [across, parts], _) in &self.groups {
+            pass.set_bind_group(0, group, &[]);
+            pass.dispatch_workgroups(*across, *parts, 1);
+        }
+        self.groups.iter().map(|(.., uploaded)| uploaded).sum()
+    }
+}
+
 struct Made {
     module: wgpu::ShaderModule,
     pipelines: [OnceLock<wgpu::ComputePipeline>; 4],
 }
 
 impl Kernels {
-    /// Writes parts, in the order of their meshes, by a submission of its own; the number of bytes
-    /// that were uploaded for it.
+    /// Binds parts, in the order of their meshes, for a kernel that writes them.
     ///
     /// # Errors
     /// [`Error::TooLarge`] if the device cannot bind the vertices of a mesh,
     /// [`Error::HostVertices`] if it refuses them.
-    pub fn write(&mut self, written: Written, parts: &[HostWrite], on: On) -> Result<u64, Error> {
-        let scope = on.device.push_error_scope(wgpu::ErrorFilter::Validation);
-        let uploaded = self.submit(written, parts, on);
-        let mut refused = std::pin::pin!(scope.pop());
-        let mut context = Context::from_waker(Waker::noop());
-        // It is there at once, but on the web, where the browser tells.
-        match refused.as_mut().poll(&mut context) {
-            Poll::Ready(Some(error)) => Err(Error::HostVertices(error.to_string())),
-            _ => uploaded,
-        }
-    }
-
-    fn submit(&mut self, written: Written, parts: &[HostWrite], on: On) -> Result<u64, Error> {
-        let pipeline = self.pipeline(written, on.device);
-        let mut encoder = on.device.create_command_encoder(&Default::default());
-        let mut uploaded = 0;
-        {
-            let mut pass = encoder.begin_compute_pass(&Default::default());
-            pass.set_pipeline(&pipeline);
-            for (first, parts) in batches(parts) {
-                let group = bind(&pipeline, written, (first, parts), on.device)?;
-                pass.set_bind_group(0, &group.0, &[]);
-                let across = groups(written, &parts[0].mesh);
-                pass.dispatch_workgroups(across, parts.len() as u32, 1);
-                uploaded += group.1;
-            }
-        }
-        on.queue.submit([encoder.finish()]);
-        Ok(uploaded)
+    pub fn bind(
+        &mut self,
+        written: Written,
+        parts: &[HostWrite],
+        device: &wgpu::Device,
+    ) -> Result<Bound, Error> {
+        let pipeline = self.pipeline(written, device);
+        let group = |(first, parts): (usize, &[HostWrite])| {
+            let (group, uploaded) = bind(&pipeline, written, (first, parts), device)?;
+            let across = groups(written, &parts[0].mesh);
+            Ok((group, [across, parts.len() as u32], uploaded))
+        };
+        let bound = refused(device, || batches(parts).map(group).collect());
+        let groups: Result<Vec<_>, Error> = bound.map_err(Error::HostVertices)?;
+        Ok(Bound {
+            groups: groups?,
+            pipeline,
+        })
     }
 
     /// Looks for a vertex beyond the bounds of its part, and waits for the answer.
     ///
     /// # Errors
-    /// [`Error::Beyond`] with the first one that is found, and those of [`write`](Self::write).
+    /// [`Error::Beyond`] with the first one that is found, and those of [`bind`](Self::bind).
     pub fn check_bounds(&mut self, parts: &[HostWrite], on: On) -> Result<(), Error> {
         let none = vec![u32::MAX; parts.len()];
         let beyond = on.device.create_buffer_init(&BufferInitDescriptor {
@@ -166,7 +170,11 @@ impl Kernels {
             contents: bytemuck::cast_slice(&none),
             usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
         });
-        self.write(Written::Beyond { beyond: &beyond }, parts, on)?;
+        let bound = self.bind(Written::Beyond { beyond: &beyond }, parts, on.device)?;
+        let mut encoder = on.device.create_command_encoder(&Default::default());
+        bound.record(&mut encoder);
+        let submitted = refused(on.device, || on.queue.submit([encoder.finish()]));
+        submitted.map_err(Error::HostVertices)?;
         let found = host::read("bounds check", beyond.slice(..), on.device, on.queue)?;
         let found: Vec<u32> = bytemuck::pod_collect_to_vec(&found);
         let mut found = parts.iter().zip(found);
@@ -246,7 +254,7 @@ fn bind(
     let offset = vertices.offset - vertices.offset % alignment;
     let first = vertices.offset - offset;
     let bytes = first + vertices.length();
-    let limit = binding_limit(device);
+    let limit = binding_limit(&device.limits());
     if bytes > limit {
         let name = "the vertices of a host's mesh".to_owned();
         return Err(Error::TooLarge { name, bytes, limit });

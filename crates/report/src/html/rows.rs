@@ -14,8 +14,8 @@ use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::size;
 use std::path::{Path, PathBuf};
 
-/// Returns one HTML table with the rows of all tables. The page's script shows those of the chosen
-/// ones.
+/// Returns one HTML table with the rows of all `tables`. The page's script shows the rows of the
+/// tables that the reader has chosen.
 pub fn tables(tables: &[Shown]) -> String {
     let each = tables.iter().map(|of| &of.table);
     // Tables of paths have columns that others lack.

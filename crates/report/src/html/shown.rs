@@ -22,7 +22,7 @@ pub struct Shown<'a> {
     /// True if the times are wall times, since a row has no GPU times.
     pub by_wall: bool,
     /// Heading: scene, views and viewport, the adapter, machine or protocol if the sources differ
-    /// in it, and the folder or a number if it would be that of another table.
+    /// in it, and the folder or a number if another table would have the same heading.
     pub title: String,
 }
 
@@ -108,7 +108,8 @@ impl Shown<'_> {
 
     /// Returns the milliseconds of a row's frame; `None` if they are missing or 0, so that they
     /// cannot be drawn on a logarithmic axis. `kept` selects a frame in which only the camera has
-    /// moved, so that passes are skipped; a row without such times shows the others.
+    /// moved, so that passes are skipped; for a row without such times the result is the time of a
+    /// frame in which every pass runs.
     pub fn ms(&self, row: &Row, kept: bool) -> Option<f64> {
         let kept = row.kept_ms(self.by_wall).filter(|_| kept);
         let ms = kept.or(row.frame_ms(self.by_wall));

@@ -17,22 +17,26 @@ use std::{collections::BTreeMap, ops::Range, sync::Arc};
 /// A piece is built anew when a deformation has made its rays this many times as dear as they were.
 const WORSE: f64 = 1.5;
 
-/// Triangles of a mesh that move together, as [`TwoLevelBvh::build`] takes them.
+/// Piece of a mesh for [`TwoLevelBvh::build`]: triangles that move together.
 #[derive(Clone, Copy, Debug)]
 pub struct Piece<'a> {
-    /// Primitive ids, each in one piece only.
+    /// Primitive ids (indices into [`Mesh::triangles`]) of the piece's triangles. No triangle is in
+    /// two pieces.
     pub triangles: &'a [u32],
-    /// Number of the piece whose mesh this is a copy of: the same triangles in the same order,
-    /// moved by an affine map. The number of the piece itself if it is a copy of none.
+    /// Number of the piece that this one is a copy of: it has the same triangles in the same order,
+    /// moved by an affine map. Pieces are numbered from 0 in the order of the list given to
+    /// [`TwoLevelBvh::build`]; a piece that is no copy has its own number here.
     pub copy_of: usize,
 }
 
 /// Way in which pieces have moved, for [`TwoLevelBvh::refit`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Moved {
-    /// By affine maps. Triangles that were near each other still are, so the trees stay.
+    /// By affine maps. Triangles that were near each other still are, so that each piece's tree
+    /// keeps its shape.
     Affinely,
-    /// In any way. A tree that has become bad is built anew, that of one piece alone.
+    /// In any way. The tree of a piece that costs rays half as much again as when it was built is
+    /// built anew.
     Freely,
 }
 
@@ -42,10 +46,12 @@ pub enum Moved {
 /// single piece is that of [`Bvh::build`].
 #[derive(Clone, Debug, Default)]
 pub struct TwoLevelBvh {
-    /// Nodes: the root, the top level, the nodes of the pieces. The two children of an inner node
-    /// follow each other. Empty without triangles.
+    /// Nodes of the tree, the root first. [`top`](Self::top) and [`nodes_of`](Self::nodes_of) tell
+    /// which nodes are of the top level and of a piece; others are unused. The two children of an
+    /// inner node follow each other. Empty without triangles.
     pub nodes: Vec<BvhNode>,
-    /// Primitive ids in the order of the leaves, each once.
+    /// Primitive ids (indices into [`Mesh::triangles`]) in the order of the leaves. Each leaf names
+    /// a range of this list; ids outside these ranges are unused.
     pub primitives: Vec<u32>,
     pieces: Vec<Subtree>,
     /// Room of the top level's nodes but the root.
@@ -76,7 +82,8 @@ struct Subtree {
 pub struct Refit {
     /// Number of nodes whose boxes were fitted or built.
     pub nodes: usize,
-    /// Pieces whose trees were built anew. Their ranges of the primitives have changed.
+    /// Numbers of the pieces whose trees were built anew, so that their entries in
+    /// [`TwoLevelBvh::primitives`] stand in another order.
     pub rebuilt: Vec<usize>,
 }
 
@@ -179,8 +186,9 @@ impl TwoLevelBvh {
         built
     }
 
-    /// Makes room for pieces to be [added](Self::add): so many, of so many triangles together. A
-    /// hierarchy without room grows when it must.
+    /// Makes room in [`nodes`](Self::nodes) for `pieces` pieces that are [added](Self::add) later
+    /// and have `triangles` triangles together. Without room the list of nodes grows when a piece
+    /// is added.
     pub fn reserve(&mut self, pieces: usize, triangles: usize) {
         let filled = self.filled();
         self.reserve_top(filled + pieces);
@@ -235,13 +243,15 @@ impl TwoLevelBvh {
         filled.count()
     }
 
-    /// Adds a piece as number `piece`: that of one without triangles, such as one that was removed,
-    /// or the number of pieces that there are. Its tree is that of the triangles of `at_rest`; the
-    /// triangles of the whole mesh from `first` on are these, moved. Only this tree is built. Its
-    /// boxes are fitted by the next [`refit`](Self::refit), which must name the piece.
+    /// Adds a piece with the number `piece`: the next unused number ([`pieces`](Self::pieces)), or
+    /// the number of a piece that was [removed](Self::remove). `at_rest` has the piece's triangles
+    /// before they were moved; its tree is built over them. In the whole mesh they are the
+    /// triangles from the primitive id `first` on. The boxes are fitted by the next
+    /// [`refit`](Self::refit), which must name the piece.
     ///
     /// # Panics
-    /// If there is a piece with triangles of that number, or no piece before it.
+    /// If `piece` is the number of a piece that has triangles, or greater than the number of
+    /// pieces.
     pub fn add(&mut self, piece: usize, at_rest: &Mesh, first: u32) {
         let ids: Vec<u32> = (0..at_rest.triangles.len() as u32).collect();
         let depth = depth_left(self.filled() + 1);
@@ -348,8 +358,9 @@ impl TwoLevelBvh {
         &self.pieces[piece].order
     }
 
-    /// Removes a piece from the next [`refit`](Self::refit) on; its number stays its own, and its
-    /// nodes are for other pieces.
+    /// Removes a piece; the tree changes at the next [`refit`](Self::refit). Other pieces keep
+    /// their numbers. The piece's number and nodes may be reused by pieces that are
+    /// [added](Self::add) later.
     ///
     /// # Panics
     /// If there is no piece of that number.
@@ -404,11 +415,13 @@ impl TwoLevelBvh {
         }
     }
 
-    /// Fits the boxes of `pieces` to the mesh, in which they have moved, and builds the top level
-    /// anew. Of pieces whose bounds were [stated](Self::state_bounds) only the root's box is other.
+    /// Fits the boxes of the pieces with the numbers in `pieces` to `mesh`, in which they have
+    /// moved, and builds the top level anew.
+    /// Of pieces whose bounds were [stated](Self::state_bounds) only the root's box changes.
     ///
     /// # Panics
-    /// If there is no piece of such a number, or the mesh has fewer triangles than the hierarchy.
+    /// If a number in `pieces` is not that of a piece, or the mesh has fewer triangles than the
+    /// hierarchy.
     pub fn refit(&mut self, mesh: &Mesh, pieces: &[usize], moved: Moved) -> Refit {
         let mut work = Refit::default();
         for &piece in pieces {
@@ -450,13 +463,13 @@ impl TwoLevelBvh {
         self.pieces[piece].cost = self.cost(piece);
     }
 
-    /// Returns the number of pieces.
+    /// Returns the number of pieces, removed ones included.
     pub fn pieces(&self) -> usize {
         self.pieces.len()
     }
 
-    /// Returns the root, and the range of the top level's other nodes in [`nodes`](Self::nodes):
-    /// what is written whenever a piece moves.
+    /// Returns two ranges of [`nodes`](Self::nodes): the root, and the other nodes of the top
+    /// level. Each [`refit`](Self::refit) writes these.
     pub fn top(&self) -> [Range<usize>; 2] {
         let below = (2 * self.filled()).max(2) - 2;
         [
@@ -465,7 +478,8 @@ impl TwoLevelBvh {
         ]
     }
 
-    /// Returns the range of a piece's nodes in [`nodes`](Self::nodes).
+    /// Returns the range of a piece's nodes in [`nodes`](Self::nodes), without the root of its
+    /// tree, which is in the top level.
     ///
     /// # Panics
     /// If there is no piece of that number.

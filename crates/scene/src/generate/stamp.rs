@@ -46,7 +46,8 @@ impl Stamp {
         }
     }
 
-    /// Copies the part, turned by quarters about the y axis, to `origin`.
+    /// Copies the part into `builder`'s mesh, turned by quarters about the y axis as [`turned`]
+    /// turns, with its origin at `origin`. `builder` must be the one that [`Self::new`] got.
     pub fn place(&self, quarters: usize, origin: DVec3, builder: &mut Builder) {
         let mesh = &mut builder.mesh;
         let base = mesh.positions.len() as u32;

@@ -44,7 +44,8 @@ pub(super) struct Cut {
 }
 
 impl Read {
-    /// The mask with an alpha, once more multiplied by `alpha`.
+    /// The mask of the material. The alpha of each texel is multiplied by those of `cut` and of a
+    /// vertex, `alpha`, and is opaque from the cutoff on. `None` if all texels are opaque.
     ///
     /// # Errors
     /// The texture cannot be read.

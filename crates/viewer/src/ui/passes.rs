@@ -43,10 +43,7 @@ fn one(ui: &mut Ui, viewer: &mut Viewer, index: usize) {
                         });
                         ui.horizontal(|ui| {
                             for material in &pass.writes {
-                                let capture = Capture {
-                                    material: material.clone(),
-                                    after: Some(pass.name.clone()),
-                                };
+                                let capture = Capture::new(material).with_after(&pass.name);
                                 let is_shown =
                                     viewer.panes[index].show == Show::Material(capture.clone());
                                 if ui.selectable_label(is_shown, material).clicked() {

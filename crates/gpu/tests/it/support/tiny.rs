@@ -92,9 +92,12 @@ pub fn executor(
     captures: &[(&str, Option<&str>)],
 ) -> Result<Executor, ExecuteError> {
     let mut request = request(&Triangle);
-    let capture = |(material, after): &(&str, Option<&str>)| Capture {
-        material: (*material).to_owned(),
-        after: after.map(str::to_owned),
+    let capture = |(material, after): &(&str, Option<&str>)| {
+        let capture = Capture::new(*material);
+        match after {
+            Some(pass) => capture.with_after(*pass),
+            None => capture,
+        }
     };
     request.captures = captures.iter().map(capture).collect();
     let plan = right(right(load(files)).plan(&request));

@@ -49,20 +49,9 @@ pub fn folder() -> Broken {
 pub fn request() -> PlanRequest<'static> {
     let mut request = PlanRequest::new([64, 48], &Triangle);
     request.memory_limit = Some(4 << 30);
-    let texture = Import::Texture {
-        format: wgt::TextureFormat::R32Float,
-        size: [64, 48],
-        mips: 1,
-        layers: 1,
-        is_3d: false,
-        samples: 1,
-        usage: wgt::TextureUsages::TEXTURE_BINDING,
-    };
-    let buffer = Import::Buffer {
-        bytes: 12,
-        items: Some(3),
-        usage: wgt::BufferUsages::COPY_SRC,
-    };
+    let usage = wgt::TextureUsages::TEXTURE_BINDING;
+    let texture = Import::plain_texture(wgt::TextureFormat::R32Float, [64, 48], usage);
+    let buffer = Import::buffer(12, Some(3), wgt::BufferUsages::COPY_SRC);
     request.imports = BTreeMap::from([
         ("host_image".to_owned(), texture),
         ("host_items".to_owned(), buffer),

@@ -459,10 +459,8 @@ fn exact_presets_are_right_on_a_hosts_buffer() {
     for preset in ["rt", "light_buffer", "crsm"] {
         let path = format!("pipelines/{preset}.ron");
         let plan = graphs::plan(&path, &host, VIEWPORT, |request| {
-            request.captures.push(skiagraph_graph::Capture {
-                material: "primitive".into(),
-                after: None,
-            });
+            let primitives = skiagraph_graph::Capture::new("primitive");
+            request.captures.push(primitives);
         });
         let mut executor = Executor::on(&gpu, plan, &mut host).unwrap();
         let names = ["visibility", "status", "primitive"];

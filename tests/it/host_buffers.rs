@@ -862,7 +862,7 @@ fn mistakes_in_a_layout_are_named() {
         let error = make(vertices, &own.vertices, &own.indices).unwrap_err();
         assert!(error.to_string().contains(expected), "{error}");
     }
-    let short = make(right.clone(), &own.vertices[4..], &own.indices).unwrap_err();
+    let short = make(right.clone(), &own.vertices[8..], &own.indices).unwrap_err();
     assert!(matches!(short, HostMeshError::Rest { .. }), "{short}");
     let odd = make(right.clone(), &own.vertices, &own.indices[1..]).unwrap_err();
     assert!(matches!(odd, HostMeshError::Mesh(_)), "{odd}");

@@ -95,7 +95,8 @@ fn sum(of: &Conformance, engine: &str) -> String {
     )
 }
 
-/// Wrong rays per 10⁹ with their bound: `12.5 (at most 17)`.
+/// Returns wrong rays per 10⁹ with their [upper bound](per_billion) of 95 % certainty:
+/// `12.5 (95 %: at most 17)`.
 pub fn rate(wrong: u64, rays: u64) -> String {
     let (rate, most) = per_billion(wrong, rays);
     format!("{} (95 %: at most {})", figure(rate), figure(most))

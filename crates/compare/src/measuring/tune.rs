@@ -72,9 +72,10 @@ const LONGEST_SIDE: u32 = 8192;
 /// chosen on other views of the scene. Where these are fewer than three, views are generated that
 /// show from other sides what the judged ones show. Params that a method sets stay as they are. A
 /// method whose document promises exact shadows for all casters is not searched. Values are chosen
-/// in the first of the comparison's viewports, and run in all. A viewport below 256 × 256 pixels is
-/// made as many times as large as is needed for that many, unless there is a limit of time or
-/// memory, which is one for the viewport itself.
+/// in the first of the comparison's viewports, and run in all. If it has fewer than 256 × 256
+/// pixels, they are chosen in a larger one: both sides are multiplied by the least whole number
+/// that gives so many. It stays if the comparison's [`budgets`](Comparison::budgets) limit time or
+/// memory, as a larger one costs more.
 ///
 /// The work is bounded: plans and frames of a method, those of its tuned setting included, are at
 /// most ten times those of its part in the comparison.

@@ -63,7 +63,7 @@ pub enum Surfaces {
     #[default]
     Rasterised,
     /// A file with the id of each pixel's triangle, in the form that
-    /// [`ids`](crate::foreign::surfaces::ids) reads. The surface is then known, and no GPU is
+    /// [`ids`] reads. The surface is then known, and no GPU is
     /// needed.
     Ids(PathBuf),
     /// A file with the depth of each pixel, in one of the forms of

@@ -162,11 +162,12 @@ pub fn is_folder(place: &Path) -> bool {
 }
 
 /// Reads the cells of those of `places` that are folders of cells. Of a cell that several folders
-/// hold from one kind of adapter, the first counts.
+/// hold from one adapter (the same name, backend and driver), the first counts; those of other
+/// adapters are kept beside it.
 ///
 /// # Errors
-/// A plan or cell that cannot be read; cells of several versions of the program; a cell or a truth
-/// that is in two folders and differs.
+/// A plan or cell that cannot be read; cells of several versions of the program, or other than
+/// planned; a cell or a truth that is in two folders and differs.
 pub fn join(places: &[PathBuf]) -> Result<Joined, CompareError> {
     let mut plans: Vec<(CellPlan, Vec<&Path>)> = Vec::new();
     for place in places.iter().filter(|place| is_folder(place)) {

@@ -134,7 +134,7 @@ pub struct WrongRay {
     pub primitive: Option<u32>,
     /// Primitive that `Hierarchy` finds; null if none.
     pub expected: Option<u32>,
-    /// Corners of the primitive that is found by one of both.
+    /// Corners of `primitive`, or else of `expected`; null if there is neither.
     pub corners: Option<[[f32; 3]; 3]>,
 }
 

@@ -5,8 +5,8 @@
 //!
 //! let shards: Vec<Shard> = Vec::from(["1/2".parse()?, "2/2".parse()?]);
 //! let pixels = [4096; 5];
-//! assert_eq!(shards[0].of(&pixels), 0..3);
-//! assert_eq!(shards[1].of(&pixels), 3..5);
+//! assert_eq!(shards[0].of(&pixels), 0..2);
+//! assert_eq!(shards[1].of(&pixels), 2..5);
 //! assert!("3/2".parse::<Shard>().is_err());
 //! # Ok::<(), String>(())
 //! ```

@@ -6,7 +6,7 @@
 #     ./adapter.sh                         the best GPU
 #     ./adapter.sh --backend gl            through another interface
 #     ./adapter.sh --adapter RADV          by part of its name or of its driver's
-#     ./adapter.sh --small                 a try of two minutes
+#     ./adapter.sh --small                 a short try
 #
 # Stopped, or out of time, it goes on with the same command. All words go to `skiagraph adapter`,
 # whose --help says more.

@@ -482,7 +482,7 @@ pub struct AdapterArgs {
     #[arg(long, value_name = "N", default_value_t = 8,
           value_parser = clap::value_parser!(u64).range(1..=1440))]
     pub minutes: u64,
-    /// Small rows, which try the way within two minutes and measure little.
+    /// Small rows, which try the way and measure little.
     #[arg(long)]
     pub small: bool,
     /// Rows to run, separated by commas. Without it: all.

@@ -183,7 +183,7 @@ impl Plan {
 
     /// Returns the number of textures or buffers that are made on the device for a resource of the
     /// graph: 2 if a pass also reads it as it was in the frame before (`.previous`), otherwise 1.
-    /// Of two, a frame writes one and reads the other.
+    /// Each frame writes one of the two and reads the other.
     pub fn versions(&self, id: ResourceId) -> usize {
         self.own_memory().versions(id)
     }

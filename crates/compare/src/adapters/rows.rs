@@ -187,7 +187,8 @@ const LINES: &[Line] = &[
 /// process has measured is kept.
 const COMPARED: &str = "--warmup 1 --cached-frames 0 --images none --resume";
 
-/// Returns the rows in their order. Small ones only try the way. A software adapter gets fewer rays.
+/// Returns the rows in their order. Small ones only try the way. A software adapter gets fewer
+/// rays.
 pub fn rows(is_small: bool, is_software: bool) -> Vec<Row> {
     let rays = if is_software { RAYS / 40 } else { RAYS };
     let row = |line: &Line| {

@@ -49,7 +49,8 @@ pub enum Motion {
         /// Direction in which the part leans while a is positive, of any length but zero and not
         /// along `up`.
         axis: DVec3,
-        /// Direction in which the part grows: the path's own `up`.
+        /// Direction in which the part grows, of any length but zero: that of the `up` of the path
+        /// that the motion belongs to.
         up: DVec3,
         /// Greatest angle of the swing in degrees, more than −90 and less than 90.
         degrees: f64,

@@ -45,10 +45,11 @@ pub(crate) struct Params {
 pub(crate) struct BoundParam {
     pub param: Param,
     pub value: Reported<ParamValue>,
-    /// Name of the param of the loaded document from which the value is taken unchanged; `None` if
-    /// it is not taken from one.
+    /// Name of the param of the root document from which the value is taken unchanged, which for a
+    /// param of the root document is its own name; `None` if it is not taken from one.
     pub root: Option<String>,
-    /// Names of the params of the loaded document that the value depends on.
+    /// Names of the params of the root document that the value depends on, for a param of the root
+    /// document its own name.
     pub roots: BTreeSet<String>,
 }
 

@@ -56,7 +56,7 @@ pub struct TwoLevelBvh {
     top: Range<usize>,
     /// Ranges of nodes that no tree has, in ascending order.
     free: Vec<Range<usize>>,
-    /// True if there are others pieces than those that the top level was built over.
+    /// True if there are other pieces than those that the top level was built over.
     is_stale: bool,
 }
 
@@ -84,9 +84,14 @@ pub struct Refit {
 }
 
 impl TwoLevelBvh {
-    /// Builds the hierarchy on all cores, with at most `most` nodes if there are fewer than half as
-    /// many pieces. Trees are those of `at_rest`, the same mesh before its pieces were moved; those
-    /// of copies are built once.
+    /// Builds the hierarchy of `mesh` on all cores. `at_rest` is the same mesh before its pieces were
+    /// moved: each tree is built there, and its boxes are then fitted to `mesh`. A copy takes the
+    /// tree of the piece that it is a copy of.
+    ///
+    /// The hierarchy has at most `most` nodes. Where the trees together have more, leaves of every
+    /// tree are merged until they fit. The top level has a node for each piece and nearly as many
+    /// above them, and none of these can be left out: with more pieces than half of `most` the
+    /// hierarchy has more than `most` nodes.
     ///
     /// # Panics
     /// If a piece names a triangle or a piece that there is not.

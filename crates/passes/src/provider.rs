@@ -662,8 +662,9 @@ impl SceneProvider {
 
     /// Removes a part. From the next [`refresh`](skiagraph_gpu::Executor::refresh) of an executor
     /// on, the part's triangles have no area, so that they cover no pixel; frames that are already
-    /// encoded still show it. The memory of a part that was added, or [joined](Movable::joined)
-    /// with others, is reused for parts that are added later.
+    /// encoded still show it. It is no longer among the [`parts`](Self::parts), nor has it a map in
+    /// the list for [`set_transforms`](Self::set_transforms). The memory of a part that was added,
+    /// or [joined](Movable::joined) with others, is reused for parts that are added later.
     ///
     /// # Errors
     /// [`Error::NoPart`] for a part that the mesh does not have.

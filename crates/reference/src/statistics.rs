@@ -61,7 +61,8 @@ pub struct WrongCounts {
 
 /// Number of the pixels that the reference lights, or of those in its shadow, by the method's
 /// [status]. `certain_right + certain_wrong + uncertain` is their number less the pixels that the
-/// method calls background or facing away. Indeterminate pixels are included.
+/// method calls background or facing away. Indeterminate pixels are included. Right and wrong are
+/// judged by the visibility in the picture that the method finally shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ClassSplit {
     /// Pixels that the method calls certain by its [status] and gets right.

@@ -143,9 +143,11 @@ fn titled(views: &str, light: Option<&str>, viewport: [u32; 2]) -> String {
 }
 
 /// Builds the chart of time and memory against the number of triangles: two panels for each scene,
-/// view, light and viewport, and a line for each method and map size. The time is the GPU time of a
-/// frame without its G-buffer, in milliseconds; the memory is in MB. `viewport` (pixels) limits the
-/// chart to one viewport; `None` draws all.
+/// view, light and viewport, and a line for each method and map size. Results whose scenes have the
+/// same name, such as a generated city in several sizes, share their panels. The time is the GPU
+/// time of a frame without its G-buffer, in milliseconds. The memory is that of the method's own
+/// textures and buffers and of the scene's data that it reads, in MB (10⁶ bytes). `viewport`
+/// (pixels) limits the chart to one viewport; `None` draws all.
 ///
 /// # Errors
 /// If a drawn run has no GPU times.

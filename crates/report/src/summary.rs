@@ -14,7 +14,8 @@ use skiagraph_reference::Shimmer;
 /// views of one viewport and light.
 #[derive(Debug)]
 pub struct Row<'a> {
-    /// Name of the method with its setting and map size in texels: `crsm@n=1 1024`.
+    /// Name of the method with its setting and map size in texels: `crsm@n=1 1024`. Without a
+    /// shadow map it is [`method`](Self::method).
     pub label: String,
     /// Name of the method with its setting, such as `crsm@n=1`.
     pub method: String,

@@ -31,7 +31,7 @@ pub struct PictureFile {
     pub bytes: Vec<u8>,
 }
 
-/// Writes pictures into a folder, each whole or not at all.
+/// Writes pictures into a folder that is there, each whole or not at all.
 ///
 /// # Errors
 /// A picture that cannot be written.

@@ -590,11 +590,11 @@ impl SceneProvider {
         Ok(())
     }
 
-    /// Moves each part of the mesh: `maps[n]` takes part number n of [`parts`](Self::parts) from its
-    /// original place, in which its triangles were given, to its new place in world space. Only
+    /// Moves each part of the mesh: `maps[n]` takes part number n of [`parts`](Self::parts) from
+    /// its original place, in which its triangles were given, to its new place in world space. Only
     /// parts whose map has changed are moved, and equal maps cost nothing. If a map mirrors its
-    /// part, the winding of the part's triangles is reversed (the rule of glTF), so that the outside
-    /// stays the front face.
+    /// part, the winding of the part's triangles is reversed (the rule of glTF), so that the
+    /// outside stays the front face.
     ///
     /// # Errors
     /// [`Error::NoParts`] if the mesh has no parts; [`Error::Move`] if the number of maps is not

@@ -84,9 +84,9 @@ pub struct Refit {
 }
 
 impl TwoLevelBvh {
-    /// Builds the hierarchy of `mesh` on all cores. `at_rest` is the same mesh before its pieces were
-    /// moved: each tree is built there, and its boxes are then fitted to `mesh`. A copy takes the
-    /// tree of the piece that it is a copy of.
+    /// Builds the hierarchy of `mesh` on all cores. `at_rest` is the same mesh before its pieces
+    /// were moved: each tree is built there, and its boxes are then fitted to `mesh`. A copy takes
+    /// the tree of the piece that it is a copy of.
     ///
     /// The hierarchy has at most `most` nodes. Where the trees together have more, leaves of every
     /// tree are merged until they fit. The top level has a node for each piece and nearly as many

@@ -4,6 +4,7 @@
 //! A suite for an adapter with `EXPERIMENTAL_RAY_QUERY`, as [`ray_query`](crate::ray_query) is.
 
 use crate::{
+    host_buffers,
     one_submission::{mesh, parts, places, sun, view},
     support::{
         bench::Bench,
@@ -329,4 +330,25 @@ fn frames_of_one_submission_have_structures_of_their_own() {
         assert!(*seen == of_mesh(&gpu, mesh(&parts, time)), "{time}");
     }
     assert!(seen[0] != seen[1] && seen[1] != seen[2]);
+}
+
+#[test]
+#[ignore = "an adapter with ray queries: `.ci/run` runs it on Mesa 25"]
+fn parts_of_a_hosts_buffer_are_traced_as_uploaded_ones() {
+    let gpu = open();
+    let stones = host_buffers::stones(&gpu);
+    let places = host_buffers::places;
+    let mut scenes = host_buffers::scenes(&stones, &places(0), &gpu.device.limits());
+    let mut executors = scenes.each_mut().map(|scene| rt(&gpu, "ray_query", scene));
+    for turn in 0..4 {
+        let seen = [0, 1].map(|at| {
+            let (scene, executor) = (&mut scenes[at], &mut executors[at]);
+            let maps = host_buffers::places_of(&places(turn));
+            scene.set_transforms(&maps).unwrap();
+            executor.refresh(scene).unwrap();
+            shown(&gpu, executor)
+        });
+        assert!(seen[0].contains(&0) && seen[0].contains(&1), "{turn}");
+        assert!(seen[0] == seen[1], "{turn}");
+    }
 }

@@ -12,6 +12,7 @@ use crate::{
     outlines::Outlines,
     part::{HostPart, Part, placed},
     parts::{Free, PartId, Room},
+    piece::{Content, Outside, Piece, Solid},
     uniforms::LightUniform,
 };
 use glam::{DAffine3, Vec3};
@@ -68,46 +69,6 @@ pub(crate) struct Geometry {
     adjacencies: Adjacencies,
     /// Work besides uploads.
     pub work: Work,
-}
-
-#[derive(Clone)]
-struct Piece {
-    content: Content,
-    /// Number of the change that brought it to where it is.
-    moved: u64,
-    /// Number of the change that gave its triangles their corners.
-    turned: u64,
-    /// Number of the change that gave it another tree.
-    built: u64,
-}
-
-/// Triangles that a tracer other than ours has in a structure of their own.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Solid {
-    /// The piece that they are; `None` for pieces whose triangles lie among those of others, which
-    /// are one solid together.
-    pub piece: Option<usize>,
-    /// The range of the mesh that holds them, and no others if they are a piece.
-    pub triangles: Range<usize>,
-    /// Number of the last change of their corners.
-    pub changed: u64,
-}
-
-#[derive(Clone)]
-enum Content {
-    /// The mesh.
-    Whole,
-    Part(Part),
-    /// Triangles that are in no part.
-    Outside(Arc<Outside>),
-    /// A part that was removed.
-    Gone,
-}
-
-#[derive(Default)]
-struct Outside {
-    triangles: Vec<u32>,
-    corners: Vec<u32>,
 }
 
 /// A hierarchy that is fitted when pieces move.
@@ -909,100 +870,6 @@ impl Geometry {
     }
 }
 
-impl Piece {
-    fn new(content: Content) -> Self {
-        let version = next_version();
-        Self {
-            content,
-            moved: version,
-            turned: version,
-            built: version,
-        }
-    }
-
-    /// Adds a part to a hierarchy that was built before it came, in the place of a piece; the
-    /// number of its nodes.
-    fn add_to(&self, tree: &mut TwoLevelBvh, piece: usize) -> usize {
-        let Content::Part(part) = &self.content else {
-            return 0;
-        };
-        match &part.host {
-            Some(host) => {
-                host.mesh.add_to(tree, piece, part.at.triangle);
-                tree.state_bounds(piece, host.placed);
-            }
-            None => tree.add(piece, &part.of.rest, part.at.triangle as u32),
-        }
-        tree.nodes_of(piece).len()
-    }
-
-    /// The part of a host's buffer that it is, if it is one.
-    fn host(&self) -> Option<&HostPart> {
-        match &self.content {
-            Content::Part(part) => part.host.as_ref(),
-            _ => None,
-        }
-    }
-
-    /// The ranges that hold its positions and normals.
-    fn ranges(&self, mesh: &Mesh) -> [Range<usize>; 2] {
-        match &self.content {
-            Content::Part(part) => part.ranges(),
-            Content::Gone => [0..0, 0..0],
-            Content::Whole | Content::Outside(_) => {
-                [0..mesh.positions.len(), 0..mesh.normals.len()]
-            }
-        }
-    }
-
-    /// The range that holds its triangles.
-    fn triangles(&self, mesh: &Mesh) -> Range<usize> {
-        match &self.content {
-            Content::Part(part) => part.triangles(),
-            Content::Outside(outside) => outside.range(),
-            Content::Gone => 0..0,
-            Content::Whole => 0..mesh.triangles.len(),
-        }
-    }
-
-    /// Its primitives.
-    fn primitives(&self, mesh: &Mesh) -> Vec<u32> {
-        match &self.content {
-            Content::Part(part) => {
-                let own = part.of.triangles(part.number).iter();
-                own.map(|own| part.at.triangle as u32 + own).collect()
-            }
-            Content::Outside(outside) => outside.triangles.clone(),
-            Content::Gone => Vec::new(),
-            Content::Whole => (0..mesh.triangles.len() as u32).collect(),
-        }
-    }
-
-    /// The positions that its triangles use.
-    fn corners(&self, mesh: &Mesh) -> Vec<Vec3> {
-        let at = |corner: usize| mesh.positions[corner];
-        if let Some(host) = self.host() {
-            let ends = host.placed;
-            let corner = |corner: usize| [0, 1, 2].map(|axis| ends[corner >> axis & 1][axis]);
-            return (0..8).map(|index| corner(index).into()).collect();
-        }
-        match &self.content {
-            Content::Part(part) => {
-                let corners = part.of.corners(part.number).iter();
-                corners
-                    .map(|&corner| at(part.at.position + corner as usize))
-                    .collect()
-            }
-            Content::Outside(outside) => {
-                let corners = outside.corners.iter();
-                corners.map(|&corner| at(corner as usize)).collect()
-            }
-            Content::Gone => Vec::new(),
-            Content::Whole => mesh.used_positions().collect(),
-        }
-    }
-}
-
 /// The range of a whole list.
 fn all(count: usize) -> Vec<Range<usize>> {
     std::iter::once(0..count).collect()
@@ -1013,31 +880,6 @@ fn lengthened<T: Clone>(list: &mut Vec<T>, by: usize, item: T) -> Range<usize> {
     let before = list.len();
     list.resize(before + by, item);
     before..list.len()
-}
-
-impl Outside {
-    /// The range that holds its triangles.
-    fn range(&self) -> Range<usize> {
-        let ends = self.triangles.first().zip(self.triangles.last());
-        ends.map_or(0..0, |(first, last)| *first as usize..*last as usize + 1)
-    }
-
-    fn new(parts: &Movable) -> Self {
-        let mesh = &parts.rest;
-        let mut is_inside = vec![false; mesh.triangles.len()];
-        for part in 0..parts.parts() {
-            for &triangle in parts.triangles(part) {
-                is_inside[triangle as usize] = true;
-            }
-        }
-        let triangles = (0..).zip(is_inside).filter(|(_, is_inside)| !is_inside);
-        let triangles: Vec<u32> = triangles.map(|(triangle, _)| triangle).collect();
-        let corners = triangles.iter().flat_map(|&id| mesh.triangles[id as usize]);
-        let mut corners: Vec<u32> = corners.collect();
-        corners.sort_unstable();
-        corners.dedup();
-        Self { triangles, corners }
-    }
 }
 
 /// Nodes that shaders walk: those of the tree, or of an empty one a leaf around a triangle without

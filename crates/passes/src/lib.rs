@@ -70,6 +70,7 @@ pub mod names;
 mod outlines;
 mod part;
 mod parts;
+mod piece;
 mod presets;
 mod provider;
 mod ray_query;

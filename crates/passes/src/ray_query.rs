@@ -3,11 +3,7 @@
 //! everything where it is. Where a piece has moved, it gets another bottom level; the others keep
 //! theirs.
 
-use crate::{
-    error::Error,
-    geometry::{Geometry, Solid},
-    names::next_version,
-};
+use crate::{error::Error, geometry::Geometry, names::next_version, piece::Solid};
 use skiagraph_scene::Mesh;
 use std::{
     collections::BTreeMap,

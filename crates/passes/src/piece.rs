@@ -1,0 +1,171 @@
+//! Pieces of a mesh that move by themselves, and the triangles that each has.
+
+use crate::{
+    names::next_version,
+    part::{HostPart, Part},
+};
+use glam::Vec3;
+use skiagraph_scene::{Mesh, Movable, TwoLevelBvh};
+use std::{ops::Range, sync::Arc};
+
+/// A piece, with the numbers of the changes that made it as it is.
+#[derive(Clone)]
+pub(crate) struct Piece {
+    pub content: Content,
+    /// Number of the change that brought it to where it is.
+    pub moved: u64,
+    /// Number of the change that gave its triangles their corners.
+    pub turned: u64,
+    /// Number of the change that gave it another tree.
+    pub built: u64,
+}
+
+/// Triangles that a tracer other than ours has in a structure of their own.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Solid {
+    /// The piece that they are; `None` for pieces whose triangles lie among those of others, which
+    /// are one solid together.
+    pub piece: Option<usize>,
+    /// The range of the mesh that holds them, and no others if they are a piece.
+    pub triangles: Range<usize>,
+    /// Number of the last change of their corners.
+    pub changed: u64,
+}
+
+/// Triangles of a piece.
+#[derive(Clone)]
+pub(crate) enum Content {
+    /// The mesh.
+    Whole,
+    Part(Part),
+    /// Triangles that are in no part.
+    Outside(Arc<Outside>),
+    /// A part that was removed.
+    Gone,
+}
+
+/// Triangles that are in no part, with the positions that they use.
+#[derive(Default)]
+pub(crate) struct Outside {
+    pub triangles: Vec<u32>,
+    pub corners: Vec<u32>,
+}
+
+impl Piece {
+    pub fn new(content: Content) -> Self {
+        let version = next_version();
+        Self {
+            content,
+            moved: version,
+            turned: version,
+            built: version,
+        }
+    }
+
+    /// Adds a part to a hierarchy that was built before it came, in the place of a piece; the
+    /// number of its nodes.
+    pub fn add_to(&self, tree: &mut TwoLevelBvh, piece: usize) -> usize {
+        let Content::Part(part) = &self.content else {
+            return 0;
+        };
+        match &part.host {
+            Some(host) => {
+                host.mesh.add_to(tree, piece, part.at.triangle);
+                tree.state_bounds(piece, host.placed);
+            }
+            None => tree.add(piece, &part.of.rest, part.at.triangle as u32),
+        }
+        tree.nodes_of(piece).len()
+    }
+
+    /// The part of a host's buffer that it is, if it is one.
+    pub fn host(&self) -> Option<&HostPart> {
+        match &self.content {
+            Content::Part(part) => part.host.as_ref(),
+            _ => None,
+        }
+    }
+
+    /// The ranges that hold its positions and normals.
+    pub fn ranges(&self, mesh: &Mesh) -> [Range<usize>; 2] {
+        match &self.content {
+            Content::Part(part) => part.ranges(),
+            Content::Gone => [0..0, 0..0],
+            Content::Whole | Content::Outside(_) => {
+                [0..mesh.positions.len(), 0..mesh.normals.len()]
+            }
+        }
+    }
+
+    /// The range that holds its triangles.
+    pub fn triangles(&self, mesh: &Mesh) -> Range<usize> {
+        match &self.content {
+            Content::Part(part) => part.triangles(),
+            Content::Outside(outside) => outside.range(),
+            Content::Gone => 0..0,
+            Content::Whole => 0..mesh.triangles.len(),
+        }
+    }
+
+    /// Its primitives.
+    pub fn primitives(&self, mesh: &Mesh) -> Vec<u32> {
+        match &self.content {
+            Content::Part(part) => {
+                let own = part.of.triangles(part.number).iter();
+                own.map(|own| part.at.triangle as u32 + own).collect()
+            }
+            Content::Outside(outside) => outside.triangles.clone(),
+            Content::Gone => Vec::new(),
+            Content::Whole => (0..mesh.triangles.len() as u32).collect(),
+        }
+    }
+
+    /// The positions that its triangles use.
+    pub fn corners(&self, mesh: &Mesh) -> Vec<Vec3> {
+        let at = |corner: usize| mesh.positions[corner];
+        if let Some(host) = self.host() {
+            let ends = host.placed;
+            let corner = |corner: usize| [0, 1, 2].map(|axis| ends[corner >> axis & 1][axis]);
+            return (0..8).map(|index| corner(index).into()).collect();
+        }
+        match &self.content {
+            Content::Part(part) => {
+                let corners = part.of.corners(part.number).iter();
+                corners
+                    .map(|&corner| at(part.at.position + corner as usize))
+                    .collect()
+            }
+            Content::Outside(outside) => {
+                let corners = outside.corners.iter();
+                corners.map(|&corner| at(corner as usize)).collect()
+            }
+            Content::Gone => Vec::new(),
+            Content::Whole => mesh.used_positions().collect(),
+        }
+    }
+}
+
+impl Outside {
+    /// The range that holds its triangles.
+    pub fn range(&self) -> Range<usize> {
+        let ends = self.triangles.first().zip(self.triangles.last());
+        ends.map_or(0..0, |(first, last)| *first as usize..*last as usize + 1)
+    }
+
+    pub fn new(parts: &Movable) -> Self {
+        let mesh = &parts.rest;
+        let mut is_inside = vec![false; mesh.triangles.len()];
+        for part in 0..parts.parts() {
+            for &triangle in parts.triangles(part) {
+                is_inside[triangle as usize] = true;
+            }
+        }
+        let triangles = (0..).zip(is_inside).filter(|(_, is_inside)| !is_inside);
+        let triangles: Vec<u32> = triangles.map(|(triangle, _)| triangle).collect();
+        let corners = triangles.iter().flat_map(|&id| mesh.triangles[id as usize]);
+        let mut corners: Vec<u32> = corners.collect();
+        corners.sort_unstable();
+        corners.dedup();
+        Self { triangles, corners }
+    }
+}

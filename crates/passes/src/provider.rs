@@ -597,7 +597,9 @@ impl SceneProvider {
     /// [`lights`](Self::lights) stay as they are. A plan depends on the kind of its light
     /// (directional, spot or point): after a change of kind, graphs must be planned anew. Until
     /// then [`refresh`](skiagraph_gpu::Executor::refresh) fails with
-    /// [`ExecuteError::OtherThanPlanned`](skiagraph_gpu::ExecuteError::OtherThanPlanned).
+    /// [`ExecuteError::OtherThanPlanned`](skiagraph_gpu::ExecuteError::OtherThanPlanned). A light
+    /// that cannot be used, such as one without a direction, is an error of the next refresh, too
+    /// ([`Error::Light`]).
     pub fn set_light(&mut self, light: LightKind) {
         self.versions.set_light(light);
     }
@@ -714,10 +716,10 @@ impl SceneProvider {
         self.geometry.parts().iter().copied()
     }
 
-    /// Makes room for parts that [`add_part`](Self::add_part) adds. The numbers of positions,
-    /// triangles and other items become larger, on which plans depend (see
-    /// [`set_mesh`](Self::set_mesh)): reserve before graphs are planned. `limits` are those of the
-    /// device that the provider is used with.
+    /// Makes room for parts that [`add_part`](Self::add_part) adds, besides the room that is left
+    /// from earlier calls. The numbers of positions, triangles and other items become larger by all
+    /// of `room`, on which plans depend (see [`set_mesh`](Self::set_mesh)): reserve before graphs
+    /// are planned. `limits` are those of the device that the provider is used with.
     ///
     /// # Errors
     /// [`Error::NoParts`] if the mesh has no parts, [`Error::TooLarge`] if the device cannot bind

@@ -18,9 +18,10 @@ pub struct Sight {
     pub is_front: bool,
 }
 
-/// Finds the first surface of the oracle's mesh on each ray, given by its origin and direction
-/// (world space, any length but zero). The result has an entry for each ray, in their order: `None`
-/// for a ray that meets nothing.
+/// Finds the first surface of the oracle's mesh on each ray. A ray is its origin and its direction,
+/// which has any length but zero, both in world space. Rays pass through the holes of masked
+/// triangles. The result has an entry for each ray, in their order: `None` for a ray that meets
+/// nothing.
 pub fn sights(oracle: &Oracle<'_>, rays: &[(DVec3, DVec3)]) -> Vec<Option<Sight>> {
     let tree = &oracle.tree;
     let sight = |stack: &mut Vec<u32>, &(origin, direction): &(DVec3, DVec3)| {

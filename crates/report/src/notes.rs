@@ -85,8 +85,9 @@ fn digits(number: f64) -> String {
 }
 
 /// Returns a line for each method that was wrong on pixels that it called certain by its output
-/// `status`: the number of these pixels, and the kind of caster that blocks the light there. Runs
-/// of the same method must be consecutive; all its map sizes share one line.
+/// `status`: the number of these pixels outside of the band, and how many of them each kind of
+/// caster shades. Runs of a method in the same setting must be consecutive; all its map sizes share
+/// one line.
 pub fn certain_wrong(runs: &[Run]) -> Vec<String> {
     let wrong = |run: &Run| {
         let certain = run.measured.as_ref().map_or(0, |of| of.wrong.certain);

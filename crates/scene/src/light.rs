@@ -94,7 +94,9 @@ impl DirectionalLight {
     /// Returns the smallest [`LightFit`] box around points in world space, enlarged by 0.2 %, with
     /// the light's direction as its third axis. One side of the rectangle of least area around a
     /// convex polygon lies on an edge of it (Freeman and Shapira, CACM 18(7), 1975). An empty list
-    /// counts as one point at the origin.
+    /// counts as one point at the origin. No side of the box is 0: each is at least a millionth of
+    /// the longest, which counts as no shorter than a millionth of the largest coordinate and 10⁻¹²
+    /// scene units.
     pub fn fit(&self, points: impl IntoIterator<Item = Vec3>) -> LightFit {
         self.fit_outline(&self.outline(points))
     }

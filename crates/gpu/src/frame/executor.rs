@@ -515,8 +515,8 @@ impl Executor {
     /// # Errors
     /// If a resource cannot be built or its description differs from the one that the graph was
     /// planned for ([`ExecuteError::OtherThanPlanned`], for example with more items or another kind
-    /// of light), or the device is lost. The remaining resources stay as they are; the next call
-    /// asks for them again.
+    /// of light), or the device is lost. That resource and those after it stay as they are; the
+    /// next call asks for them again.
     pub fn refresh(&mut self, provider: &mut dyn Provider) -> Result<(), ExecuteError> {
         let mut built = Vec::new();
         let refreshed = self.refresh_live(provider, &mut built);
@@ -826,10 +826,11 @@ impl Executor {
     }
 
     /// Enlarges the buffers and textures declared with `grow` that were too small for a finished
-    /// frame. Shaders count in a buffer how many items or layers each of them needs.
-    /// [`encode`](Self::encode) enlarges them by itself; call `grow` to choose the time or to get
-    /// the report. `None` if no resource had to grow, or the larger size was refused. It never
-    /// waits: a count that the GPU has not delivered yet is read by a later call.
+    /// frame. Shaders count in a buffer how many items or layers each of them needs. What a
+    /// resource held before it grew is lost. [`encode`](Self::encode) enlarges them by itself; call
+    /// `grow` to choose the time or to get the report. `None` if no resource had to grow, or the
+    /// larger size was refused. It never waits: a count that the GPU has not delivered yet is read
+    /// by a later call.
     ///
     /// If the memory limit or the device refuses a larger size, the resources keep their size, and
     /// growth stops until the plan is changed. Items that do not fit are then handled as the graph

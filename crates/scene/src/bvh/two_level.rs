@@ -24,8 +24,8 @@ pub struct Piece<'a> {
     /// two pieces.
     pub triangles: &'a [u32],
     /// Number of the piece that this one is a copy of: it has the same triangles in the same order,
-    /// moved by an affine map. Pieces are numbered from 0 in the order of the list given to
-    /// [`TwoLevelBvh::build`]; a piece that is no copy has its own number here.
+    /// moved by an affine map; that one is no copy. Pieces are numbered from 0 in the order of the
+    /// list given to [`TwoLevelBvh::build`]; a piece that is no copy has its own number here.
     pub copy_of: usize,
 }
 
@@ -88,14 +88,13 @@ pub struct Refit {
 }
 
 impl TwoLevelBvh {
-    /// Builds the hierarchy of `mesh` on all cores. `at_rest` is the same mesh before its pieces
-    /// were moved: each tree is built there, and its boxes are then fitted to `mesh`. A copy takes
-    /// the tree of the piece that it is a copy of.
+    /// Builds the hierarchy of those triangles of `mesh` that are in pieces, on all cores.
+    /// `at_rest` is the same mesh before its pieces were moved: each tree is built there, and its
+    /// boxes are then fitted to `mesh`. A copy takes the tree of the piece that it is a copy of.
     ///
-    /// The hierarchy has at most `most` nodes. Where the trees together have more, leaves of every
-    /// tree are merged until they fit. The top level has a node for each piece and nearly as many
-    /// above them, and none of these can be left out: with more pieces than half of `most` the
-    /// hierarchy has more than `most` nodes.
+    /// Where there would be more than `most` nodes, leaves of every tree are merged until there are
+    /// not. The top level alone has nearly two nodes for each piece, none of which can be left out,
+    /// so that more pieces than half of `most` make more nodes than `most`.
     ///
     /// # Panics
     /// If a piece names a triangle or a piece that there is not.

@@ -1,6 +1,7 @@
 //! Draws a view of a scene of Skiagraph under Bevy's own shadow maps, for `skiagraph judge`:
 //! `cargo run --bin judged -- SCENE VIEW WIDTHxHEIGHT FOLDER` writes `shadowed.npy`,
-//! `unshadowed.npy` and `depth.npy`. The plug-in takes no part.
+//! `unshadowed.npy` and `depth.npy`. The plug-in takes no part. Materials are not followed: all
+//! surfaces are white, opaque and seen from their front.
 
 use bevy::{
     asset::RenderAssetUsages,
@@ -19,23 +20,40 @@ use bevy::{
     window::ExitCondition,
 };
 use skiagraph_scene::{Scene, SceneLibrary, SceneRequest, View};
-use std::{error::Error, fs, path::Path};
+use std::{error::Error, fs, path::Path, process::ExitCode};
 
 /// Frames until the picture stands: meshes and pipelines come with the first ones.
 const FRAMES: usize = 4;
 
-fn main() -> Result<(), Box<dyn Error>> {
+/// Greatest width and height of a texture under wgpu's default limits.
+const LARGEST: u32 = 8192;
+
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [scene, view, size, folder] = arguments.as_slice() else {
         return Err("give SCENE VIEW WIDTHxHEIGHT FOLDER: park bench_side 1280x720 out".into());
     };
+    let size = parse_size(size)
+        .ok_or_else(|| format!("size {size:?}: expected WIDTHxHEIGHT, each 1 to {LARGEST}"))?;
     let request = SceneRequest {
         argument: scene.clone(),
         ..default()
     };
     let (scene, _) = SceneLibrary::from_environment().load(&request)?;
-    let view = scene.view(view).ok_or("the scene has no such view")?;
-    let (width, height) = size.split_once('x').ok_or("the size is not WIDTHxHEIGHT")?;
+    let names = scene.views.iter().map(|view| view.name.as_str());
+    let names = names.collect::<Vec<_>>().join(", ");
+    let missing = || format!("{} has no view {view:?}; its views: {names}", scene.name);
+    let view = scene.view(view).ok_or_else(missing)?;
     let folder = Path::new(folder);
     fs::create_dir_all(folder)?;
 
@@ -56,12 +74,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     .insert_resource(GlobalAmbientLight::NONE);
     app.finish();
     app.cleanup();
-    let target = spawn(
-        app.world_mut(),
-        &scene,
-        view,
-        [width.parse()?, height.parse()?],
-    )?;
+    let target = spawn(app.world_mut(), &scene, view, size)?;
 
     for (name, has_shadows) in [("unshadowed", false), ("shadowed", true)] {
         let mut lights = app.world_mut().query::<&mut DirectionalLight>();
@@ -81,6 +94,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let world = app.sub_app_mut(RenderApp).world_mut();
     let depth = world.query::<&ViewDepthStencilTexture>().single(world)?;
     write_npy(world, depth.texture(), &folder.join("depth.npy"))
+}
+
+fn parse_size(text: &str) -> Option<[u32; 2]> {
+    let (width, height) = text.split_once('x')?;
+    let size = [width.parse().ok()?, height.parse().ok()?];
+    let fits = size.iter().all(|edge| (1..=LARGEST).contains(edge));
+    fits.then_some(size)
 }
 
 /// Brings mesh, light and camera into Bevy's world. Returns the camera's target.
@@ -117,7 +137,7 @@ fn spawn(
 
     let vector = |vector: glam::DVec3| Vec3::from_array(vector.as_vec3().to_array());
     let light = scene.light_of(view);
-    let sun = light.directional().ok_or("the view's light is no sun")?;
+    let sun = light.directional().ok_or("the view's light is not a sun")?;
     // Four cascades of 2048² texels, filter, biases: Bevy's own.
     world.spawn((
         DirectionalLight::default(),

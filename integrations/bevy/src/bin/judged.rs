@@ -137,7 +137,13 @@ fn spawn(
 
     let vector = |vector: glam::DVec3| Vec3::from_array(vector.as_vec3().to_array());
     let light = scene.light_of(view);
-    let sun = light.directional().ok_or("the view's light is not a sun")?;
+    let sun = light.directional().ok_or_else(|| {
+        let kind = light.word();
+        format!(
+            "{}'s light is a {kind} light; take a scene with a directional one",
+            view.name
+        )
+    })?;
     // Four cascades of 2048² texels, filter, biases: Bevy's own.
     world.spawn((
         DirectionalLight::default(),

@@ -69,9 +69,10 @@ fn solid(mesh: &Mesh) -> Result<Solid> {
         Some(Indices::U16(indices)) => indices.iter().copied().map(u32::from).collect(),
         None => (0..mesh.count_vertices() as u32).collect(),
     };
-    Ok(Solid::indexed(&Indexed {
+    let indexed = Indexed {
         positions: vectors(Mesh::ATTRIBUTE_POSITION),
         normals: vectors(Mesh::ATTRIBUTE_NORMAL),
         indices: &indices,
-    })?)
+    };
+    Ok(indexed.mesh()?)
 }

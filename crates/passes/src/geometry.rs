@@ -415,7 +415,7 @@ impl Geometry {
             map: Some(*map),
             is_mirrored: moved.is_mirrored,
             of,
-            host,
+            host: host.map(Box::new),
         }));
         if let Some(kept) = &mut self.bvh {
             let tree = Arc::make_mut(&mut kept.tree);

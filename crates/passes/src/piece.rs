@@ -81,7 +81,7 @@ impl Piece {
     /// The part of a host's buffer that it is, if it is one.
     pub fn host(&self) -> Option<&HostPart> {
         match &self.content {
-            Content::Part(part) => part.host.as_ref(),
+            Content::Part(part) => part.host.as_deref(),
             _ => None,
         }
     }

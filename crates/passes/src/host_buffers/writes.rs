@@ -83,6 +83,9 @@ pub(crate) enum Written<'a> {
     },
 }
 
+/// Number of a binding, and what is bound.
+type Binding<'a> = (u32, wgpu::BindingResource<'a>);
+
 impl Written<'_> {
     fn entry(self) -> &'static str {
         match self {
@@ -90,6 +93,45 @@ impl Written<'_> {
             Self::Normals { .. } => "place_normals",
             Self::Nodes { .. } => "fit_nodes",
             Self::Beyond { .. } => "find_beyond",
+        }
+    }
+
+    /// Bindings that its entry point uses, as a pipeline's layout has no others: the numbers of
+    /// those of the mesh and the part, and all others.
+    fn bindings<'a>(&'a self, part: &'a HostWrite) -> (&'static [u32], Vec<Binding<'a>>) {
+        match self {
+            Self::Positions { positions } => {
+                (&[0, 1, 2, 3], vec![(5, positions.as_entire_binding())])
+            }
+            Self::Normals {
+                normals,
+                positions,
+                indices,
+            } => (
+                &[0, 1, 2, 4],
+                vec![
+                    (6, normals.as_entire_binding()),
+                    (7, positions.as_entire_binding()),
+                    (8, indices.as_entire_binding()),
+                ],
+            ),
+            Self::Nodes {
+                nodes,
+                positions,
+                indices,
+                primitives,
+            } => {
+                let levels = part.nodes.iter();
+                let levels = levels.map(|(_, levels)| (10, levels.as_entire_binding()));
+                let others = [
+                    (7, positions.as_entire_binding()),
+                    (8, indices.as_entire_binding()),
+                    (9, primitives.as_entire_binding()),
+                    (11, nodes.as_entire_binding()),
+                ];
+                (&[1], others.into_iter().chain(levels).collect())
+            }
+            Self::Beyond { beyond } => (&[0, 1, 2, 3], vec![(12, beyond.as_entire_binding())]),
         }
     }
 }
@@ -298,41 +340,7 @@ fn bind(
         (3, mesh.sources.as_entire_binding()),
         (4, mesh.normal_sources.as_entire_binding()),
     ];
-    // A pipeline's layout has the bindings that its entry point uses.
-    let (used, others): (&[u32], _) = match written {
-        Written::Positions { positions } => {
-            (&[0, 1, 2, 3], vec![(5, positions.as_entire_binding())])
-        }
-        Written::Normals {
-            normals,
-            positions,
-            indices,
-        } => (
-            &[0, 1, 2, 4],
-            vec![
-                (6, normals.as_entire_binding()),
-                (7, positions.as_entire_binding()),
-                (8, indices.as_entire_binding()),
-            ],
-        ),
-        Written::Nodes {
-            nodes,
-            positions,
-            indices,
-            primitives,
-        } => {
-            let levels = parts[0].nodes.iter();
-            let levels = levels.map(|(_, levels)| (10, levels.as_entire_binding()));
-            let others = [
-                (7, positions.as_entire_binding()),
-                (8, indices.as_entire_binding()),
-                (9, primitives.as_entire_binding()),
-                (11, nodes.as_entire_binding()),
-            ];
-            (&[1], others.into_iter().chain(levels).collect())
-        }
-        Written::Beyond { beyond } => (&[0, 1, 2, 3], vec![(12, beyond.as_entire_binding())]),
-    };
+    let (used, others) = written.bindings(&parts[0]);
     let own = own.into_iter().filter(|(at, _)| used.contains(at));
     let entries: Vec<wgpu::BindGroupEntry> = own
         .chain(others)

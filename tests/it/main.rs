@@ -36,6 +36,7 @@ mod filtered;
 mod fits;
 mod foreign;
 mod host;
+mod host_buffers;
 mod hostile;
 mod lamp_maps;
 mod layers;

@@ -30,13 +30,15 @@ pub(crate) struct Buffers {
     held: BTreeMap<String, Vec<(wgpu::Buffer, u64)>>,
     /// Version of the mesh's shape that the lights were laid over.
     shape: u64,
+    /// True if the GPU writes some items, so that none between those that are changed is written.
+    pub keeps_gaps: bool,
     /// Bytes that were brought to the device so far.
     pub work: Work,
     recorded: Recorded,
 }
 
-/// Copies into buffers that were handed out, which are submitted together. A clone has none of its
-/// own: it shares the buffers.
+/// Copies of buffers, and kernels that write them, which are submitted together. A clone has none
+/// of its own: it shares the buffers.
 #[derive(Default)]
 struct Recorded {
     encoder: Option<wgpu::CommandEncoder>,
@@ -48,6 +50,17 @@ impl Clone for Recorded {
     fn clone(&self) -> Self {
         Self::default()
     }
+}
+
+/// Items that a patch has written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Patched {
+    /// All items, to a new buffer.
+    All,
+    /// Some items, to a copy of the buffer before.
+    Some,
+    /// No item: the buffer is that before.
+    Nothing,
 }
 
 /// Items that are written apart although others are between them: a copy costs more than so many
@@ -125,7 +138,7 @@ impl Buffers {
         Ok(())
     }
 
-    /// Submits the copies that were recorded.
+    /// Submits what was recorded.
     ///
     /// # Errors
     /// If the device refuses them; the buffers are then made anew when they are asked for.
@@ -134,20 +147,12 @@ impl Buffers {
         let Some(encoder) = encoder else {
             return Ok(());
         };
-        let scope = on.device.push_error_scope(wgpu::ErrorFilter::Validation);
-        on.queue.submit([encoder.finish()]);
-        let mut refused = std::pin::pin!(scope.pop());
-        let mut context = std::task::Context::from_waker(std::task::Waker::noop());
-        // On native platforms it is known at once.
-        match refused.as_mut().poll(&mut context) {
-            std::task::Poll::Ready(Some(why)) => {
+        match refused(on.device, || on.queue.submit([encoder.finish()])) {
+            Err(why) => {
                 names.iter().for_each(|name| drop(self.held.remove(name)));
-                Err(Error::Copies {
-                    names,
-                    why: why.to_string(),
-                })
+                Err(Error::Copies { names, why })
             }
-            _ => Ok(()),
+            Ok(_) => Ok(()),
         }
     }
 
@@ -178,11 +183,12 @@ impl Buffers {
         changed: &[Range<usize>],
         version: u64,
         on: On,
-    ) -> Result<(), Error> {
+    ) -> Result<Patched, Error> {
         let written: usize = changed.iter().map(Range::len).sum();
         if !self.held.contains_key(name) || written >= items.len() {
             // Without a copy of the list.
-            return self.make(name, items, version, on);
+            self.make(name, items, version, on)?;
+            return Ok(Patched::All);
         }
         let append = |range: Range<usize>, to: &mut Vec<T>| to.extend_from_slice(&items[range]);
         self.patch(name, (items.len(), changed), append, version, on)
@@ -197,27 +203,29 @@ impl Buffers {
         items: impl Fn(Range<usize>, &mut Vec<T>),
         version: u64,
         on: On,
-    ) -> Result<(), Error> {
+    ) -> Result<Patched, Error> {
         let stride = size_of::<T>();
-        let ranges = joined(changed, GAP / stride);
+        let gap = if self.keeps_gaps { 1 } else { GAP / stride };
+        let ranges = joined(changed, gap);
         let written: usize = ranges.iter().map(Range::len).sum();
         let known = self.last(name).map(|(buffer, _)| buffer.clone());
         let known = known.filter(|known| known.size() == (count * stride) as u64);
         if written == 0 && known.is_some() {
             self.still_hold(name, version);
-            return Ok(());
+            return Ok(Patched::Nothing);
         }
         let Some(known) = known.filter(|_| 2 * written <= count) else {
             let mut all = Vec::with_capacity(count);
             items(0..count, &mut all);
-            return self.make(name, &all, version, on);
+            self.make(name, &all, version, on)?;
+            return Ok(Patched::All);
         };
         let mut content = Vec::with_capacity(written);
         for range in &ranges {
             items(range.clone(), &mut content);
         }
         self.succeed(name, &known, (count, &ranges, &content), version, on);
-        Ok(())
+        Ok(Patched::Some)
     }
 
     /// Makes the buffer of that name with these items, of which the first ones are those of the one
@@ -261,11 +269,7 @@ impl Buffers {
     ) {
         let stride = size_of::<T>();
         let buffer = create(name, (count * stride) as u64, on.device);
-        let encoder = self.recorded.encoder.get_or_insert_with(|| {
-            let label = Some("changed items");
-            let begun = wgpu::CommandEncoderDescriptor { label };
-            on.device.create_command_encoder(&begun)
-        });
+        let encoder = self.record(name, on);
         encoder.copy_buffer_to_buffer(known, 0, &buffer, 0, known.size());
         let staging = on.device.create_buffer_init(&BufferInitDescriptor {
             label: Some("changed items"),
@@ -278,10 +282,40 @@ impl Buffers {
             encoder.copy_buffer_to_buffer(&staging, from, &buffer, to, size);
             from += size;
         }
-        self.recorded.names.push(name.to_owned());
         self.work.uploaded += from;
         self.work.copied += known.size();
         self.hold(name, buffer, version);
+    }
+
+    /// The encoder of what [`submit`](Self::submit) submits, of which some writes the buffer of
+    /// that name.
+    pub fn record(&mut self, name: &str, on: On) -> &mut wgpu::CommandEncoder {
+        self.recorded.names.push(name.to_owned());
+        self.recorded.encoder.get_or_insert_with(|| {
+            let label = Some("changed items");
+            let begun = wgpu::CommandEncoderDescriptor { label };
+            on.device.create_command_encoder(&begun)
+        })
+    }
+
+    /// Drops what was made of that name.
+    pub fn forget(&mut self, name: &str) {
+        self.held.remove(name);
+    }
+
+    /// Makes the buffer of that name that was made last one that the GPU may write: a copy, if it
+    /// was handed out.
+    pub fn renew(&mut self, name: &str, patched: Patched, on: On) -> Option<wgpu::Buffer> {
+        let (known, version) = self.last(name)?.clone();
+        if patched != Patched::Nothing {
+            return Some(known);
+        }
+        let buffer = create(name, known.size(), on.device);
+        let encoder = self.record(name, on);
+        encoder.copy_buffer_to_buffer(&known, 0, &buffer, 0, known.size());
+        self.work.copied += known.size();
+        self.hold(name, buffer.clone(), version);
+        Some(buffer)
     }
 }
 
@@ -302,6 +336,19 @@ fn joined(ranges: &[Range<usize>], gap: usize) -> Vec<Range<usize>> {
         }
     }
     joined
+}
+
+/// Does something with a device, or returns why the device refuses it, if that is known at once: on
+/// native platforms it is.
+pub(crate) fn refused<T>(device: &wgpu::Device, act: impl FnOnce() -> T) -> Result<T, String> {
+    let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
+    let done = act();
+    let mut told = std::pin::pin!(scope.pop());
+    let mut context = std::task::Context::from_waker(std::task::Waker::noop());
+    match told.as_mut().poll(&mut context) {
+        std::task::Poll::Ready(Some(why)) => Err(why.to_string()),
+        _ => Ok(done),
+    }
 }
 
 /// Makes a buffer as graphs and later contents need it.

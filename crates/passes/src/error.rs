@@ -137,6 +137,60 @@ pub enum Error {
         /// Handle that was given.
         PartId,
     ),
+    /// A part was said to be rewritten whose vertices are in no buffer of the host.
+    #[error(
+        "the vertices of part {0:?} are in no buffer of the host: only parts of `add_host_part` \
+         are rewritten"
+    )]
+    NoHostPart(
+        /// Handle of the part.
+        PartId,
+    ),
+    /// The bounds of a part hold nothing: they are not finite, or the low corner is not the lower.
+    #[error("the bounds of part {part:?} hold nothing: {low} to {high}")]
+    Bounds {
+        /// Handle of the part.
+        part: PartId,
+        /// Low corner that was stated.
+        low: glam::Vec3,
+        /// High corner that was stated.
+        high: glam::Vec3,
+    },
+    /// Something needs all positions on the CPU, but those of a part are in a buffer of the host.
+    #[error(
+        "`{0}` needs all positions on the CPU, but those of part {1:?} are in a buffer of the \
+         host: trace with `engine: Hierarchy`, or add the part by `add_part`"
+    )]
+    OnDevice(
+        /// Name of it: `deform`, or a resource such as `scene.light_space_nodes`.
+        &'static str,
+        /// Handle of the part.
+        PartId,
+    ),
+    /// The device refuses to read the vertices of a host, for example because their buffer was
+    /// destroyed.
+    #[error("the vertices of a host's mesh cannot be read: {0}")]
+    HostVertices(
+        /// Reason that wgpu gives.
+        String,
+    ),
+    /// The device could not bring back what was asked of it.
+    #[error(transparent)]
+    Read(#[from] crate::host::GpuMeshError),
+    /// A vertex lies beyond the bounds of its part, as
+    /// [`SceneProvider::check_bounds`](crate::SceneProvider::check_bounds) has found.
+    #[error(
+        "vertex {vertex} of part {part:?} lies beyond its stated bounds {} to {}",
+        bounds[0], bounds[1]
+    )]
+    Beyond {
+        /// Handle of the part.
+        part: PartId,
+        /// Number of the vertex, from the mesh's first one.
+        vertex: u32,
+        /// Low and high corner of the bounds that were stated, in the space of the vertices.
+        bounds: [glam::Vec3; 2],
+    },
     /// A part of the mesh cannot be moved by the affine transform that was set for it, or the
     /// number of transforms is not the number of parts.
     #[error(transparent)]

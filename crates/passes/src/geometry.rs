@@ -7,9 +7,11 @@ use crate::{
     built::{How, Work},
     error::Error,
     hierarchies::{Fitted, Hierarchies, Parted, Tree},
+    host_buffers::{HostMesh, HostWrite},
     names::{BVH_NODES, INDICES, NORMALS, POSITIONS, next_version},
     outlines::Outlines,
-    parts::{Free, Part, PartId, Room},
+    part::{HostPart, Part, placed},
+    parts::{Free, PartId, Room},
     uniforms::LightUniform,
 };
 use glam::{DAffine3, Vec3};
@@ -149,6 +151,7 @@ impl Geometry {
             at: PartPlace::default(),
             map: (!is_joined).then_some(DAffine3::IDENTITY),
             is_mirrored: false,
+            host: None,
         };
         let begun = next_version();
         let own: Vec<Part> = (0..parts.parts()).map(part).collect();
@@ -275,17 +278,18 @@ impl Geometry {
         for (piece, map, moved) in moved {
             let part = self.part_mut(piece)?;
             part.map = Some(map);
+            let is_host = part.is_placed_anew()?;
             let was = std::mem::replace(&mut part.is_mirrored, moved.is_mirrored);
             let put = part.of.put_at(part.number, &moved, was, mesh, part.at);
             let positions = part.ranges()[0].len();
-            if put.is_elsewhere {
+            if put.is_elsewhere || is_host {
                 self.pieces[piece].moved = version;
                 self.work.moved += positions as u64;
             }
             if put.is_turned {
                 self.pieces[piece].turned = version;
             }
-            change.is_elsewhere |= put.is_elsewhere;
+            change.is_elsewhere |= put.is_elsewhere || is_host;
             change.is_turned |= put.is_turned;
         }
         if self.is_unplaced && self.has_places() {
@@ -388,11 +392,39 @@ impl Geometry {
         map: &DAffine3,
         scene: &mut Arc<Scene>,
     ) -> Result<(PartId, Change), Error> {
+        self.add_as((Arc::new(Movable::joined(&[mesh])), None), map, scene)
+    }
+
+    /// Adds a part whose vertices are in a buffer of the host.
+    ///
+    /// # Errors
+    /// [`Error::NoParts`], [`Error::Move`].
+    pub fn add_host(
+        &mut self,
+        mesh: &HostMesh,
+        map: &DAffine3,
+        scene: &mut Arc<Scene>,
+    ) -> Result<(PartId, Change), Error> {
+        let host = HostPart::new(mesh, map);
+        let host = host.map_err(|error| error.renumbered(self.parts.len()))?;
+        self.add_as((Arc::clone(mesh.movable()), Some(host)), map, scene)
+    }
+
+    fn add_as(
+        &mut self,
+        (of, host): (Arc<Movable>, Option<HostPart>),
+        map: &DAffine3,
+        scene: &mut Arc<Scene>,
+    ) -> Result<(PartId, Change), Error> {
         if self.first.is_none() {
             return Err(Error::NoParts);
         }
-        let of = Arc::new(Movable::joined(&[mesh]));
-        let moved = of.moved_part(0, map);
+        let moved = match &host {
+            Some(_) => Ok(MovedPart::written_elsewhere(
+                map.matrix3.determinant() < 0.0,
+            )),
+            None => of.moved_part(0, map),
+        };
         let moved = moved.map_err(|error| error.renumbered(self.parts.len()))?;
         let (at, is_grown) = self.place(&of.rest, scene)?;
         let whole = &mut Arc::make_mut(scene).mesh;
@@ -406,6 +438,12 @@ impl Geometry {
         let all = whole.triangles.len();
         let own = (at.triangle, of.rest.triangles.len());
         whole.surfaces.put(&of.rest.surfaces, own, all);
+        if host.is_some() {
+            // Its tree may have to be built once more.
+            let positions = &mut whole.positions[at.position..];
+            positions[..of.rest.positions.len()].copy_from_slice(&of.rest.positions);
+        }
+        let positions = of.rest.positions.len();
         of.put_at(0, &moved, false, whole, at);
         let piece = self.gone.pop().unwrap_or(self.pieces.len());
         let id = PartId::new(piece, next_version());
@@ -416,6 +454,7 @@ impl Geometry {
             map: Some(*map),
             is_mirrored: moved.is_mirrored,
             of,
+            host,
         }));
         if let Some(kept) = &mut self.bvh {
             let tree = Arc::make_mut(&mut kept.tree);
@@ -427,7 +466,7 @@ impl Geometry {
             self.pieces.push(part);
         }
         self.parts.push(id);
-        self.work.moved += mesh.positions.len() as u64;
+        self.work.moved += positions as u64;
         let change = Change {
             is_elsewhere: true,
             is_turned: true,
@@ -499,6 +538,57 @@ impl Geometry {
         Ok(change)
     }
 
+    /// Notes that the host has rewritten the vertices of a part within these bounds.
+    ///
+    /// # Errors
+    /// [`Error::NoPart`], [`Error::NoHostPart`], [`Error::Bounds`], [`Error::Move`].
+    pub fn rewrite(&mut self, id: PartId, bounds: [Vec3; 2]) -> Result<Change, Error> {
+        let number = self.number(id)?;
+        let part = self.part(id)?;
+        let (Some(_), Some(map)) = (&part.host, &part.map) else {
+            return Err(Error::NoHostPart(id));
+        };
+        let [low, high] = bounds;
+        if !low.cmple(high).all() {
+            return Err(Error::Bounds {
+                part: id,
+                low,
+                high,
+            });
+        }
+        let moved = placed(bounds, map).map_err(|error| error.renumbered(number))?;
+        if let Some(host) = &mut self.part_mut(id.piece)?.host {
+            (host.bounds, host.placed) = (bounds, moved);
+        }
+        let positions = self.part(id)?.ranges()[0].len();
+        self.work.moved += positions as u64;
+        self.pieces[id.piece].moved = next_version();
+        Ok(Change {
+            is_elsewhere: true,
+            ..Change::default()
+        })
+    }
+
+    /// Returns a part whose vertices are in a buffer of the host, if there is one.
+    pub fn a_host_part(&self) -> Option<PartId> {
+        self.parts.iter().copied().find(|&id| {
+            let part = self.part(id);
+            part.is_ok_and(|part| part.host.is_some())
+        })
+    }
+
+    /// The writes of those parts of hosts' buffers that have changed since a version of the shape,
+    /// with the pieces that they are; all of them if the scene's buffer was made anew.
+    pub fn host_writes(&self, since: Option<u64>) -> Vec<(usize, HostWrite)> {
+        let pieces = self.pieces.iter().enumerate();
+        let moved = pieces.filter(|(_, of)| since.is_none_or(|version| of.changed() > version));
+        let writes = moved.filter_map(|(piece, of)| match &of.content {
+            Content::Part(part) => Some((piece, part.host_write()?)),
+            _ => None,
+        });
+        writes.collect()
+    }
+
     /// Notes that triangles were cleared.
     fn clear(&mut self, triangles: Range<usize>) {
         if self.cleared.len() == CLEARED {
@@ -526,7 +616,7 @@ impl Geometry {
         if self.is_begun_after(version) {
             return all(mesh.positions.len());
         }
-        let moved = self.pieces.iter().filter(|piece| piece.moved > version);
+        let moved = self.moved_here(version);
         moved.map(|piece| piece.ranges(mesh)[0].clone()).collect()
     }
 
@@ -535,8 +625,14 @@ impl Geometry {
         if self.is_begun_after(version) {
             return all(mesh.normals.len());
         }
-        let moved = self.pieces.iter().filter(|piece| piece.moved > version);
+        let moved = self.moved_here(version);
         moved.map(|piece| piece.ranges(mesh)[1].clone()).collect()
+    }
+
+    /// The pieces that were moved since a version on the CPU.
+    fn moved_here(&self, version: u64) -> impl Iterator<Item = &Piece> {
+        let moved = self.pieces.iter();
+        moved.filter(move |piece| piece.moved > version && piece.host().is_none())
     }
 
     /// The ranges of triangles that have other corners than in a version of the winding.
@@ -594,7 +690,13 @@ impl Geometry {
             Moved::Affinely
         };
         let mut tree = kept.tree;
-        let refit = Arc::make_mut(&mut tree).refit(mesh, &moved, how);
+        let fitted = Arc::make_mut(&mut tree);
+        for &piece in &moved {
+            if let Some(host) = self.pieces[piece].host() {
+                fitted.state_bounds(piece, host.placed);
+            }
+        }
+        let refit = fitted.refit(mesh, &moved, how);
         for &piece in &refit.rebuilt {
             self.pieces[piece].built = version;
         }
@@ -604,8 +706,13 @@ impl Geometry {
             let since = pieces.filter(move |(_, piece)| of(piece) > known);
             since.map(|(piece, _)| piece)
         };
-        let others: Vec<usize> = since(|piece| piece.moved.max(piece.built)).collect();
-        let nodes = others.iter().map(|&piece| tree.nodes_of(piece));
+        let others: Vec<usize> = since(Piece::changed).collect();
+        // The GPU fits the nodes of hosts' parts, once they are there.
+        let written = others.iter().filter(|&&piece| {
+            let piece = &self.pieces[piece];
+            piece.host().is_none() || piece.built > known
+        });
+        let nodes = written.map(|&piece| tree.nodes_of(piece));
         let nodes = nodes.chain(tree.top()).collect();
         let primitives = since(|piece| piece.turned.max(piece.built));
         let primitives = primitives.map(|piece| tree.primitives_of(piece)).collect();
@@ -819,8 +926,27 @@ impl Piece {
         let Content::Part(part) = &self.content else {
             return 0;
         };
-        tree.add(piece, &part.of.rest, part.at.triangle as u32);
+        match &part.host {
+            Some(host) => {
+                host.mesh.add_to(tree, piece, part.at.triangle);
+                tree.state_bounds(piece, host.placed);
+            }
+            None => tree.add(piece, &part.of.rest, part.at.triangle as u32),
+        }
         tree.nodes_of(piece).len()
+    }
+
+    /// The part of a host's buffer that it is, if it is one.
+    fn host(&self) -> Option<&HostPart> {
+        match &self.content {
+            Content::Part(part) => part.host.as_ref(),
+            _ => None,
+        }
+    }
+
+    /// Number of the last change of its positions or its tree.
+    fn changed(&self) -> u64 {
+        self.moved.max(self.built)
     }
 
     /// The ranges that hold its positions and normals.
@@ -860,6 +986,11 @@ impl Piece {
     /// The positions that its triangles use.
     fn corners(&self, mesh: &Mesh) -> Vec<Vec3> {
         let at = |corner: usize| mesh.positions[corner];
+        if let Some(host) = self.host() {
+            let ends = host.placed;
+            let corner = |corner: usize| [0, 1, 2].map(|axis| ends[corner >> axis & 1][axis]);
+            return (0..8).map(|index| corner(index).into()).collect();
+        }
         match &self.content {
             Content::Part(part) => {
                 let corners = part.of.corners(part.number).iter();

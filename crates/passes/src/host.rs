@@ -109,7 +109,7 @@ impl GpuMesh<'_> {
     }
 }
 
-fn read(
+pub(crate) fn read(
     what: &'static str,
     slice: wgpu::BufferSlice,
     device: &wgpu::Device,

@@ -1,8 +1,7 @@
 //! Parts of a mesh as a host knows them, and the room for more of them.
 
-use glam::DAffine3;
-use skiagraph_scene::{Mesh, Movable, MoveError, MovedPart, PartPlace};
-use std::{ops::Range, sync::Arc};
+use skiagraph_scene::{Mesh, Movable};
+use std::ops::Range;
 
 /// Handle of a part of a provider's mesh, as [`SceneProvider::add_part`] and
 /// [`SceneProvider::parts`] return it. It names the same part after other parts were added or
@@ -81,50 +80,6 @@ impl Room {
             triangles: copies.saturating_mul(rest.triangles.len()),
         }
     }
-}
-
-/// A part, and where it is.
-#[derive(Clone)]
-pub(crate) struct Part {
-    pub id: PartId,
-    pub of: Arc<Movable>,
-    /// Its number in `of`.
-    pub number: usize,
-    /// Where the lists of `of` begin in those of the mesh.
-    pub at: PartPlace,
-    /// Map from its place at rest; `None` for a part without a place, or if it was bent since.
-    pub map: Option<DAffine3>,
-    /// True if its triangles are wound the other way than at rest.
-    pub is_mirrored: bool,
-}
-
-impl Part {
-    /// Returns the part moved by a map, or the error of its number.
-    pub fn moved(&self, map: &DAffine3, number: usize) -> Result<MovedPart, MoveError> {
-        let moved = self.of.moved_part(self.number, map);
-        moved.map_err(|error| error.renumbered(number))
-    }
-
-    /// The ranges of the mesh that hold its positions and normals.
-    pub fn ranges(&self) -> [Range<usize>; 2] {
-        let [positions, normals] = self.of.ranges(self.number);
-        [
-            from(positions, self.at.position),
-            from(normals, self.at.normal),
-        ]
-    }
-
-    /// The range of the mesh that holds its triangles.
-    pub fn triangles(&self) -> Range<usize> {
-        let triangles = self.of.triangles(self.number);
-        let ends = triangles.first().zip(triangles.last());
-        let range = ends.map_or(0..0, |(first, last)| *first as usize..*last as usize + 1);
-        from(range, self.at.triangle)
-    }
-}
-
-fn from(range: Range<usize>, first: usize) -> Range<usize> {
-    range.start + first..range.end + first
 }
 
 /// Ranges of a list that no part has, in ascending order.

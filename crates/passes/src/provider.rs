@@ -2,12 +2,13 @@
 
 use crate::{
     atlas::Atlas,
-    buffers::{Buffers, On, binding_limit},
+    buffers::{Buffers, On, Patched, binding_limit},
     built::{Built, How, Work},
     error::Error,
     eye::Eye,
     geometry::{Change, Geometry, nodes_to_walk},
     hierarchies::Tree,
+    host_buffers::{Bound, HostMesh, HostWrite, Kernels, Written},
     lights,
     names::*,
     parts::{PartId, Room},
@@ -84,6 +85,7 @@ pub struct SceneProvider {
     #[cfg(feature = "embree")]
     embree: Option<(Arc<crate::embree::Embree>, u64)>,
     pub(crate) geometry: Geometry,
+    kernels: Kernels,
     /// Materials of the mesh, once they were asked for.
     atlas: Arc<Atlas>,
     pub(crate) built: Vec<Built>,
@@ -106,6 +108,7 @@ impl SceneProvider {
             #[cfg(feature = "embree")]
             embree: None,
             geometry: Geometry::whole(),
+            kernels: Kernels::default(),
             atlas: Arc::default(),
             built: Vec::new(),
         }
@@ -168,6 +171,7 @@ impl SceneProvider {
     fn buffer(&mut self, name: &str, on: On) -> Result<wgpu::Buffer, Error> {
         let is_parted = self.geometry.is_parted();
         self.buffers.lay_over(self.versions.shape, is_parted);
+        self.buffers.keeps_gaps = self.geometry.a_host_part().is_some();
         let version = self.version(name);
         if let Some(buffer) = self.buffers.get(name, version) {
             return Ok(buffer.clone());
@@ -220,9 +224,23 @@ impl SceneProvider {
         let fitted = self.geometry.bvh(mesh, most as usize, version, known);
         let (tree, nodes) = (&fitted.tree, nodes_to_walk(&fitted.tree));
         let (buffers, changed) = (&mut self.buffers, &fitted.nodes);
-        buffers.patch_list(BVH_NODES, nodes, changed, version, on)?;
+        let patched = buffers.patch_list(BVH_NODES, nodes, changed, version, on)?;
         let (primitives, changed) = (&tree.primitives, &fitted.primitives);
         buffers.patch_list(BVH_PRIMITIVES, primitives, changed, version, on)?;
+        let writes = match patched {
+            Patched::All => self.geometry.host_writes(None),
+            _ => self.geometry.host_writes(known),
+        };
+        let with_nodes = |(piece, write): (usize, HostWrite)| {
+            let levels = write.mesh.levels(tree, piece, on.device);
+            let first = tree.nodes_of(piece).start;
+            HostWrite {
+                nodes: Some((first, levels)),
+                ..write
+            }
+        };
+        let writes: Vec<HostWrite> = writes.into_iter().map(with_nodes).collect();
+        self.write_host_parts(BVH_NODES, patched, writes, on)?;
         Ok(fitted.how)
     }
 
@@ -243,8 +261,72 @@ impl SceneProvider {
             to.extend(items[range].iter().map(|item| item.extend(w)));
         };
         let changed = (items.len(), &changed[..]);
-        self.buffers.patch(name, changed, append, version, on)?;
+        let patched = self.buffers.patch(name, changed, append, version, on)?;
+        let since = (patched != Patched::All).then_some(known);
+        let writes = self.geometry.host_writes(since).into_iter();
+        let writes = writes.map(|(_, write)| write).collect();
+        self.write_host_parts(name, patched, writes, on)?;
         Ok(How::Made)
+    }
+
+    /// Has the GPU write parts of hosts' buffers into the buffer of that name, which was patched.
+    fn write_host_parts(
+        &mut self,
+        name: &str,
+        patched: Patched,
+        writes: Vec<HostWrite>,
+        on: On,
+    ) -> Result<(), Error> {
+        if writes.is_empty() {
+            return Ok(());
+        }
+        let Some(buffer) = self.buffers.renew(name, patched, on) else {
+            return Ok(());
+        };
+        match self.bind_host_parts((name, &buffer), HostWrite::sorted(writes), on) {
+            Ok(bound) => {
+                let uploaded = bound.record(self.buffers.record(name, on));
+                self.buffers.work.uploaded += uploaded;
+                Ok(())
+            }
+            Err(error) => {
+                // It has not what its version says.
+                self.buffers.forget(name);
+                Err(error)
+            }
+        }
+    }
+
+    fn bind_host_parts(
+        &mut self,
+        (name, buffer): (&str, &wgpu::Buffer),
+        writes: Vec<HostWrite>,
+        on: On,
+    ) -> Result<Bound, Error> {
+        let primitives;
+        let [positions, indices] = match name {
+            POSITIONS => [buffer, buffer].map(Clone::clone),
+            _ => [self.buffer(POSITIONS, on)?, self.buffer(INDICES, on)?],
+        };
+        let (positions, indices) = (&positions, &indices);
+        let written = match name {
+            POSITIONS => Written::Positions { positions },
+            NORMALS => Written::Normals {
+                normals: buffer,
+                positions,
+                indices,
+            },
+            _ => {
+                primitives = self.buffer(BVH_PRIMITIVES, on)?;
+                Written::Nodes {
+                    nodes: buffer,
+                    positions,
+                    indices,
+                    primitives: &primitives,
+                }
+            }
+        };
+        self.kernels.bind(written, &writes, on.device)
     }
 
     /// Uploads the numbers of those triangles that have other corners than before.
@@ -315,6 +397,9 @@ impl SceneProvider {
     fn upload_light_space(&mut self, on: On) -> Result<How, Error> {
         if self.light().directional().is_none() {
             return Err(Error::LightSpaceKind(self.light().word()));
+        }
+        if let Some(part) = self.geometry.a_host_part() {
+            return Err(Error::OnDevice(LIGHT_SPACE_NODES, part));
         }
         let light = self.light_uniform(self.light());
         let space = LightSpace {
@@ -568,8 +653,12 @@ impl SceneProvider {
     ///
     /// # Errors
     /// [`Error::Deformed`] for another number of positions or normals, [`Error::NotFinite`] for a
-    /// number that is not finite. The mesh then stays as it was.
+    /// number that is not finite, [`Error::OnDevice`] for a mesh with parts of hosts' buffers. The
+    /// mesh then stays as it was.
     pub fn deform(&mut self, positions: Vec<Vec3>, normals: Vec<Vec3>) -> Result<(), Error> {
+        if let Some(part) = self.geometry.a_host_part() {
+            return Err(Error::OnDevice("deform", part));
+        }
         let mesh = &self.scene.mesh;
         let expected = [mesh.positions.len(), mesh.normals.len()];
         let given = [positions.len(), normals.len()];
@@ -658,6 +747,59 @@ impl SceneProvider {
         let (part, change) = self.geometry.add(mesh, map, &mut self.scene)?;
         self.note_change(change);
         Ok(part)
+    }
+
+    /// Adds a part whose vertices are in a buffer of the host, as [`add_part`](Self::add_part)
+    /// does. Refreshes read the buffer if the part has moved or was
+    /// [rewritten](Self::rewrite_part), and write its positions and normals for all passes. No
+    /// frame brings them to the CPU: the light is laid around the mesh's bounds, and
+    /// [`scene`](Self::scene) has the part's positions at rest.
+    ///
+    /// The host keeps the buffer, and does not write it but as told there.
+    ///
+    /// # Errors
+    /// As [`add_part`](Self::add_part).
+    pub fn add_host_part(&mut self, mesh: &HostMesh, map: &DAffine3) -> Result<PartId, Error> {
+        let (part, change) = self.geometry.add_host(mesh, map, &mut self.scene)?;
+        self.note_change(change);
+        Ok(part)
+    }
+
+    /// Notes that the host has rewritten the vertices of a part in its buffer (skinning, morphing).
+    /// The next [`refresh`](skiagraph_gpu::Executor::refresh) reads them; their writing must be
+    /// submitted before. All parts of the same [`HostMesh`] show them from their next move on, so
+    /// each part that is rewritten has a mesh, and vertices, of its own. `bounds`, low and high
+    /// corner in the space of the vertices, hold all that triangles use: the light is laid around
+    /// them, and rays beyond them miss. [`check_bounds`](Self::check_bounds) finds those that lie.
+    ///
+    /// # Errors
+    /// [`Error::NoHostPart`] for a part of another kind, [`Error::NoPart`] for one that there is
+    /// not, [`Error::Bounds`] for bounds that hold nothing, [`Error::Move`] for bounds that the
+    /// part's map moves beyond f32.
+    pub fn rewrite_part(&mut self, part: PartId, bounds: [Vec3; 2]) -> Result<(), Error> {
+        let change = self.geometry.rewrite(part, bounds)?;
+        self.note_change(change);
+        Ok(())
+    }
+
+    /// Checks that all vertices of parts of hosts' buffers, as they are after all that was
+    /// submitted, lie within the bounds that were stated. It waits for the GPU: for debugging, not
+    /// for each frame.
+    ///
+    /// # Errors
+    /// [`Error::Beyond`] with a part and the first vertex of it that lies outside or is not finite;
+    /// [`Error::Read`] if the device cannot tell.
+    pub fn check_bounds(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+    ) -> Result<(), Error> {
+        let writes = self.geometry.host_writes(None).into_iter();
+        let writes = HostWrite::sorted(writes.map(|(_, write)| write).collect());
+        if writes.is_empty() {
+            return Ok(());
+        }
+        self.kernels.check_bounds(&writes, On { device, queue })
     }
 
     /// Removes a part. From the next [`refresh`](skiagraph_gpu::Executor::refresh) of an executor
@@ -823,6 +965,9 @@ impl Provider for SceneProvider {
             && *of == version
         {
             return Ok(embree.clone());
+        }
+        if let Some(part) = self.geometry.a_host_part() {
+            return Err(why(Error::OnDevice(EMBREE, part)));
         }
         let began = Instant::now();
         let embree = Arc::new(crate::embree::Embree::build(&self.scene).map_err(why)?);

@@ -44,6 +44,18 @@ pub struct MovedPart {
     pub is_mirrored: bool,
 }
 
+impl MovedPart {
+    /// Creates a part whose moved positions and normals another one writes, such as a GPU:
+    /// [`Movable::put_at`] winds its triangles and moves nothing.
+    pub fn written_elsewhere(is_mirrored: bool) -> Self {
+        Self {
+            positions: Vec::new(),
+            normals: Vec::new(),
+            is_mirrored,
+        }
+    }
+}
+
 /// Indices at which the positions, normals and triangles of a [`Movable`] begin in the lists of a
 /// larger mesh, for [`Movable::put_at`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

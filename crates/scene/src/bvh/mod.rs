@@ -1,6 +1,7 @@
 //! A binary bounding volume hierarchy over a mesh's triangles.
 
 mod build;
+mod levels;
 mod light_space;
 mod median;
 mod node;

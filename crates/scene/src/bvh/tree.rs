@@ -2,6 +2,7 @@
 
 use super::{
     build::{measurable, ploc},
+    levels::levels,
     median,
     node::BvhNode,
 };
@@ -114,8 +115,8 @@ impl Bvh {
         Self::new(nodes, primitives)
     }
 
-    /// All nodes, each before its children.
-    pub(super) fn order(&self) -> Vec<u32> {
+    /// Returns the indices of all nodes, each before its children.
+    pub fn order(&self) -> Vec<u32> {
         let mut order = Vec::with_capacity(self.nodes.len());
         order.extend((!self.nodes.is_empty()).then_some(0));
         let mut next = 0;
@@ -127,6 +128,11 @@ impl Bvh {
             next += 1;
         }
         order
+    }
+
+    /// Returns the nodes but the root by their height, those of leaves first.
+    pub fn levels(&self) -> Vec<Vec<u32>> {
+        levels(&self.order(), |index| self.nodes[index as usize])
     }
 
     /// Triangles below each node.

@@ -2,11 +2,13 @@
 //! level over the pieces, in one list of nodes. It is walked like any other.
 
 use super::{
+    levels::levels,
     node::BvhNode,
     top::{Split, over_boxes},
     tree::{Bvh, MAX_DEPTH, area, cost_of, fitted_box},
 };
 use crate::mesh::Mesh;
+use glam::Vec3;
 use obvhs::triangle::Triangle;
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
@@ -71,6 +73,8 @@ struct Subtree {
     depth: u32,
     /// Expected cost of a ray when the tree was built.
     cost: f64,
+    /// Box of the root, of a piece whose positions are not in the mesh.
+    stated: Option<[Vec3; 2]>,
 }
 
 /// Work that [`TwoLevelBvh::refit`] has done.
@@ -166,6 +170,7 @@ impl TwoLevelBvh {
                 order,
                 depth: tree.depth,
                 cost: 0.0,
+                stated: None,
             }],
             nodes: tree.nodes,
             primitives,
@@ -248,10 +253,34 @@ impl TwoLevelBvh {
     /// If `piece` is the number of a piece that has triangles, or greater than the number of
     /// pieces.
     pub fn add(&mut self, piece: usize, at_rest: &Mesh, first: u32) {
-        let count = at_rest.triangles.len() as u32;
-        let ids: Vec<u32> = (0..count).collect();
+        let ids: Vec<u32> = (0..at_rest.triangles.len() as u32).collect();
         let depth = depth_left(self.filled() + 1);
         let tree = Bvh::within(&triangles(at_rest, &ids), depth);
+        self.add_built(piece, &tree, tree.order().into(), first);
+    }
+
+    /// Adds a piece as [`add`](Self::add) does, with a tree that was built before: `tree` over the
+    /// triangles of `at_rest`, whose [order](Bvh::order) is `order`. Only where it is deeper than
+    /// so many pieces allow is another one built.
+    ///
+    /// # Panics
+    /// As [`add`](Self::add).
+    pub fn add_tree(
+        &mut self,
+        piece: usize,
+        (tree, order): (&Bvh, &Arc<[u32]>),
+        at_rest: &Mesh,
+        first: u32,
+    ) {
+        if tree.depth > depth_left(self.filled() + 1) {
+            self.add(piece, at_rest, first);
+        } else {
+            self.add_built(piece, tree, Arc::clone(order), first);
+        }
+    }
+
+    fn add_built(&mut self, piece: usize, tree: &Bvh, order: Arc<[u32]>, first: u32) {
+        let count = tree.primitives.len() as u32;
         if count > 0 {
             self.reserve_top(self.filled() + 1);
         }
@@ -267,6 +296,7 @@ impl TwoLevelBvh {
             order: Arc::default(),
             depth: 0,
             cost: 0.0,
+            stated: None,
         };
         match self.pieces.get_mut(piece) {
             Some(before) => {
@@ -279,9 +309,53 @@ impl TwoLevelBvh {
             }
         }
         let ids: Vec<u32> = (first..first + count).collect();
-        self.put(piece, &tree, tree.order().into(), &ids);
+        self.put(piece, tree, order, &ids);
         self.pieces[piece].cost = self.cost(piece);
         self.is_stale = true;
+    }
+
+    /// States the box of a piece whose positions are not in the mesh, such as one that a GPU writes
+    /// and fits the nodes of. [`refit`](Self::refit) leaves its nodes as they are from then on, and
+    /// takes this box into the top level.
+    ///
+    /// # Panics
+    /// If there is no piece of that number.
+    pub fn state_bounds(&mut self, piece: usize, bounds: [Vec3; 2]) {
+        let at = &mut self.pieces[piece];
+        at.stated = Some(bounds);
+        at.take_stated();
+        self.is_stale = true;
+    }
+
+    /// Returns the nodes of a piece but its root, by their height, those of leaves first. Node
+    /// number n of a piece is the n-th of [`nodes_of`](Self::nodes_of), from 1.
+    ///
+    /// # Panics
+    /// If there is no piece of that number.
+    pub fn levels_of(&self, piece: usize) -> Vec<Vec<u32>> {
+        let at = &self.pieces[piece];
+        levels(&at.order, |index| {
+            let node = match index {
+                0 => at.root,
+                _ => self.nodes[at.nodes.start + index as usize - 1],
+            };
+            match node.count {
+                0 => BvhNode {
+                    first: node.first + 1 - at.nodes.start as u32,
+                    ..node
+                },
+                _ => node,
+            }
+        })
+    }
+
+    /// Returns the nodes of a piece by their numbers, each before its children: the very list that
+    /// [`add_tree`](Self::add_tree) was given, unless another tree was built.
+    ///
+    /// # Panics
+    /// If there is no piece of that number.
+    pub fn order_of(&self, piece: usize) -> &Arc<[u32]> {
+        &self.pieces[piece].order
     }
 
     /// Removes a piece; the tree changes at the next [`refit`](Self::refit). Other pieces keep
@@ -311,6 +385,7 @@ impl TwoLevelBvh {
             order: Arc::default(),
             depth: 0,
             cost: 0.0,
+            stated: None,
         });
         self.put(self.pieces.len() - 1, tree, order, triangles);
     }
@@ -334,6 +409,7 @@ impl TwoLevelBvh {
                 _ => self.nodes[first_node + index - 1] = node,
             }
         }
+        self.pieces[piece].take_stated();
         for (slot, &local) in (first_slot..).zip(&tree.primitives) {
             self.primitives[slot] = triangles[local as usize];
         }
@@ -341,6 +417,7 @@ impl TwoLevelBvh {
 
     /// Fits the boxes of the pieces with the numbers in `pieces` to `mesh`, in which they have
     /// moved, and builds the top level anew.
+    /// Of pieces whose bounds were [stated](Self::state_bounds) only the root's box changes.
     ///
     /// # Panics
     /// If a number in `pieces` is not that of a piece, or the mesh has fewer triangles than the
@@ -348,6 +425,9 @@ impl TwoLevelBvh {
     pub fn refit(&mut self, mesh: &Mesh, pieces: &[usize], moved: Moved) -> Refit {
         let mut work = Refit::default();
         for &piece in pieces {
+            if self.pieces[piece].stated.is_some() {
+                continue;
+            }
             let cost = self.fit(mesh, piece);
             work.nodes += self.pieces[piece].order.len();
             if moved == Moved::Freely && cost > WORSE * self.pieces[piece].cost {
@@ -497,6 +577,15 @@ impl TwoLevelBvh {
         }
         self.nodes[0] = tree[0];
         self.nodes[self.top.start..][..tree.len() - 1].copy_from_slice(&tree[1..]);
+    }
+}
+
+impl Subtree {
+    /// Gives the root the box that was stated for it.
+    fn take_stated(&mut self) {
+        if let Some([min, max]) = self.stated {
+            (self.root.min, self.root.max) = (min.into(), max.into());
+        }
     }
 }
 

@@ -1,0 +1,187 @@
+//! Vertices as they lie in a host's buffer, and how they are read.
+
+use super::error::HostMeshError;
+use wgpu::VertexFormat;
+
+/// Formats of attributes, in the order of their numbers in place.wgsl.
+const FORMATS: [VertexFormat; 11] = [
+    VertexFormat::Float32x3,
+    VertexFormat::Float16x4,
+    VertexFormat::Snorm16x4,
+    VertexFormat::Unorm16x4,
+    VertexFormat::Sint16x4,
+    VertexFormat::Uint16x4,
+    VertexFormat::Snorm8x4,
+    VertexFormat::Unorm8x4,
+    VertexFormat::Sint8x4,
+    VertexFormat::Uint8x4,
+    // Read as `Float32x3`.
+    VertexFormat::Float32x4,
+];
+
+/// Range of vertices in a buffer of the host, such as one mesh of a mega-buffer. Positions are
+/// three f32 at the start of each vertex, and there are no normals, unless it is told otherwise.
+///
+/// Attributes have one of the formats `Float32x3`, `Float32x4`, `Float16x4`, and `Snorm`, `Unorm`,
+/// `Sint`, `Uint` of `16x4` and `8x4`, of which the fourth component is not read. A mesh whose
+/// integers stand for other lengths gets the scale and offset in the map of its part.
+#[derive(Clone, Debug)]
+pub struct HostVertices {
+    pub(super) buffer: wgpu::Buffer,
+    pub(super) offset: u64,
+    pub(super) stride: u64,
+    pub(super) count: u32,
+    pub(super) position: Attribute,
+    pub(super) normal: Option<Attribute>,
+}
+
+/// Attribute of a vertex.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Attribute {
+    pub name: &'static str,
+    pub format: VertexFormat,
+    /// Offset within a vertex, in bytes.
+    pub at: u64,
+}
+
+impl HostVertices {
+    /// Creates the range of `count` vertices from byte `offset` of a buffer on, each `stride` bytes
+    /// after the one before. The buffer needs the usage `STORAGE`; `offset` and `stride` are
+    /// divisible by 4.
+    pub fn new(buffer: &wgpu::Buffer, offset: u64, stride: u64, count: u32) -> Self {
+        Self {
+            buffer: buffer.clone(),
+            offset,
+            stride,
+            count,
+            position: Attribute {
+                name: "position",
+                format: VertexFormat::Float32x3,
+                at: 0,
+            },
+            normal: None,
+        }
+    }
+
+    /// Sets the format of positions, and their offset within a vertex in bytes, divisible by 4.
+    pub fn with_position(mut self, format: VertexFormat, at: u64) -> Self {
+        (self.position.format, self.position.at) = (format, at);
+        self
+    }
+
+    /// Sets the format of normals, of any length, and their offset within a vertex in bytes,
+    /// divisible by 4. Without them, or where one is 0, triangles have the normals of their planes.
+    pub fn with_normal(mut self, format: VertexFormat, at: u64) -> Self {
+        self.normal = Some(Attribute {
+            name: "normal",
+            format,
+            at,
+        });
+        self
+    }
+
+    /// Checks that it can be read as it is described.
+    pub(super) fn check(&self) -> Result<(), HostMeshError> {
+        if !self.buffer.usage().contains(wgpu::BufferUsages::STORAGE) {
+            return Err(HostMeshError::Usage);
+        }
+        let (offset, stride) = (self.offset, self.stride);
+        let mut aligned = vec![("offset", offset), ("stride", stride)];
+        for attribute in [Some(self.position), self.normal].into_iter().flatten() {
+            attribute.check(stride)?;
+            aligned.push((attribute.name, attribute.at));
+        }
+        if let Some(&(what, bytes)) = aligned.iter().find(|(_, at)| !at.is_multiple_of(4)) {
+            return Err(HostMeshError::Alignment { what, bytes });
+        }
+        let (needed, size) = (self.offset.checked_add(self.length()), self.buffer.size());
+        match needed {
+            Some(needed) if needed <= size => Ok(()),
+            _ => Err(HostMeshError::Beyond {
+                offset,
+                count: self.count,
+                stride,
+                size,
+            }),
+        }
+    }
+
+    /// Number of bytes from the start of the first vertex to the end of what is read of the last.
+    pub(super) fn length(&self) -> u64 {
+        let ends = [Some(self.position), self.normal].into_iter().flatten();
+        let end = ends.map(|attribute| attribute.end()).max();
+        let last = u64::from(self.count.saturating_sub(1)).saturating_mul(self.stride);
+        last.saturating_add(end.unwrap_or_default())
+    }
+
+    /// Decodes an attribute of all vertices, whose bytes these are.
+    pub(super) fn decoded(&self, attribute: Attribute, bytes: &[u8]) -> Vec<[f32; 3]> {
+        let vertex = |index: u32| {
+            let at = u64::from(index) * self.stride + attribute.at;
+            attribute.decoded(&bytes[at as usize..])
+        };
+        (0..self.count).map(vertex).collect()
+    }
+}
+
+impl Attribute {
+    fn check(self, stride: u64) -> Result<(), HostMeshError> {
+        let Self { name, format, at } = self;
+        if !FORMATS.contains(&format) {
+            return Err(HostMeshError::Format { name, format });
+        }
+        if at.checked_add(format.size()).is_none_or(|end| end > stride) {
+            return Err(HostMeshError::Attribute {
+                name,
+                format,
+                at,
+                stride,
+            });
+        }
+        Ok(())
+    }
+
+    fn end(self) -> u64 {
+        self.at.saturating_add(self.format.size())
+    }
+
+    /// The number of its format in place.wgsl.
+    pub fn code(self) -> u32 {
+        let at = FORMATS.iter().position(|known| *known == self.format);
+        at.map_or(0, |at| at as u32 % 10)
+    }
+
+    /// Three components, at the start of these bytes: each the f32 nearest to its value.
+    fn decoded(self, bytes: &[u8]) -> [f32; 3] {
+        let words = |at: usize| u16::from_le_bytes([bytes[2 * at], bytes[2 * at + 1]]);
+        let [x, y, z] = [0, 1, 2];
+        match self.format {
+            VertexFormat::Float16x4 => [x, y, z].map(|at| from_half(words(at))),
+            VertexFormat::Snorm16x4 => [x, y, z].map(|at| share(words(at).cast_signed(), 32767)),
+            VertexFormat::Unorm16x4 => [x, y, z].map(|at| f32::from(words(at)) / 65535.0),
+            VertexFormat::Sint16x4 => [x, y, z].map(|at| f32::from(words(at).cast_signed())),
+            VertexFormat::Uint16x4 => [x, y, z].map(|at| f32::from(words(at))),
+            VertexFormat::Snorm8x4 => [x, y, z].map(|at| share(bytes[at].cast_signed(), 127)),
+            VertexFormat::Unorm8x4 => [x, y, z].map(|at| f32::from(bytes[at]) / 255.0),
+            VertexFormat::Sint8x4 => [x, y, z].map(|at| f32::from(bytes[at].cast_signed())),
+            VertexFormat::Uint8x4 => [x, y, z].map(|at| f32::from(bytes[at])),
+            _ => bytemuck::pod_read_unaligned(&bytes[..12]),
+        }
+    }
+}
+
+fn share(of: impl Into<f32>, most: i16) -> f32 {
+    (of.into() / f32::from(most)).max(-1.0)
+}
+
+fn from_half(bits: u16) -> f32 {
+    let sign = if bits >> 15 == 1 { -1.0 } else { 1.0 };
+    let mantissa = f32::from(bits & 0x3ff);
+    let size = match i32::from(bits >> 10 & 31) {
+        0 => mantissa * 2f32.powi(-24),
+        31 if mantissa == 0.0 => f32::INFINITY,
+        31 => f32::NAN,
+        exponent => (1024.0 + mantissa) * 2f32.powi(exponent - 25),
+    };
+    sign * size
+}

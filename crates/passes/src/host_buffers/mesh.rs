@@ -1,0 +1,268 @@
+//! A mesh whose vertices stay in a host's buffer.
+
+use super::{
+    error::HostMeshError,
+    layout::{Attribute, HostVertices},
+};
+use crate::parts::Room;
+use glam::Vec3;
+use skiagraph_scene::{Bvh, Indexed, Mesh, Movable, TwoLevelBvh};
+use std::{
+    collections::HashMap,
+    sync::{Arc, OnceLock},
+};
+use wgpu::util::{BufferInitDescriptor, DeviceExt};
+
+/// Marks a position that no triangle uses, and a normal that no vertex has.
+const NONE: u32 = u32::MAX;
+
+/// Indices of a mesh, three for each triangle, counter-clockwise as seen from outside. They count
+/// from the first vertex of the mesh's [`HostVertices`]: a base vertex is in the offset of these.
+#[derive(Clone, Copy, Debug)]
+pub enum HostIndices<'a> {
+    /// 16-bit indices.
+    U16(&'a [u16]),
+    /// 32-bit indices.
+    U32(&'a [u32]),
+}
+
+/// Triangle mesh whose vertices a host keeps in a buffer of its own, for any number of parts of a
+/// scene ([`SceneProvider::add_host_part`](crate::SceneProvider::add_host_part)). The GPU reads the
+/// buffer whenever a part has moved, or the host has rewritten its vertices, and writes the part's
+/// positions and normals into the scene's; no frame brings vertices to the CPU.
+///
+/// The host hands over the vertices at rest once, while loading, in the format that they have in
+/// the buffer. Of them the mesh is welded, and its hierarchy is built, which any thread may do.
+/// What is on the CPU from then on is the welded mesh at rest and its hierarchy.
+#[derive(Clone, Debug)]
+pub struct HostMesh {
+    pub(super) own: Arc<Own>,
+    bounds: [Vec3; 2],
+}
+
+#[derive(Debug)]
+pub(super) struct Own {
+    pub vertices: HostVertices,
+    /// The only part of it.
+    pub movable: Arc<Movable>,
+    tree: Bvh,
+    order: Arc<[u32]>,
+    pub sources: wgpu::Buffer,
+    pub normal_sources: wgpu::Buffer,
+    levels: OnceLock<wgpu::Buffer>,
+}
+
+impl HostMesh {
+    /// Makes the mesh of vertices whose bytes at rest are `rest`, from the first vertex on.
+    /// Vertices of equal position at rest are one from then on. Bounds are those of the vertices at
+    /// rest.
+    ///
+    /// # Errors
+    /// [`HostMeshError`] if the vertices cannot be read as they are described, or form no mesh.
+    pub fn new(
+        device: &wgpu::Device,
+        vertices: HostVertices,
+        rest: &[u8],
+        indices: HostIndices<'_>,
+    ) -> Result<Self, HostMeshError> {
+        vertices.check()?;
+        let (needed, given) = (vertices.length(), rest.len() as u64);
+        if given < needed {
+            return Err(HostMeshError::Rest { needed, given });
+        }
+        let wide;
+        let indices = match indices {
+            HostIndices::U32(indices) => indices,
+            HostIndices::U16(indices) => {
+                wide = indices
+                    .iter()
+                    .map(|&index| index.into())
+                    .collect::<Vec<u32>>();
+                &wide[..]
+            }
+        };
+        let decoded = |attribute: Attribute| vertices.decoded(attribute, rest);
+        let positions = decoded(vertices.position);
+        let mut mesh = Indexed {
+            positions: &positions,
+            normals: &vertices.normal.map(decoded).unwrap_or_default(),
+            indices,
+        }
+        .mesh()?;
+        let (low, high) = mesh.bounds().ok_or(HostMeshError::Empty)?;
+        if vertices.normal.is_none() {
+            part_normals(&mut mesh);
+        }
+        let welded = Welded::new(&mesh, &positions);
+        let movable = Movable::joined(&[&mesh]);
+        let [sources, normal_sources] = [
+            bytemuck::cast_slice(&welded.sources(&movable.rest)).to_vec(),
+            bytemuck::cast_slice(&welded.normal_sources(
+                &movable.rest,
+                indices,
+                vertices.normal.is_some(),
+            ))
+            .to_vec(),
+        ]
+        .map(|content: Vec<u8>| storage(device, "host.sources", &content));
+        let tree = Bvh::build(&movable.rest);
+        let own = Own {
+            order: tree.order().into(),
+            tree,
+            movable: Arc::new(movable),
+            sources,
+            normal_sources,
+            vertices,
+            levels: OnceLock::new(),
+        };
+        Ok(Self {
+            own: Arc::new(own),
+            bounds: [low, high],
+        })
+    }
+
+    /// Returns the mesh with stated bounds, low and high corner in the space of its vertices, where
+    /// a host will rewrite them within these.
+    ///
+    /// # Errors
+    /// [`HostMeshError::Bounds`] if a vertex at rest lies outside.
+    pub fn with_bounds(mut self, [low, high]: [Vec3; 2]) -> Result<Self, HostMeshError> {
+        let rest = &self.own.movable.rest;
+        let is_within = |at: Vec3| at.cmpge(low).all() && at.cmple(high).all();
+        let beyond = rest.used_positions().find(|at| !is_within(*at));
+        if let Some(position) = beyond {
+            return Err(HostMeshError::Bounds {
+                position,
+                low,
+                high,
+            });
+        }
+        self.bounds = [low, high];
+        Ok(self)
+    }
+
+    /// Returns the bounds of its vertices before they are moved: low and high corner.
+    pub fn bounds(&self) -> [Vec3; 2] {
+        self.bounds
+    }
+
+    /// Returns the room that so many parts of this mesh need in a scene
+    /// ([`SceneProvider::reserve`](crate::SceneProvider::reserve)).
+    pub fn room(&self, parts: usize) -> Room {
+        Room::of(&self.own.movable.rest, parts)
+    }
+
+    /// The mesh at rest, as a part.
+    pub(crate) fn movable(&self) -> &Arc<Movable> {
+        &self.own.movable
+    }
+
+    /// Adds its tree to a hierarchy, for triangles from `first` on.
+    pub(crate) fn add_to(&self, tree: &mut TwoLevelBvh, piece: usize, first: usize) {
+        let own = (&self.own.tree, &self.own.order);
+        tree.add_tree(piece, own, &self.own.movable.rest, first as u32);
+    }
+
+    /// The levels of its own tree, or of the one that a piece has in its stead.
+    pub(crate) fn levels(
+        &self,
+        tree: &TwoLevelBvh,
+        piece: usize,
+        device: &wgpu::Device,
+    ) -> wgpu::Buffer {
+        let packed = || {
+            let content = packed(&tree.levels_of(piece));
+            storage(device, "host.levels", bytemuck::cast_slice(&content))
+        };
+        if Arc::ptr_eq(tree.order_of(piece), &self.own.order) {
+            self.own.levels.get_or_init(packed).clone()
+        } else {
+            packed()
+        }
+    }
+}
+
+/// Gives each triangle a normal of its own, since those in one plane at rest may part.
+fn part_normals(mesh: &mut Mesh) {
+    let normals = mesh.normal_indices.iter();
+    mesh.normals = normals.map(|own| mesh.normals[own[0] as usize]).collect();
+    for (triangle, own) in (0u32..).zip(&mut mesh.normal_indices) {
+        *own = [triangle; 3];
+    }
+}
+
+/// Levels as place.wgsl reads them.
+fn packed(levels: &[Vec<u32>]) -> Vec<u32> {
+    let mut end = levels.len() as u32 + 2;
+    let mut packed = vec![levels.len() as u32, end];
+    for level in levels {
+        end += level.len() as u32;
+        packed.push(end);
+    }
+    packed.extend(levels.iter().flatten());
+    packed
+}
+
+fn storage(device: &wgpu::Device, label: &str, contents: &[u8]) -> wgpu::Buffer {
+    device.create_buffer_init(&BufferInitDescriptor {
+        label: Some(label),
+        contents,
+        usage: wgpu::BufferUsages::STORAGE,
+    })
+}
+
+/// Positions of a mesh by the vertices of the host.
+struct Welded {
+    /// The position of each vertex.
+    of: Vec<u32>,
+    /// The first vertex of each position.
+    first: Vec<u32>,
+}
+
+impl Welded {
+    fn new(mesh: &Mesh, vertices: &[[f32; 3]]) -> Self {
+        let key = |at: Vec3| (at + Vec3::ZERO).to_array().map(f32::to_bits);
+        let known = (0u32..).zip(&mesh.positions);
+        let known: HashMap<[u32; 3], u32> = known.map(|(index, &at)| (key(at), index)).collect();
+        let mut first = vec![NONE; mesh.positions.len()];
+        let position = |(vertex, &at): (u32, &[f32; 3])| {
+            let position = known[&key(at.into())];
+            let first = &mut first[position as usize];
+            *first = vertex.min(*first);
+            position
+        };
+        Self {
+            of: (0..).zip(vertices).map(position).collect(),
+            first,
+        }
+    }
+
+    /// The vertex of each position that a triangle uses.
+    fn sources(&self, rest: &Mesh) -> Vec<u32> {
+        let mut sources = vec![NONE; rest.positions.len()];
+        for &corner in rest.triangles.as_flattened() {
+            sources[corner as usize] = self.first[corner as usize];
+        }
+        sources
+    }
+
+    /// The vertex of each normal, and a triangle that has it.
+    fn normal_sources(&self, rest: &Mesh, indices: &[u32], has_normals: bool) -> Vec<[u32; 2]> {
+        let mut sources = vec![[NONE; 2]; rest.normals.len()];
+        let place = |corner: &u32| self.of[*corner as usize];
+        let triangles = indices.as_chunks::<3>().0.iter();
+        let is_flat = |corners: &[u32; 3]| {
+            let [a, b, c] = [0, 1, 2].map(|corner| place(&corners[corner]));
+            a == b || b == c || c == a
+        };
+        // Those that were left out have no number.
+        let triangles = triangles.filter(|corners| !is_flat(corners));
+        for ((triangle, corners), normals) in (0u32..).zip(triangles).zip(&rest.normal_indices) {
+            for (&vertex, &normal) in corners.iter().zip(normals) {
+                let vertex = if has_normals { vertex } else { NONE };
+                sources[normal as usize] = [vertex, 3 * triangle];
+            }
+        }
+        sources
+    }
+}

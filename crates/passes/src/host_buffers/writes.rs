@@ -1,0 +1,380 @@
+//! Kernels that write the parts of hosts' buffers into those of the scene.
+
+use super::mesh::HostMesh;
+use crate::{
+    buffers::{On, binding_limit, refused},
+    error::Error,
+    host,
+    parts::PartId,
+};
+use glam::{DAffine3, DVec3, Vec3};
+use std::sync::{Arc, OnceLock};
+use wgpu::util::{BufferInitDescriptor, DeviceExt};
+
+/// Items that a workgroup of a kernel writes at once.
+const WIDTH: u32 = 256;
+/// The most workgroups of a dispatch along an axis.
+const MOST_GROUPS: u32 = 65535;
+
+/// A part that is to be written.
+pub(crate) struct HostWrite {
+    pub id: PartId,
+    pub mesh: HostMesh,
+    pub map: DAffine3,
+    /// Bounds of its vertices before they are moved.
+    pub bounds: [Vec3; 2],
+    /// Where its positions, normals and triangles begin in those of the scene.
+    pub first: [usize; 3],
+    /// Where its nodes begin, and their levels; none for writes of other things.
+    pub nodes: Option<(usize, wgpu::Buffer)>,
+}
+
+/// As `Part` in place.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct PartRecord {
+    map: [u64; 12],
+    across: [[f32; 4]; 3],
+    low: [f32; 3],
+    first_position: u32,
+    high: [f32; 3],
+    first_normal: u32,
+    first_triangle: u32,
+    first_node: u32,
+    /// Number among all parts that are written.
+    number: u32,
+    padding: u32,
+}
+
+/// As `Mesh` in place.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct MeshRecord {
+    first: u32,
+    stride: u32,
+    position_at: u32,
+    position_format: u32,
+    normal_at: u32,
+    normal_format: u32,
+    positions: u32,
+    normals: u32,
+}
+
+/// Buffer that a kernel writes, with the scene's buffers that it reads.
+#[derive(Clone, Copy)]
+pub(crate) enum Written<'a> {
+    Positions {
+        positions: &'a wgpu::Buffer,
+    },
+    Normals {
+        normals: &'a wgpu::Buffer,
+        positions: &'a wgpu::Buffer,
+        indices: &'a wgpu::Buffer,
+    },
+    Nodes {
+        nodes: &'a wgpu::Buffer,
+        positions: &'a wgpu::Buffer,
+        indices: &'a wgpu::Buffer,
+        primitives: &'a wgpu::Buffer,
+    },
+    /// The first vertex of each part that is beyond its bounds.
+    Beyond {
+        beyond: &'a wgpu::Buffer,
+    },
+}
+
+impl Written<'_> {
+    fn entry(self) -> &'static str {
+        match self {
+            Self::Positions { .. } => "place_positions",
+            Self::Normals { .. } => "place_normals",
+            Self::Nodes { .. } => "fit_nodes",
+            Self::Beyond { .. } => "find_beyond",
+        }
+    }
+}
+
+impl HostWrite {
+    /// Sorts parts so that those of one mesh are one dispatch.
+    pub fn sorted(mut parts: Vec<Self>) -> Vec<Self> {
+        parts.sort_by_key(|part| Arc::as_ptr(&part.mesh.own));
+        parts
+    }
+}
+
+/// The kernels on a device, made when they are first asked for.
+#[derive(Clone, Default)]
+pub(crate) struct Kernels {
+    made: Option<Arc<Made>>,
+}
+
+/// Kernel with all that it reads and writes.
+pub(crate) struct Bound {
+    pipeline: wgpu::ComputePipeline,
+    /// Each with its workgroups, and the bytes that were uploaded for it.
+    groups: Vec<(wgpu::BindGroup, [u32; 2], u64)>,
+}
+
+impl Bound {
+    /// Records the kernel; the number of bytes that were uploaded for it.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) -> u64 {
+        let mut pass = encoder.begin_compute_pass(&Default::default());
+        pass.set_pipeline(&self.pipeline);
+        for (group, [across, parts], _) in &self.groups {
+            pass.set_bind_group(0, group, &[]);
+            pass.dispatch_workgroups(*across, *parts, 1);
+        }
+        self.groups.iter().map(|(.., uploaded)| uploaded).sum()
+    }
+}
+
+struct Made {
+    module: wgpu::ShaderModule,
+    pipelines: [OnceLock<wgpu::ComputePipeline>; 4],
+}
+
+impl Kernels {
+    /// Binds parts, in the order of their meshes, for a kernel that writes them.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`] if the device cannot bind the vertices of a mesh,
+    /// [`Error::HostVertices`] if it refuses them.
+    pub fn bind(
+        &mut self,
+        written: Written,
+        parts: &[HostWrite],
+        device: &wgpu::Device,
+    ) -> Result<Bound, Error> {
+        let pipeline = self.pipeline(written, device);
+        let group = |(first, parts): (usize, &[HostWrite])| {
+            let (group, uploaded) = bind(&pipeline, written, (first, parts), device)?;
+            let across = groups(written, &parts[0].mesh);
+            Ok((group, [across, parts.len() as u32], uploaded))
+        };
+        let bound = refused(device, || batches(parts).map(group).collect());
+        let groups: Result<Vec<_>, Error> = bound.map_err(Error::HostVertices)?;
+        Ok(Bound {
+            groups: groups?,
+            pipeline,
+        })
+    }
+
+    /// Looks for a vertex beyond the bounds of its part, and waits for the answer.
+    ///
+    /// # Errors
+    /// [`Error::Beyond`] with the first one that is found, and those of [`bind`](Self::bind).
+    pub fn check_bounds(&mut self, parts: &[HostWrite], on: On) -> Result<(), Error> {
+        let none = vec![u32::MAX; parts.len()];
+        let beyond = on.device.create_buffer_init(&BufferInitDescriptor {
+            label: Some("vertices beyond their bounds"),
+            contents: bytemuck::cast_slice(&none),
+            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+        });
+        let bound = self.bind(Written::Beyond { beyond: &beyond }, parts, on.device)?;
+        let mut encoder = on.device.create_command_encoder(&Default::default());
+        bound.record(&mut encoder);
+        let submitted = refused(on.device, || on.queue.submit([encoder.finish()]));
+        submitted.map_err(Error::HostVertices)?;
+        let found = host::read("bounds check", beyond.slice(..), on.device, on.queue)?;
+        let found: Vec<u32> = bytemuck::pod_collect_to_vec(&found);
+        let mut found = parts.iter().zip(found);
+        match found.find(|(_, vertex)| *vertex != u32::MAX) {
+            Some((part, vertex)) => Err(Error::Beyond {
+                part: part.id,
+                vertex,
+                bounds: part.bounds,
+            }),
+            None => Ok(()),
+        }
+    }
+
+    fn pipeline(&mut self, written: Written, device: &wgpu::Device) -> wgpu::ComputePipeline {
+        let made = self.made.get_or_insert_with(|| {
+            Arc::new(Made {
+                module: device.create_shader_module(wgpu::include_wgsl!("place.wgsl")),
+                pipelines: Default::default(),
+            })
+        });
+        let at = match written {
+            Written::Positions { .. } => 0,
+            Written::Normals { .. } => 1,
+            Written::Nodes { .. } => 2,
+            Written::Beyond { .. } => 3,
+        };
+        let make = || {
+            device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(written.entry()),
+                layout: None,
+                module: &made.module,
+                entry_point: Some(written.entry()),
+                compilation_options: Default::default(),
+                cache: None,
+            })
+        };
+        made.pipelines[at].get_or_init(make).clone()
+    }
+}
+
+/// Runs of parts that one dispatch writes, each with the number of its first part.
+fn batches(parts: &[HostWrite]) -> impl Iterator<Item = (usize, &[HostWrite])> {
+    let is_alike = |a: &HostWrite, b: &HostWrite| {
+        let levels = |of: &HostWrite| of.nodes.as_ref().map(|nodes| nodes.1.clone());
+        Arc::ptr_eq(&a.mesh.own, &b.mesh.own) && levels(a) == levels(b)
+    };
+    let runs = parts.chunk_by(is_alike);
+    let runs = runs.flat_map(|run| run.chunks(MOST_GROUPS as usize));
+    runs.scan(0, |first, run| {
+        let begins = *first;
+        *first += run.len();
+        Some((begins, run))
+    })
+}
+
+/// Workgroups for each part.
+fn groups(written: Written, mesh: &HostMesh) -> u32 {
+    let rest = &mesh.own.movable.rest;
+    let items = match written {
+        Written::Positions { .. } | Written::Beyond { .. } => rest.positions.len(),
+        Written::Normals { .. } => rest.normals.len(),
+        Written::Nodes { .. } => 1,
+    };
+    (items as u32).div_ceil(WIDTH).min(MOST_GROUPS)
+}
+
+/// The bind group of some parts of one mesh, and the number of bytes that were uploaded for it.
+fn bind(
+    pipeline: &wgpu::ComputePipeline,
+    written: Written,
+    (begins, parts): (usize, &[HostWrite]),
+    device: &wgpu::Device,
+) -> Result<(wgpu::BindGroup, u64), Error> {
+    let mesh = &parts[0].mesh.own;
+    let vertices = &mesh.vertices;
+    let alignment = u64::from(device.limits().min_storage_buffer_offset_alignment);
+    let offset = vertices.offset - vertices.offset % alignment;
+    let first = vertices.offset - offset;
+    let bytes = first + vertices.length();
+    let limit = binding_limit(&device.limits());
+    if bytes > limit {
+        let name = "the vertices of a host's mesh".to_owned();
+        return Err(Error::TooLarge { name, bytes, limit });
+    }
+    let words = |bytes: u64| (bytes / 4) as u32;
+    let normal = vertices.normal.unwrap_or(vertices.position);
+    let record = MeshRecord {
+        first: words(first),
+        stride: words(vertices.stride),
+        position_at: words(vertices.position.at),
+        position_format: vertices.position.code(),
+        normal_at: words(normal.at),
+        normal_format: normal.code(),
+        positions: mesh.movable.rest.positions.len() as u32,
+        normals: mesh.movable.rest.normals.len() as u32,
+    };
+    let records = (begins..).zip(parts);
+    let records: Vec<PartRecord> = records
+        .map(|(at, part)| PartRecord::new(at, part))
+        .collect();
+    let upload = |contents: &[u8], usage| {
+        device.create_buffer_init(&BufferInitDescriptor {
+            label: Some("host parts"),
+            contents,
+            usage,
+        })
+    };
+    let records: &[u8] = bytemuck::cast_slice(&records);
+    let uploaded = (records.len() + size_of::<MeshRecord>()) as u64;
+    let records = upload(records, wgpu::BufferUsages::STORAGE);
+    let record = upload(bytemuck::bytes_of(&record), wgpu::BufferUsages::UNIFORM);
+    let vertices = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+        buffer: &vertices.buffer,
+        offset,
+        size: std::num::NonZero::new(bytes),
+    });
+    let own = [
+        (0, record.as_entire_binding()),
+        (1, records.as_entire_binding()),
+        (2, vertices),
+        (3, mesh.sources.as_entire_binding()),
+        (4, mesh.normal_sources.as_entire_binding()),
+    ];
+    // A pipeline's layout has the bindings that its entry point uses.
+    let (used, others): (&[u32], _) = match written {
+        Written::Positions { positions } => {
+            (&[0, 1, 2, 3], vec![(5, positions.as_entire_binding())])
+        }
+        Written::Normals {
+            normals,
+            positions,
+            indices,
+        } => (
+            &[0, 1, 2, 4],
+            vec![
+                (6, normals.as_entire_binding()),
+                (7, positions.as_entire_binding()),
+                (8, indices.as_entire_binding()),
+            ],
+        ),
+        Written::Nodes {
+            nodes,
+            positions,
+            indices,
+            primitives,
+        } => {
+            let levels = parts[0].nodes.iter();
+            let levels = levels.map(|(_, levels)| (10, levels.as_entire_binding()));
+            let others = [
+                (7, positions.as_entire_binding()),
+                (8, indices.as_entire_binding()),
+                (9, primitives.as_entire_binding()),
+                (11, nodes.as_entire_binding()),
+            ];
+            (&[1], others.into_iter().chain(levels).collect())
+        }
+        Written::Beyond { beyond } => (&[0, 1, 2, 3], vec![(12, beyond.as_entire_binding())]),
+    };
+    let own = own.into_iter().filter(|(at, _)| used.contains(at));
+    let entries: Vec<wgpu::BindGroupEntry> = own
+        .chain(others)
+        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
+        .collect();
+    let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some(written.entry()),
+        layout: &pipeline.get_bind_group_layout(0),
+        entries: &entries,
+    });
+    Ok((group, uploaded))
+}
+
+impl PartRecord {
+    fn new(number: usize, part: &HostWrite) -> Self {
+        let axes = part.map.to_cols_array_2d();
+        let mut map = [0; 12];
+        for (bits, entry) in map.iter_mut().zip(axes.as_flattened()) {
+            *bits = entry.to_bits();
+        }
+        let [position, normal, triangle] = part.first.map(|first| first as u32);
+        let [low, high] = part.bounds.map(|corner| corner.to_array());
+        Self {
+            map,
+            across: across(&part.map).map(|axis| axis.as_vec3().extend(0.0).to_array()),
+            low,
+            first_position: position,
+            high,
+            first_normal: normal,
+            first_triangle: triangle,
+            first_node: part.nodes.as_ref().map_or(0, |(first, _)| *first as u32),
+            number: number as u32,
+            padding: 0,
+        }
+    }
+}
+
+/// Columns of the matrix that takes normals along, scaled to entries of at most 1.
+fn across(map: &DAffine3) -> [DVec3; 3] {
+    let across = map.matrix3.inverse().transpose();
+    let columns = [across.x_axis, across.y_axis, across.z_axis];
+    let largest = columns.map(|axis| axis.abs().max_element());
+    let largest = largest.into_iter().fold(f64::MIN_POSITIVE, f64::max);
+    columns.map(|axis| axis / largest)
+}

@@ -1,0 +1,142 @@
+//! A part of a mesh, and where it is.
+
+use crate::{
+    host_buffers::{HostMesh, HostWrite},
+    parts::PartId,
+};
+use glam::{DAffine3, Vec3};
+use skiagraph_scene::{Movable, MoveError, MovedPart, PartPlace};
+use std::{ops::Range, sync::Arc};
+
+/// A part, and where it is.
+#[derive(Clone)]
+pub(crate) struct Part {
+    pub id: PartId,
+    pub of: Arc<Movable>,
+    /// Its number in `of`.
+    pub number: usize,
+    /// Where the lists of `of` begin in those of the mesh.
+    pub at: PartPlace,
+    /// Map from its place at rest; `None` for a part without a place, or if it was bent since.
+    pub map: Option<DAffine3>,
+    /// True if its triangles are wound the other way than at rest.
+    pub is_mirrored: bool,
+    /// Where its vertices are, if they are in a buffer of the host.
+    pub host: Option<HostPart>,
+}
+
+/// Part whose vertices are in a buffer of the host.
+#[derive(Clone)]
+pub(crate) struct HostPart {
+    pub mesh: HostMesh,
+    /// Bounds of its vertices before they are moved.
+    pub bounds: [Vec3; 2],
+    /// Bounds of its positions in the scene.
+    pub placed: [Vec3; 2],
+}
+
+impl HostPart {
+    /// Creates a part of a mesh that a map moves.
+    ///
+    /// # Errors
+    /// A map that cannot move it.
+    pub fn new(mesh: &HostMesh, map: &DAffine3) -> Result<Self, MoveError> {
+        let bounds = mesh.bounds();
+        Ok(Self {
+            mesh: mesh.clone(),
+            bounds,
+            placed: placed(bounds, map)?,
+        })
+    }
+}
+
+/// Returns bounds around all that a map moves from within bounds: rounded products and sums grow
+/// with each coordinate, so none is beyond those of the corners.
+///
+/// # Errors
+/// A map that is not finite or singular, or moves them beyond f32, of part 0.
+pub(crate) fn placed([low, high]: [Vec3; 2], map: &DAffine3) -> Result<[Vec3; 2], MoveError> {
+    let part = 0;
+    if !map.is_finite() {
+        return Err(MoveError::NotFinite { part, map: *map });
+    }
+    let determinant = map.matrix3.determinant();
+    if determinant == 0.0 || determinant.is_nan() {
+        return Err(MoveError::Singular { part });
+    }
+    let mut bounds = [Vec3::INFINITY, Vec3::NEG_INFINITY];
+    for corner in 0..8 {
+        let ends = [low, high];
+        let from = Vec3::from_array([0, 1, 2].map(|axis| ends[corner >> axis & 1][axis]));
+        let to = map.transform_point3(from.as_dvec3());
+        let place = to.as_vec3();
+        if !place.is_finite() {
+            return Err(MoveError::OutOfRange { part, from, to });
+        }
+        bounds = [bounds[0].min(place), bounds[1].max(place)];
+    }
+    Ok(bounds)
+}
+
+impl Part {
+    /// Returns the part moved by a map, or the error of its number.
+    pub fn moved(&self, map: &DAffine3, number: usize) -> Result<MovedPart, MoveError> {
+        let moved = match &self.host {
+            Some(host) => placed(host.bounds, map)
+                .map(|_| MovedPart::written_elsewhere(map.matrix3.determinant() < 0.0)),
+            None => self.of.moved_part(self.number, map),
+        };
+        moved.map_err(|error| error.renumbered(number))
+    }
+
+    /// Moves the bounds of a part of a host's buffer along with its map; true if it is one.
+    ///
+    /// # Errors
+    /// A map that cannot move it.
+    pub fn is_placed_anew(&mut self) -> Result<bool, MoveError> {
+        let (Some(host), Some(map)) = (&mut self.host, &self.map) else {
+            return Ok(false);
+        };
+        host.placed = placed(host.bounds, map)?;
+        Ok(true)
+    }
+
+    /// The write of a part of a host's buffer, without nodes.
+    pub fn host_write(&self) -> Option<HostWrite> {
+        let (host, map) = (self.host.as_ref()?, self.map?);
+        let PartPlace {
+            position,
+            normal,
+            triangle,
+        } = self.at;
+        Some(HostWrite {
+            id: self.id,
+            mesh: host.mesh.clone(),
+            map,
+            bounds: host.bounds,
+            first: [position, normal, triangle],
+            nodes: None,
+        })
+    }
+
+    /// The ranges of the mesh that hold its positions and normals.
+    pub fn ranges(&self) -> [Range<usize>; 2] {
+        let [positions, normals] = self.of.ranges(self.number);
+        [
+            from(positions, self.at.position),
+            from(normals, self.at.normal),
+        ]
+    }
+
+    /// The range of the mesh that holds its triangles.
+    pub fn triangles(&self) -> Range<usize> {
+        let triangles = self.of.triangles(self.number);
+        let ends = triangles.first().zip(triangles.last());
+        let range = ends.map_or(0..0, |(first, last)| *first as usize..*last as usize + 1);
+        from(range, self.at.triangle)
+    }
+}
+
+fn from(range: Range<usize>, first: usize) -> Range<usize> {
+    range.start + first..range.end + first
+}

@@ -22,7 +22,7 @@ pub enum HostMeshError {
     /// An attribute has a format that is not read.
     #[error(
         "the {name} has the format {format:?}; read are Float32x3, Float32x4, Float16x4, and \
-         Snorm, Unorm, Sint, Uint of 16x4 and 8x4"
+         Snorm, Unorm, Sint, Uint of 16x4 and 8x4, and others by a `HostDecoder`"
     )]
     Format {
         /// Attribute: `position` or `normal`.
@@ -30,6 +30,22 @@ pub enum HostMeshError {
         /// Format that was given.
         format: VertexFormat,
     },
+    /// The module of a [`HostDecoder`](super::HostDecoder) cannot be compiled.
+    #[error(
+        "the module that decodes a host's vertices cannot be compiled; it needs {needed}:\n{why}"
+    )]
+    Module {
+        /// Functions that it needs.
+        needed: &'static str,
+        /// Reason that wgpu gives, with the line.
+        why: String,
+    },
+    /// The device could not decode the vertices at rest.
+    #[error("the vertices at rest could not be decoded by the host's module: {0}")]
+    Decoding(
+        /// Reason that wgpu gives.
+        String,
+    ),
     /// An attribute reaches beyond the end of its vertex.
     #[error("the {name}, {format:?} at byte {at}, does not fit a vertex of {stride} bytes")]
     Attribute {

@@ -1,6 +1,6 @@
 //! Kernels that write the parts of hosts' buffers into those of the scene.
 
-use super::mesh::HostMesh;
+use super::{layout::HostVertices, mesh::HostMesh};
 use crate::{
     buffers::{On, binding_limit, refused},
     error::Error,
@@ -49,7 +49,7 @@ struct PartRecord {
 /// As `Mesh` in place.wgsl.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct MeshRecord {
+pub(super) struct MeshRecord {
     first: u32,
     stride: u32,
     position_at: u32,
@@ -102,35 +102,80 @@ impl HostWrite {
     }
 }
 
-/// The kernels on a device, made when they are first asked for.
+/// The kernels on a device for vertices of our formats, made when they are first asked for.
 #[derive(Clone, Default)]
 pub(crate) struct Kernels {
     made: Option<Arc<Made>>,
 }
 
-/// Kernel with all that it reads and writes.
-pub(crate) struct Bound {
+/// The module of kernels that decode vertices in one way, and its pipelines.
+#[derive(Debug)]
+pub(super) struct Made {
+    module: wgpu::ShaderModule,
+    pipelines: [OnceLock<wgpu::ComputePipeline>; 4],
+}
+
+/// Kernels with all that they read and write.
+pub(crate) struct Bound(Vec<Batch>);
+
+/// Parts of one mesh that one dispatch writes.
+struct Batch {
     pipeline: wgpu::ComputePipeline,
-    /// Each with its workgroups, and the bytes that were uploaded for it.
-    groups: Vec<(wgpu::BindGroup, [u32; 2], u64)>,
+    group: wgpu::BindGroup,
+    workgroups: [u32; 2],
+    /// Number of bytes that were uploaded for it.
+    uploaded: u64,
 }
 
 impl Bound {
-    /// Records the kernel; the number of bytes that were uploaded for it.
+    /// Records the kernels; the number of bytes that were uploaded for them.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) -> u64 {
         let mut pass = encoder.begin_compute_pass(&Default::default());
-        pass.set_pipeline(&self.pipeline);
-        for (group, [across, parts], _) in &self.groups {
-            pass.set_bind_group(0, group, &[]);
-            pass.dispatch_workgroups(*across, *parts, 1);
+        for batch in &self.0 {
+            let [across, parts] = batch.workgroups;
+            pass.set_pipeline(&batch.pipeline);
+            pass.set_bind_group(0, &batch.group, &[]);
+            pass.dispatch_workgroups(across, parts, 1);
         }
-        self.groups.iter().map(|(.., uploaded)| uploaded).sum()
+        self.0.iter().map(|batch| batch.uploaded).sum()
     }
 }
 
-struct Made {
-    module: wgpu::ShaderModule,
-    pipelines: [OnceLock<wgpu::ComputePipeline>; 4],
+impl Made {
+    /// Makes the module, with one that decodes vertices.
+    pub fn new(device: &wgpu::Device, decode: &str) -> Self {
+        let source = format!("{decode}\n{}", include_str!("place.wgsl"));
+        Self {
+            module: device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some("parts of hosts' buffers"),
+                source: wgpu::ShaderSource::Wgsl(source.into()),
+            }),
+            pipelines: Default::default(),
+        }
+    }
+
+    /// Makes the pipeline of an entry point.
+    pub fn compile(&self, entry: &str, device: &wgpu::Device) -> wgpu::ComputePipeline {
+        device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(entry),
+            layout: None,
+            module: &self.module,
+            entry_point: Some(entry),
+            compilation_options: Default::default(),
+            cache: None,
+        })
+    }
+
+    fn pipeline(&self, written: Written, device: &wgpu::Device) -> wgpu::ComputePipeline {
+        let at = match written {
+            Written::Positions { .. } => 0,
+            Written::Normals { .. } => 1,
+            Written::Nodes { .. } => 2,
+            Written::Beyond { .. } => 3,
+        };
+        let make = || self.compile(written.entry(), device);
+        self.pipelines[at].get_or_init(make).clone()
+    }
 }
 
 impl Kernels {
@@ -145,18 +190,20 @@ impl Kernels {
         parts: &[HostWrite],
         device: &wgpu::Device,
     ) -> Result<Bound, Error> {
-        let pipeline = self.pipeline(written, device);
-        let group = |(first, parts): (usize, &[HostWrite])| {
+        let batch = |(first, parts): (usize, &[HostWrite])| {
+            let mesh = &parts[0].mesh;
+            let pipeline = self.pipeline(written, mesh, device);
             let (group, uploaded) = bind(&pipeline, written, (first, parts), device)?;
-            let across = groups(written, &parts[0].mesh);
-            Ok((group, [across, parts.len() as u32], uploaded))
+            Ok(Batch {
+                pipeline,
+                group,
+                workgroups: [groups(written, mesh), parts.len() as u32],
+                uploaded,
+            })
         };
-        let bound = refused(device, || batches(parts).map(group).collect());
-        let groups: Result<Vec<_>, Error> = bound.map_err(Error::HostVertices)?;
-        Ok(Bound {
-            groups: groups?,
-            pipeline,
-        })
+        let bound = refused(device, || batches(parts).map(batch).collect());
+        let batches: Result<Vec<_>, Error> = bound.map_err(Error::HostVertices)?;
+        Ok(Bound(batches?))
     }
 
     /// Looks for a vertex beyond the bounds of its part, and waits for the answer.
@@ -188,30 +235,22 @@ impl Kernels {
         }
     }
 
-    fn pipeline(&mut self, written: Written, device: &wgpu::Device) -> wgpu::ComputePipeline {
-        let made = self.made.get_or_insert_with(|| {
-            Arc::new(Made {
-                module: device.create_shader_module(wgpu::include_wgsl!("place.wgsl")),
-                pipelines: Default::default(),
-            })
-        });
-        let at = match written {
-            Written::Positions { .. } => 0,
-            Written::Normals { .. } => 1,
-            Written::Nodes { .. } => 2,
-            Written::Beyond { .. } => 3,
-        };
-        let make = || {
-            device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(written.entry()),
-                layout: None,
-                module: &made.module,
-                entry_point: Some(written.entry()),
-                compilation_options: Default::default(),
-                cache: None,
-            })
-        };
-        made.pipelines[at].get_or_init(make).clone()
+    /// The kernel that writes parts of a mesh, by its decoder.
+    fn pipeline(
+        &mut self,
+        written: Written,
+        mesh: &HostMesh,
+        device: &wgpu::Device,
+    ) -> wgpu::ComputePipeline {
+        let decoder = mesh.own.vertices.decoder.as_ref();
+        // Nodes are fitted to positions.
+        match decoder.filter(|_| !matches!(written, Written::Nodes { .. })) {
+            Some(decoder) => decoder.made.pipeline(written, device),
+            None => {
+                let make = || Arc::new(Made::new(device, include_str!("decode.wgsl")));
+                self.made.get_or_insert_with(make).pipeline(written, device)
+            }
+        }
     }
 }
 
@@ -238,7 +277,12 @@ fn groups(written: Written, mesh: &HostMesh) -> u32 {
         Written::Normals { .. } => rest.normals.len(),
         Written::Nodes { .. } => 1,
     };
-    (items as u32).div_ceil(WIDTH).min(MOST_GROUPS)
+    across_items(items as u32)
+}
+
+/// Workgroups for so many items.
+pub(super) fn across_items(items: u32) -> u32 {
+    items.div_ceil(WIDTH).min(MOST_GROUPS)
 }
 
 /// The bind group of some parts of one mesh, and the number of bytes that were uploaded for it.
@@ -259,18 +303,9 @@ fn bind(
         let name = "the vertices of a host's mesh".to_owned();
         return Err(Error::TooLarge { name, bytes, limit });
     }
-    let words = |bytes: u64| (bytes / 4) as u32;
-    let normal = vertices.normal.unwrap_or(vertices.position);
-    let record = MeshRecord {
-        first: words(first),
-        stride: words(vertices.stride),
-        position_at: words(vertices.position.at),
-        position_format: vertices.position.code(),
-        normal_at: words(normal.at),
-        normal_format: normal.code(),
-        positions: mesh.movable.rest.positions.len() as u32,
-        normals: mesh.movable.rest.normals.len() as u32,
-    };
+    let rest = &mesh.movable.rest;
+    let numbers = [rest.positions.len(), rest.normals.len()];
+    let record = MeshRecord::new(vertices, first, numbers.map(|number| number as u32));
     let records = (begins..).zip(parts);
     let records: Vec<PartRecord> = records
         .map(|(at, part)| PartRecord::new(at, part))
@@ -344,6 +379,24 @@ fn bind(
         entries: &entries,
     });
     Ok((group, uploaded))
+}
+
+impl MeshRecord {
+    /// Of vertices from a byte of what is bound on.
+    pub fn new(vertices: &HostVertices, first: u64, [positions, normals]: [u32; 2]) -> Self {
+        let words = |bytes: u64| (bytes / 4) as u32;
+        let normal = vertices.normal.unwrap_or(vertices.position);
+        Self {
+            first: words(first),
+            stride: words(vertices.stride),
+            position_at: words(vertices.position.at),
+            position_format: vertices.position.code(),
+            normal_at: words(normal.at),
+            normal_format: normal.code(),
+            positions,
+            normals,
+        }
+    }
 }
 
 impl PartRecord {

@@ -133,7 +133,7 @@ impl HostVertices {
     /// Number of bytes from the start of the first vertex to the end of what is read of the last.
     pub(super) fn length(&self) -> u64 {
         let end = self.attributes().map(Attribute::end).max();
-        // What a module of the host reads is not known.
+        // A module of the host may read all of it.
         let end = end.or(Some(self.stride.max(4)));
         let last = u64::from(self.count.saturating_sub(1)).saturating_mul(self.stride);
         last.saturating_add(end.unwrap_or_default())

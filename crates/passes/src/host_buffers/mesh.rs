@@ -1,6 +1,6 @@
 //! A mesh whose vertices stay in a host's buffer.
 
-use super::{error::HostMeshError, layout::HostVertices};
+use super::{error::HostMeshError, layout::HostVertices, rest::decoded};
 use crate::{buffers::On, parts::Room};
 use glam::Vec3;
 use skiagraph_scene::{Bvh, Indexed, Mesh, Movable, TwoLevelBvh};
@@ -80,11 +80,11 @@ impl HostMesh {
             }
         };
         let [positions, normals] = match &vertices.decoder {
-            Some(decoder) => decoder.decoded(&vertices, rest, On { device, queue })?,
+            Some(decoder) => decoded(decoder, &vertices, rest, On { device, queue })?,
             None => {
-                let decoded = |attribute| vertices.decoded(attribute, rest);
-                let normals = vertices.normal.map(decoded).unwrap_or_default();
-                [decoded(vertices.position), normals]
+                let read = |attribute| vertices.decoded(attribute, rest);
+                let normals = vertices.normal.map(read).unwrap_or_default();
+                [read(vertices.position), normals]
             }
         };
         let has_normals = vertices.has_normals();

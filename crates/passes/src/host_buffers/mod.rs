@@ -4,8 +4,11 @@
 
 mod decoder;
 mod error;
+mod kernel_module;
 mod layout;
 mod mesh;
+mod mesh_record;
+mod rest;
 mod writes;
 
 pub use decoder::HostDecoder;

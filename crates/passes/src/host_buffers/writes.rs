@@ -1,6 +1,10 @@
 //! Kernels that write the parts of hosts' buffers into those of the scene.
 
-use super::{layout::HostVertices, mesh::HostMesh};
+use super::{
+    kernel_module::{ENTRIES, KernelModule},
+    mesh::HostMesh,
+    mesh_record::{MOST_GROUPS, MeshRecord, across_items},
+};
 use crate::{
     buffers::{On, binding_limit, refused},
     error::Error,
@@ -8,13 +12,8 @@ use crate::{
     parts::PartId,
 };
 use glam::{DAffine3, DVec3, Vec3};
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
-
-/// Items that a workgroup of a kernel writes at once.
-const WIDTH: u32 = 256;
-/// The most workgroups of a dispatch along an axis.
-const MOST_GROUPS: u32 = 65535;
 
 /// A part that is to be written.
 pub(crate) struct HostWrite {
@@ -46,20 +45,6 @@ struct PartRecord {
     padding: u32,
 }
 
-/// As `Mesh` in place.wgsl.
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-pub(super) struct MeshRecord {
-    first: u32,
-    stride: u32,
-    position_at: u32,
-    position_format: u32,
-    normal_at: u32,
-    normal_format: u32,
-    positions: u32,
-    normals: u32,
-}
-
 /// Buffer that a kernel writes, with the scene's buffers that it reads.
 #[derive(Clone, Copy)]
 pub(crate) enum Written<'a> {
@@ -84,12 +69,13 @@ pub(crate) enum Written<'a> {
 }
 
 impl Written<'_> {
-    fn entry(self) -> &'static str {
+    /// The number of its entry point.
+    fn entry(self) -> usize {
         match self {
-            Self::Positions { .. } => "place_positions",
-            Self::Normals { .. } => "place_normals",
-            Self::Nodes { .. } => "fit_nodes",
-            Self::Beyond { .. } => "find_beyond",
+            Self::Positions { .. } => 0,
+            Self::Normals { .. } => 1,
+            Self::Nodes { .. } => 2,
+            Self::Beyond { .. } => 3,
         }
     }
 }
@@ -105,14 +91,7 @@ impl HostWrite {
 /// The kernels on a device for vertices of our formats, made when they are first asked for.
 #[derive(Clone, Default)]
 pub(crate) struct Kernels {
-    made: Option<Arc<Made>>,
-}
-
-/// The module of kernels that decode vertices in one way, and its pipelines.
-#[derive(Debug)]
-pub(super) struct Made {
-    module: wgpu::ShaderModule,
-    pipelines: [OnceLock<wgpu::ComputePipeline>; 4],
+    made: Option<Arc<KernelModule>>,
 }
 
 /// Kernels with all that they read and write.
@@ -138,43 +117,6 @@ impl Bound {
             pass.dispatch_workgroups(across, parts, 1);
         }
         self.0.iter().map(|batch| batch.uploaded).sum()
-    }
-}
-
-impl Made {
-    /// Makes the module, with one that decodes vertices.
-    pub fn new(device: &wgpu::Device, decode: &str) -> Self {
-        let source = format!("{decode}\n{}", include_str!("place.wgsl"));
-        Self {
-            module: device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some("parts of hosts' buffers"),
-                source: wgpu::ShaderSource::Wgsl(source.into()),
-            }),
-            pipelines: Default::default(),
-        }
-    }
-
-    /// Makes the pipeline of an entry point.
-    pub fn compile(&self, entry: &str, device: &wgpu::Device) -> wgpu::ComputePipeline {
-        device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(entry),
-            layout: None,
-            module: &self.module,
-            entry_point: Some(entry),
-            compilation_options: Default::default(),
-            cache: None,
-        })
-    }
-
-    fn pipeline(&self, written: Written, device: &wgpu::Device) -> wgpu::ComputePipeline {
-        let at = match written {
-            Written::Positions { .. } => 0,
-            Written::Normals { .. } => 1,
-            Written::Nodes { .. } => 2,
-            Written::Beyond { .. } => 3,
-        };
-        let make = || self.compile(written.entry(), device);
-        self.pipelines[at].get_or_init(make).clone()
     }
 }
 
@@ -245,10 +187,11 @@ impl Kernels {
         let decoder = mesh.own.vertices.decoder.as_ref();
         // Nodes are fitted to positions.
         match decoder.filter(|_| !matches!(written, Written::Nodes { .. })) {
-            Some(decoder) => decoder.made.pipeline(written, device),
+            Some(decoder) => decoder.made.pipeline(written.entry(), device),
             None => {
-                let make = || Arc::new(Made::new(device, include_str!("decode.wgsl")));
-                self.made.get_or_insert_with(make).pipeline(written, device)
+                let make = || Arc::new(KernelModule::new(device, include_str!("decode.wgsl")));
+                let made = self.made.get_or_insert_with(make);
+                made.pipeline(written.entry(), device)
             }
         }
     }
@@ -278,11 +221,6 @@ fn groups(written: Written, mesh: &HostMesh) -> u32 {
         Written::Nodes { .. } => 1,
     };
     across_items(items as u32)
-}
-
-/// Workgroups for so many items.
-pub(super) fn across_items(items: u32) -> u32 {
-    items.div_ceil(WIDTH).min(MOST_GROUPS)
 }
 
 /// The bind group of some parts of one mesh, and the number of bytes that were uploaded for it.
@@ -374,29 +312,11 @@ fn bind(
         .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
         .collect();
     let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some(written.entry()),
+        label: Some(ENTRIES[written.entry()]),
         layout: &pipeline.get_bind_group_layout(0),
         entries: &entries,
     });
     Ok((group, uploaded))
-}
-
-impl MeshRecord {
-    /// Of vertices from a byte of what is bound on.
-    pub fn new(vertices: &HostVertices, first: u64, [positions, normals]: [u32; 2]) -> Self {
-        let words = |bytes: u64| (bytes / 4) as u32;
-        let normal = vertices.normal.unwrap_or(vertices.position);
-        Self {
-            first: words(first),
-            stride: words(vertices.stride),
-            position_at: words(vertices.position.at),
-            position_format: vertices.position.code(),
-            normal_at: words(normal.at),
-            normal_format: normal.code(),
-            positions,
-            normals,
-        }
-    }
 }
 
 impl PartRecord {

@@ -614,9 +614,12 @@ fn exact_presets_are_right(packing: Packing) {
 fn sources(folder: &std::path::Path) -> Vec<std::path::PathBuf> {
     let entries = std::fs::read_dir(folder).unwrap();
     let paths = entries.map(|entry| entry.unwrap().path());
-    let below = |path: std::path::PathBuf| match path.is_dir() {
-        true => sources(&path),
-        false => vec![path],
+    let below = |path: std::path::PathBuf| {
+        if path.is_dir() {
+            sources(&path)
+        } else {
+            vec![path]
+        }
     };
     paths.flat_map(below).collect()
 }

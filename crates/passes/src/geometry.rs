@@ -407,12 +407,16 @@ impl Geometry {
     ) -> Result<(PartId, Change), Error> {
         let host = HostPart::new(mesh, map);
         let host = host.map_err(|error| error.renumbered(self.parts.len()))?;
-        self.add_as((Arc::clone(mesh.movable()), Some(host)), map, scene)
+        self.add_as(
+            (Arc::clone(mesh.movable()), Some(Box::new(host))),
+            map,
+            scene,
+        )
     }
 
     fn add_as(
         &mut self,
-        (of, host): (Arc<Movable>, Option<HostPart>),
+        (of, host): (Arc<Movable>, Option<Box<HostPart>>),
         map: &DAffine3,
         scene: &mut Arc<Scene>,
     ) -> Result<(PartId, Change), Error> {
@@ -939,7 +943,7 @@ impl Piece {
     /// The part of a host's buffer that it is, if it is one.
     fn host(&self) -> Option<&HostPart> {
         match &self.content {
-            Content::Part(part) => part.host.as_ref(),
+            Content::Part(part) => part.host.as_deref(),
             _ => None,
         }
     }

@@ -22,7 +22,7 @@ pub(crate) struct Part {
     /// True if its triangles are wound the other way than at rest.
     pub is_mirrored: bool,
     /// Where its vertices are, if they are in a buffer of the host.
-    pub host: Option<HostPart>,
+    pub host: Option<Box<HostPart>>,
 }
 
 /// Part whose vertices are in a buffer of the host.

@@ -69,6 +69,48 @@ pub(crate) enum Written<'a> {
 }
 
 impl Written<'_> {
+    /// The bindings that its entry point uses: the numbers of those of vertices and parts, and its
+    /// own. A pipeline's layout has no others.
+    fn bindings<'b>(
+        &'b self,
+        part: &'b HostWrite,
+    ) -> (&'static [u32], Vec<(u32, wgpu::BindingResource<'b>)>) {
+        match self {
+            Self::Positions { positions } => {
+                (&[0, 1, 2, 3], vec![(5, positions.as_entire_binding())])
+            }
+            Self::Normals {
+                normals,
+                positions,
+                indices,
+            } => (
+                &[0, 1, 2, 4],
+                vec![
+                    (6, normals.as_entire_binding()),
+                    (7, positions.as_entire_binding()),
+                    (8, indices.as_entire_binding()),
+                ],
+            ),
+            Self::Nodes {
+                nodes,
+                positions,
+                indices,
+                primitives,
+            } => {
+                let levels = part.nodes.iter();
+                let levels = levels.map(|(_, levels)| (10, levels.as_entire_binding()));
+                let others = [
+                    (7, positions.as_entire_binding()),
+                    (8, indices.as_entire_binding()),
+                    (9, primitives.as_entire_binding()),
+                    (11, nodes.as_entire_binding()),
+                ];
+                (&[1], others.into_iter().chain(levels).collect())
+            }
+            Self::Beyond { beyond } => (&[0, 1, 2, 3], vec![(12, beyond.as_entire_binding())]),
+        }
+    }
+
     /// The number of its entry point.
     fn entry(self) -> usize {
         match self {
@@ -271,41 +313,7 @@ fn bind(
         (3, mesh.sources.as_entire_binding()),
         (4, mesh.normal_sources.as_entire_binding()),
     ];
-    // A pipeline's layout has the bindings that its entry point uses.
-    let (used, others): (&[u32], _) = match written {
-        Written::Positions { positions } => {
-            (&[0, 1, 2, 3], vec![(5, positions.as_entire_binding())])
-        }
-        Written::Normals {
-            normals,
-            positions,
-            indices,
-        } => (
-            &[0, 1, 2, 4],
-            vec![
-                (6, normals.as_entire_binding()),
-                (7, positions.as_entire_binding()),
-                (8, indices.as_entire_binding()),
-            ],
-        ),
-        Written::Nodes {
-            nodes,
-            positions,
-            indices,
-            primitives,
-        } => {
-            let levels = parts[0].nodes.iter();
-            let levels = levels.map(|(_, levels)| (10, levels.as_entire_binding()));
-            let others = [
-                (7, positions.as_entire_binding()),
-                (8, indices.as_entire_binding()),
-                (9, primitives.as_entire_binding()),
-                (11, nodes.as_entire_binding()),
-            ];
-            (&[1], others.into_iter().chain(levels).collect())
-        }
-        Written::Beyond { beyond } => (&[0, 1, 2, 3], vec![(12, beyond.as_entire_binding())]),
-    };
+    let (used, others) = written.bindings(&parts[0]);
     let own = own.into_iter().filter(|(at, _)| used.contains(at));
     let entries: Vec<wgpu::BindGroupEntry> = own
         .chain(others)

@@ -148,7 +148,8 @@ impl Quantised {
     fn at(&self, gpu: &Gpu, buffer: &wgpu::Buffer, offset: u64) -> Result<HostMesh, HostMeshError> {
         let on = (&gpu.device, &gpu.queue);
         let count = self.positions.len() as u32;
-        let indices = HostIndices::U16(&self.indices);
+        let wide: Vec<u32> = self.indices.iter().map(|&index| index.into()).collect();
+        let indices = HostIndices::U32(&wide);
         let vertices = match self.packing {
             Packing::Snorm16 => return self.of_the_document(on, buffer, offset),
             Packing::Unorm16 => HostVertices::new(buffer, offset, STRIDE, count)

@@ -933,6 +933,11 @@ fn a_part_that_the_host_has_rewritten_is_traced_as_it_is() {
     let bounds = [-Vec3::ONE, Vec3::ONE * 0.2];
     host.rewrite_part(part, bounds).unwrap();
     let error = host.check_bounds(&gpu.device, &gpu.queue).unwrap_err();
+    let text = error.to_string();
+    assert!(
+        text.starts_with("vertex ") && text.contains("state larger ones by `rewrite_part`"),
+        "{text}"
+    );
     let Error::Beyond {
         part: told, vertex, ..
     } = error

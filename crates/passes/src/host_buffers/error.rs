@@ -12,7 +12,10 @@ pub enum HostMeshError {
     #[error("the buffer of the vertices cannot be bound: it needs the usage STORAGE")]
     Usage,
     /// An offset or the stride is not divisible by 4.
-    #[error("the {what} of the vertices, {bytes} bytes, is not divisible by 4")]
+    #[error(
+        "the {what} of the vertices, {bytes} bytes, is not divisible by 4: pad them to words of \
+         four bytes"
+    )]
     Alignment {
         /// Length that is meant: `offset`, `stride`, or the attribute `position` or `normal`.
         what: &'static str,
@@ -89,7 +92,10 @@ pub enum HostMeshError {
     #[error("the mesh has no triangle with three different positions")]
     Empty,
     /// A vertex at rest lies outside of the bounds that were stated.
-    #[error("the vertex at {position} at rest lies beyond the stated bounds {low} to {high}")]
+    #[error(
+        "the vertex at {position} at rest lies beyond the stated bounds {low} to {high}: state \
+         larger ones"
+    )]
     Bounds {
         /// Position of the vertex at rest.
         position: Vec3,

@@ -147,7 +147,10 @@ pub enum Error {
         PartId,
     ),
     /// The bounds of a part hold nothing: they are not finite, or the low corner is not the lower.
-    #[error("the bounds of part {part:?} hold nothing: {low} to {high}")]
+    #[error(
+        "the bounds of part {part:?} hold nothing: {low} to {high}; give the low corner, then the \
+         high one"
+    )]
     Bounds {
         /// Handle of the part.
         part: PartId,
@@ -180,7 +183,8 @@ pub enum Error {
     /// A vertex lies beyond the bounds of its part, as
     /// [`SceneProvider::check_bounds`](crate::SceneProvider::check_bounds) has found.
     #[error(
-        "vertex {vertex} of part {part:?} lies beyond its stated bounds {} to {}",
+        "vertex {vertex} of part {part:?} lies beyond its stated bounds {} to {}: state larger \
+         ones by `rewrite_part` or `HostMesh::with_bounds`",
         bounds[0], bounds[1]
     )]
     Beyond {

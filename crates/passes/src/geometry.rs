@@ -368,12 +368,16 @@ impl Geometry {
     ) -> Result<(PartId, Change), Error> {
         let host = HostPart::new(mesh, map);
         let host = host.map_err(|error| error.renumbered(self.parts.len()))?;
-        self.add_as((Arc::clone(mesh.movable()), Some(host)), map, scene)
+        self.add_as(
+            (Arc::clone(mesh.movable()), Some(Box::new(host))),
+            map,
+            scene,
+        )
     }
 
     fn add_as(
         &mut self,
-        (of, host): (Arc<Movable>, Option<HostPart>),
+        (of, host): (Arc<Movable>, Option<Box<HostPart>>),
         map: &DAffine3,
         scene: &mut Arc<Scene>,
     ) -> Result<(PartId, Change), Error> {
@@ -415,7 +419,7 @@ impl Geometry {
             map: Some(*map),
             is_mirrored: moved.is_mirrored,
             of,
-            host: host.map(Box::new),
+            host,
         }));
         if let Some(kept) = &mut self.bvh {
             let tree = Arc::make_mut(&mut kept.tree);
@@ -538,11 +542,11 @@ impl Geometry {
         })
     }
 
-    /// The writes of those parts of hosts' buffers that have moved since a version of the shape,
+    /// The writes of those parts of hosts' buffers that have changed since a version of the shape,
     /// with the pieces that they are; all of them if the scene's buffer was made anew.
     pub fn host_writes(&self, since: Option<u64>) -> Vec<(usize, HostWrite)> {
         let pieces = self.pieces.iter().enumerate();
-        let moved = pieces.filter(|(_, of)| since.is_none_or(|version| of.moved > version));
+        let moved = pieces.filter(|(_, of)| since.is_none_or(|version| of.changed() > version));
         let writes = moved.filter_map(|(piece, of)| match &of.content {
             Content::Part(part) => Some((piece, part.host_write()?)),
             _ => None,
@@ -667,13 +671,13 @@ impl Geometry {
             let since = pieces.filter(move |(_, piece)| of(piece) > known);
             since.map(|(piece, _)| piece)
         };
-        let others: Vec<usize> = since(|piece| piece.moved.max(piece.built)).collect();
-        // The GPU fits the nodes of a host's part, so that none but another tree is uploaded.
-        let uploaded = others.iter().filter(|&&piece| {
+        let others: Vec<usize> = since(Piece::changed).collect();
+        // The GPU fits the nodes of hosts' parts, once they are there.
+        let written = others.iter().filter(|&&piece| {
             let piece = &self.pieces[piece];
             piece.host().is_none() || piece.built > known
         });
-        let nodes = uploaded.map(|&piece| tree.nodes_of(piece));
+        let nodes = written.map(|&piece| tree.nodes_of(piece));
         let nodes = nodes.chain(tree.top()).collect();
         let primitives = since(|piece| piece.turned.max(piece.built));
         let primitives = primitives.map(|piece| tree.primitives_of(piece)).collect();

@@ -6,8 +6,9 @@ use std::{error::Error, sync::mpsc};
 /// Triangle mesh in the vertex and index buffers of a host program, which [`GpuMesh::read`] copies
 /// back to the CPU.
 ///
-/// The presets need the positions on the CPU, too: light space (the space of a shadow map) is
-/// fitted to them, and hierarchies and adjacency are built from them.
+/// The CPU needs its positions: light space (the space of a shadow map) is fitted to them, and
+/// hierarchies and adjacency are built from them. A mesh whose vertices stay in the host's buffer
+/// is a [`HostMesh`](crate::HostMesh).
 #[derive(Clone, Copy, Debug)]
 pub struct GpuMesh<'a> {
     /// Vertices, each [`stride`](Self::stride) bytes after the one before, in a buffer with the

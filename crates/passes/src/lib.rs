@@ -83,7 +83,7 @@ pub use built::{Built, How, Work};
 pub use error::Error;
 pub use eye::{Depth, Eye, EyeError};
 pub use host::{GpuMesh, GpuMeshError};
-pub use host_buffers::{HostIndices, HostMesh, HostMeshError, HostVertices};
+pub use host_buffers::{HostDecoder, HostIndices, HostMesh, HostMeshError, HostVertices};
 pub use parts::{PartId, Room};
 pub use presets::{EmbeddedSources, Preset, load_unit_visibility, presets, registry};
 pub use provider::SceneProvider;

@@ -86,6 +86,11 @@ impl Piece {
         }
     }
 
+    /// Number of the last change of its positions or its tree.
+    pub fn changed(&self) -> u64 {
+        self.moved.max(self.built)
+    }
+
     /// The ranges that hold its positions and normals.
     pub fn ranges(&self, mesh: &Mesh) -> [Range<usize>; 2] {
         match &self.content {

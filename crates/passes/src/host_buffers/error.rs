@@ -12,7 +12,10 @@ pub enum HostMeshError {
     #[error("the buffer of the vertices cannot be bound: it needs the usage STORAGE")]
     Usage,
     /// An offset or the stride is not divisible by 4.
-    #[error("the {what} of the vertices, {bytes} bytes, is not divisible by 4")]
+    #[error(
+        "the {what} of the vertices, {bytes} bytes, is not divisible by 4: pad them to words of \
+         four bytes"
+    )]
     Alignment {
         /// Length that is meant: `offset`, `stride`, or the attribute `position` or `normal`.
         what: &'static str,
@@ -22,7 +25,7 @@ pub enum HostMeshError {
     /// An attribute has a format that is not read.
     #[error(
         "the {name} has the format {format:?}; read are Float32x3, Float32x4, Float16x4, and \
-         Snorm, Unorm, Sint, Uint of 16x4 and 8x4"
+         Snorm, Unorm, Sint, Uint of 16x4 and 8x4, and others by a `HostDecoder`"
     )]
     Format {
         /// Attribute: `position` or `normal`.
@@ -30,6 +33,22 @@ pub enum HostMeshError {
         /// Format that was given.
         format: VertexFormat,
     },
+    /// The module of a [`HostDecoder`](super::HostDecoder) cannot be compiled.
+    #[error(
+        "the module that decodes a host's vertices cannot be compiled; it needs {needed}:\n{why}"
+    )]
+    Module {
+        /// Functions that it needs.
+        needed: &'static str,
+        /// Reason that wgpu gives, with the line.
+        why: String,
+    },
+    /// The device could not decode the vertices at rest.
+    #[error("the vertices at rest could not be decoded by the host's module: {0}")]
+    Decoding(
+        /// Reason that wgpu gives.
+        String,
+    ),
     /// An attribute reaches beyond the end of its vertex.
     #[error("the {name}, {format:?} at byte {at}, does not fit a vertex of {stride} bytes")]
     Attribute {
@@ -73,7 +92,10 @@ pub enum HostMeshError {
     #[error("the mesh has no triangle with three different positions")]
     Empty,
     /// A vertex at rest lies outside of the bounds that were stated.
-    #[error("the vertex at {position} at rest lies beyond the stated bounds {low} to {high}")]
+    #[error(
+        "the vertex at {position} at rest lies beyond the stated bounds {low} to {high}: state \
+         larger ones"
+    )]
     Bounds {
         /// Position of the vertex at rest.
         position: Vec3,

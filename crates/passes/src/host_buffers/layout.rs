@@ -1,6 +1,6 @@
 //! Vertices as they lie in a host's buffer, and how they are read.
 
-use super::error::HostMeshError;
+use super::{decoder::HostDecoder, error::HostMeshError};
 use wgpu::VertexFormat;
 
 /// Formats of attributes, in the order of their numbers in place.wgsl.
@@ -33,6 +33,8 @@ pub struct HostVertices {
     pub(super) count: u32,
     pub(super) position: Attribute,
     pub(super) normal: Option<Attribute>,
+    /// Reads them in place of both attributes.
+    pub(super) decoder: Option<HostDecoder>,
 }
 
 /// Attribute of a vertex.
@@ -60,6 +62,7 @@ impl HostVertices {
                 at: 0,
             },
             normal: None,
+            decoder: None,
         }
     }
 
@@ -80,6 +83,27 @@ impl HostVertices {
         self
     }
 
+    /// Has a module of the host read positions and normals, in place of the two attributes: for
+    /// other formats, or for what is packed in ways of the host's own.
+    pub fn with_decoder(mut self, decoder: &HostDecoder) -> Self {
+        self.decoder = Some(decoder.clone());
+        self
+    }
+
+    /// True if vertices have normals.
+    pub(super) fn has_normals(&self) -> bool {
+        match &self.decoder {
+            Some(decoder) => decoder.has_normals,
+            None => self.normal.is_some(),
+        }
+    }
+
+    /// The attributes that are read, unless a module of the host reads vertices.
+    fn attributes(&self) -> impl Iterator<Item = Attribute> {
+        let attributes = [Some(self.position), self.normal].into_iter().flatten();
+        attributes.filter(|_| self.decoder.is_none())
+    }
+
     /// Checks that it can be read as it is described.
     pub(super) fn check(&self) -> Result<(), HostMeshError> {
         if !self.buffer.usage().contains(wgpu::BufferUsages::STORAGE) {
@@ -87,7 +111,7 @@ impl HostVertices {
         }
         let (offset, stride) = (self.offset, self.stride);
         let mut aligned = vec![("offset", offset), ("stride", stride)];
-        for attribute in [Some(self.position), self.normal].into_iter().flatten() {
+        for attribute in self.attributes() {
             attribute.check(stride)?;
             aligned.push((attribute.name, attribute.at));
         }
@@ -108,13 +132,14 @@ impl HostVertices {
 
     /// Number of bytes from the start of the first vertex to the end of what is read of the last.
     pub(super) fn length(&self) -> u64 {
-        let ends = [Some(self.position), self.normal].into_iter().flatten();
-        let end = ends.map(|attribute| attribute.end()).max();
+        let end = self.attributes().map(Attribute::end).max();
+        // A module of the host may read all of it.
+        let end = end.or(Some(self.stride.max(4)));
         let last = u64::from(self.count.saturating_sub(1)).saturating_mul(self.stride);
         last.saturating_add(end.unwrap_or_default())
     }
 
-    /// Decodes an attribute of all vertices, whose bytes these are.
+    /// Decodes an attribute of all vertices, whose bytes these are, without the host's module.
     pub(super) fn decoded(&self, attribute: Attribute, bytes: &[u8]) -> Vec<[f32; 3]> {
         let vertex = |index: u32| {
             let at = u64::from(index) * self.stride + attribute.at;

@@ -1,10 +1,7 @@
 //! A mesh whose vertices stay in a host's buffer.
 
-use super::{
-    error::HostMeshError,
-    layout::{Attribute, HostVertices},
-};
-use crate::parts::Room;
+use super::{error::HostMeshError, layout::HostVertices, rest::decoded};
+use crate::{buffers::On, parts::Room};
 use glam::Vec3;
 use skiagraph_scene::{Bvh, Indexed, Mesh, Movable, TwoLevelBvh};
 use std::{
@@ -55,12 +52,13 @@ pub(super) struct Own {
 impl HostMesh {
     /// Makes the mesh of vertices whose bytes at rest are `rest`, from the first vertex on.
     /// Vertices of equal position at rest are one from then on. Bounds are those of the vertices at
-    /// rest.
+    /// rest. With a [decoder](HostVertices::with_decoder) of the host it waits for the GPU, which
+    /// decodes the vertices at rest.
     ///
     /// # Errors
     /// [`HostMeshError`] if the vertices cannot be read as they are described, or form no mesh.
     pub fn new(
-        device: &wgpu::Device,
+        (device, queue): (&wgpu::Device, &wgpu::Queue),
         vertices: HostVertices,
         rest: &[u8],
         indices: HostIndices<'_>,
@@ -81,28 +79,31 @@ impl HostMesh {
                 &wide[..]
             }
         };
-        let decoded = |attribute: Attribute| vertices.decoded(attribute, rest);
-        let positions = decoded(vertices.position);
+        let [positions, normals] = match &vertices.decoder {
+            Some(decoder) => decoded(decoder, &vertices, rest, On { device, queue })?,
+            None => {
+                let read = |attribute| vertices.decoded(attribute, rest);
+                let normals = vertices.normal.map(read).unwrap_or_default();
+                [read(vertices.position), normals]
+            }
+        };
+        let has_normals = vertices.has_normals();
         let mut mesh = Indexed {
             positions: &positions,
-            normals: &vertices.normal.map(decoded).unwrap_or_default(),
+            normals: &normals,
             indices,
         }
         .mesh()?;
         let (low, high) = mesh.bounds().ok_or(HostMeshError::Empty)?;
-        if vertices.normal.is_none() {
+        if !has_normals {
             part_normals(&mut mesh);
         }
         let welded = Welded::new(&mesh, &positions);
         let movable = Movable::joined(&[&mesh]);
         let [sources, normal_sources] = [
             bytemuck::cast_slice(&welded.sources(&movable.rest)).to_vec(),
-            bytemuck::cast_slice(&welded.normal_sources(
-                &movable.rest,
-                indices,
-                vertices.normal.is_some(),
-            ))
-            .to_vec(),
+            bytemuck::cast_slice(&welded.normal_sources(&movable.rest, indices, has_normals))
+                .to_vec(),
         ]
         .map(|content: Vec<u8>| storage(device, "host.sources", &content));
         let tree = Bvh::build(&movable.rest);

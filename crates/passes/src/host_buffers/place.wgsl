@@ -1,7 +1,8 @@
 // Kernels that bring a host's vertices into the scene's buffers. Positions are computed in integers,
 // so that each is, on any device, the f32 that the CPU has for it: the vertex decoded to f32, moved
 // by the f64 map, and rounded once (`Movable::moved_part`). `y` of a workgroup counts the parts of
-// one mesh.
+// one mesh. `position_bits` and `normal_bits`, the bits of a vertex decoded to f32, are those of
+// decode.wgsl, or of host_decode.wgsl and the host's own module.
 
 struct Mesh {
     // In words of four bytes.
@@ -57,22 +58,13 @@ struct Node {
 // The first vertex of each part that lies beyond its bounds.
 @group(0) @binding(12) var<storage, read_write> beyond: array<atomic<u32>>;
 
+// The position and normal of each vertex, as bits.
+@group(0) @binding(13) var<storage, read_write> at_rest: array<array<u32, 6>>;
+
 const NONE = 0xffffffffu;
 const NOT_A_NUMBER = 0x7fc00000u;
 const INFINITE = 0x7f800000u;
 const WIDTH = 256u;
-
-// Formats of an attribute, as in layout.rs.
-const FLOAT32 = 0u;
-const FLOAT16 = 1u;
-const SNORM16 = 2u;
-const UNORM16 = 3u;
-const SINT16 = 4u;
-const UINT16 = 5u;
-const SNORM8 = 6u;
-const UNORM8 = 7u;
-const SINT8 = 8u;
-const UINT8 = 9u;
 
 @compute @workgroup_size(WIDTH)
 fn place_positions(
@@ -81,7 +73,7 @@ fn place_positions(
 ) {
     for (var i = thread.x; i < mesh.positions; i += WIDTH * groups.x) {
         if sources[i] != NONE {
-            let at = moved(thread.y, own_position(sources[i]));
+            let at = moved(thread.y, position_bits(sources[i]));
             placed[parts[thread.y].first_position + i] = vec4(at, bitcast<u32>(1.0));
         }
     }
@@ -96,7 +88,7 @@ fn place_normals(
         let source = normal_sources[i];
         var normal = vec3(0.0);
         if source.x != NONE {
-            let own = component_bits(source.x, mesh.normal_at, mesh.normal_format);
+            let own = normal_bits(source.x);
             normal = unit(parts[thread.y].across * bitcast<vec3<f32>>(own));
         }
         if all(normal == vec3(0.0)) {
@@ -134,9 +126,22 @@ fn find_beyond(
     let low = parts[thread.y].low;
     let high = parts[thread.y].high;
     for (var i = thread.x; i < mesh.positions; i += WIDTH * groups.x) {
-        if sources[i] != NONE && !is_within(own_position(sources[i]), low, high) {
+        if sources[i] != NONE && !is_within(position_bits(sources[i]), low, high) {
             atomicMin(&beyond[parts[thread.y].number], sources[i]);
         }
+    }
+}
+
+// Decodes the vertices at rest, of which `mesh.positions` is the number.
+@compute @workgroup_size(WIDTH)
+fn decode_rest(
+    @builtin(global_invocation_id) thread: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+) {
+    for (var i = thread.x; i < mesh.positions; i += WIDTH * groups.x) {
+        let at = position_bits(i);
+        let normal = normal_bits(i);
+        at_rest[i] = array(at.x, at.y, at.z, normal.x, normal.y, normal.z);
     }
 }
 
@@ -177,96 +182,6 @@ fn unit(v: vec3<f32>) -> vec3<f32> {
 fn shortened(v: vec3<f32>) -> vec3<f32> {
     let largest = max(abs(v.x), max(abs(v.y), abs(v.z)));
     return select(vec3(0.0), v / largest, largest > 0.0);
-}
-
-fn own_position(vertex: u32) -> vec3<u32> {
-    return component_bits(vertex, mesh.position_at, mesh.position_format);
-}
-
-// Three components of an attribute, decoded, as bits of f32.
-fn component_bits(vertex: u32, at: u32, format: u32) -> vec3<u32> {
-    let word = mesh.first + vertex * mesh.stride + at;
-    if format == FLOAT32 {
-        return vec3(vertices[word], vertices[word + 1u], vertices[word + 2u]);
-    }
-    if format >= SNORM8 {
-        let bytes = vertices[word];
-        return vec3(
-            byte(bytes & 0xffu, format),
-            byte((bytes >> 8u) & 0xffu, format),
-            byte((bytes >> 16u) & 0xffu, format),
-        );
-    }
-    let half = vec3(vertices[word], vertices[word] >> 16u, vertices[word + 1u]) & vec3(0xffffu);
-    return vec3(
-        half_word(half.x, format),
-        half_word(half.y, format),
-        half_word(half.z, format),
-    );
-}
-
-fn byte(bits: u32, format: u32) -> u32 {
-    let signed = bitcast<i32>(bits << 24u) >> 24u;
-    switch format {
-        case SNORM8: { return share(signed, 127u); }
-        case UNORM8: { return share(bitcast<i32>(bits), 255u); }
-        case SINT8: { return bitcast<u32>(f32(signed)); }
-        default: { return bitcast<u32>(f32(bits)); }
-    }
-}
-
-fn half_word(bits: u32, format: u32) -> u32 {
-    let signed = bitcast<i32>(bits << 16u) >> 16u;
-    switch format {
-        case FLOAT16: { return from_half(bits); }
-        case SNORM16: { return share(signed, 32767u); }
-        case UNORM16: { return share(bitcast<i32>(bits), 65535u); }
-        case SINT16: { return bitcast<u32>(f32(signed)); }
-        default: { return bitcast<u32>(f32(bits)); }
-    }
-}
-
-fn from_half(bits: u32) -> u32 {
-    let sign = (bits & 0x8000u) << 16u;
-    let exponent = (bits >> 10u) & 31u;
-    let mantissa = bits & 0x3ffu;
-    if exponent == 31u {
-        return sign | INFINITE | (mantissa << 13u);
-    }
-    if exponent > 0u {
-        return sign | ((exponent + 112u) << 23u) | (mantissa << 13u);
-    }
-    if mantissa == 0u {
-        return sign;
-    }
-    let top = firstLeadingBit(mantissa);
-    return sign | ((top + 103u) << 23u) | ((mantissa << (23u - top)) & 0x7fffffu);
-}
-
-// n / most, rounded to the nearest; at least -1.
-fn share(n: i32, most: u32) -> u32 {
-    let sign = select(0u, 0x80000000u, n < 0);
-    let size = min(u32(abs(n)), most);
-    if size == 0u {
-        return 0u;
-    }
-    var shift = countLeadingZeros(size) - countLeadingZeros(most);
-    if (size << shift) < most {
-        shift += 1u;
-    }
-    var rest = size << shift;
-    var mantissa = 0u;
-    for (var i = 0u; i < 24u; i++) {
-        mantissa <<= 1u;
-        if rest >= most {
-            rest -= most;
-            mantissa |= 1u;
-        }
-        rest <<= 1u;
-    }
-    // `most` is odd, so no rest is a half.
-    mantissa += select(0u, 1u, rest > most);
-    return sign | (((126u - shift) << 23u) + mantissa);
 }
 
 // Where the map of a part takes a position, as bits of f32.

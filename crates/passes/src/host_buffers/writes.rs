@@ -1,6 +1,10 @@
 //! Kernels that write the parts of hosts' buffers into those of the scene.
 
-use super::mesh::HostMesh;
+use super::{
+    kernel_module::{ENTRIES, KernelModule},
+    mesh::HostMesh,
+    mesh_record::{MOST_GROUPS, MeshRecord, across_items},
+};
 use crate::{
     buffers::{On, binding_limit, refused},
     error::Error,
@@ -8,13 +12,8 @@ use crate::{
     parts::PartId,
 };
 use glam::{DAffine3, DVec3, Vec3};
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
-
-/// Items that a workgroup of a kernel writes at once.
-const WIDTH: u32 = 256;
-/// The most workgroups of a dispatch along an axis.
-const MOST_GROUPS: u32 = 65535;
 
 /// A part that is to be written.
 pub(crate) struct HostWrite {
@@ -46,20 +45,6 @@ struct PartRecord {
     padding: u32,
 }
 
-/// As `Mesh` in place.wgsl.
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct MeshRecord {
-    first: u32,
-    stride: u32,
-    position_at: u32,
-    position_format: u32,
-    normal_at: u32,
-    normal_format: u32,
-    positions: u32,
-    normals: u32,
-}
-
 /// Buffer that a kernel writes, with the scene's buffers that it reads.
 #[derive(Clone, Copy)]
 pub(crate) enum Written<'a> {
@@ -83,22 +68,13 @@ pub(crate) enum Written<'a> {
     },
 }
 
-/// Number of a binding, and what is bound.
-type Binding<'a> = (u32, wgpu::BindingResource<'a>);
-
 impl Written<'_> {
-    fn entry(self) -> &'static str {
-        match self {
-            Self::Positions { .. } => "place_positions",
-            Self::Normals { .. } => "place_normals",
-            Self::Nodes { .. } => "fit_nodes",
-            Self::Beyond { .. } => "find_beyond",
-        }
-    }
-
-    /// Bindings that its entry point uses, as a pipeline's layout has no others: the numbers of
-    /// those of the mesh and the part, and all others.
-    fn bindings<'a>(&'a self, part: &'a HostWrite) -> (&'static [u32], Vec<Binding<'a>>) {
+    /// The bindings that its entry point uses: the numbers of those of vertices and parts, and its
+    /// own. A pipeline's layout has no others.
+    fn bindings<'b>(
+        &'b self,
+        part: &'b HostWrite,
+    ) -> (&'static [u32], Vec<(u32, wgpu::BindingResource<'b>)>) {
         match self {
             Self::Positions { positions } => {
                 (&[0, 1, 2, 3], vec![(5, positions.as_entire_binding())])
@@ -134,6 +110,16 @@ impl Written<'_> {
             Self::Beyond { beyond } => (&[0, 1, 2, 3], vec![(12, beyond.as_entire_binding())]),
         }
     }
+
+    /// The number of its entry point.
+    fn entry(self) -> usize {
+        match self {
+            Self::Positions { .. } => 0,
+            Self::Normals { .. } => 1,
+            Self::Nodes { .. } => 2,
+            Self::Beyond { .. } => 3,
+        }
+    }
 }
 
 impl HostWrite {
@@ -144,35 +130,36 @@ impl HostWrite {
     }
 }
 
-/// The kernels on a device, made when they are first asked for.
+/// The kernels on a device for vertices of our formats, made when they are first asked for.
 #[derive(Clone, Default)]
 pub(crate) struct Kernels {
-    made: Option<Arc<Made>>,
+    made: Option<Arc<KernelModule>>,
 }
 
-/// Kernel with all that it reads and writes.
-pub(crate) struct Bound {
+/// Kernels with all that they read and write.
+pub(crate) struct Bound(Vec<Batch>);
+
+/// Parts of one mesh that one dispatch writes.
+struct Batch {
     pipeline: wgpu::ComputePipeline,
-    /// Each with its workgroups, and the bytes that were uploaded for it.
-    groups: Vec<(wgpu::BindGroup, [u32; 2], u64)>,
+    group: wgpu::BindGroup,
+    workgroups: [u32; 2],
+    /// Number of bytes that were uploaded for it.
+    uploaded: u64,
 }
 
 impl Bound {
-    /// Records the kernel; the number of bytes that were uploaded for it.
+    /// Records the kernels; the number of bytes that were uploaded for them.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) -> u64 {
         let mut pass = encoder.begin_compute_pass(&Default::default());
-        pass.set_pipeline(&self.pipeline);
-        for (group, [across, parts], _) in &self.groups {
-            pass.set_bind_group(0, group, &[]);
-            pass.dispatch_workgroups(*across, *parts, 1);
+        for batch in &self.0 {
+            let [across, parts] = batch.workgroups;
+            pass.set_pipeline(&batch.pipeline);
+            pass.set_bind_group(0, &batch.group, &[]);
+            pass.dispatch_workgroups(across, parts, 1);
         }
-        self.groups.iter().map(|(.., uploaded)| uploaded).sum()
+        self.0.iter().map(|batch| batch.uploaded).sum()
     }
-}
-
-struct Made {
-    module: wgpu::ShaderModule,
-    pipelines: [OnceLock<wgpu::ComputePipeline>; 4],
 }
 
 impl Kernels {
@@ -187,18 +174,20 @@ impl Kernels {
         parts: &[HostWrite],
         device: &wgpu::Device,
     ) -> Result<Bound, Error> {
-        let pipeline = self.pipeline(written, device);
-        let group = |(first, parts): (usize, &[HostWrite])| {
+        let batch = |(first, parts): (usize, &[HostWrite])| {
+            let mesh = &parts[0].mesh;
+            let pipeline = self.pipeline(written, mesh, device);
             let (group, uploaded) = bind(&pipeline, written, (first, parts), device)?;
-            let across = groups(written, &parts[0].mesh);
-            Ok((group, [across, parts.len() as u32], uploaded))
+            Ok(Batch {
+                pipeline,
+                group,
+                workgroups: [groups(written, mesh), parts.len() as u32],
+                uploaded,
+            })
         };
-        let bound = refused(device, || batches(parts).map(group).collect());
-        let groups: Result<Vec<_>, Error> = bound.map_err(Error::HostVertices)?;
-        Ok(Bound {
-            groups: groups?,
-            pipeline,
-        })
+        let bound = refused(device, || batches(parts).map(batch).collect());
+        let batches: Result<Vec<_>, Error> = bound.map_err(Error::HostVertices)?;
+        Ok(Bound(batches?))
     }
 
     /// Looks for a vertex beyond the bounds of its part, and waits for the answer.
@@ -230,30 +219,23 @@ impl Kernels {
         }
     }
 
-    fn pipeline(&mut self, written: Written, device: &wgpu::Device) -> wgpu::ComputePipeline {
-        let made = self.made.get_or_insert_with(|| {
-            Arc::new(Made {
-                module: device.create_shader_module(wgpu::include_wgsl!("place.wgsl")),
-                pipelines: Default::default(),
-            })
-        });
-        let at = match written {
-            Written::Positions { .. } => 0,
-            Written::Normals { .. } => 1,
-            Written::Nodes { .. } => 2,
-            Written::Beyond { .. } => 3,
-        };
-        let make = || {
-            device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(written.entry()),
-                layout: None,
-                module: &made.module,
-                entry_point: Some(written.entry()),
-                compilation_options: Default::default(),
-                cache: None,
-            })
-        };
-        made.pipelines[at].get_or_init(make).clone()
+    /// The kernel that writes parts of a mesh, by its decoder.
+    fn pipeline(
+        &mut self,
+        written: Written,
+        mesh: &HostMesh,
+        device: &wgpu::Device,
+    ) -> wgpu::ComputePipeline {
+        let decoder = mesh.own.vertices.decoder.as_ref();
+        // Nodes are fitted to positions.
+        match decoder.filter(|_| !matches!(written, Written::Nodes { .. })) {
+            Some(decoder) => decoder.made.pipeline(written.entry(), device),
+            None => {
+                let make = || Arc::new(KernelModule::new(device, include_str!("decode.wgsl")));
+                let made = self.made.get_or_insert_with(make);
+                made.pipeline(written.entry(), device)
+            }
+        }
     }
 }
 
@@ -280,7 +262,7 @@ fn groups(written: Written, mesh: &HostMesh) -> u32 {
         Written::Normals { .. } => rest.normals.len(),
         Written::Nodes { .. } => 1,
     };
-    (items as u32).div_ceil(WIDTH).min(MOST_GROUPS)
+    across_items(items as u32)
 }
 
 /// The bind group of some parts of one mesh, and the number of bytes that were uploaded for it.
@@ -301,18 +283,9 @@ fn bind(
         let name = "the vertices of a host's mesh".to_owned();
         return Err(Error::TooLarge { name, bytes, limit });
     }
-    let words = |bytes: u64| (bytes / 4) as u32;
-    let normal = vertices.normal.unwrap_or(vertices.position);
-    let record = MeshRecord {
-        first: words(first),
-        stride: words(vertices.stride),
-        position_at: words(vertices.position.at),
-        position_format: vertices.position.code(),
-        normal_at: words(normal.at),
-        normal_format: normal.code(),
-        positions: mesh.movable.rest.positions.len() as u32,
-        normals: mesh.movable.rest.normals.len() as u32,
-    };
+    let rest = &mesh.movable.rest;
+    let numbers = [rest.positions.len(), rest.normals.len()];
+    let record = MeshRecord::new(vertices, first, numbers.map(|number| number as u32));
     let records = (begins..).zip(parts);
     let records: Vec<PartRecord> = records
         .map(|(at, part)| PartRecord::new(at, part))
@@ -347,7 +320,7 @@ fn bind(
         .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
         .collect();
     let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some(written.entry()),
+        label: Some(ENTRIES[written.entry()]),
         layout: &pipeline.get_bind_group_layout(0),
         entries: &entries,
     });

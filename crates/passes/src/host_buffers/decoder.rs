@@ -1,0 +1,64 @@
+//! A module of the host that decodes vertices of formats that are not ours.
+
+use super::{error::HostMeshError, kernel_module::KernelModule};
+use crate::buffers::refused;
+use std::sync::Arc;
+
+/// Normals of a module that has none: triangles get those of their planes.
+const NO_NORMALS: &str = "fn decode_normal(first: u32) -> vec3<f32> { return vec3(0.0); }";
+
+/// WGSL module of the host that decodes vertices, in the place of ours
+/// ([`HostVertices::with_decoder`]).
+///
+/// It has the function `decode_position(first: u32) -> vec3<f32>`, and
+/// `decode_normal(first: u32) -> vec3<f32>` where it decodes normals, of any length. `first` is the
+/// number of the vertex's first word in `vertices: array<u32>`, the host's buffer in words of four
+/// bytes, which the module does not declare. Its other names begin with `decode_`.
+///
+/// Positions are equal in all kernels where the module computes them in integers, or in f32 without
+/// rounding. A module that rounds may differ between kernels by what a compiler fuses: bounds are
+/// then [stated](crate::HostMesh::with_bounds) so much larger.
+#[derive(Clone, Debug)]
+pub struct HostDecoder {
+    pub(super) made: Arc<KernelModule>,
+    pub(super) has_normals: bool,
+}
+
+impl HostDecoder {
+    /// Compiles a module that decodes positions. Triangles have the normals of their planes.
+    ///
+    /// # Errors
+    /// [`HostMeshError::Module`] with the line that is wrong.
+    pub fn of_positions(device: &wgpu::Device, wgsl: &str) -> Result<Self, HostMeshError> {
+        let needed = "`decode_position(first: u32) -> vec3<f32>`";
+        Self::new(device, &format!("{wgsl}\n{NO_NORMALS}"), needed, false)
+    }
+
+    /// Compiles a module that decodes positions and normals.
+    ///
+    /// # Errors
+    /// [`HostMeshError::Module`] with the line that is wrong.
+    pub fn of_positions_and_normals(
+        device: &wgpu::Device,
+        wgsl: &str,
+    ) -> Result<Self, HostMeshError> {
+        let needed = "`decode_position` and `decode_normal`, both `(first: u32) -> vec3<f32>`";
+        Self::new(device, wgsl, needed, true)
+    }
+
+    fn new(
+        device: &wgpu::Device,
+        wgsl: &str,
+        needed: &'static str,
+        has_normals: bool,
+    ) -> Result<Self, HostMeshError> {
+        // The host's module comes first, so that lines are those of its text.
+        let decode = format!("{wgsl}\n{}", include_str!("host_decode.wgsl"));
+        let made = refused(device, || KernelModule::new(device, &decode));
+        let made = made.map_err(|why| HostMeshError::Module { needed, why })?;
+        Ok(Self {
+            made: Arc::new(made),
+            has_normals,
+        })
+    }
+}

@@ -714,9 +714,9 @@ fn mistakes_in_a_module_of_the_host_are_named() {
         "{beyond:?}"
     );
     // All vertices are the first one.
-    assert_eq!(make(0, count, &own.vertices), Err(HostMeshError::Empty));
-    let none = make(8, 0, &own.vertices);
-    assert!(matches!(none, Err(HostMeshError::Mesh(_))), "{none:?}");
+    let one = make(0, count, &own.vertices[..4]);
+    assert_eq!(one, Err(HostMeshError::Empty));
+    assert_eq!(make(8, 0, &own.vertices), Err(HostMeshError::Empty));
 }
 
 /// Moves parts in each frame. The CPU writes records of them, whatever their triangles.
@@ -950,11 +950,36 @@ fn a_part_that_the_host_has_rewritten_is_traced_as_it_is() {
         own.cmpgt(bounds[1]).any() || own.cmplt(bounds[0]).any(),
         "{own}"
     );
-    let lie = host.rewrite_part(part, [Vec3::ONE, Vec3::NAN]).unwrap_err();
-    assert!(
-        matches!(lie, Error::Bounds { part: told, .. } if told == part),
-        "{lie}"
-    );
+    for bounds in [[Vec3::ONE, Vec3::NAN], [Vec3::NEG_INFINITY, Vec3::ONE]] {
+        let lie = host.rewrite_part(part, bounds).unwrap_err();
+        assert!(
+            matches!(lie, Error::Bounds { part: told, .. } if told == part),
+            "{lie}"
+        );
+    }
+}
+
+/// A vertex that no index names, equal to one at rest, is the host's to write.
+#[test]
+fn a_vertex_that_no_triangle_uses_moves_nothing() {
+    let gpu = open();
+    let own = Quantised::new(&meshes::potato(1, 0.2, 1), Packing::Snorm16);
+    let stride = STRIDE as usize;
+    let rest = [&own.vertices[3 * stride..4 * stride], &own.vertices[..]].concat();
+    let buffer = upload(&gpu, &rest);
+    let count = own.positions.len() as u32 + 1;
+    let vertices = HostVertices::new(&buffer, 0, STRIDE, count);
+    let vertices = vertices.with_position(VertexFormat::Snorm16x4, 0);
+    let indices: Vec<u16> = own.indices.iter().map(|index| index + 1).collect();
+    let on = (&gpu.device, &gpu.queue);
+    let mesh = HostMesh::new(on, vertices, &rest, HostIndices::U16(&indices)).unwrap();
+    let mut scene = SceneProvider::from_parts(Movable::joined(&[]), sun());
+    let part = scene.add_host_part(&mesh, &DAffine3::IDENTITY).unwrap();
+    let before = contents(&gpu, &mut scene, "scene.positions");
+    gpu.queue.write_buffer(&buffer, 0, &[0x11; 8]);
+    scene.rewrite_part(part, mesh.bounds()).unwrap();
+    assert!(before == contents(&gpu, &mut scene, "scene.positions"));
+    scene.check_bounds(&gpu.device, &gpu.queue).unwrap();
 }
 
 /// Frames that were encoded before show a part that is removed, or moved, since.
@@ -1078,7 +1103,10 @@ fn mistakes_in_a_layout_are_named() {
             right.clone().with_position(VertexFormat::Snorm16x2, 0),
             "Snorm16x2; read are",
         ),
-        (of(&buffer, 0, STRIDE, count - 1), "index"),
+        (
+            of(&buffer, 0, STRIDE, count - 1),
+            "give those of the mesh alone, from its first vertex to its last",
+        ),
     ];
     let make = |vertices, rest: &[u8], indices| {
         let on = (&gpu.device, &gpu.queue);
@@ -1090,6 +1118,14 @@ fn mistakes_in_a_layout_are_named() {
     }
     let short = make(right.clone(), &own.vertices[8..], &own.indices).unwrap_err();
     assert!(matches!(short, HostMeshError::Rest { .. }), "{short}");
+    let few = own.vertices.len() - STRIDE as usize;
+    let few = make(
+        of(&buffer, 0, STRIDE, count - 1),
+        &own.vertices[..few],
+        &own.indices,
+    );
+    let few = few.unwrap_err();
+    assert!(few.to_string().contains("index"), "{few}");
     let odd = make(right.clone(), &own.vertices, &own.indices[1..]).unwrap_err();
     assert!(matches!(odd, HostMeshError::Mesh(_)), "{odd}");
     let empty = make(right.clone(), &own.vertices, &[]).unwrap_err();
@@ -1101,6 +1137,9 @@ fn mistakes_in_a_layout_are_named() {
         .with_bounds([low, high - 0.1 * Vec3::X])
         .unwrap_err();
     assert!(matches!(small, HostMeshError::Bounds { .. }), "{small}");
+    let wide = mesh.clone().with_bounds([Vec3::NEG_INFINITY, high]);
+    let wide = wide.unwrap_err();
+    assert!(wide.to_string().contains("not finite"), "{wide}");
     assert_eq!(
         mesh.with_bounds([low - 1.0, high]).unwrap().bounds(),
         [low - 1.0, high]

@@ -149,7 +149,7 @@ pub enum Error {
     /// The bounds of a part hold nothing: they are not finite, or the low corner is not the lower.
     #[error(
         "the bounds of part {part:?} hold nothing: {low} to {high}; give the low corner, then the \
-         high one"
+         high one, both finite"
     )]
     Bounds {
         /// Handle of the part.

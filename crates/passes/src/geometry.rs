@@ -514,7 +514,7 @@ impl Geometry {
             return Err(Error::NoHostPart(id));
         };
         let [low, high] = bounds;
-        if !low.cmple(high).all() {
+        if !low.cmple(high).all() || !low.is_finite() || !high.is_finite() {
             return Err(Error::Bounds {
                 part: id,
                 low,

@@ -77,12 +77,28 @@ pub enum HostMeshError {
         size: u64,
     },
     /// The vertices at rest were given with another number of bytes.
-    #[error("{needed} bytes of vertices at rest are needed, but {given} were given")]
+    #[error(
+        "{needed} bytes of vertices at rest are needed, but {given} were given: give those of the \
+         mesh alone, from its first vertex to its last"
+    )]
     Rest {
         /// Number of bytes from the start of the first vertex to the end of the last.
         needed: u64,
         /// Number of bytes that were given.
         given: u64,
+    },
+    /// The device cannot bind so many bytes.
+    #[error(
+        "{what} of the mesh take {bytes} bytes, and the device binds {limit} at most: divide the \
+         mesh"
+    )]
+    TooLarge {
+        /// Data that is too large: `the vertices`, `the positions`, `the normals`.
+        what: &'static str,
+        /// Number of bytes.
+        bytes: u64,
+        /// Most bytes that the device binds.
+        limit: u64,
     },
     /// The vertices and indices do not form a mesh, for example because an index lies beyond the
     /// last vertex.
@@ -91,10 +107,10 @@ pub enum HostMeshError {
     /// No triangle has three different positions.
     #[error("the mesh has no triangle with three different positions")]
     Empty,
-    /// A vertex at rest lies outside of the bounds that were stated.
+    /// A vertex at rest lies outside of the bounds that were stated, or these are not finite.
     #[error(
-        "the vertex at {position} at rest lies beyond the stated bounds {low} to {high}: state \
-         larger ones"
+        "the vertex at {position} at rest lies beyond the stated bounds {low} to {high}, or these \
+         are not finite: state others"
     )]
     Bounds {
         /// Position of the vertex at rest.

@@ -1,7 +1,10 @@
 //! A mesh whose vertices stay in a host's buffer.
 
 use super::{error::HostMeshError, layout::HostVertices, rest::decoded};
-use crate::{buffers::On, parts::Room};
+use crate::{
+    buffers::{On, binding_limit},
+    parts::Room,
+};
 use glam::Vec3;
 use skiagraph_scene::{Bvh, Indexed, Mesh, Movable, TwoLevelBvh};
 use std::{
@@ -64,10 +67,20 @@ impl HostMesh {
         indices: HostIndices<'_>,
     ) -> Result<Self, HostMeshError> {
         vertices.check()?;
+        if vertices.count == 0 {
+            return Err(HostMeshError::Empty);
+        }
         let (needed, given) = (vertices.length(), rest.len() as u64);
-        if given < needed {
+        // Bytes of other meshes would be read as those of this one.
+        if given < needed || given > needed.max(u64::from(vertices.count) * vertices.stride) {
             return Err(HostMeshError::Rest { needed, given });
         }
+        let binds = |what, bytes: u64| {
+            let limit = binding_limit(&device.limits());
+            let error = HostMeshError::TooLarge { what, bytes, limit };
+            if bytes <= limit { Ok(()) } else { Err(error) }
+        };
+        binds("the vertices", needed)?;
         let wide;
         let indices = match indices {
             HostIndices::U32(indices) => indices,
@@ -98,7 +111,9 @@ impl HostMesh {
         if !has_normals {
             part_normals(&mut mesh);
         }
-        let welded = Welded::new(&mesh, &positions);
+        binds("the positions", 16 * mesh.positions.len() as u64)?;
+        binds("the normals", 16 * mesh.normals.len() as u64)?;
+        let welded = Welded::new(&mesh, &positions, indices);
         let movable = Movable::joined(&[&mesh]);
         let [sources, normal_sources] = [
             bytemuck::cast_slice(&welded.sources(&movable.rest)).to_vec(),
@@ -126,11 +141,14 @@ impl HostMesh {
     /// a host will rewrite them within these.
     ///
     /// # Errors
-    /// [`HostMeshError::Bounds`] if a vertex at rest lies outside.
+    /// [`HostMeshError::Bounds`] if a vertex at rest lies outside, or a corner is not finite.
     pub fn with_bounds(mut self, [low, high]: [Vec3; 2]) -> Result<Self, HostMeshError> {
         let rest = &self.own.movable.rest;
         let is_within = |at: Vec3| at.cmpge(low).all() && at.cmple(high).all();
-        let beyond = rest.used_positions().find(|at| !is_within(*at));
+        let is_finite = low.is_finite() && high.is_finite();
+        let beyond = rest
+            .used_positions()
+            .find(|at| !is_finite || !is_within(*at));
         if let Some(position) = beyond {
             return Err(HostMeshError::Bounds {
                 position,
@@ -216,26 +234,24 @@ fn storage(device: &wgpu::Device, label: &str, contents: &[u8]) -> wgpu::Buffer 
 struct Welded {
     /// The position of each vertex.
     of: Vec<u32>,
-    /// The first vertex of each position.
+    /// The first vertex of each position that an index names. Others may hold anything later.
     first: Vec<u32>,
 }
 
 impl Welded {
-    fn new(mesh: &Mesh, vertices: &[[f32; 3]]) -> Self {
+    fn new(mesh: &Mesh, vertices: &[[f32; 3]], indices: &[u32]) -> Self {
         let key = |at: Vec3| (at + Vec3::ZERO).to_array().map(f32::to_bits);
         let known = (0u32..).zip(&mesh.positions);
         let known: HashMap<[u32; 3], u32> = known.map(|(index, &at)| (key(at), index)).collect();
+        // A vertex that no index names may have no position in the mesh.
+        let position = |&at: &[f32; 3]| known.get(&key(at.into())).copied().unwrap_or(NONE);
+        let of: Vec<u32> = vertices.iter().map(position).collect();
         let mut first = vec![NONE; mesh.positions.len()];
-        let position = |(vertex, &at): (u32, &[f32; 3])| {
-            let position = known[&key(at.into())];
-            let first = &mut first[position as usize];
+        for &vertex in indices {
+            let first = &mut first[of[vertex as usize] as usize];
             *first = vertex.min(*first);
-            position
-        };
-        Self {
-            of: (0..).zip(vertices).map(position).collect(),
-            first,
         }
+        Self { of, first }
     }
 
     /// The vertex of each position that a triangle uses.

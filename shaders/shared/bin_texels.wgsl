@@ -184,5 +184,6 @@ fn append(caster: Binned, texel: vec2<u32>, slot: u32, lines: Lines) {
     } else if cut.z < cut.y {
         other = bc;
     }
-    append_entry(number, slot, caster.primitive, entry_key(least_depth(caster, centre), one, other));
+    let key = entry_key(least_depth(caster, centre), one, other);
+    append_entry(number, slot, caster.primitive, key);
 }

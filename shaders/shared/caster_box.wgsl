@@ -18,7 +18,7 @@ fn place_along_light(position: vec3<f32>) -> vec3<f32> {
     return vec3(x, y, dot(way, light.to_light));
 }
 
-// What rounding may move a caster by, here and in the tracer.
+// A bound on how far rounding may move a caster, here and in the tracer.
 fn box_margin() -> f32 {
     let wide = 1.0 + light_area.radius;
     return 32.0 * HALF_ULP * wide * wide * light.max_distance;
@@ -92,8 +92,8 @@ fn coarse_range(low: f32, high: f32, at_nearest: f32, at_farthest: f32) -> vec2<
     );
 }
 
-// Bit 15 if the one sample of a word is in the box, 31 for the other. No byte borrows from the next:
-// guards make up for it.
+// Bit 15 if the one sample of a word is in the box, 31 for the other. Guards keep each byte from
+// borrowing from the next.
 fn bits_between(word: u32, box: CoarseBox) -> u32 {
     let within = (word - box.least) & (box.most - word);
     return within & within << 8u;

@@ -1,7 +1,7 @@
-// As shared/linked_lists.wgsl, entries of a list beside each other in blocks, each twice as large as
-// the one before it, in the order in which they were appended: whoever walks over a long list waits
-// for no memory. The last entry has a next one, too, which may hold anything: lists are as long as
-// the texel says.
+// As shared/linked_lists.wgsl, but entries of a list lie beside each other, as they were appended,
+// in blocks that are each twice as large as the one before it: a walk over a long list does not
+// wait for memory. The last entry names a next one, too, which may hold anything: a list is as long
+// as its texel says.
 
 struct Counted {
     // Entries of all blocks, those included for which there is no room.

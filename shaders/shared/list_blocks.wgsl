@@ -1,7 +1,7 @@
 // As shared/linked_lists.wgsl, but entries of a list lie beside each other, as they were appended,
-// in blocks that are each twice as large as the one before it, up to a size: a walk over a long list
-// does not wait for memory. The last entry names a next one, too, which may hold anything: a list is as long
-// as its texel says.
+// in blocks that are each twice as large as the one before it, up to a size: a walk over a long
+// list does not wait for memory. The last entry names a next one, too, which may hold anything: a
+// list is as long as its texel says.
 
 struct Counted {
     // Entries of all blocks, those included for which there is no room.

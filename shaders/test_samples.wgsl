@@ -5,6 +5,7 @@
 
 #import "shared/aimed_ray.wgsl"
 #import "shared/asked_list.wgsl"
+#import "shared/caster_box.wgsl"
 #import "shared/light_cone.wgsl"
 #import "shared/ray_triangle.wgsl"
 #import "shared/strata.wgsl"
@@ -14,15 +15,17 @@ override samples: u32 = 64u;
 // The turn's first.
 override first_sample: u32 = 0u;
 
-// A thread's rounds after which it looks for no other candidate: docs/light_buffer_area.md has why
-// sixteen threads in step then stay below 65,535, after which llvmpipe ends loops.
-const MOST_ROUNDS: u32 = 3400u;
+// A thread's rounds after which it gives up: docs/light_buffer_area.md has why sixteen threads in
+// step then stay below 65,535, after which llvmpipe ends loops.
+const MOST_ROUNDS: u32 = 4080u;
 const TOO_MANY: u32 = 0xffffffffu;
 // Wider lights than the bounds hold for: of more than 126 degrees.
 const WIDEST: f32 = 2.0;
 
 // Samples of each pixel that see the light, of the turns so far; or TOO_MANY.
 var<storage, read_write> seen: array<u32>;
+// As box_casters.wgsl has them.
+var<storage, read> boxes: array<vec4<u32>>;
 
 struct Answer {
     @location(0) visibility: f32,
@@ -132,13 +135,14 @@ fn point_of(sight: Sight, pixel: u32, i: u32) -> vec2<f32> {
 
 // A thread's way through its list.
 struct Walk {
-    // The next entry.
+    // The next entry, and how many are left.
     number: u32,
+    left: u32,
     rounds: u32,
-    // True from when it first had no room for a candidate, and other threads went on.
-    has_waited: bool,
     // Samples that no caster hides so far, one bit each.
     lit: vec2<u32>,
+    // Candidates over samples that were lit when they were found, the latest first.
+    found: vec4<u32>,
     // Candidates that the tracer's own test decides, the latest first, and for which samples.
     unsure: vec4<u32>,
     low: vec4<u32>,
@@ -146,45 +150,137 @@ struct Walk {
 }
 
 // Returns how many samples of the turn no caster of the list hides. Threads run in step, and some
-// adapters run what any of them could need: so few samples ask the tracer's test, they wait until
-// there are four candidates of that kind.
+// adapters run what any of them could need: so candidates wait until there are four, and those with
+// samples that ask the tracer's test, which are few, once more.
 fn lit_samples(asking: Asking, asked: Asked) -> u32 {
     let all_lit = vec2(bits_below(asking.count), bits_below(max(asking.count, 32u) - 32u));
     let none = vec4(NO_PRIMITIVE);
-    var walk = Walk(asked.head, 0u, false, all_lit, none, vec4(0u), vec4(0u));
-    var candidate = next_candidate(asking, asked, &walk);
+    var walk = Walk(asked.head, asked.length, 0u, all_lit, none, none, vec4(0u), vec4(0u));
     let sight = sight_of(asking.receiver, asked.t_min);
     var points = points_of(sight, asking.pixel);
+    var coarse = coarse_samples(asking.receiver, &points);
     loop {
-        while candidate != NO_PRIMITIVE && any(walk.lit != vec2(0u))
-            && walk.unsure.w == NO_PRIMITIVE {
-            test(sight, candidate, &points, &walk);
-            candidate = next_candidate(asking, asked, &walk);
+        loop {
+            find_candidates(asking, asked, &coarse, &walk);
+            while walk.found.x != NO_PRIMITIVE && walk.unsure.w == NO_PRIMITIVE
+                && walk.rounds < MOST_ROUNDS {
+                test(sight, walk.found.x, &points, &walk);
+                walk.found = vec4(walk.found.yzw, NO_PRIMITIVE);
+                walk.rounds += 1u;
+            }
+            if walk.unsure.w != NO_PRIMITIVE || finds_no_other(&walk) {
+                break;
+            }
+            walk.rounds += 3u;
         }
         ask_tracer(asking, asked.t_min, &walk);
-        if candidate == NO_PRIMITIVE || all(walk.lit == vec2(0u)) {
+        if finds_no_other(&walk) && walk.found.x == NO_PRIMITIVE || walk.rounds >= MOST_ROUNDS {
             break;
         }
-        walk.has_waited = true;
-        walk.rounds += 3u;
+        walk.rounds += 5u;
     }
-    let is_done = walk.number == LIST_END || all(walk.lit == vec2(0u));
-    return select(TOO_MANY, countOneBits(walk.lit.x) + countOneBits(walk.lit.y), is_done);
+    let is_lit = any(walk.lit != vec2(0u));
+    let gives_up = is_lit && walk.rounds >= MOST_ROUNDS;
+    return select(countOneBits(walk.lit.x) + countOneBits(walk.lit.y), TOO_MANY, gives_up);
 }
 
-// Returns the next caster that may be before the receiver; NO_PRIMITIVE at the end of the list, or
-// of the thread's rounds.
-fn next_candidate(asking: Asking, asked: Asked, walk: ptr<function, Walk>) -> u32 {
-    var candidate = NO_PRIMITIVE;
-    while candidate == NO_PRIMITIVE && (*walk).number != LIST_END && (*walk).rounds < MOST_ROUNDS {
+fn finds_no_other(walk: ptr<function, Walk>) -> bool {
+    return (*walk).left == 0u || all((*walk).lit == vec2(0u)) || (*walk).rounds >= MOST_ROUNDS;
+}
+
+// Keeps the next casters that may be before the receiver, and over a sample that is lit.
+fn find_candidates(
+    asking: Asking,
+    asked: Asked,
+    coarse: ptr<function, CoarseSamples>,
+    walk: ptr<function, Walk>,
+) {
+    while (*walk).found.w == NO_PRIMITIVE && !finds_no_other(walk) {
         let entry = entries[(*walk).number - 1u];
         (*walk).number = entry.x;
+        (*walk).left -= 1u;
+        (*walk).rounds += 1u;
         let may_hit = (entry.y != asking.own) & may_shade(asked, entry.zw);
-        candidate = select(NO_PRIMITIVE, entry.y, may_hit);
-        // As long as no thread waits a round tests a candidate of each.
-        (*walk).rounds += select(1u, select(0u, 2u, (*walk).has_waited), may_hit);
+        if may_hit && any((samples_under(coarse, entry.y) & (*walk).lit) != vec2(0u)) {
+            (*walk).found = vec4(entry.y, (*walk).found.xyz);
+        }
     }
-    return candidate;
+}
+
+fn coarse_samples(receiver: vec3<f32>, points: ptr<function, Points>) -> CoarseSamples {
+    var coarse: CoarseSamples;
+    if light_kind != LIGHT_DIRECTIONAL {
+        return coarse;
+    }
+    coarse.receiver = place_along_light(receiver);
+    if samples > 0u { set_words(points, 0u, 0u, &coarse); }
+    if samples > 4u { set_words(points, 1u, 4u, &coarse); }
+    if samples > 8u { set_words(points, 2u, 8u, &coarse); }
+    if samples > 12u { set_words(points, 3u, 12u, &coarse); }
+    if samples > 32u { set_words(points, 8u, 16u, &coarse); }
+    if samples > 36u { set_words(points, 9u, 20u, &coarse); }
+    if samples > 40u { set_words(points, 10u, 24u, &coarse); }
+    if samples > 44u { set_words(points, 11u, 28u, &coarse); }
+    return coarse;
+}
+
+fn set_words(
+    points: ptr<function, Points>,
+    item: u32,
+    first: u32,
+    coarse: ptr<function, CoarseSamples>,
+) {
+    let x = (*points).x[item];
+    let y = (*points).y[item];
+    // Sixteen samples later.
+    let u = (*points).x[item + 4u];
+    let v = (*points).y[item + 4u];
+    (*coarse).words[first] = coarse_word(vec2(x.x, y.x), vec2(u.x, v.x));
+    (*coarse).words[first + 1u] = coarse_word(vec2(x.y, y.y), vec2(u.y, v.y));
+    (*coarse).words[first + 2u] = coarse_word(vec2(x.z, y.z), vec2(u.z, v.z));
+    (*coarse).words[first + 3u] = coarse_word(vec2(x.w, y.w), vec2(u.w, v.w));
+}
+
+// Samples that the caster's box may hide; under a spot or point light all of them.
+fn samples_under(coarse: ptr<function, CoarseSamples>, primitive: u32) -> vec2<u32> {
+    if light_kind != LIGHT_DIRECTIONAL {
+        return vec2(0xffffffffu);
+    }
+    let box = coarse_box(unpacked_box(boxes[primitive]), (*coarse).receiver);
+    var bits = vec2(0u);
+    if samples > 0u { bits.x |= bits_between((*coarse).words[0], box) >> 15u & 0x10001u; }
+    if samples > 1u { bits.x |= bits_between((*coarse).words[1], box) >> 14u & 0x20002u; }
+    if samples > 2u { bits.x |= bits_between((*coarse).words[2], box) >> 13u & 0x40004u; }
+    if samples > 3u { bits.x |= bits_between((*coarse).words[3], box) >> 12u & 0x80008u; }
+    if samples > 4u { bits.x |= bits_between((*coarse).words[4], box) >> 11u & 0x100010u; }
+    if samples > 5u { bits.x |= bits_between((*coarse).words[5], box) >> 10u & 0x200020u; }
+    if samples > 6u { bits.x |= bits_between((*coarse).words[6], box) >> 9u & 0x400040u; }
+    if samples > 7u { bits.x |= bits_between((*coarse).words[7], box) >> 8u & 0x800080u; }
+    if samples > 8u { bits.x |= bits_between((*coarse).words[8], box) >> 7u & 0x1000100u; }
+    if samples > 9u { bits.x |= bits_between((*coarse).words[9], box) >> 6u & 0x2000200u; }
+    if samples > 10u { bits.x |= bits_between((*coarse).words[10], box) >> 5u & 0x4000400u; }
+    if samples > 11u { bits.x |= bits_between((*coarse).words[11], box) >> 4u & 0x8000800u; }
+    if samples > 12u { bits.x |= bits_between((*coarse).words[12], box) >> 3u & 0x10001000u; }
+    if samples > 13u { bits.x |= bits_between((*coarse).words[13], box) >> 2u & 0x20002000u; }
+    if samples > 14u { bits.x |= bits_between((*coarse).words[14], box) >> 1u & 0x40004000u; }
+    if samples > 15u { bits.x |= bits_between((*coarse).words[15], box) >> 0u & 0x80008000u; }
+    if samples > 32u { bits.y |= bits_between((*coarse).words[16], box) >> 15u & 0x10001u; }
+    if samples > 33u { bits.y |= bits_between((*coarse).words[17], box) >> 14u & 0x20002u; }
+    if samples > 34u { bits.y |= bits_between((*coarse).words[18], box) >> 13u & 0x40004u; }
+    if samples > 35u { bits.y |= bits_between((*coarse).words[19], box) >> 12u & 0x80008u; }
+    if samples > 36u { bits.y |= bits_between((*coarse).words[20], box) >> 11u & 0x100010u; }
+    if samples > 37u { bits.y |= bits_between((*coarse).words[21], box) >> 10u & 0x200020u; }
+    if samples > 38u { bits.y |= bits_between((*coarse).words[22], box) >> 9u & 0x400040u; }
+    if samples > 39u { bits.y |= bits_between((*coarse).words[23], box) >> 8u & 0x800080u; }
+    if samples > 40u { bits.y |= bits_between((*coarse).words[24], box) >> 7u & 0x1000100u; }
+    if samples > 41u { bits.y |= bits_between((*coarse).words[25], box) >> 6u & 0x2000200u; }
+    if samples > 42u { bits.y |= bits_between((*coarse).words[26], box) >> 5u & 0x4000400u; }
+    if samples > 43u { bits.y |= bits_between((*coarse).words[27], box) >> 4u & 0x8000800u; }
+    if samples > 44u { bits.y |= bits_between((*coarse).words[28], box) >> 3u & 0x10001000u; }
+    if samples > 45u { bits.y |= bits_between((*coarse).words[29], box) >> 2u & 0x20002000u; }
+    if samples > 46u { bits.y |= bits_between((*coarse).words[30], box) >> 1u & 0x40004000u; }
+    if samples > 47u { bits.y |= bits_between((*coarse).words[31], box) >> 0u & 0x80008000u; }
+    return select(bits, vec2(0u), box.is_behind);
 }
 
 // Takes away the samples that the candidate certainly hides, and keeps it if others are unsure.
@@ -233,7 +329,7 @@ fn ask_tracer(
     t_min: f32,
     walk: ptr<function, Walk>,
 ) {
-    while (*walk).unsure.x != NO_PRIMITIVE {
+    while (*walk).unsure.x != NO_PRIMITIVE && (*walk).rounds < MOST_ROUNDS {
         let unsure = (*walk).lit & vec2((*walk).low.x, (*walk).high.x);
         let bit = first_bit(unsure);
         let point = sample_point(asking, first_number(bit) % 64u);

@@ -16,6 +16,8 @@ var<storage, read> entries: array<vec4<u32>>;
 struct Asked {
     // Number of the first entry; LIST_END if `status` is the answer.
     head: u32,
+    // Entries of the list.
+    length: u32,
     // STATUS_LIGHT, STATUS_SHADOW, or STATUS_UNCERTAIN: rays decide, or the list.
     status: u32,
     // Nearer hits do not count.
@@ -48,11 +50,11 @@ fn asked_list(receiver: vec3<f32>) -> Asked {
         return answered(STATUS_LIGHT);
     }
     let offset = vec2<i32>(round(place.offset * 4096.0));
-    return Asked(texel.z, STATUS_UNCERTAIN, t_min, coarse_depth(depth), offset);
+    return Asked(texel.z, texel.y, STATUS_UNCERTAIN, t_min, coarse_depth(depth), offset);
 }
 
 fn answered(status: u32) -> Asked {
-    return Asked(LIST_END, status, 0.0, 0u, vec2(0));
+    return Asked(LIST_END, 0u, status, 0.0, 0u, vec2(0));
 }
 
 // The key of an entry says that its caster may be before the receiver.

@@ -2,6 +2,7 @@
 
 #import "shared/binned_caster.wgsl"
 #import "shared/entry_keys.wgsl"
+#import "shared/linked_lists.wgsl"
 
 struct Params {
     longest_list: u32,
@@ -21,8 +22,6 @@ var<storage, read> tiles: array<vec4<u32>>;
 // room.
 var<storage, read_write> texels: array<BinnedTexel>;
 
-// Those included for which there is no room.
-var<storage, read_write> entry_count: atomic<u32>;
 // As `Texel` has it.
 var<storage, read_write> entries: array<vec4<u32>>;
 
@@ -70,7 +69,7 @@ fn bin(caster: Binned, first: u32, end: u32, step: u32) {
         }
         let lines = lines_of(caster);
         let entries_here = countOneBits(listed.x) + countOneBits(listed.y);
-        var slot = atomicAdd(&entry_count, entries_here);
+        var slot = reserved_slots(entries_here);
         while any(listed != vec2(0u)) {
             append(caster, at * TILE + first_of(listed), slot, lines);
             listed &= ~first_bit(listed);
@@ -87,7 +86,7 @@ fn may_shade_texel(caster: Binned, centre: vec2<f32>, max_depth_bits_here: u32) 
     return all(shading >= -caster.edge_threshold) && may_shade;
 }
 
-// Returns true if a texel's list gets the caster; counts it.
+// Returns true if a texel's list gets the caster.
 fn is_listed(caster: Binned, texel: vec2<u32>) -> bool {
     let number = texel_number(binned_layer, texel);
     let centre = vec2<f32>(texel) + 0.5;
@@ -107,8 +106,7 @@ fn is_listed(caster: Binned, texel: vec2<u32>) -> bool {
         // No receiver behind it asks a list.
         atomicMin(&texels[number].max_receiver_depth, depth_bits(depth + cover_margin()));
     }
-    // A longer list is never read.
-    return (atomicAdd(&texels[number].length, 1u) & ~LIST_LACKS) < params.longest_list;
+    return is_within_list(number);
 }
 
 // A receiver farther from the light, in a texel that the caster covers, has all of its triangle
@@ -170,10 +168,6 @@ fn bytes_of(bits: u32) -> u32 {
 
 fn append(caster: Binned, texel: vec2<u32>, slot: u32, lines: Lines) {
     let number = texel_number(binned_layer, texel);
-    if slot >= arrayLength(&entries) {
-        atomicOr(&texels[number].length, LIST_LACKS);
-        return;
-    }
     let centre = vec2<f32>(texel) + 0.5;
     let inward = shading_functions(caster, centre, shaded_depth(number));
     let distances = inward * lines.per_length + lines.dilation;
@@ -191,6 +185,5 @@ fn append(caster: Binned, texel: vec2<u32>, slot: u32, lines: Lines) {
         other = bc;
     }
     let key = entry_key(least_depth(caster, centre), one, other);
-    let next = atomicExchange(&texels[number].head, slot + 1u);
-    entries[slot] = vec4(next, caster.primitive, key);
+    append_entry(number, slot, caster.primitive, key);
 }

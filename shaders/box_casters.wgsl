@@ -1,0 +1,23 @@
+// Stage to write the box of each caster; one thread per triangle, as many as `boxes` has.
+
+#import "shared/caster_box.wgsl"
+#import "shared/geometry.wgsl"
+#import "shared/groups.wgsl"
+
+var<storage, read_write> boxes: array<vec4<u32>>;
+
+@compute @workgroup_size(GROUP_SIZE)
+fn main(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let primitive = thread_number(group, lane);
+    if primitive >= min(arrayLength(&boxes), arrayLength(&scene_indices) / 3u) {
+        return;
+    }
+    let a = place_along_light(corner_position(3u * primitive));
+    let b = place_along_light(corner_position(3u * primitive + 1u));
+    let c = place_along_light(corner_position(3u * primitive + 2u));
+    let margin = box_margin();
+    boxes[primitive] = packed_box(Box(min(a, min(b, c)) - margin, max(a, max(b, c)) + margin));
+}

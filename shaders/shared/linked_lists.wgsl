@@ -1,0 +1,23 @@
+// Lists of texels, each entry before those that were appended sooner.
+
+// Those included for which there is no room.
+var<storage, read_write> entry_count: atomic<u32>;
+
+// Counts an entry of a texel's list. A longer list is never read.
+fn is_within_list(texel: u32) -> bool {
+    return (atomicAdd(&texels[texel].length, 1u) & ~LIST_LACKS) < params.longest_list;
+}
+
+// The first of as many slots for entries as `append_entry` is called with, one after the other.
+fn reserved_slots(count: u32) -> u32 {
+    return atomicAdd(&entry_count, count);
+}
+
+fn append_entry(texel: u32, slot: u32, primitive: u32, key: vec2<u32>) {
+    if slot >= arrayLength(&entries) {
+        atomicOr(&texels[texel].length, LIST_LACKS);
+        return;
+    }
+    let next = atomicExchange(&texels[texel].head, slot + 1u);
+    entries[slot] = vec4(next, primitive, key);
+}

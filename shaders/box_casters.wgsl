@@ -15,9 +15,13 @@ fn main(
     if primitive >= min(arrayLength(&boxes), arrayLength(&scene_indices) / 3u) {
         return;
     }
+    boxes[primitive] = packed_box(box_of(primitive));
+}
+
+fn box_of(primitive: u32) -> Box {
     let a = place_along_light(corner_position(3u * primitive));
     let b = place_along_light(corner_position(3u * primitive + 1u));
     let c = place_along_light(corner_position(3u * primitive + 2u));
     let margin = box_margin();
-    boxes[primitive] = packed_box(Box(min(a, min(b, c)) - margin, max(a, max(b, c)) + margin));
+    return Box(min(a, min(b, c)) - margin, max(a, max(b, c)) + margin);
 }

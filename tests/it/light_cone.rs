@@ -1,6 +1,7 @@
 //! The planes of `shaders/shared/light_cone.wgsl` on the GPU: a sample of a light that they call
-//! hidden, or not hidden, is so in f64 and for the tracer's own test of its ray. Bounds:
-//! docs/light_buffer_area.md.
+//! hidden, or not hidden, is so in f64 and for the tracer's own test of its ray; and the boxes of
+//! `shaders/shared/caster_box.wgsl`: a sample that a caster hides for either is in the caster's box.
+//! Bounds: docs/light_buffer_area.md.
 
 use crate::{
     compiled_apart::altered_files,
@@ -40,11 +41,12 @@ struct Answer {
     hidden: u32,
     seen: u32,
     traced: u32,
+    boxed: u32,
     error: f32,
 }
 
 /// Before it stand the functions of `test_samples.wgsl` that take the planes' answers and ask the
-/// tracer.
+/// tracer, and that of `box_casters.wgsl`.
 const SHADER: &str = r#"
 struct Question {
     receiver: vec3<f32>,
@@ -56,6 +58,7 @@ struct Answer {
     hidden: u32,
     seen: u32,
     traced: u32,
+    boxed: u32,
     error: f32,
 }
 
@@ -73,11 +76,22 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
     let cone = cone_of(sight, primitive);
     var points = asked.points;
     var traced = 0u;
+    var boxed = 0u;
     var sides = vec2(0u);
+    let own = unpacked_box(packed_box(box_of(primitive)));
+    let box = coarse_box(own, place_along_light(asked.receiver));
     for (var i = 0u; i < 8u; i++) {
         let point = seen_point(sight, points[i]);
         sides |= (sides_of(cone, vec4(point.x), vec4(point.y)) & vec2(1u)) << vec2(i);
         traced |= u32(hides(asked.receiver, asked.t_min, primitive, points[i])) << i;
+        // In pairs, as `samples_under` has them.
+        let other = seen_point(sight, points[i ^ 1u]);
+        boxed |= (bits_between(coarse_word(point, other), box) >> 15u & 1u) << i;
+    }
+    if light_kind != LIGHT_DIRECTIONAL {
+        boxed = 0xffffffffu;
+    } else if box.is_behind {
+        boxed = 0u;
     }
     // As `lit_samples` has it.
     let certain = select(0u, sides.x, cone.is_clear);
@@ -86,6 +100,7 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
         select(certain, 0u, cone.is_beside),
         select(~certain & ~unsure, 0xffffffffu, cone.is_beside),
         traced,
+        boxed,
         cone.error,
     );
 }
@@ -110,13 +125,20 @@ fn function(path: &str, name: &str) -> String {
 }
 
 fn shader() -> String {
-    let modules = ["ids", "aimed_ray", "light_cone", "ray_triangle"];
+    let modules = [
+        "ids",
+        "aimed_ray",
+        "caster_box",
+        "light_cone",
+        "ray_triangle",
+    ];
     let mut text: String = modules
         .map(|module| format!("#import \"shared/{module}.wgsl\"\n"))
         .concat();
     for name in ["lesser", "greater", "sides_of", "hides"] {
         text += &function("shaders/test_samples.wgsl", name);
     }
+    text += &function("shaders/box_casters.wgsl", "box_of");
     text + SHADER
 }
 
@@ -324,20 +346,27 @@ struct Judged {
     /// Sure ones of which f64, or the tracer, says the other.
     wrong: usize,
     refuted: usize,
+    /// Samples that boxes leave out, and those of them that the caster hides in f64 or for the
+    /// tracer.
+    outside: usize,
+    lost: usize,
     /// Greatest edge function at which the tracer errs, as a share of the bound.
     farthest: f64,
     first: Option<String>,
 }
 
-/// Judges the samples of random triangles under a light; `files` stand before the embedded ones.
-fn judge(kind: LightKind, count: u32, files: &[(String, String)], judged: &mut Judged) {
+/// Judges the samples of random triangles under a light, in a box that reaches so far; `files` stand
+/// before the embedded ones.
+fn judge(
+    kind: LightKind,
+    (count, reach): (u32, f32),
+    files: &[(String, String)],
+    judged: &mut Judged,
+) {
     let mut dice = Dice(Random(count.into()));
+    let ends = [Vec3::splat(-reach), Vec3::splat(reach)];
     let box_around = meshes::mesh(
-        vec![
-            Vec3::splat(-1e5),
-            Vec3::splat(1e5),
-            Vec3::new(1e5, -1e5, 0.0),
-        ],
+        vec![ends[0], ends[1], Vec3::new(reach, -reach, 0.0)],
         vec![[0, 1, 2]],
     );
     let emitter = Emitter::new(kind, &box_around);
@@ -346,7 +375,8 @@ fn judge(kind: LightKind, count: u32, files: &[(String, String)], judged: &mut J
         let receiver = dice.receiver(&emitter);
         let sight = emitter.seen_from(receiver);
         let t_min = HALF_ULP * (receiver.length() + 2.0 * dice.power(0.0, 2.0) as f32);
-        let corners = dice.corners(&sight, receiver, t_min.into(), number % 6);
+        let drawn = dice.corners(&sight, receiver, t_min.into(), number % 6);
+        let corners = drawn.map(|corner| corner.clamp(ends[0], ends[1]));
         let relative = corners.map(|corner| corner.as_dvec3() - receiver.as_dvec3());
         // The first triangle is the box around all.
         positions.extend(corners.iter().filter(|_| number > 0));
@@ -400,7 +430,10 @@ fn judge(kind: LightKind, count: u32, files: &[(String, String)], judged: &mut J
             let is_refuted = (hidden && !traced) || (seen && traced);
             judged.wrong += usize::from(is_wrong);
             judged.refuted += usize::from(is_refuted);
-            if (is_wrong || is_refuted) && judged.first.is_none() {
+            judged.outside += usize::from(!bit(answer.boxed));
+            let is_lost = !bit(answer.boxed) && (hit || traced);
+            judged.lost += usize::from(is_lost);
+            if (is_wrong || is_refuted || is_lost) && judged.first.is_none() {
                 judged.first = Some(format!(
                     "{kind:?}: sample {sample} of {asked:?}, corners {corners:?}: {answer:?}, f64 \
                      says {hit}"
@@ -439,20 +472,23 @@ fn lights() -> Vec<LightKind> {
     lights
 }
 
-fn judged(count: u32, files: &[(String, String)]) -> Judged {
+/// Reaches of the box around all: no farther than needed, so that what grows with it is small, and
+/// far.
+const NEAR: f32 = 300.0;
+const FAR: f32 = 1e5;
+
+fn judged(count: u32, reach: f32, files: &[(String, String)]) -> Judged {
     let mut all = Judged::default();
     for light in lights() {
-        judge(light, count, files, &mut all);
+        judge(light, (count, reach), files, &mut all);
     }
     println!("{all:?}");
     all
 }
 
-/// The planes with a bound of that share.
-fn with_bound(share: f64) -> Vec<(String, String)> {
-    let path = "shaders/shared/light_cone.wgsl";
+/// A module with that share of its bound, which follows the words `bound`.
+fn with_bound(path: &str, bound: &str, share: f64) -> Vec<(String, String)> {
     let text = EmbeddedSources.read(path).unwrap().unwrap();
-    let bound = "let error = ";
     assert_eq!(text.matches(bound).count(), 1, "the bound of {path}");
     vec![(
         path.to_owned(),
@@ -462,7 +498,7 @@ fn with_bound(share: f64) -> Vec<(String, String)> {
 
 #[test]
 fn what_the_planes_are_sure_of_f64_and_the_tracer_find_too() {
-    let found = judged(20_000, &[]);
+    let found = judged(20_000, FAR, &[]);
     assert_eq!((found.wrong, found.refuted), (0, 0), "{:?}", found.first);
     let least = found.hidden.min(found.seen).min(found.asked);
     assert!(least > 50_000, "{found:?}");
@@ -472,12 +508,30 @@ fn what_the_planes_are_sure_of_f64_and_the_tracer_find_too() {
 
 #[test]
 fn a_tracer_that_rounds_in_another_way_finds_it_too() {
-    let found = judged(5_000, &altered_files(1));
-    assert_eq!((found.wrong, found.refuted), (0, 0), "{:?}", found.first);
+    for reach in [NEAR, FAR] {
+        let found = judged(5_000, reach, &altered_files(1));
+        let faults = (found.wrong, found.refuted, found.lost);
+        assert_eq!(faults, (0, 0, 0), "{:?}", found.first);
+    }
+}
+
+#[test]
+fn a_sample_that_a_caster_hides_is_in_its_box() {
+    let found = judged(20_000, NEAR, &[]);
+    assert_eq!((found.lost, found.wrong), (0, 0), "{:?}", found.first);
+    assert!(found.outside > 50_000, "{found:?}");
+}
+
+#[test]
+fn without_the_bound_boxes_lose_samples() {
+    let path = "shaders/shared/caster_box.wgsl";
+    let found = judged(20_000, NEAR, &with_bound(path, "return 32.0 * ", 0.0));
+    assert!(found.lost > 0, "{found:?}");
 }
 
 #[test]
 fn a_thousandth_of_the_bound_is_refuted() {
-    let found = judged(20_000, &with_bound(1e-3));
+    let path = "shaders/shared/light_cone.wgsl";
+    let found = judged(20_000, FAR, &with_bound(path, "let error = ", 1e-3));
     assert!(found.wrong > 0 && found.refuted > 0, "{found:?}");
 }

@@ -1,7 +1,7 @@
 //! The planes of `shaders/shared/light_cone.wgsl` on the GPU: a sample of a light that they call
 //! hidden, or not hidden, is so in f64 and for the tracer's own test of its ray; and the boxes of
-//! `shaders/shared/caster_box.wgsl`: a sample that a caster hides for either is in the caster's box.
-//! Bounds: docs/light_buffer_area.md.
+//! `shaders/shared/caster_box.wgsl`: a sample that a caster hides for either is in its box. Bounds:
+//! docs/light_buffer_area.md.
 
 use crate::{
     compiled_apart::altered_files,
@@ -355,8 +355,8 @@ struct Judged {
     first: Option<String>,
 }
 
-/// Judges the samples of random triangles under a light, in a box that reaches so far; `files` stand
-/// before the embedded ones.
+/// Judges the samples of random triangles under a light, in a box that reaches so far; `files`
+/// stand before the embedded ones.
 fn judge(
     kind: LightKind,
     (count, reach): (u32, f32),

@@ -239,10 +239,10 @@ impl Geometry {
         for (piece, map, moved) in moved {
             let part = self.part_mut(piece)?;
             part.map = Some(map);
-            let is_host = part.is_placed_anew()?;
+            let is_host = part.place_bounds()?;
             let was = std::mem::replace(&mut part.is_mirrored, moved.is_mirrored);
             let put = part.of.put_at(part.number, &moved, was, mesh, part.at);
-            let positions = part.ranges()[0].len();
+            let positions = part.positions();
             if put.is_elsewhere || is_host {
                 self.pieces[piece].moved = version;
                 self.work.moved += positions as u64;
@@ -525,7 +525,7 @@ impl Geometry {
         if let Some(host) = &mut self.part_mut(id.piece)?.host {
             (host.bounds, host.placed) = (bounds, moved);
         }
-        let positions = self.part(id)?.ranges()[0].len();
+        let positions = self.part(id)?.positions();
         self.work.moved += positions as u64;
         self.pieces[id.piece].moved = next_version();
         Ok(Change {

@@ -93,12 +93,20 @@ impl Part {
     ///
     /// # Errors
     /// A map that cannot move it.
-    pub fn is_placed_anew(&mut self) -> Result<bool, MoveError> {
+    pub fn place_bounds(&mut self) -> Result<bool, MoveError> {
         let (Some(host), Some(map)) = (&mut self.host, &self.map) else {
             return Ok(false);
         };
         host.placed = placed(host.bounds, map)?;
         Ok(true)
+    }
+
+    /// Number of its positions.
+    pub fn positions(&self) -> usize {
+        match &self.host {
+            Some(_) => self.of.rest.positions.len(),
+            None => self.of.ranges(self.number)[0].len(),
+        }
     }
 
     /// The write of a part of a host's buffer, without nodes.

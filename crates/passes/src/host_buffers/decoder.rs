@@ -8,7 +8,7 @@ use std::sync::Arc;
 const NO_NORMALS: &str = "fn decode_normal(first: u32) -> vec3<f32> { return vec3(0.0); }";
 
 /// WGSL module of the host that decodes vertices, in the place of ours
-/// ([`HostVertices::with_decoder`]).
+/// ([`HostVertices::with_decoder`](super::HostVertices::with_decoder)).
 ///
 /// It has the function `decode_position(first: u32) -> vec3<f32>`, and
 /// `decode_normal(first: u32) -> vec3<f32>` where it decodes normals, of any length. `first` is the

@@ -2,7 +2,6 @@
 
 use super::{
     build::{measurable, ploc},
-    levels::levels,
     median,
     node::BvhNode,
 };
@@ -128,11 +127,6 @@ impl Bvh {
             next += 1;
         }
         order
-    }
-
-    /// Returns the nodes but the root by their height, those of leaves first.
-    pub fn levels(&self) -> Vec<Vec<u32>> {
-        levels(&self.order(), |index| self.nodes[index as usize])
     }
 
     /// Triangles below each node.

@@ -685,7 +685,8 @@ impl SceneProvider {
     /// its original place, in which its triangles were given, to its new place in world space. Only
     /// parts whose map has changed are moved, and equal maps cost nothing. If a map mirrors its
     /// part, the winding of the part's triangles is reversed (the rule of glTF), so that the
-    /// outside stays the front face.
+    /// outside stays the front face. Executors show it from their next
+    /// [`refresh`](skiagraph_gpu::Executor::refresh) on.
     ///
     /// # Errors
     /// [`Error::NoParts`] if the mesh has no parts; [`Error::Move`] if the number of maps is not

@@ -21,7 +21,8 @@ use std::ops::RangeInclusive;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Graded {
-    /// Root mean squared error over the PFL pixels (those that face the light), 0 to 1.
+    /// Root mean squared error over the PFL pixels (those that face the light), 0 to 1. As every
+    /// mean here it is 0 over no pixels.
     pub rmse: f64,
     /// Root mean squared error over the PFL pixels (those that face the light) that are not
     /// indeterminate ([`GroundTruthPixels::indeterminate`]). At an indeterminate pixel f32 may find

@@ -10,8 +10,8 @@ use glam::{DVec3, Vec3};
 /// Triangle mesh as a program holds it in memory: not welded, with one normal for each position.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Indexed<'a> {
-    /// Positions in world space, or, for [`Movable::joined`](crate::Movable::joined), in the model
-    /// space of an instance. All must be finite.
+    /// Positions in world space, or, of a mesh that is moved as a part
+    /// ([`Movable::joined`](crate::Movable::joined)), in a space of its own. All must be finite.
     pub positions: &'a [[f32; 3]],
     /// Normals, one for each position, finite and of any length; a normal of length 0 counts as
     /// missing. An empty list gives each triangle its geometric normal.

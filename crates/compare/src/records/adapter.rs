@@ -200,12 +200,15 @@ impl CellFigures {
             && (self.viewport, self.map_size) == (other.viewport, other.map_size)
     }
 
-    /// Returns the share of wrong pixels among those that face the light, in percent.
+    /// Returns the share of wrong pixels, those in the band included, among those that face the
+    /// light, in percent; 0 if no pixel faces the light, also of a cell that is
+    /// [unavailable](Self::unavailable).
     pub fn wrong_percent(&self) -> f64 {
         percent(self.wrong, self.facing)
     }
 
-    /// Returns the share of pixels whose answer rounding decides, in percent.
+    /// Returns the share of pixels whose answer rounding decides among those that face the light,
+    /// in percent; 0 if none faces it.
     pub fn band_percent(&self) -> f64 {
         percent(self.band, self.facing)
     }

@@ -155,13 +155,14 @@ impl Executor {
     /// Encodes the passes of a frame into `encoder`, which the host then submits, and returns the
     /// frame's number, counted from 0. It never waits; any number of frames may be in flight.
     /// Textures and buffers that the graph document declares with `grow` and that proved too small
-    /// for an earlier, submitted frame are larger from this frame on: see [`Plan::grown`].
+    /// for an earlier, submitted frame are larger from this frame on (see [`Plan::grown`]), and
+    /// their views are others ([`output_view`](Self::output_view)).
     ///
     /// # Errors
     /// If the plan lacks an output or capture of [`Frame::read`] or it cannot be copied; an import
     /// or a provided resource of a pass that runs is missing; the device is lost, has too little
-    /// memory, or refuses a pass that is bound for the first time; a pass works on the CPU. After
-    /// an error nothing has been encoded.
+    /// memory, or refuses a pass that is bound for the first time; a pass works on the CPU, for
+    /// which there is [`submit`](Self::submit). After an error nothing has been encoded.
     pub fn encode(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,

@@ -23,9 +23,10 @@ pub struct Piece<'a> {
     /// Primitive ids (indices into [`Mesh::triangles`]) of the piece's triangles. No triangle is in
     /// two pieces.
     pub triangles: &'a [u32],
-    /// Number of the piece that this one is a copy of: it has the same triangles in the same order,
-    /// moved by an affine map; that one is no copy. Pieces are numbered from 0 in the order of the
-    /// list given to [`TwoLevelBvh::build`]; a piece that is no copy has its own number here.
+    /// Number of the piece that this one is a copy of: its triangles are other ones of the same
+    /// shapes in the same order, moved by an affine map; that one is no copy. Pieces are numbered
+    /// from 0 in the order of the list given to [`TwoLevelBvh::build`]; a piece that is no copy has
+    /// its own number here.
     pub copy_of: usize,
 }
 

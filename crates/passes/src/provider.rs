@@ -689,9 +689,9 @@ impl SceneProvider {
     /// [`refresh`](skiagraph_gpu::Executor::refresh) on.
     ///
     /// # Errors
-    /// [`Error::NoParts`] if the mesh has no parts; [`Error::Move`] if the number of maps is not
-    /// the number of parts, or a map is singular, not finite, or moves a position beyond f32; the
-    /// error names the part. The mesh then stays as it was.
+    /// [`Error::NoParts`] if the mesh was not given in parts; [`Error::Move`] if the number of maps
+    /// is not the number of parts, or a map is singular, not finite, or moves a position beyond
+    /// f32; the error names the part. The mesh then stays as it was.
     pub fn set_transforms(&mut self, maps: &[DAffine3]) -> Result<(), Error> {
         let change = self.geometry.set_transforms(maps, &mut self.scene)?;
         self.note_change(change);
@@ -723,8 +723,8 @@ impl SceneProvider {
     /// are planned. `limits` are those of the device that the provider is used with.
     ///
     /// # Errors
-    /// [`Error::NoParts`] if the mesh has no parts, [`Error::TooLarge`] if the device cannot bind
-    /// the mesh with that room. The mesh then stays as it was.
+    /// [`Error::NoParts`] if the mesh was not given in parts, [`Error::TooLarge`] if the device
+    /// cannot bind the mesh with that room. The mesh then stays as it was.
     pub fn reserve(&mut self, room: Room, limits: &wgpu::Limits) -> Result<(), Error> {
         self.geometry.limit = Some(binding_limit(limits));
         self.geometry.reserve(room, &mut self.scene)?;
@@ -743,9 +743,9 @@ impl SceneProvider {
     /// `scene.masks` must be planned anew.
     ///
     /// # Errors
-    /// [`Error::NoParts`] if the mesh has no parts, [`Error::Move`] for a map that cannot move the
-    /// part, [`Error::TooLarge`] if the mesh must grow and the device cannot bind a larger one. The
-    /// mesh then stays as it was.
+    /// [`Error::NoParts`] if the mesh was not given in parts, [`Error::Move`] for a map that cannot
+    /// move the part, [`Error::TooLarge`] if the mesh must grow and the device cannot bind a larger
+    /// one. The mesh then stays as it was.
     pub fn add_part(&mut self, mesh: &Mesh, map: &DAffine3) -> Result<PartId, Error> {
         let (part, change) = self.geometry.add(mesh, map, &mut self.scene)?;
         self.note_change(change);

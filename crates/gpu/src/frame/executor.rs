@@ -827,8 +827,9 @@ impl Executor {
     }
 
     /// Enlarges the buffers and textures declared with `grow` that were too small for a finished
-    /// frame. Shaders count in a buffer how many items or layers each of them needs. What a
-    /// resource held before it grew is lost. [`encode`](Self::encode) enlarges them by itself; call
+    /// frame. Shaders count in a buffer how many items or layers each of them needs. The content of
+    /// a resource that grows is lost unless it has `keep` (see
+    /// [`Growth`](skiagraph_graph::Growth)). [`encode`](Self::encode) enlarges them by itself; call
     /// `grow` to choose the time or to get the report. `None` if no resource had to grow, or the
     /// larger size was refused. It never waits: a count that the GPU has not delivered yet is read
     /// by a later call.

@@ -62,8 +62,8 @@ impl Graph {
     }
 
     /// Plans the graph for a viewport, params and device: resolves names and sizes, connects the
-    /// shaders' bindings with resources, orders the passes and drops those that no output, capture
-    /// or host needs. Touches no GPU.
+    /// shaders' bindings with resources, orders the passes and drops those that are not
+    /// [live](crate#terms). Touches no GPU.
     ///
     /// # Errors
     /// All mistakes found while planning, each with its place in a document or shader.

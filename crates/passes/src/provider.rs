@@ -691,7 +691,7 @@ impl SceneProvider {
     /// # Errors
     /// [`Error::NoParts`] if the mesh was not given in parts; [`Error::Move`] if the number of maps
     /// is not the number of parts, or a map is singular, not finite, or moves a position beyond
-    /// f32; the error names the part. The mesh then stays as it was.
+    /// f32; the error names the part of such a map. The mesh then stays as it was.
     pub fn set_transforms(&mut self, maps: &[DAffine3]) -> Result<(), Error> {
         let change = self.geometry.set_transforms(maps, &mut self.scene)?;
         self.note_change(change);

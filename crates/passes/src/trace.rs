@@ -29,14 +29,15 @@ pub enum Engine {
     /// watertight, on every device.
     Hierarchy,
     /// The device's own ray queries, on devices with `EXPERIMENTAL_RAY_QUERY`; how they round is up
-    /// to the device.
+    /// to the device. A ray with t_min < 0, or with a number that is not finite, hits nothing.
     RayQuery,
     /// A hierarchy for rays that all go towards one directional light; watertight, the same hits as
     /// `Hierarchy`, on every device. Needs `direction: Light`.
     LightSpace,
     /// Embree 3, with its own hierarchy, triangle test and rounding, on all cores of the CPU. The
     /// frame waits for it. Needs the feature `embree` of `skiagraph-passes`, and a host that runs
-    /// frames by `Executor::submit`.
+    /// frames by `Executor::submit`. A ray with t_min < 0, or with a number that is not finite,
+    /// hits nothing.
     Embree,
 }
 

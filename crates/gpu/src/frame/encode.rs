@@ -113,16 +113,16 @@ fn run(dispatch: &Dispatch<Handles>, pass: &mut wgpu::ComputePass<'_>) {
 pub(super) struct SharedPass(Option<wgpu::ComputePass<'static>>);
 
 impl SharedPass {
-    /// Encodes the steps of a pass under its name in captures of graphics debuggers; returns false
-    /// if a step is no dispatch.
-    pub fn encode(
+    /// Encodes the dispatches of a pass under its name in captures of graphics debuggers.
+    pub fn dispatch(
         &mut self,
         steps: &[Step<Handles>],
         name: &str,
         encoder: &mut wgpu::CommandEncoder,
-    ) -> bool {
-        if !steps.iter().all(|step| matches!(step, Step::Dispatch(_))) {
-            return false;
+    ) {
+        let is_dispatch = |step: &Step<_>| matches!(step, Step::Dispatch(_));
+        if !steps.iter().any(is_dispatch) {
+            return;
         }
         let pass = self.0.get_or_insert_with(|| {
             let pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
@@ -135,12 +135,24 @@ impl SharedPass {
             }
         }
         pass.pop_debug_group();
-        true
     }
 
     /// Ends the compute pass, so that the encoder takes other commands.
     pub fn end(&mut self) {
         self.0 = None;
+    }
+}
+
+/// Encodes the clears of buffers among the steps of a pass.
+pub(super) fn clear_buffers(steps: &[Step<Handles>], encoder: &mut wgpu::CommandEncoder) {
+    for step in steps {
+        if let Step::Clear {
+            target: GpuOperand::Buffer { buffer, range },
+            ..
+        } = step
+        {
+            encoder.clear_buffer(buffer, range.start, Some(range.end - range.start));
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! Frames: decides which passes run, encodes them into the host's encoder, and changes the plan.
 
+mod clears;
 mod contents;
 mod cpu;
 mod encode;

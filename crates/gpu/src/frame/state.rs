@@ -1,9 +1,10 @@
 //! A plan with its memory, passes and contents on a device.
 
 use super::{
+    clears,
     contents::{Contents, HostCopy},
     cpu::CpuTurn,
-    encode::{Meters, SharedPass, encode_all},
+    encode::{Meters, SharedPass, clear_buffers, encode_all},
     fetch::Readable,
     growth_readback::GrowthReadback,
     in_flight::FrameInFlight,
@@ -28,6 +29,8 @@ pub(super) struct State {
     pub memory: Memory,
     /// The passes in schedule order.
     pub passes: Vec<GpuPass>,
+    /// First position that the clears of each pass may be moved to; see [`clears::earliest`].
+    clears: Vec<Option<usize>>,
     pub contents: Contents,
     pub poison: Option<Poison>,
     /// The buffers and textures that may grow.
@@ -79,6 +82,7 @@ impl State {
             readables: Readable::all(&plan),
             uniform: frame_uniform(&plan),
             grown: memory.take_grown(),
+            clears: clears::earliest(&plan),
             contents,
             memory,
             passes,
@@ -180,15 +184,21 @@ impl State {
             .filter(|_| frame_in_flight.is_timed);
         let counters = &mut frame_in_flight.counters;
         let is_measured = timer.is_some() || counters.is_some();
+        let may_share = !is_measured && self.poison.is_none();
         let mut shared = SharedPass::default();
+        let mut shared_until = 0;
         for (at, pass) in self.passes.iter().enumerate() {
             if !decision.runs[at] {
                 frame_in_flight.skipped.push(pass.name.clone());
                 continue;
             }
             let steps = pass.steps(&decision.ping_pong).unwrap_or_default();
-            let may_share = !is_measured && self.poison.is_none();
-            if may_share && shared.encode(steps, &pass.name, encoder) {
+            if may_share && self.clears[at].is_some() {
+                if at >= shared_until {
+                    shared.end();
+                    shared_until = self.clear_ahead(at, decision, encoder);
+                }
+                shared.dispatch(steps, &pass.name, encoder);
                 continue;
             }
             shared.end();
@@ -212,6 +222,27 @@ impl State {
             }
         }
         Ok(())
+    }
+
+    /// Encodes the clears of the pass at position `at` and of all that can share its compute pass,
+    /// as their clears may come before it. Returns the position after these passes.
+    fn clear_ahead(
+        &self,
+        at: usize,
+        FrameDecision { runs, ping_pong }: &FrameDecision,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> usize {
+        let mut until = at;
+        for (pass, runs) in self.passes[at..].iter().zip(&runs[at..]) {
+            if *runs {
+                if self.clears[until].is_none_or(|first| first > at) {
+                    break;
+                }
+                clear_buffers(pass.steps(ping_pong).unwrap_or_default(), encoder);
+            }
+            until += 1;
+        }
+        until
     }
 
     /// Copies contents into the larger buffers and textures that replaced smaller ones since the

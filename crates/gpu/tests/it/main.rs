@@ -17,6 +17,7 @@ mod support;
 mod tiny;
 
 mod changes;
+mod clears;
 mod compose;
 mod embedding;
 mod features;

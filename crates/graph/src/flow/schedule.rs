@@ -9,9 +9,8 @@ use std::{
     collections::{BTreeSet, BinaryHeap},
 };
 
-/// The [live](crate#terms) passes of a plan (those that an output or the host needs) in the order
-/// in which they run, with the lifetimes, run conditions and allocations that follow from this
-/// order.
+/// The [live](crate#terms) passes of a plan in the order in which they run, with the lifetimes, run
+/// conditions and allocations that follow from this order.
 #[derive(Clone, Debug, Default)]
 #[non_exhaustive]
 pub struct Schedule {

@@ -282,7 +282,7 @@ fn view<'l>(linked: &'l Linked<'_>) -> GraphView<'l> {
     }
 }
 
-/// Finds the passes that an output or the host needs.
+/// Finds the live passes.
 fn live(view: GraphView<'_>, readable: &[(String, Target)], order: &Order) -> Vec<bool> {
     // An import is written for the host.
     let of_host =

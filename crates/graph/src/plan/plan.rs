@@ -32,10 +32,10 @@ use std::{
     sync::Arc,
 };
 
-/// A graph that is planned for one viewport, one set of param values and one device: the *live*
-/// passes, which an output or the host needs, in the order in which they run, and every resource
-/// with its size and usages. It holds no GPU objects. A clone serves another executor; it shares
-/// the graph and its shaders.
+/// A graph that is planned for one viewport, one set of param values and one device: its
+/// [live](crate#terms) passes in the order in which they run, and every resource with its size and
+/// usages. It holds no GPU objects. A clone serves another executor; it shares the graph and its
+/// shaders.
 #[derive(Clone, Debug)]
 pub struct Plan(pub(super) Planned);
 
@@ -83,8 +83,7 @@ impl Plan {
         &self.0.passes[id.0]
     }
 
-    /// Iterates over the [live](crate#terms) passes, those that an output, a [capture](crate#terms)
-    /// or the host needs, in the order in which they run.
+    /// Iterates over the [live](crate#terms) passes in the order in which they run.
     pub fn live(&self) -> impl Iterator<Item = &LinkedPass> + Clone {
         self.0.schedule.passes.iter().map(|id| self.pass(*id))
     }
@@ -312,9 +311,9 @@ impl Plan {
         self.live().map(summary).collect()
     }
 
-    /// Returns the passes that do not run because no output, capture or host needs them, each with
-    /// the reason, in the order of the document. Entries whose `if` is false are no passes of the
-    /// plan and not listed.
+    /// Returns the passes that do not run because they are not [live](crate#terms), each with the
+    /// reason, in the order of the document. Entries whose `if` is false are no passes of the plan
+    /// and not listed.
     pub fn culled(&self) -> &[CulledPass] {
         &self.0.culled
     }

@@ -23,10 +23,10 @@ pub struct Piece<'a> {
     /// Primitive ids (indices into [`Mesh::triangles`]) of the piece's triangles. No triangle is in
     /// two pieces.
     pub triangles: &'a [u32],
-    /// Number of the piece that this one is a copy of: its triangles are other ones of the same
-    /// shapes in the same order, moved by an affine map; that one is no copy. Pieces are numbered
-    /// from 0 in the order of the list given to [`TwoLevelBvh::build`]; a piece that is no copy has
-    /// its own number here.
+    /// Number of the piece that this one is a copy of, or its own number if it is no copy. Pieces
+    /// are numbered from 0 in the order of the list given to [`TwoLevelBvh::build`]. A copy has as
+    /// many triangles as its original, which is no copy itself, and in the same order: in both
+    /// meshes of `build` an affine map takes each triangle of the original to that of the copy.
     pub copy_of: usize,
 }
 
@@ -91,7 +91,8 @@ pub struct Refit {
 impl TwoLevelBvh {
     /// Builds the hierarchy of those triangles of `mesh` that are in pieces, on all cores.
     /// `at_rest` is the same mesh before its pieces were moved: each tree is built there, and its
-    /// boxes are then fitted to `mesh`. A copy takes the tree of the piece that it is a copy of.
+    /// boxes are then fitted to `mesh`. A copy takes the tree of the piece that it is a copy of. A
+    /// piece may have no triangles; its tree has no nodes then.
     ///
     /// Where there would be more than `most` nodes, leaves of every tree are merged until there are
     /// not. The top level alone has nearly two nodes for each piece, none of which can be left out,

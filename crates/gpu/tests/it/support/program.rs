@@ -127,15 +127,9 @@ impl Program {
         let mut fresh: Vec<usize> = (0..MATERIALS).filter(|it| !self.kept[*it]).collect();
         let mut zero = |passes: &mut String, used: &dyn Fn(usize) -> bool| {
             for material in fresh.extract_if(.., |material| used(*material)) {
-                let more = format!(
-                    "shader: \"zero\", run: {}, overwrites: [\"m{material}\"],",
-                    RUNS[self.runs[material]]
-                );
-                let bind = format!("\"out\": \"m{material}\"");
-                passes.push_str(&compute(&format!("zero{material}"), &more, &bind));
+                passes.push_str(&self.zero(material));
             }
         };
-        // A shader, not `Clear`: the size of a buffer comes from the shaders that see it.
         let mut files = Files::default().with("zero.wgsl", each(OUT, ITEMS, "0u"));
         for (index, pass) in self.passes.iter().enumerate() {
             zero(&mut passes, &|material| {
@@ -162,6 +156,25 @@ impl Program {
                  passes: [\n{passes}    ],\n    outputs: {outputs:?},\n"
             ),
         )
+    }
+
+    /// The pass that sets a material to zero: half of them are shaders, half clears, which may run
+    /// ahead of other passes.
+    fn zero(&self, material: usize) -> String {
+        let run = RUNS[self.runs[material]];
+        // The size of a buffer comes from the shaders that see it.
+        let is_seen = self.passes.iter().any(|pass| {
+            let sees = pass.target == material || pass.reads.contains(&Read::Now(material));
+            sees && !pass.optional
+        });
+        if material % 2 == 1 && is_seen {
+            return format!(
+                "        Clear(name: \"zero{material}\", run: {run}, target: \"m{material}\"),\n"
+            );
+        }
+        let more = format!("shader: \"zero\", run: {run}, overwrites: [\"m{material}\"],");
+        let bind = format!("\"out\": \"m{material}\"");
+        compute(&format!("zero{material}"), &more, &bind)
     }
 
     /// The outputs after each frame when every pass is run in file order, those that run `Once` in

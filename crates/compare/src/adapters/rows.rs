@@ -24,6 +24,8 @@ pub struct Row {
     pub command: Vec<String>,
     /// Ability without which the row is left out.
     pub needs: Option<Ability>,
+    /// Backends on which the row is left out, as none of its methods is proven there.
+    pub unproven_on: &'static [&'static str],
     /// Groups of methods that must answer alike to the bit, the first one as the others.
     pub alike: &'static [&'static [&'static str]],
 }
@@ -36,6 +38,7 @@ struct Line {
     full: &'static str,
     small: &'static str,
     needs: Option<Ability>,
+    unproven_on: &'static [&'static str],
     alike: &'static [&'static [&'static str]],
 }
 
@@ -46,11 +49,12 @@ const LINE: Line = Line {
     full: "",
     small: "",
     needs: None,
+    unproven_on: &[],
     alike: &[],
 };
 
 /// Hard answers of one scene that are the same bits, whichever way they are found.
-const HARD_ALIKE: &[&[&str]] = &[&["rt", "light_buffer", "light_buffer@stage=compute"]];
+const HARD_ALIKE: &[&[&str]] = &[&["rt", "light_buffer", "light_buffer@stage=fragment"]];
 
 /// Rays of each kind on a GPU; a software adapter traces a fortieth.
 const RAYS: u64 = 4_000_000;
@@ -60,9 +64,9 @@ const LINES: &[Line] = &[
         name: "hard",
         asks: "is every method right on the hard cases, as guaranteed?",
         seconds: 150,
-        full: "stress rt light_buffer light_buffer@stage=compute crsm crsma_full nsm --size \
+        full: "stress rt light_buffer light_buffer@stage=fragment crsm crsma_full nsm --size \
                128x128 --map-size 128",
-        small: "stress rt light_buffer light_buffer@stage=compute --size 32x32 --map-size 32 \
+        small: "stress rt light_buffer light_buffer@stage=fragment --size 32x32 --map-size 32 \
                 --case grid_of_holes --case torus",
         ..LINE
     },
@@ -73,6 +77,7 @@ const LINES: &[Line] = &[
         full: "stress rt_area light_buffer_area --size 64x64 --map-size 64 --set samples=4",
         small: "stress rt_area light_buffer_area --size 24x24 --map-size 24 --set samples=4 \
                 --case torus",
+        unproven_on: &["gl"],
         ..LINE
     },
     Line {
@@ -96,9 +101,9 @@ const LINES: &[Line] = &[
         name: "park",
         asks: "are three ways to hard shadows the same bits, in nine views of closed meshes?",
         seconds: 90,
-        full: "compare rt light_buffer light_buffer@stage=compute crsm crsma_full nsm --scene \
+        full: "compare rt light_buffer light_buffer@stage=fragment crsm crsma_full nsm --scene \
                park --view all --size 256x256 --map-size 512 --data npy --frames 3",
-        small: "compare rt light_buffer light_buffer@stage=compute nsm --scene park --size 48x48 \
+        small: "compare rt light_buffer light_buffer@stage=fragment nsm --scene park --size 48x48 \
                 --map-size 64 --data npy --frames 1",
         alike: HARD_ALIKE,
         ..LINE
@@ -107,7 +112,7 @@ const LINES: &[Line] = &[
         name: "lamps",
         asks: "the same under a spot, a point and a directional light",
         seconds: 60,
-        full: "compare rt light_buffer light_buffer@stage=compute nsm --scene lamps --view all \
+        full: "compare rt light_buffer light_buffer@stage=fragment nsm --scene lamps --view all \
                --light all --size 256x256 --map-size 512 --data npy --frames 3",
         small: "compare rt light_buffer --scene lamps --light all --size 32x32 --data npy \
                 --frames 1",
@@ -122,6 +127,7 @@ const LINES: &[Line] = &[
                --reference-samples 64 --data npy --frames 3",
         small: "compare rt_area light_buffer_area --scene park_soft --size 32x32 \
                 --reference-samples 16 --set samples=4 --data npy --frames 1",
+        unproven_on: &["gl"],
         alike: &[&["rt_area", "light_buffer_area"]],
         ..LINE
     },
@@ -138,9 +144,9 @@ const LINES: &[Line] = &[
         asks: "what does a frame cost by its size, and when are lists asked faster in fragments, \
                when in compute?",
         seconds: 180,
-        full: "compare rt light_buffer light_buffer@stage=compute nsm crsm --scene sponza --size \
+        full: "compare rt light_buffer light_buffer@stage=fragment nsm crsm --scene sponza --size \
                256x256,512x512,1024x1024,1920x1080 --map-size 1024 --frames 5",
-        small: "compare rt light_buffer light_buffer@stage=compute nsm --scene park --size \
+        small: "compare rt light_buffer light_buffer@stage=fragment nsm --scene park --size \
                 40x40,64x64 --map-size 64 --frames 2",
         ..LINE
     },
@@ -157,7 +163,7 @@ const LINES: &[Line] = &[
         name: "city_10000",
         asks: "what does a frame cost by the number of triangles?",
         seconds: 60,
-        full: "compare rt light_buffer light_buffer@stage=compute nsm crsm --scene city:10000 \
+        full: "compare rt light_buffer light_buffer@stage=fragment nsm crsm --scene city:10000 \
                --view overview --size 1024x576 --map-size 1024 --frames 5",
         small: "compare rt light_buffer nsm --scene city:10000 --view overview --size 48x27 \
                 --map-size 64 --frames 1",
@@ -167,7 +173,7 @@ const LINES: &[Line] = &[
         name: "city_100000",
         asks: "the same, ten times as many",
         seconds: 60,
-        full: "compare rt light_buffer light_buffer@stage=compute nsm crsm --scene city:100000 \
+        full: "compare rt light_buffer light_buffer@stage=fragment nsm crsm --scene city:100000 \
                --view overview --size 1024x576 --map-size 1024 --frames 5",
         small: "",
         ..LINE
@@ -176,7 +182,7 @@ const LINES: &[Line] = &[
         name: "city_1000000",
         asks: "the same, a hundred times as many",
         seconds: 120,
-        full: "compare rt light_buffer light_buffer@stage=compute nsm crsm --scene city:1000000 \
+        full: "compare rt light_buffer light_buffer@stage=fragment nsm crsm --scene city:1000000 \
                --view overview --size 1024x576 --map-size 1024 --frames 5",
         small: "",
         ..LINE
@@ -210,6 +216,7 @@ pub fn rows(is_small: bool, is_software: bool) -> Vec<Row> {
             seconds: line.seconds,
             command,
             needs: line.needs,
+            unproven_on: line.unproven_on,
             alike: line.alike,
         }
     };

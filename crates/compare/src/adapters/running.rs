@@ -131,7 +131,10 @@ pub fn run(request: &AdapterRequest, sink: &dyn Sink) -> Result<Finished, Compar
         }
         let remaining = request.limit.saturating_sub(began.elapsed());
         let limit = remaining.min(Duration::from_secs(row.seconds));
-        let lacks = row.needs.is_some_and(|ability| !abilities.has(ability));
+        let lacks = row.needs.is_some_and(|ability| !abilities.has(ability))
+            || row
+                .unproven_on
+                .contains(&abilities.adapter.backend.as_str());
         if limit < LEAST && !lacks {
             left.push(row.name);
             continue;
@@ -390,8 +393,10 @@ mod tests {
     use std::os::unix::fs::PermissionsExt;
 
     /// A program whose rows end as `script` says; it runs on an adapter with ray queries.
-    fn program(folder: &Path, script: &str) -> PathBuf {
-        let adapter = r#"{"name": "a", "backend": "b", "driver": "c", "device_type": "Cpu"}"#;
+    fn program(folder: &Path, backend: &str, script: &str) -> PathBuf {
+        let adapter = format!(
+            r#"{{"name": "a", "backend": "{backend}", "driver": "c", "device_type": "Cpu"}}"#
+        );
         let doctor = format!(
             r#"{{"schema": 1, "program": "p", "machine": {{"host": "h", "processor": "", "cores": 1,
                 "load": null}}, "adapters": [], "adapter": {adapter}, "limits": {{"texture_edge": 1,
@@ -406,15 +411,27 @@ mod tests {
         path
     }
 
+    /// Runs the row `hard_area` by such a program.
+    fn turn(folder: &Path, backend: &str, script: &str) -> Finished {
+        let mut request = AdapterRequest::new(program(folder, backend, script));
+        request.out = Some(folder.join(format!("out-{backend}")));
+        request.only = vec!["hard_area".into()];
+        run(&request, &Silent).unwrap()
+    }
+
+    #[test]
+    fn a_row_whose_methods_are_not_proven_on_the_backend_is_left_out() {
+        let folder = tempfile::tempdir().unwrap();
+        let finished = turn(folder.path(), "gl", "exit 1");
+        assert_eq!(finished.record.rows[0].outcome, Outcome::Lacking);
+        let finished = turn(folder.path(), "vulkan", "exit 1");
+        assert_eq!(finished.record.rows[0].outcome, Outcome::Failed);
+    }
+
     #[test]
     fn a_row_that_was_ended_from_outside_is_run_again_and_a_crash_is_kept() {
         let folder = tempfile::tempdir().unwrap();
-        let turn = |script: &str| {
-            let mut request = AdapterRequest::new(program(folder.path(), script));
-            request.out = Some(folder.path().join("out"));
-            request.only = vec!["hard_area".into()];
-            run(&request, &Silent).unwrap()
-        };
+        let turn = |script: &str| turn(folder.path(), "vulkan", script);
         // Not by SIGINT, which a shell's background jobs ignore.
         for script in ["kill -TERM $$", "exit 130"] {
             let finished = turn(script);

@@ -198,6 +198,8 @@ impl CellFigures {
         };
         key(self) == key(other)
             && (self.viewport, self.map_size) == (other.viewport, other.map_size)
+            // Cities of several sizes have one name.
+            && self.triangles == other.triangles
     }
 
     /// Returns the share of wrong pixels, those in the band included, among those that face the

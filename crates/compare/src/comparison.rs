@@ -42,8 +42,8 @@ use std::{collections::BTreeMap, sync::Arc};
 /// reference samples, no files.
 #[derive(Clone, Copy, Debug)]
 pub struct Protocol {
-    /// Number of timed frames of a still view. The frame that is judged and pictured is an extra
-    /// one, so that its readback is not timed.
+    /// Number of timed frames of a still view, at least 1. The frame that is judged and pictured is
+    /// an extra one, so that its readback is not timed.
     pub frames: u32,
     /// Number of untimed warm-up frames before the timed ones.
     pub warmup: u32,

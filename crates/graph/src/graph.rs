@@ -66,7 +66,8 @@ impl Graph {
     /// [live](crate#terms). Touches no GPU.
     ///
     /// # Errors
-    /// All mistakes found while planning, each with its place in a document or shader.
+    /// All mistakes found while planning: those in a document or shader with their place in it,
+    /// those of the request, such as an unknown param or output, without one.
     pub fn plan(&self, request: &PlanRequest<'_>) -> Result<Plan, Diagnostics> {
         Plan::new(&self.0, request)
     }

@@ -52,8 +52,9 @@
 //! - *Output*: a result that the document lists. *Capture* ([`Capture`]): another content that the
 //!   host asks for.
 //! - *Plan* ([`Plan`]): a graph for one viewport, device and set of param values. Its *live* passes
-//!   run: those that write an output, a capture or an import, and those whose results a live pass
-//!   reads, in the same frame or a later one. The others are *culled*.
+//!   run: those whose results are seen in an output, a capture or an import, or by a live pass of
+//!   the same frame or a later one, and those that count for a resource that grows. The others are
+//!   *culled*.
 //! - *Executor*: the type of `skiagraph-gpu` that runs a plan on a device.
 //! - *`.previous`*: the content of a material at the end of the frame before.
 

@@ -758,7 +758,10 @@ impl SceneProvider {
     /// frame brings them to the CPU: the light is laid around the mesh's bounds, and
     /// [`scene`](Self::scene) has the part's positions at rest.
     ///
-    /// The host keeps the buffer, and does not write it but as told there.
+    /// The host keeps the buffer, and calls [`rewrite_part`](Self::rewrite_part) after each write
+    /// to the part's vertices. While the mesh has such a part, all that needs every position on the
+    /// CPU fails with [`Error::OnDevice`]: the hierarchies of the engines `LightSpace` and `Embree`
+    /// at the next refresh, and [`deform`](Self::deform).
     ///
     /// # Errors
     /// As [`add_part`](Self::add_part).

@@ -29,15 +29,15 @@ pub enum Engine {
     /// watertight, on every device.
     Hierarchy,
     /// The device's own ray queries, on devices with `EXPERIMENTAL_RAY_QUERY`; how they round is up
-    /// to the device. A ray with t_min < 0, or with a number that is not finite, hits nothing.
+    /// to the device. A ray hits nothing if its t_min is negative or a coordinate is not finite.
     RayQuery,
     /// A hierarchy for rays that all go towards one directional light; watertight, the same hits as
     /// `Hierarchy`, on every device. Needs `direction: Light`.
     LightSpace,
     /// Embree 3, with its own hierarchy, triangle test and rounding, on all cores of the CPU. The
     /// frame waits for it. Needs the feature `embree` of `skiagraph-passes`, and a host that runs
-    /// frames by `Executor::submit`. A ray with t_min < 0, or with a number that is not finite,
-    /// hits nothing.
+    /// frames by `Executor::submit`. A ray hits nothing if its t_min is negative or a coordinate is
+    /// not finite.
     Embree,
 }
 
@@ -133,7 +133,7 @@ pub struct Trace {
     mode: Mode,
     /// Engine that walks the rays, `Hierarchy` without it, or in quotes a `Choice` of `hierarchy`,
     /// `ray_query`, `light_space`, `embree`. Rays of `RayQuery` and `Embree` need t_min ≥ 0 and
-    /// finite numbers; others hit nothing.
+    /// finite coordinates; others hit nothing.
     #[serde(default = "hierarchy")]
     engine: Chosen<Engine>,
     /// `Light` is your word that all rays go towards the light, without which `LightSpace` is

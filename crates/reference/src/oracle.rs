@@ -79,7 +79,8 @@ impl fmt::Display for OracleMode {
 const MOST_EXTENTS: f64 = 1e6;
 
 /// Ray tracer in f64 with error bounds over one mesh. It finds the ground truth against which
-/// shadow methods are judged.
+/// shadow methods are judged. Masked triangles have holes, through which all rays pass, those from
+/// the eye too ([`skiagraph_scene::mask`]).
 pub struct Oracle<'a> {
     pub(crate) mesh: &'a Mesh,
     pub(crate) tree: Tree<'a>,
@@ -114,9 +115,9 @@ impl<'a> Oracle<'a> {
 
     /// Finds the primitive that each pixel's centre shows: one primitive id (index of a triangle of
     /// the mesh) per pixel, row by row from the top left; [`BACKGROUND`] where a pixel shows none.
-    /// It is the nearest front face (counter-clockwise) or double-sided face between the near and
-    /// the far plane. Of equally near faces it is the one with the lowest id, as a depth test with
-    /// *less* keeps the first one drawn.
+    /// It is the nearest front face (counter-clockwise) or double-sided face that the ray through
+    /// the centre meets between the near and the far plane. Of equally near faces it is the one
+    /// with the lowest id, as a depth test with *less* keeps the first one drawn.
     ///
     /// # Errors
     /// [`Error::Interrupted`] if the caller stops the run.

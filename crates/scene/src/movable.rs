@@ -389,7 +389,8 @@ impl Movable {
     /// the part so far is not, or the reverse, the part's triangles are wound the other way.
     ///
     /// # Panics
-    /// If there is no part of that number, or if `mesh` is another mesh.
+    /// If there is no part of that number, or if `mesh` has fewer positions, normals or triangles
+    /// than that copy.
     pub fn put(
         &self,
         part: usize,

@@ -62,11 +62,10 @@ pub enum Surfaces {
     /// choice is [unattributable](JudgedPictures::unattributable).
     #[default]
     Rasterised,
-    /// A file with the id of each pixel's triangle, in the form that
-    /// [`ids`] reads. The surface is then known, and no GPU is
-    /// needed.
+    /// A file with the id of each pixel's triangle, the first row at the top, in the form that
+    /// [`ids`] reads. The surface is then known, and no GPU is needed.
     Ids(PathBuf),
-    /// A file with the depth of each pixel, in one of the forms of
+    /// A file with the depth of each pixel, the first row at the top, in one of the forms of
     /// [`DepthForm`](crate::foreign::surfaces::DepthForm).
     Depth(PathBuf),
 }
@@ -79,7 +78,8 @@ pub struct Judging {
     /// File of the same picture without shadows; the light factor of a picture is then its quotient
     /// by this one. `None` if the pictures show the light factor itself.
     pub unshadowed: Option<PathBuf>,
-    /// Conventions of the pictures' rows, numbers and sense.
+    /// Conventions of the pictures' rows, numbers and sense; those of rows and numbers hold for
+    /// `unshadowed`, too. Files of [`Surfaces`] always have their first row at the top.
     pub reading: Reading,
     /// Source of the surface that each pixel shows.
     pub surfaces: Surfaces,

@@ -2,21 +2,24 @@
 
 use skiagraph_graph::{LinkedPass, Origin, Plan, ResourceId, ResourceKind, step::Step};
 
-/// Returns for each pass of the schedule the first position that its clears may be moved to: no
-/// step between there and the clears uses memory that they clear. It is 0 for a pass without
-/// clears, and `None` for one that has other steps than dispatches and clears of the plan's
-/// buffers, or that clears a buffer which its own dispatches have used.
+/// Returns for each pass of the schedule a position that its clears may be moved to: no step
+/// between there and the clears uses memory that they clear, and no pass there has the result
+/// `None`. The position is 0 for a pass without clears; `None` stands for a pass with other steps
+/// than dispatches and clears of the plan's buffers, or with a clear of memory that one of its
+/// steps before uses.
 pub(super) fn earliest(plan: &Plan) -> Vec<Option<usize>> {
     let passes = &plan.schedule().passes;
     let mut found: Vec<Option<usize>> = Vec::new();
     for (at, &pass) in passes.iter().enumerate() {
         let earliest = cleared(plan, plan.pass(pass)).map(|cleared| {
-            let is_cleared = |id| allocation(plan, id).is_some_and(|it| cleared.contains(&it));
+            let is_cleared = |id| {
+                let memory = allocation(plan, id);
+                memory.is_some_and(|it| cleared.contains(&it)) || is_import(plan, id)
+            };
             let uses = |before: &LinkedPass| {
                 let mut used = before.accesses.iter();
                 used.any(|access| is_cleared(access.resource))
             };
-            // Nothing is moved past a pass with other steps, so it needs no look.
             let mut before = passes[..at].iter().zip(&found);
             let stops = |(&pass, found): (_, &Option<_>)| found.is_none() || uses(plan.pass(pass));
             let last = (!cleared.is_empty()).then(|| before.rposition(stops));
@@ -27,8 +30,8 @@ pub(super) fn earliest(plan: &Plan) -> Vec<Option<usize>> {
     found
 }
 
-/// Returns the allocations that a pass clears before its dispatches use them; `None` if it has
-/// other steps.
+/// Returns the allocations that a pass clears before other steps of it use them; `None` if it has
+/// other steps than dispatches and such clears of the plan's buffers.
 fn cleared(plan: &Plan, pass: &LinkedPass) -> Option<Vec<usize>> {
     let mut cleared = Vec::new();
     for (index, step) in pass.steps.iter().enumerate() {
@@ -49,6 +52,13 @@ fn cleared(plan: &Plan, pass: &LinkedPass) -> Option<Vec<usize>> {
     Some(cleared)
 }
 
+/// True for a buffer that the host hands in. It may be any other one, such as the buffer of an
+/// output of the frame before.
+fn is_import(plan: &Plan, id: ResourceId) -> bool {
+    let resource = plan.resource(id);
+    resource.origin == Origin::Host && matches!(resource.kind, ResourceKind::Buffer(_))
+}
+
 /// Returns the index of the allocation that holds a resource; with two versions both have one.
 fn allocation(plan: &Plan, id: ResourceId) -> Option<usize> {
     let base = match plan.resource(id).origin {
@@ -56,4 +66,54 @@ fn allocation(plan: &Plan, id: ResourceId) -> Option<usize> {
         _ => id,
     };
     plan.schedule().aliases.of.get(&base).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use skiagraph_graph::{Graph, MemorySources, NoProvider, PlanRequest, Registry};
+
+    #[test]
+    fn clears_move_ahead_of_passes_that_do_not_use_their_memory() {
+        let pass = |name: &str, more: &str, bind: &str| {
+            let dispatch = "dispatch: Groups(1, 1, 1)";
+            format!("Compute(name: \"{name}\", {dispatch}, {more} bind: {{{bind}}}), ")
+        };
+        let set = |name: &str, out: &str| {
+            let more = format!("shader: \"set\", clear: [\"{out}\"],");
+            pass(name, &more, &format!("\"out\": \"{out}\""))
+        };
+        let passes = [
+            set("first", "a"),
+            pass("add", "clear: [\"b\"],", r#""input": "a", "out": "b""#),
+            set("again", "a"),
+            r#"Copy(name: "copy", from: "a", to: "d"), "#.to_owned(),
+            set("last", "c"),
+        ];
+        let buffers = ["a", "b", "c", "d"].map(|it| format!("Buffer(name: \"{it}\", count: 1), "));
+        let document = format!(
+            "(format: 3, materials: [{}], passes: [{}], outputs: [\"a\", \"b\", \"c\", \"d\"])",
+            buffers.concat(),
+            passes.concat()
+        );
+        let shader = |globals: &str, value: &str| {
+            format!(
+                "{globals} var<storage, read_write> out: array<u32>;
+                @compute @workgroup_size(1) fn main() {{ out[0] = {value}; }}"
+            )
+        };
+        let input = "var<storage, read> input: array<u32>;";
+        let sources = MemorySources::new([
+            ("graph.ron", document),
+            ("shaders/set.wgsl", shader("", "1u")),
+            ("shaders/add.wgsl", shader(input, "input[0]")),
+        ]);
+        let graph = Graph::load("graph.ron", &Registry::standard(), &sources).unwrap();
+        let plan = graph.plan(&PlanRequest::new([1, 1], &NoProvider)).unwrap();
+        let names: Vec<_> = plan.live().map(|pass| pass.name.value.as_str()).collect();
+        assert_eq!(names, ["first", "add", "again", "copy", "last"]);
+        // `again` stays behind `add`, `last` behind the copy.
+        let expected = [Some(0), Some(0), Some(2), None, Some(4)];
+        assert_eq!(earliest(&plan), expected);
+    }
 }

@@ -107,8 +107,9 @@ fn run(dispatch: &Dispatch<Handles>, pass: &mut wgpu::ComputePass<'_>) {
     }
 }
 
-/// The compute pass that several passes in a row share if they only dispatch and are not measured:
-/// a compute pass of its own costs wgpu two command buffers.
+/// The compute pass that several passes in a row share if they have no other steps than dispatches
+/// and clears that were encoded before it, and are not measured: a compute pass of its own costs
+/// wgpu two command buffers.
 #[derive(Default)]
 pub(super) struct SharedPass(Option<wgpu::ComputePass<'static>>);
 

@@ -46,9 +46,8 @@ const CALLBACK: Duration = Duration::from_secs(10);
 /// encoders of all frames, in the order of encoding: later frames use the results of earlier ones,
 /// in skipped passes and as `.previous`.
 ///
-/// Terms: a pass is *live* if it writes an output, a capture or an import, or if a live pass of
-/// this frame or a later one reads its results. *Outputs* are the results that the graph document
-/// lists, *captures* are further contents that
+/// Terms: a pass is [*live*](skiagraph_graph#terms) if others need its results. *Outputs* are the
+/// results that the graph document lists, *captures* are further contents that
 /// [`PlanRequest::captures`](skiagraph_graph::PlanRequest) names. *Imports* are textures, buffers
 /// and samplers that the host sets; *provided resources* are buffers and acceleration structures
 /// that a [`Provider`] builds. A material's `.previous` is its content at the end of the frame

@@ -51,8 +51,8 @@ pub struct Conditions {
     /// `None` if no scheduled pass writes the resource. A resource with `keep` may be written by
     /// several groups; the entry is the number of the first.
     pub writers: Vec<Option<usize>>,
-    /// Resources whose content must outlive the frame: those with `keep`, and those written by a
-    /// pass that may be skipped.
+    /// Resources with `keep`, and those written by a pass that may be skipped: their content must
+    /// outlive the frame.
     pub kept: BTreeSet<ResourceId>,
 }
 

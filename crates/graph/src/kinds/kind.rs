@@ -96,8 +96,10 @@ impl<'a> Lowering<'a> {
     }
 
     /// Returns a program for a shader that comes with the pass kind, with the bindings of the
-    /// entry's field `bind`. `shader` is the name of the WGSL file without folder and ending. Entry
-    /// points are left open: each stage has the only one in the shader.
+    /// entry's field `bind`. `shader` is the name of the WGSL file in the folder `shaders` of the
+    /// [`Sources`](crate::Sources) that the graph is loaded from, without ending: a crate with pass
+    /// kinds serves its shaders by sources of its own ([`LayeredSources`](crate::LayeredSources)).
+    /// Entry points are left open: each stage has the only one in the shader.
     pub fn program_of(&self, shader: &str) -> Program {
         self.program_with(self.named(shader))
     }

@@ -44,8 +44,7 @@ pub struct LinkedPass {
     pub steps: Vec<Step<Ids>>,
     /// Every read and write of a resource by the pass, in the order of its steps.
     pub accesses: Vec<Access>,
-    /// Frames in which the pass runs, if it is [live](crate::Plan::live): needed by an output or
-    /// the host.
+    /// Frames in which the pass runs, if it is [live](crate#terms).
     pub run: Run,
     /// Value of the expression in [`Run::When`] with the plan's params; true for every other
     /// [`Run`].

@@ -25,8 +25,9 @@ pub struct Piece<'a> {
     pub triangles: &'a [u32],
     /// Number of the piece that this one is a copy of, or its own number if it is no copy. Pieces
     /// are numbered from 0 in the order of the list given to [`TwoLevelBvh::build`]. A copy has as
-    /// many triangles as its original, which is no copy itself, and in the same order: in both
-    /// meshes of `build` an affine map takes each triangle of the original to that of the copy.
+    /// many triangles as its original, in the same order: in both meshes of `build` an affine map
+    /// takes each triangle of the original to that of the copy. A copy of a copy, or of a piece
+    /// that there is not, is left out of the hierarchy.
     pub copy_of: usize,
 }
 
@@ -99,7 +100,7 @@ impl TwoLevelBvh {
     /// so that more pieces than half of `most` make more nodes than `most`.
     ///
     /// # Panics
-    /// If a piece names a triangle or a piece that there is not.
+    /// If a piece that is no copy names a triangle that `at_rest` lacks.
     pub fn build(mesh: &Mesh, at_rest: &Mesh, pieces: &[Piece<'_>], most: usize) -> Self {
         let filled = pieces.iter().filter(|piece| !piece.triangles.is_empty());
         let count = filled.count();
@@ -147,8 +148,8 @@ impl TwoLevelBvh {
         let all = built.primitives.len().max(mesh.triangles.len());
         built.primitives.resize(all, 0);
         let is_moved = !std::ptr::eq(mesh, at_rest);
-        for piece in 0..pieces.len() {
-            let cost = if is_moved {
+        for (piece, given) in pieces.iter().enumerate() {
+            let cost = if is_moved || given.copy_of != piece {
                 built.fit(mesh, piece)
             } else {
                 built.cost(piece)

@@ -35,7 +35,7 @@ pub trait Provider: Describe {
     /// [usages](skiagraph_graph::ProvidedBinding::usages) of its description's binding, and
     /// `COPY_SRC` if it may be read back or is read as `.previous` (as it was in the frame before).
     ///
-    /// The commands that fill the buffer are submitted when this method returns, or by
+    /// The commands that fill the buffer are submitted before this method returns, or by
     /// [`submit_built`](Self::submit_built). A frame reads the content that the buffer has when the
     /// frame is submitted. A provider that
     /// changes a content while encoded frames wait for submission must return a new buffer for it.

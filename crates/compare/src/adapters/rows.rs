@@ -122,7 +122,7 @@ const LINES: &[Line] = &[
     Line {
         name: "area",
         asks: "do lists and rays give the same shares of an extended light, to the bit?",
-        seconds: 90,
+        seconds: 150,
         full: "compare rt_area light_buffer_area --scene park_soft --size 128x128,256x256 \
                --reference-samples 64 --data npy --frames 3",
         small: "compare rt_area light_buffer_area --scene park_soft --size 32x32 \
@@ -143,7 +143,7 @@ const LINES: &[Line] = &[
         name: "sizes",
         asks: "what does a frame cost by its size, and when are lists asked faster in fragments, \
                when in compute?",
-        seconds: 180,
+        seconds: 240,
         full: "compare rt light_buffer light_buffer@stage=fragment nsm crsm --scene sponza --size \
                256x256,512x512,1024x1024,1920x1080 --map-size 1024 --frames 5",
         small: "compare rt light_buffer light_buffer@stage=fragment nsm --scene park --size \

@@ -57,7 +57,9 @@ pub struct RaySet {
     pub rays: Vec<Ray>,
     /// The primitive that each ray does not see; empty if all rays see all.
     pub skip: Vec<u32>,
-    /// True if all rays go towards the scene's first light, which is directional.
+    /// True if every ray's direction is, bit for bit, the unit vector towards the scene's first
+    /// light that shaders have (`light.to_light`); that light is directional. The engine that walks
+    /// a hierarchy seen from the light answers a ray with any other direction as a miss.
     pub to_light: bool,
 }
 

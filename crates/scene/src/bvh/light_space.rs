@@ -157,8 +157,9 @@ impl LightSpace {
     /// Fits nodes to a hierarchy of two levels over a mesh: those of some pieces, which have moved
     /// or have other trees than before, and those of the top level. `nodes` are those of
     /// [`TwoLevelBvh::nodes`] in this light space, in the same order and with the same primitives;
-    /// those of other pieces are fitted already. Returns the number of nodes that were fitted, or
-    /// `None` if [`LightSpaceNode::link`] has too few bits, as for [`build`](Self::build).
+    /// those of other pieces are fitted already. The list is made as long as that one: the first
+    /// time it may be empty, with all pieces named. Returns the number of nodes that were fitted,
+    /// or `None` if [`LightSpaceNode::link`] has too few bits, as for [`build`](Self::build).
     ///
     /// # Panics
     /// If there is no piece of such a number, or the mesh has fewer triangles than the hierarchy.

@@ -115,6 +115,7 @@ pub struct Comparison {
     pub budgets: Budgets,
     /// Published figures, such as those of a paper. Figures for the scene, view, viewport, map size
     /// and preset of a run are shown beside the run's own.
+    /// [`read`](crate::records::published::read) reads them from files.
     pub published: Vec<Row>,
     /// Command line that the results record, so that the measurement can be repeated; `None` to
     /// record none.

@@ -34,11 +34,14 @@ pub trait Provider: Describe {
     /// only for names that a pass binds whose results are needed. The buffer needs the
     /// [usages](skiagraph_graph::ProvidedBinding::usages) of its description's binding, and
     /// `COPY_SRC` if it may be read back or is read as `.previous` (as it was in the frame before).
+    /// It holds at least the described number of items. If it is larger, a shader that binds all of
+    /// it sees the rest, too: `arrayLength` counts it, while numbers in the document, such as
+    /// `scene.indices.count`, do not.
     ///
     /// The commands that fill the buffer are submitted before this method returns, or by
     /// [`submit_built`](Self::submit_built). A frame reads the content that the buffer has when the
-    /// frame is submitted. A provider that
-    /// changes a content while encoded frames wait for submission must return a new buffer for it.
+    /// frame is submitted. A provider that changes a content while encoded frames wait for
+    /// submission must return a new buffer for it.
     ///
     /// # Errors
     /// If the resource cannot be built; the executor reports

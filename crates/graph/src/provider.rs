@@ -89,8 +89,12 @@ pub enum ProvidedBinding {
     Uniform,
     /// The whole array or some of its items, as `var<storage, read>`.
     Storage,
-    /// The whole array or some of its items, as `var<storage, read>`, or one of its items, such as
-    /// `lights[2]`, as `var<uniform>`.
+    /// The whole array or some of its items, as `var<storage, read>`, or one of its items as
+    /// `var<uniform>`. An item that is bound by itself must begin at a multiple of the device's
+    /// `min_uniform_buffer_offset_alignment` (256 bytes on many), so the [stride](Provided::stride)
+    /// must be one; planning refuses others. Shorter items that are described one by one, as
+    /// `lights.2` is, need no such stride: each is a buffer of its own, with the binding
+    /// [`Uniform`](Self::Uniform).
     Both,
     /// The whole acceleration structure, as `acceleration_structure`, for ray queries. The resource
     /// is not a buffer.

@@ -39,6 +39,9 @@ const GROWING: [(&str, u64); 4] = [
 #[derive(Clone, Default)]
 pub(crate) struct Geometry {
     pieces: Vec<Piece>,
+    /// Map of each piece from its place at rest, close together as each frame reads all of them;
+    /// `None` for a part without a place, or if it was bent since, and for pieces that are no part.
+    maps: Vec<Option<DAffine3>>,
     /// The parts that there are, in the order in which they came.
     parts: Vec<PartId>,
     /// Numbers of pieces that were removed, for those that are added.
@@ -98,6 +101,7 @@ impl Geometry {
         Self {
             begun: next_version(),
             pieces: vec![Piece::new(Content::Whole)],
+            maps: vec![None],
             ..Self::default()
         }
     }
@@ -110,20 +114,22 @@ impl Geometry {
             of: Arc::clone(&parts),
             number,
             at: PartPlace::default(),
-            map: (!is_joined).then_some(DAffine3::IDENTITY),
             is_mirrored: false,
             host: None,
         };
         let begun = next_version();
         let own: Vec<Part> = (0..parts.parts()).map(part).collect();
-        let ids = own.iter().map(|part| part.id).collect();
+        let ids: Vec<PartId> = own.iter().map(|part| part.id).collect();
         let pieces = own.into_iter().map(|part| Piece::new(Content::Part(part)));
         let mut pieces: Vec<Piece> = pieces.collect();
         let outside = Outside::new(&parts);
         if !outside.triangles.is_empty() {
             pieces.push(Piece::new(Content::Outside(Arc::new(outside))));
         }
+        let mut maps = vec![(!is_joined).then_some(DAffine3::IDENTITY); ids.len()];
+        maps.resize(pieces.len(), None);
         Self {
+            maps,
             pieces,
             parts: ids,
             begun,
@@ -199,9 +205,8 @@ impl Geometry {
         }
         let mut moved = Vec::new();
         for (number, (&id, map)) in self.parts.iter().zip(maps).enumerate() {
-            let part = self.part(id)?;
-            if part.map != Some(*map) {
-                moved.push((id.piece, *map, part.moved(map, number)?));
+            if self.maps[id.piece] != Some(*map) {
+                moved.push((id.piece, *map, self.part(id)?.moved(map, number)?));
             }
         }
         self.move_parts(moved, scene)
@@ -219,7 +224,7 @@ impl Geometry {
     ) -> Result<Change, Error> {
         let number = self.number(id)?;
         let part = self.part(id)?;
-        if part.map == Some(*map) {
+        if self.maps[id.piece] == Some(*map) {
             return Ok(Change::default());
         }
         let moved = part.moved(map, number)?;
@@ -238,11 +243,11 @@ impl Geometry {
         let (mesh, version) = (&mut Arc::make_mut(scene).mesh, next_version());
         for (piece, map, moved) in moved {
             let part = self.part_mut(piece)?;
-            part.map = Some(map);
-            let is_host = part.place_bounds()?;
+            let is_host = part.place_bounds(&map)?;
             let was = std::mem::replace(&mut part.is_mirrored, moved.is_mirrored);
             let put = part.of.put_at(part.number, &moved, was, mesh, part.at);
             let positions = part.positions();
+            self.maps[piece] = Some(map);
             if put.is_elsewhere || is_host {
                 self.pieces[piece].moved = version;
                 self.work.moved += positions as u64;
@@ -262,22 +267,15 @@ impl Geometry {
 
     /// True if each part has a map.
     fn has_places(&self) -> bool {
-        let mut pieces = self.pieces.iter();
-        pieces.all(|piece| match &piece.content {
-            Content::Part(part) => part.map.is_some(),
-            _ => true,
-        })
+        let mut parts = self.parts.iter();
+        parts.all(|id| self.maps[id.piece].is_some())
     }
 
     /// Notes that the positions and normals of `mesh` are about to be replaced by these, and
     /// returns true if they are others.
     pub fn deform(&mut self, mesh: &Mesh, positions: &[Vec3], normals: &[Vec3]) -> bool {
         // The maps of parts, if there are any, no longer say where those are.
-        for piece in &mut self.pieces {
-            if let Content::Part(part) = &mut piece.content {
-                part.map = None;
-            }
-        }
+        self.maps.fill(None);
         self.is_unplaced = false;
         if mesh.positions == positions && mesh.normals == normals {
             return false;
@@ -416,7 +414,6 @@ impl Geometry {
             id,
             number: 0,
             at,
-            map: Some(*map),
             is_mirrored: moved.is_mirrored,
             of,
             host,
@@ -429,7 +426,9 @@ impl Geometry {
             self.pieces[piece] = part;
         } else {
             self.pieces.push(part);
+            self.maps.push(None);
         }
+        self.maps[piece] = Some(*map);
         self.parts.push(id);
         self.work.moved += positions as u64;
         let change = Change {
@@ -488,6 +487,7 @@ impl Geometry {
             self.triangles.give_back(part.triangles());
         }
         self.pieces[id.piece] = Piece::new(Content::Gone);
+        self.maps[id.piece] = None;
         self.parts.remove(number);
         self.gone.push(id.piece);
         self.clear(part.triangles());
@@ -510,7 +510,7 @@ impl Geometry {
     pub fn rewrite(&mut self, id: PartId, bounds: [Vec3; 2]) -> Result<Change, Error> {
         let number = self.number(id)?;
         let part = self.part(id)?;
-        let (Some(_), Some(map)) = (&part.host, &part.map) else {
+        let (Some(_), Some(map)) = (&part.host, &self.maps[id.piece]) else {
             return Err(Error::NoHostPart(id));
         };
         let [low, high] = bounds;
@@ -548,7 +548,7 @@ impl Geometry {
         let pieces = self.pieces.iter().enumerate();
         let moved = pieces.filter(|(_, of)| since.is_none_or(|version| of.changed() > version));
         let writes = moved.filter_map(|(piece, of)| match &of.content {
-            Content::Part(part) => Some((piece, part.host_write()?)),
+            Content::Part(part) => Some((piece, part.host_write(self.maps[piece]?)?)),
             _ => None,
         });
         writes.collect()

@@ -1,4 +1,4 @@
-//! A part of a mesh, and where it is.
+//! A part of a mesh, and the place of its items in the lists of that.
 
 use crate::{
     host_buffers::{HostMesh, HostWrite},
@@ -8,7 +8,7 @@ use glam::{DAffine3, Vec3};
 use skiagraph_scene::{Movable, MoveError, MovedPart, PartPlace};
 use std::{ops::Range, sync::Arc};
 
-/// A part, and where it is.
+/// A part of a mesh; the geometry has its map.
 #[derive(Clone)]
 pub(crate) struct Part {
     pub id: PartId,
@@ -17,8 +17,6 @@ pub(crate) struct Part {
     pub number: usize,
     /// Where the lists of `of` begin in those of the mesh.
     pub at: PartPlace,
-    /// Map from its place at rest; `None` for a part without a place, or if it was bent since.
-    pub map: Option<DAffine3>,
     /// True if its triangles are wound the other way than at rest.
     pub is_mirrored: bool,
     /// Where its vertices are, if they are in a buffer of the host.
@@ -89,12 +87,12 @@ impl Part {
         moved.map_err(|error| error.renumbered(number))
     }
 
-    /// Moves the bounds of a part of a host's buffer along with its map; true if it is one.
+    /// Moves the bounds of a part of a host's buffer by a map; true if it is one.
     ///
     /// # Errors
     /// A map that cannot move it.
-    pub fn place_bounds(&mut self) -> Result<bool, MoveError> {
-        let (Some(host), Some(map)) = (&mut self.host, &self.map) else {
+    pub fn place_bounds(&mut self, map: &DAffine3) -> Result<bool, MoveError> {
+        let Some(host) = &mut self.host else {
             return Ok(false);
         };
         host.placed = placed(host.bounds, map)?;
@@ -109,9 +107,9 @@ impl Part {
         }
     }
 
-    /// The write of a part of a host's buffer, without nodes.
-    pub fn host_write(&self) -> Option<HostWrite> {
-        let (host, map) = (self.host.as_ref()?, self.map?);
+    /// The write of a part of a host's buffer that a map moves, without nodes.
+    pub fn host_write(&self, map: DAffine3) -> Option<HostWrite> {
+        let host = self.host.as_ref()?;
         let PartPlace {
             position,
             normal,

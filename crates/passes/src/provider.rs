@@ -718,9 +718,11 @@ impl SceneProvider {
     }
 
     /// Makes room for parts that [`add_part`](Self::add_part) adds, besides the room that is left
-    /// from earlier calls. The numbers of positions, triangles and other items become larger by all
-    /// of `room`, on which plans depend (see [`set_mesh`](Self::set_mesh)): reserve before graphs
-    /// are planned. `limits` are those of the device that the provider is used with.
+    /// from earlier calls. The room that a [removed](Self::remove_part) part leaves between others
+    /// serves only parts that fit into it, as the positions of a part follow each other, and so do
+    /// its normals and its triangles. The numbers of positions, triangles and other items become
+    /// larger by all of `room`, on which plans depend (see [`set_mesh`](Self::set_mesh)): reserve
+    /// before graphs are planned. `limits` are those of the device that the provider is used with.
     ///
     /// # Errors
     /// [`Error::NoParts`] if the mesh was not given in parts, [`Error::TooLarge`] if the device

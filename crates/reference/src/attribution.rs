@@ -19,8 +19,9 @@ const SAME: f64 = 1.0 / 255.0;
 /// indeterminate by `ground_truth`, if one of its `candidates` has another answer, an indeterminate
 /// one, or a share of an area light that differs by more than 1/255.
 ///
-/// `ground_truth` is of this camera and light, in the mode and with the number of samples of `how`;
-/// `candidates` are those of [`candidates`](crate::candidates), one list for each pixel.
+/// `ground_truth` is of this camera and light, found with `mode` and `samples`, which is ignored
+/// for a light without extent; `candidates` are those of [`candidates`](crate::candidates), one
+/// list for each pixel.
 ///
 /// # Errors
 /// [`Error::PixelCount`], [`Error::UnknownPrimitive`], [`Error::Interrupted`].

@@ -150,13 +150,15 @@ impl<'a> Oracle<'a> {
     }
 
     /// Classifies every pixel of a G-buffer as lit, in shadow, facing away or background, with one
-    /// ray to the light's centre. `primitives` holds the primitive id (index of a triangle of the
-    /// mesh) that each pixel shows, row by row from the top left; [`BACKGROUND`] for a pixel
-    /// without geometry. The receiver is the point where the ray through the pixel's centre meets
-    /// that primitive. At a triangle's edge a rasteriser, which snaps corners, may name a primitive
-    /// that the centre lies slightly outside of; the receiver is within the primitive's edges all
-    /// the same ([`Receiver::new`]). Casters are two-sided and count if they lie before the ray's
-    /// origin by more than f64 rounding.
+    /// ray to the light's centre; for the share that a pixel sees of a light with extent call
+    /// [`ground_truth`](crate::ground_truth). `primitives` holds the primitive id (index of a
+    /// triangle of the mesh) that each pixel shows, row by row from the top left; [`BACKGROUND`]
+    /// for a pixel without geometry. The receiver is the point where the ray through the pixel's
+    /// centre meets that primitive. At a triangle's edge a rasteriser, which snaps corners, may
+    /// name a primitive that the centre lies slightly outside of; the receiver is within the
+    /// primitive's edges all the same ([`Receiver::new`]). Casters are two-sided and count if they
+    /// lie in front of the ray's origin (t > 0) by more than f64 rounding; rays to a spot or point
+    /// light end before it, by the share [`LIGHT_GAP`] of their length.
     ///
     /// # Errors
     /// [`Error::PixelCount`], [`Error::UnknownPrimitive`], [`Error::Light`], [`Error::Offset`],

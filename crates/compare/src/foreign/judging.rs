@@ -66,7 +66,8 @@ pub enum Surfaces {
     /// [`ids`] reads. The surface is then known, and no GPU is needed.
     Ids(PathBuf),
     /// A file with the depth of each pixel, the first row at the top, in one of the forms of
-    /// [`DepthForm`](crate::foreign::surfaces::DepthForm).
+    /// [`DepthForm`](crate::foreign::surfaces::DepthForm). The form is found by itself: it is the
+    /// one in which the most pixels have the depth of a surface of the scene ([`by_depth`]).
     Depth(PathBuf),
 }
 

@@ -63,7 +63,9 @@ fn one_channel(raster: &Raster, what: &str) -> Result<(), CompareError> {
     )))
 }
 
-/// Meaning of the numbers in a picture of depths.
+/// Meaning of the numbers in a picture of depths. A pixel shows the background if its number
+/// stands for a distance that is negative, 0, infinite, not a number, or at the far plane or beyond
+/// it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DepthForm {
     /// Distance along the viewing direction, in scene units.

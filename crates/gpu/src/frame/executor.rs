@@ -73,11 +73,11 @@ pub struct Executor {
 
 impl Executor {
     /// Creates an executor for a plan. It creates the plan's textures, buffers and pipelines and
-    /// asks the provider for the resources that passes bind whose results are needed. It encodes
-    /// each of these passes once into a throw-away encoder, so that errors of the device are found
-    /// here. A pass that uses an import (a resource that the host sets later), or a resource that
-    /// the provider cannot build yet, is tried only in [`Executor::encode`], before the host's
-    /// encoder is touched.
+    /// asks the provider for the resources that [live](skiagraph_graph#terms) passes bind. It
+    /// encodes each of these passes once into a throw-away encoder, so that errors of the device
+    /// are found here. A pass that uses an import (a resource that the host sets later), or a
+    /// resource that the provider cannot build yet, is tried only in [`Executor::encode`], before
+    /// the host's encoder is touched.
     ///
     /// # Errors
     /// See [`ExecuteError`]; an error about a pass names the pass and its place in the graph
@@ -300,8 +300,9 @@ impl Executor {
             .fetches
             .iter()
             .for_each(|fetch| fetch.copy(encoder));
+        let change = state.last_change();
         for readback in &mut state.growth_readbacks {
-            readback.copy(&state.plan, &state.memory, ping_pong, encoder);
+            readback.copy(change, &state.plan, &state.memory, ping_pong, encoder);
         }
         let (plan, passes) = (&state.plan, &mut state.passes);
         state.contents.ran(plan, passes, runs, ping_pong);
@@ -473,7 +474,7 @@ impl Executor {
         if self.state.memory.host(id) != Some(&physical) {
             self.presence.check()?;
         }
-        self.state.contents.touch(id);
+        self.state.touch(id);
         if self.state.memory.import(id, physical) {
             self.state.unbind(id);
         }
@@ -496,7 +497,7 @@ impl Executor {
         }
         let live = self.state.live(name);
         if let Some(id) = live.filter(|id| of_host(self.plan().resource(*id))) {
-            self.state.contents.touch(id);
+            self.state.touch(id);
         } else if !self.plan().offers(name) {
             let used = self.plan().used().filter(|used| of_host(used));
             let used: Vec<&str> = used.map(|resource| resource.name.as_str()).collect();
@@ -582,7 +583,7 @@ impl Executor {
             };
             built.push(id);
             state.memory.refresh(id, &state.plan, None, &mut factory)?;
-            state.contents.touch(id);
+            state.touch(id);
             let now = state.memory.host(id);
             if now.is_some() {
                 self.host_changes.touch(&state.plan.resource(id).name);
@@ -693,9 +694,8 @@ impl Executor {
         };
         let mut report = ReplanReport::default();
         for (at, params) in changed.into_iter().zip(params) {
-            let pass = &mut state.passes[at];
-            pass.set_params(params);
-            report.uploads.push(pass.name.to_string());
+            state.set_params(at, params);
+            report.uploads.push(state.passes[at].name.to_string());
         }
         Ok(report)
     }

@@ -32,6 +32,10 @@ pub(super) struct State {
     /// First position that the clears of each pass may be moved to; see [`clears::earliest`].
     clears: Vec<Option<usize>>,
     pub contents: Contents,
+    /// True if each frame computes the same until the host makes or reports a change.
+    repeats: bool,
+    /// Number of these changes.
+    changes: u64,
     pub poison: Option<Poison>,
     /// The buffers and textures that may grow.
     pub growth_readbacks: Vec<GrowthReadback>,
@@ -83,6 +87,8 @@ impl State {
             uniform: frame_uniform(&plan),
             grown: memory.take_grown(),
             clears: clears::earliest(&plan),
+            repeats: repeats(&plan),
+            changes: 0,
             contents,
             memory,
             passes,
@@ -96,6 +102,24 @@ impl State {
         let runs = vec![runs; self.passes.len()];
         self.contents.ping_pong(&self.plan, &runs, &mut decision);
         decision
+    }
+
+    /// Notes that the host has changed the content of a resource.
+    pub fn touch(&mut self, id: ResourceId) {
+        self.changes += 1;
+        self.contents.touch(id);
+    }
+
+    /// Sets other params of the pass at position `at` of the schedule; see [`GpuPass::set_params`].
+    pub fn set_params(&mut self, at: usize, params: Vec<Option<wgpu::Buffer>>) {
+        self.changes += 1;
+        self.passes[at].set_params(params);
+    }
+
+    /// Returns the number of the last change, since which each frame computes the same; `None` if
+    /// frames may differ without one.
+    pub fn last_change(&self) -> Option<u64> {
+        self.repeats.then_some(self.changes)
     }
 
     /// Returns the resource of this name that a live pass uses.
@@ -287,6 +311,14 @@ fn frame_uniform(plan: &Plan) -> Option<ResourceId> {
     let mut live = plan.schedule().lifetimes.keys();
     let is_frame = |id: &&ResourceId| matches!(plan.resource(**id).kind, ResourceKind::Frame);
     live.find(is_frame).copied()
+}
+
+/// True if each frame of a plan computes the same until the host makes or reports a change. A host
+/// may write to its imports without a word.
+fn repeats(plan: &Plan) -> bool {
+    let mut live = plan.schedule().lifetimes.keys();
+    let is_previous = |id: &ResourceId| matches!(plan.resource(*id).origin, Origin::Previous(_));
+    !plan.remembers() && plan.imports().is_empty() && !live.any(is_previous)
 }
 
 /// Returns a resource of the host that the pass at position `at` uses, directly or as `.previous`,

@@ -1,8 +1,11 @@
 //! Buffers and textures that grow between frames.
 
+use crate::given::{STORAGE, buffer};
 use crate::host::{self, GPU, encoder, executor, frame, planned, request, set, submit, words};
 use crate::support::Files;
-use skiagraph_gpu::{ExecuteError, Executor, Frame, Provider, ProviderError, ReplanReport, device};
+use skiagraph_gpu::{
+    ExecuteError, Executor, Frame, Provider, ProviderError, ReplanReport, device, import,
+};
 use skiagraph_graph::{
     Describe, NoProvider, ParamValue, Plan, PlanRequest, Provided, ProvidedBinding, ResourceKind,
 };
@@ -456,6 +459,7 @@ fn patterns_and_times_are_not_disturbed() {
 struct Wanted {
     version: u64,
     is_there: bool,
+    number: u32,
 }
 
 impl Describe for Wanted {
@@ -488,27 +492,99 @@ impl Provider for Wanted {
             usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        queue.write_buffer(&buffer, 0, &10u32.to_ne_bytes());
+        queue.write_buffer(&buffer, 0, &self.number.to_ne_bytes());
         Ok(buffer)
     }
+}
+
+/// As [`filled`], where the number that is wanted stands in a buffer.
+fn filled_from(buffer: &str) -> Files {
+    let global = format!("var<storage, read> {buffer}: u32");
+    filled()
+        .edited("graph.ron", "Over(\"wanted\")", "Over(64)")
+        .edited("fill.wgsl", "struct Params { wanted: u32 }", "")
+        .edited("fill.wgsl", "var<uniform> params: Params", &global)
+        .edited("fill.wgsl", "params.wanted", buffer)
+}
+
+/// Counters are not read back in frames that answer as one did in which all had room.
+#[test]
+fn a_change_after_frames_that_had_room_is_counted() {
+    // A param that is in uniforms only, so that the plan stays.
+    let files = filled().edited("graph.ron", "Over(\"wanted\")", "Over(64)");
+    let mut executor = executor(&files, &request(&NoProvider));
+    has_room(&mut executor, 4, 4);
+    set(&mut executor, "wanted", ParamValue::U32(10));
+    shows(&mut executor, 10, 4);
+    grown(&mut executor);
+    has_room(&mut executor, 10, 12);
+    // The count of the frame before the change does not speak for those after it.
+    let mut before = encoder();
+    set(&mut executor, "wanted", ParamValue::U32(11));
+    executor.encode(&mut before, &Frame::default()).unwrap();
+    set(&mut executor, "wanted", ParamValue::U32(20));
+    GPU.queue.submit([before.finish()]);
+    frame(&mut executor, &[]);
+    shows(&mut executor, 20, 12);
+    grown(&mut executor);
+    has_room(&mut executor, 20, 25);
+}
+
+#[track_caller]
+fn has_room(executor: &mut Executor, wanted: u32, items: u32) {
+    for _ in 0..3 {
+        shows(executor, wanted, items);
+        assert_eq!(grow(executor), None);
+    }
+}
+
+#[test]
+fn a_change_of_the_host_after_frames_that_had_room_is_counted() {
+    let files = filled_from("host_wanted");
+    let mut provider = Wanted {
+        version: 0,
+        is_there: true,
+        number: 4,
+    };
+    let plan = planned(&files, &request(&provider));
+    let mut executor = Executor::new(&GPU.device, &GPU.queue, plan, &mut provider).unwrap();
+    for (version, (number, items)) in [(4, 4), (10, 12), (30, 37)].into_iter().enumerate() {
+        (provider.version, provider.number) = (version as u64, number);
+        executor.refresh(&mut provider).unwrap();
+        if number > 4 {
+            frame(&mut executor, &[]);
+            grown_with(&mut executor, &mut provider).unwrap();
+        }
+        has_room(&mut executor, number, items);
+    }
+    // A host writes to a buffer of its own without a word.
+    let files = filled_from("more").edited(
+        "graph.ron",
+        "materials:",
+        "inputs: [Buffer(name: \"more\")], materials:",
+    );
+    let more = buffer(&[4], STORAGE | wgpu::BufferUsages::COPY_DST);
+    let mut request = request(&NoProvider);
+    let described = import::buffer(&more, None);
+    request.imports.insert("more".to_owned(), described);
+    let mut executor = host::executor(&files, &request);
+    executor.import_buffer("more", &more).unwrap();
+    has_room(&mut executor, 4, 4);
+    GPU.queue.write_buffer(&more, 0, &10u32.to_ne_bytes());
+    frame(&mut executor, &[]);
+    grown(&mut executor);
+    has_room(&mut executor, 10, 12);
 }
 
 /// That is the host's affair, and no reason to give up.
 #[test]
 fn a_provider_that_fails_is_told_and_asked_again() {
-    let files = filled()
-        .edited("graph.ron", "Over(\"wanted\")", "Over(64)")
-        .edited("fill.wgsl", "struct Params { wanted: u32 }", "")
-        .edited(
-            "fill.wgsl",
-            "var<uniform> params: Params",
-            "var<storage, read> host_wanted: u32",
-        )
-        .edited("fill.wgsl", "params.wanted", "host_wanted");
     let mut provider = Wanted {
         version: 0,
         is_there: true,
+        number: 10,
     };
+    let files = filled_from("host_wanted");
     let plan = planned(&files, &request(&provider));
     let mut executor = Executor::new(&GPU.device, &GPU.queue, plan, &mut provider).unwrap();
     frame(&mut executor, &[]);

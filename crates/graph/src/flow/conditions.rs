@@ -34,7 +34,8 @@ pub enum When {
 /// Run conditions of the passes of a schedule. A *position* is an index into
 /// [`Schedule::passes`](crate::Schedule::passes). A *group* is a set of passes that run or are
 /// skipped together in a frame, because they write the same resource or read content of it that a
-/// later pass overwrites; its number is the position of its first pass.
+/// later pass overwrites; its number is the position of its first pass. All passes of a group have
+/// the same [`When`], except copies that captures need, which have [`When::Follows`].
 #[derive(Clone, Debug, Default)]
 pub struct Conditions {
     /// Number of the group of each pass, by position in

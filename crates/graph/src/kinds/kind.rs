@@ -17,7 +17,9 @@ use std::fmt;
 
 /// A kind of pass, such as `Raster`. A value of the type is the body of one pass, deserialised from
 /// its entry in a document's `passes`: all fields except `name`, `shader`, `bind`, `set`, `if`,
-/// `repeat`, `run`, `clear`, `overwrites` and `reads`, which entries of every kind have.
+/// `repeat`, `run`, `clear`, `overwrites` and `reads`, which entries of every kind have. Documents
+/// may use it once it is [registered](crate::Registry::register); [`Lowering::step`] has an
+/// example.
 pub trait PassKind: fmt::Debug + Send + Sync {
     /// Lowers the body to steps: appends the pass's GPU work to `pass`, step by step
     /// ([`Lowering::step`]). Called more than once, and without a GPU: when the document is loaded,

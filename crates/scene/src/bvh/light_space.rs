@@ -76,9 +76,14 @@ impl LightSpace {
         }
     }
 
-    /// Returns the coordinates of a world position relative to `centre`, in scene units: two
-    /// coordinates across the rays, and the three world coordinates in cyclic order with the
+    /// Returns the coordinates of a world position relative to `centre`, in scene units: first two
+    /// coordinates across the rays, then the three world coordinates in cyclic order with the
     /// longest component of `direction` last, mirrored so that each grows along the rays.
+    ///
+    /// With p the position relative to `centre` and d the `direction`, both in that cyclic order
+    /// and not mirrored, the two coordinates across the rays are p.x − p.z · d.x / d.z and
+    /// p.y − p.z · d.y / d.z: the point is moved along the rays to the plane z = 0. (Woop, Benthin,
+    /// Wald, "Watertight Ray/Triangle Intersection", JCGT 2013.)
     pub fn place(&self, position: Vec3) -> (DVec2, DVec3) {
         let d = self.permute(self.direction.as_dvec3());
         let p = self.permute(position.as_dvec3() - self.centre.as_dvec3());

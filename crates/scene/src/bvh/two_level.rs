@@ -50,7 +50,8 @@ pub enum Moved {
 pub struct TwoLevelBvh {
     /// Nodes of the tree, the root first. [`top`](Self::top) and [`nodes_of`](Self::nodes_of) tell
     /// which nodes are of the top level and of a piece; others are unused. The two children of an
-    /// inner node follow each other. Empty without triangles.
+    /// inner node follow each other. No path from the root to a leaf has more than
+    /// [`MAX_DEPTH`](super::MAX_DEPTH) nodes, through both levels. Empty without triangles.
     pub nodes: Vec<BvhNode>,
     /// Primitive ids (indices into [`Mesh::triangles`]) in the order of the leaves. Each leaf names
     /// a range of this list; ids outside these ranges are unused.
@@ -96,8 +97,9 @@ impl TwoLevelBvh {
     /// piece may have no triangles; its tree has no nodes then.
     ///
     /// Where there would be more than `most` nodes, leaves of every tree are merged until there are
-    /// not. The top level alone has nearly two nodes for each piece, none of which can be left out,
-    /// so that more pieces than half of `most` make more nodes than `most`.
+    /// not; `usize::MAX` sets no limit. The top level alone has nearly two nodes for each piece,
+    /// none of which can be left out, so that more pieces than half of `most` make more nodes than
+    /// `most`.
     ///
     /// # Panics
     /// If a piece that is no copy names a triangle that `at_rest` lacks.

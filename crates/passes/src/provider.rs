@@ -755,9 +755,10 @@ impl SceneProvider {
     }
 
     /// Adds a part whose vertices are in a buffer of the host, as [`add_part`](Self::add_part)
-    /// does. Refreshes read the buffer if the part has moved or was
-    /// [rewritten](Self::rewrite_part), and write its positions and normals for all passes. No
-    /// frame brings them to the CPU: the light is laid around the mesh's bounds, and
+    /// does. Refreshes read the buffer if the part was added, has moved or was
+    /// [rewritten](Self::rewrite_part), and write its positions and normals for all passes: the
+    /// vertices must be in the buffer, or their upload submitted, before the first of them. No
+    /// frame brings them to the CPU: the light is laid around the bounds of the [`HostMesh`], and
     /// [`scene`](Self::scene) has the part's positions at rest.
     ///
     /// The host keeps the buffer, and calls [`rewrite_part`](Self::rewrite_part) after each write

@@ -131,7 +131,7 @@ impl Split {
 /// is wrong if it shows shadow where the reference is lit, or light where the reference is in
 /// shadow. A pixel that the reference calls facing away but the method does not (status 2 to 4) is
 /// wrong, as `lit`, if it shows light; shown in shadow it looks the same and is right. Pixels
-/// facing away by both, and background, are not judged, whatever their visibility.
+/// facing away by both, and background, are not judged: their visibility may be 0 or 1.
 /// `facing_mismatch` counts the disagreements about facing, wrong or not.
 ///
 /// `certain` and `uncertain` count PFL pixels only, so that `certain.lit + certain.shadow +

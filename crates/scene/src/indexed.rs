@@ -61,9 +61,12 @@ pub enum IndexedError {
 }
 
 impl Indexed<'_> {
-    /// Returns the mesh, in which equal positions are one (welded). Triangles keep their order. A
-    /// triangle with the same position at two corners is left out. A missing normal is replaced by
-    /// the geometric normal of its triangle.
+    /// Returns the mesh, in which equal positions are one (welded). They stand in the order in
+    /// which [`positions`](Self::positions) first has them, unused ones too; −0 becomes 0.
+    /// Triangles keep their order. One with equal positions at two corners is left out, so that the
+    /// primitive ids of those after it are lower by one. A missing normal is replaced by the
+    /// geometric normal of its triangle. Equal normals are one, in the order in which triangles
+    /// first use them.
     ///
     /// # Errors
     /// [`IndexedError`] for lists of the wrong length, an index without a position, or a number

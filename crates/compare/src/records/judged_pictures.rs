@@ -28,7 +28,10 @@ pub struct JudgedPictures {
     pub scene: Scene,
     /// Name of the view.
     pub view: String,
-    /// Name of the light, where the view has several; absent elsewhere.
+    /// Name of the view's own light, if [`under_lights`] made the view, one for each light of a
+    /// scene; absent elsewhere.
+    ///
+    /// [`under_lights`]: crate::measuring::view_or_path::under_lights
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub light: Option<String>,
     /// Width and height of the pictures in pixels.

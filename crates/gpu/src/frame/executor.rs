@@ -154,9 +154,12 @@ impl Executor {
 
     /// Encodes the passes of a frame into `encoder`, which the host then submits, and returns the
     /// frame's number, counted from 0. It never waits; any number of frames may be in flight.
-    /// Textures and buffers that the graph document declares with `grow` and that proved too small
-    /// for an earlier, submitted frame are larger from this frame on (see [`Plan::grown`]), and
-    /// their views are others ([`output_view`](Self::output_view)).
+    /// Several may be encoded before the first is submitted, with changes of params, plan, imports
+    /// and provider between them: each keeps the resources and values that it was encoded with.
+    /// Submit them in the order of encoding. Textures and buffers that the graph document declares
+    /// with `grow` and that proved too small for an earlier, submitted frame are larger from this
+    /// frame on (see [`Plan::grown`]), and their views are others
+    /// ([`output_view`](Self::output_view)).
     ///
     /// # Errors
     /// If the plan lacks an output or capture of [`Frame::read`] or it cannot be copied; an import

@@ -29,7 +29,9 @@ pub struct Allocation {
 #[non_exhaustive]
 pub struct Aliases {
     /// All allocations, in the order of their first use in a frame. Each texture and buffer that a
-    /// [live](crate::Plan::live) pass uses, except the host's, is in exactly one of them.
+    /// [live](crate::Plan::live) pass uses, except the host's, is in exactly one of them. Resources
+    /// whose content outlives the frame, is read back, or counts for one that grows share theirs
+    /// with no other.
     pub list: Vec<Allocation>,
     /// Index in [`list`](Self::list) of the allocation of each resource. A resource that is not a
     /// key has no allocation: no [live](crate#terms) pass uses it, it is a sampler, or the host

@@ -25,9 +25,10 @@ pub struct Schedule {
     /// them.
     pub aliases: Aliases,
     /// Textures and buffers of the graph that a [live](crate#terms) pass also reads as they were in
-    /// the frame before (`.previous`). The device holds two of each. A frame that runs a writer of
-    /// the resource writes one and reads the other as `.previous`, and then they change places. In
-    /// a frame without its writers both names are the one that was written last.
+    /// the frame before (`.previous`). The device holds two of each, for which
+    /// [`aliases`](Self::aliases) has one allocation that no other resource shares. A frame that
+    /// runs a writer of the resource writes one and reads the other as `.previous`, and then they
+    /// change places. In a frame without its writers both names are the one that was written last.
     pub ping_pong: BTreeSet<ResourceId>,
 }
 

@@ -18,8 +18,9 @@ use std::fmt;
 /// A kind of pass, such as `Raster`. A value of the type is the body of one pass, deserialised from
 /// its entry in a document's `passes`: all fields except `name`, `shader`, `bind`, `set`, `if`,
 /// `repeat`, `run`, `clear`, `overwrites` and `reads`, which entries of every kind have. Documents
-/// may use it once it is [registered](crate::Registry::register); [`Lowering::step`] has an
-/// example.
+/// may use it once it is [registered](crate::Registry::register); the module [`step`](crate::step)
+/// has an example. A field that the type lacks is a mistake in the document only if the type says
+/// so to serde (`deny_unknown_fields`).
 pub trait PassKind: fmt::Debug + Send + Sync {
     /// Lowers the body to steps: appends the pass's GPU work to `pass`, step by step
     /// ([`Lowering::step`]). Called more than once, and without a GPU: when the document is loaded,
@@ -148,8 +149,8 @@ impl<'a> Lowering<'a> {
         self.features |= features;
     }
 
-    /// Appends a step (a draw, dispatch, copy or clear) to the pass. Steps run in the order in
-    /// which they are appended.
+    /// Appends a step (a draw, dispatch, copy, clear or work for the CPU) to the pass. Steps run in
+    /// the order in which they are appended.
     pub fn step(&mut self, step: Step<Names>) {
         self.steps.push(step);
     }

@@ -59,8 +59,9 @@ pub trait Sink: Sync {
     /// Receives the end of the current step. `is_whole` is false if it ended early.
     fn end_step(&self, _is_whole: bool) {}
 
-    /// Returns the flag that asks the work to end early; results until then are kept. By default
-    /// the flag is never set.
+    /// Returns the flag that asks the work to end early. A
+    /// [`Series`](crate::measuring::series::Series) keeps the results until then. By default the
+    /// flag is never set.
     fn stop(&self) -> &AtomicBool {
         static NEVER: AtomicBool = AtomicBool::new(false);
         &NEVER

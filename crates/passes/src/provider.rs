@@ -758,7 +758,8 @@ impl SceneProvider {
     /// does. Refreshes read the buffer if the part was added, has moved or was
     /// [rewritten](Self::rewrite_part), and write its positions and normals for all passes: the
     /// vertices must be in the buffer, or their upload submitted, before the first of them. No
-    /// frame brings them to the CPU: the light is laid around the bounds of the [`HostMesh`], and
+    /// frame brings them to the CPU: shadow maps and light spaces are fitted to the bounds of the
+    /// [`HostMesh`], which must hold all its vertices ([`HostMesh::with_bounds`]), and
     /// [`scene`](Self::scene) has the part's positions at rest.
     ///
     /// The host keeps the buffer, and calls [`rewrite_part`](Self::rewrite_part) after each write
@@ -777,9 +778,10 @@ impl SceneProvider {
     /// Notes that the host has rewritten the vertices of a part in its buffer (skinning, morphing).
     /// The next [`refresh`](skiagraph_gpu::Executor::refresh) reads them; their writing must be
     /// submitted before. All parts of the same [`HostMesh`] show them from their next move on, so
-    /// each part that is rewritten has a mesh, and vertices, of its own. `bounds`, low and high
-    /// corner in the space of the vertices, hold all that triangles use: the light is laid around
-    /// them, and rays beyond them miss. [`check_bounds`](Self::check_bounds) finds those that lie.
+    /// each part that is rewritten must have a mesh, and vertices, of its own. `bounds`, low and
+    /// high corner in the space of the vertices, must hold all vertices that triangles use: shadow
+    /// maps are fitted to them, and rays miss what is beyond them.
+    /// [`check_bounds`](Self::check_bounds) finds bounds that are too small.
     ///
     /// # Errors
     /// [`Error::NoHostPart`] for a part of another kind, [`Error::NoPart`] for one that there is

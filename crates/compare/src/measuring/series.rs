@@ -96,7 +96,9 @@ enum Store {
     Cells(CellFolder),
 }
 
-/// Checks a comparison, measures all its runs and returns the results, without writing files.
+/// Checks a comparison, measures all its runs and returns the results, without writing files. After
+/// an error there are no results, not even of the runs that were finished: a [`Series`] keeps
+/// those.
 ///
 /// # Errors
 /// The errors of [`Comparison::check`] and [`Series::measure`]; [`CompareError::InvalidOutputs`]

@@ -44,9 +44,11 @@ const CALLBACK: Duration = Duration::from_secs(10);
 /// times, statistics or readbacks, collect its report with [`poll`](Self::poll), which does not
 /// wait, in this frame or a later one, or with [`finish`](Self::finish), which waits. Submit the
 /// encoders of all frames, in the order of encoding: later frames use the results of earlier ones,
-/// in skipped passes and as `.previous`.
+/// in skipped passes and as `.previous`. If an encoder is dropped instead, its passes count as run:
+/// encode the next frame with [`Frame::all`], which runs them again; its `.previous` contents are
+/// then not those of the frame before.
 ///
-/// Terms: a pass is [*live*](skiagraph_graph#terms) if others need its results. *Outputs* are the
+/// Terms: a pass is [*live*](skiagraph_graph#terms) if its results are needed. *Outputs* are the
 /// results that the graph document lists, *captures* are further contents that
 /// [`PlanRequest::captures`](skiagraph_graph::PlanRequest) names. *Imports* are textures, buffers
 /// and samplers that the host sets; *provided resources* are buffers and acceleration structures

@@ -24,7 +24,9 @@ pub enum When {
     /// change of the viewport.
     Once,
     /// In the first frame, in frames where content that the pass reads, params included, has
-    /// changed since the pass last ran, and when the content that the pass wrote is lost.
+    /// changed since the pass last ran, and when the content that the pass wrote is lost. Contents
+    /// are not compared: content has changed if a pass that writes it has run, or the host reports
+    /// a change.
     OnChange,
     /// In frames where another pass of its group (see [`Conditions`]) runs: the pass copies a
     /// material for a [capture](crate#terms) between two passes that write the material.

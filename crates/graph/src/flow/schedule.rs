@@ -17,7 +17,7 @@ pub struct Schedule {
     /// Ids of the [live](crate::Plan::live) passes in the order in which they run in a frame. A
     /// *position* is an index into this list.
     pub passes: Vec<PassId>,
-    /// First use, last use and usages of each resource that is created on the device.
+    /// First use, last use and usages of each resource that a scheduled pass uses.
     pub lifetimes: Lifetimes,
     /// Frames in which each pass runs, and the groups of passes that run or are skipped together.
     pub conditions: Conditions,

@@ -26,7 +26,9 @@ pub enum Run {
     /// change of the viewport.
     Once,
     /// In the first frame, in frames where content that the pass reads, params included, has
-    /// changed since the pass last ran, and when the content that the pass wrote is lost.
+    /// changed since the pass last ran, and when the content that the pass wrote is lost. Contents
+    /// are not compared: content has changed if a pass that writes it has run, or the host reports
+    /// a change.
     OnChange,
     /// In every frame if an expression over params is true in the plan, in no frame otherwise.
     /// Holds the text of the expression; passes with equal texts run in the same frames.

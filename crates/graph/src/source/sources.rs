@@ -11,7 +11,10 @@ use std::{
 /// A store of RON documents, WGSL files and pictures: a folder, embedded files, or a host's own.
 ///
 /// Paths have forward slashes and are relative to the store (`pipelines/nsm.ron`,
-/// `shaders/shared/camera.wgsl`), or absolute.
+/// `shaders/shared/camera.wgsl`), or absolute if the host gave [`Graph::load`](crate::Graph::load)
+/// an absolute one. Names in documents and shaders are resolved before: for a shader `nsm` of
+/// `pipelines/nsm.ron` the store is asked for `pipelines/nsm.wgsl` and then for `shaders/nsm.wgsl`,
+/// until it has the file. No name in a document leads out of the store by `..`.
 pub trait Sources: Send + Sync {
     /// Reads the text of the document or shader file at `path`; `Ok(None)` if the store has no such
     /// file.

@@ -79,7 +79,7 @@ fn compare(gpu: &Gpu) {
                     let time = frame(gpu, |encoder| match way {
                         0 => drop(
                             executor
-                                .encode(encoder, &Frame::default())
+                                .encode(encoder, &Frame::new().with_all(true))
                                 .expect("the chain was encoded before"),
                         ),
                         1 => by_hand.encode(encoder, false),
@@ -158,7 +158,7 @@ fn changes(criterion: &mut Criterion, gpu: &Gpu) {
                 let once = |_| {
                     frame(gpu, |encoder| {
                         executor
-                            .encode(encoder, &Frame::default())
+                            .encode(encoder, &Frame::new().with_all(true))
                             .expect("the graph was encoded before");
                     })
                 };

@@ -20,6 +20,15 @@ pub trait Provider: Describe {
         0
     }
 
+    /// Returns true if each change of a resource's content or buffer changes its
+    /// [version](Self::version). An executor then encodes no passes in frames that would compute
+    /// the same again (see [`Executor::encode`](crate::Executor::encode)). The default
+    /// implementation returns false, as a host may write into a buffer behind its provider. A
+    /// provider around another one must hand the call on.
+    fn has_versions(&self) -> bool {
+        false
+    }
+
     /// Returns the reason, as text, why the resource `name` cannot be built yet, for example
     /// because the host has to set something first; `None`, the default, if it can be built now. An
     /// executor is created without missing resources, and [`refresh`](crate::Executor::refresh)

@@ -906,6 +906,10 @@ impl Provider for SceneProvider {
         of_lights.unwrap_or_else(|| self.versions.get(name))
     }
 
+    fn has_versions(&self) -> bool {
+        true
+    }
+
     fn missing(&self, name: &str) -> Option<String> {
         let is_of_shape = is_of_shape(name) || lights::describe(name, self.lights()).is_some();
         (self.geometry.is_unplaced() && is_of_shape).then(|| {

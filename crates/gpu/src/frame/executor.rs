@@ -64,6 +64,8 @@ pub struct Executor {
     ping_pong: PingPong,
     decision: FrameDecision,
     host_changes: HostChanges,
+    /// True if the provider tells each change of a content by a version.
+    knows_changes: bool,
     /// Frames that were encoded.
     frames: u32,
     frames_in_flight: FramesInFlight,
@@ -132,6 +134,7 @@ impl Executor {
             state,
             decision: FrameDecision::default(),
             host_changes: HostChanges::default(),
+            knows_changes: false,
             frames: 0,
             frames_in_flight: FramesInFlight::default(),
             staging: Staging::default(),
@@ -162,6 +165,12 @@ impl Executor {
     /// with `grow` and that proved too small for an earlier, submitted frame are larger from this
     /// frame on (see [`Plan::grown`]), and their views are others
     /// ([`output_view`](Self::output_view)).
+    ///
+    /// If nothing has changed since a frame that the GPU is done with, no pass is encoded: the
+    /// outputs of that frame are still there. This needs a provider that
+    /// [has versions](Provider::has_versions), and a plan without imports that does not
+    /// [remember](Plan::remembers) frames. [`Frame::all`], [`Frame::timing`] and
+    /// [`Frame::statistics`] make passes run all the same.
     ///
     /// # Errors
     /// If the plan lacks an output or capture of [`Frame::read`] or it cannot be copied; an import
@@ -213,7 +222,9 @@ impl Executor {
     ) -> Result<u32, ExecuteError> {
         self.presence.check()?;
         self.grow_by_itself()?;
-        self.state.decide(frame.all, &mut self.decision);
+        let is_measured = frame.timing || frame.statistics;
+        let may_rest = !frame.all && !is_measured && self.knows_changes;
+        self.state.decide(frame.all, may_rest, &mut self.decision);
         let FrameDecision { runs, ping_pong } = &self.decision;
         self.state.bind(runs, ping_pong, &self.device)?;
         let mut frame_in_flight = self.frames_in_flight.begin();
@@ -305,9 +316,15 @@ impl Executor {
             .fetches
             .iter()
             .for_each(|fetch| fetch.copy(encoder));
-        let change = state.last_change();
-        for readback in &mut state.growth_readbacks {
-            readback.copy(change, &state.plan, &state.memory, ping_pong, encoder);
+        if runs.contains(&true) {
+            let mut is_counted = true;
+            for readback in &mut state.growth_readbacks {
+                is_counted &= readback.copy(&state.plan, &state.memory, ping_pong, encoder);
+            }
+            // Else a resource that has no room could stay so.
+            if is_counted {
+                state.idle.follow(encoder);
+            }
         }
         let (plan, passes) = (&state.plan, &mut state.passes);
         state.contents.ran(plan, passes, runs, ping_pong);
@@ -538,6 +555,7 @@ impl Executor {
 
     /// Notes which provided resources have changed; called after live passes have the new ones.
     fn note_changes(&mut self, provider: &dyn Provider) {
+        self.knows_changes = provider.has_versions() || self.state.memory.provided().is_empty();
         match self.state.uniform {
             Some(_) => self.host_changes.compare(provider),
             None => self.host_changes.forget(),

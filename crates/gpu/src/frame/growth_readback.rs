@@ -1,7 +1,6 @@
 //! Reads back the counters of buffers and textures that grow: copied after a frame, mapped when it
 //! is submitted, read when they have arrived. Each resource has at most one counter in flight; a
-//! need that is missed meanwhile shows in the next one, or has passed. Where all had room in a
-//! frame, they have it in those that answer as it did: none is read back until something changes.
+//! need that is missed meanwhile shows in the next one, or has passed.
 
 use crate::{
     buffer,
@@ -28,11 +27,6 @@ pub(super) struct GrowthReadback {
     mapped: Signal,
     /// True while a counter is in flight.
     is_asked: bool,
-    /// Number of the last change before the frame of the counter in flight; `None` if that frame
-    /// was of a former plan.
-    asked_at: Option<u64>,
-    /// The same of the last frame whose counter said that there is room.
-    fits_at: Option<u64>,
 }
 
 impl GrowthReadback {
@@ -59,8 +53,6 @@ impl GrowthReadback {
                 staging,
                 mapped: Signal::default(),
                 is_asked: false,
-                asked_at: None,
-                fits_at: None,
             }))
         };
         plan.growing().into_iter().filter_map(readback).collect()
@@ -81,30 +73,28 @@ impl GrowthReadback {
         }
     }
 
-    /// Encodes the copy of the counter, unless an earlier one is in flight, or has said that there
-    /// is room since the last change, which has the number `change`; `None` if each frame may count
-    /// another number.
+    /// Encodes the copy of the counter, unless an earlier one is in flight; returns true if the
+    /// counter of this frame will be read.
     pub fn copy(
         &mut self,
-        change: Option<u64>,
         plan: &Plan,
         memory: &Memory,
         ping_pong: &PingPong,
         encoder: &mut wgpu::CommandEncoder,
-    ) {
+    ) -> bool {
         let counter = &self.growth.counter;
-        if self.is_asked || change.is_some() && self.fits_at == change {
-            return;
+        if self.is_asked {
+            return false;
         }
         let Ok(buffer) = memory.buffer(counter.id, ping_pong) else {
-            return;
+            return false;
         };
         let part = bytes(plan.resource(counter.id), &counter.part, buffer.size());
         encoder.copy_buffer_to_buffer(buffer, part.start, &self.staging, 0, COUNTER);
         self.mapped
             .when_mapped(&self.staging, wgpu::MapMode::Read, encoder);
         self.is_asked = true;
-        self.asked_at = change;
+        true
     }
 
     /// True while a counter is in flight.
@@ -129,7 +119,6 @@ impl GrowthReadback {
         drop(mapped);
         self.staging.unmap();
         let needed = u64::from(u32::from_ne_bytes(word?));
-        self.fits_at = self.asked_at.take().filter(|_| needed <= self.count);
         // A quarter more, so that a moving camera does not make it anew in every frame.
         let wanted = needed.saturating_add(needed / 4).min(self.growth.max);
         (needed > self.count).then_some(wanted)

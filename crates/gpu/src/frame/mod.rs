@@ -9,6 +9,7 @@ mod fetch;
 mod growth;
 mod growth_readback;
 mod host_changes;
+mod idle;
 mod in_flight;
 mod pass;
 mod poison;

@@ -7,6 +7,7 @@ use super::{
     encode::{Meters, SharedPass, clear_buffers, encode_all},
     fetch::Readable,
     growth_readback::GrowthReadback,
+    idle::Idle,
     in_flight::FrameInFlight,
     pass::GpuPass,
     poison::Poison,
@@ -32,10 +33,7 @@ pub(super) struct State {
     /// First position that the clears of each pass may be moved to; see [`clears::earliest`].
     clears: Vec<Option<usize>>,
     pub contents: Contents,
-    /// True if each frame computes the same until the host makes or reports a change.
-    repeats: bool,
-    /// Number of these changes.
-    changes: u64,
+    pub idle: Idle,
     pub poison: Option<Poison>,
     /// The buffers and textures that may grow.
     pub growth_readbacks: Vec<GrowthReadback>,
@@ -87,8 +85,7 @@ impl State {
             uniform: frame_uniform(&plan),
             grown: memory.take_grown(),
             clears: clears::earliest(&plan),
-            repeats: repeats(&plan),
-            changes: 0,
+            idle: Idle::new(&plan),
             contents,
             memory,
             passes,
@@ -106,20 +103,14 @@ impl State {
 
     /// Notes that the host has changed the content of a resource.
     pub fn touch(&mut self, id: ResourceId) {
-        self.changes += 1;
+        self.idle.note_change();
         self.contents.touch(id);
     }
 
     /// Sets other params of the pass at position `at` of the schedule; see [`GpuPass::set_params`].
     pub fn set_params(&mut self, at: usize, params: Vec<Option<wgpu::Buffer>>) {
-        self.changes += 1;
+        self.idle.note_change();
         self.passes[at].set_params(params);
-    }
-
-    /// Returns the number of the last change, since which each frame computes the same; `None` if
-    /// frames may differ without one.
-    pub fn last_change(&self) -> Option<u64> {
-        self.repeats.then_some(self.changes)
     }
 
     /// Returns the resource of this name that a live pass uses.
@@ -174,13 +165,24 @@ impl State {
         self.bind(&ready, &self.ping_pong(true), device)
     }
 
-    /// Decides which passes run in the next frame, and which allocations they use.
-    pub fn decide(&mut self, all: bool, FrameDecision { runs, ping_pong }: &mut FrameDecision) {
+    /// Decides which passes run in the next frame, and which allocations they use. None runs if
+    /// `may_rest` is set and nothing has changed since a frame that is done.
+    pub fn decide(
+        &mut self,
+        all: bool,
+        may_rest: bool,
+        FrameDecision { runs, ping_pong }: &mut FrameDecision,
+    ) {
         // Its content is another one in every frame.
         if let Some(uniform) = self.uniform {
             self.contents.touch(uniform);
         }
-        self.contents.running(&self.plan, &self.passes, all, runs);
+        if may_rest && self.idle.is_settled() {
+            runs.clear();
+            runs.resize(self.passes.len(), false);
+        } else {
+            self.contents.running(&self.plan, &self.passes, all, runs);
+        }
         self.contents.ping_pong(&self.plan, runs, ping_pong);
     }
 
@@ -311,14 +313,6 @@ fn frame_uniform(plan: &Plan) -> Option<ResourceId> {
     let mut live = plan.schedule().lifetimes.keys();
     let is_frame = |id: &&ResourceId| matches!(plan.resource(**id).kind, ResourceKind::Frame);
     live.find(is_frame).copied()
-}
-
-/// True if each frame of a plan computes the same until the host makes or reports a change. A host
-/// may write to its imports without a word.
-fn repeats(plan: &Plan) -> bool {
-    let mut live = plan.schedule().lifetimes.keys();
-    let is_previous = |id: &ResourceId| matches!(plan.resource(*id).origin, Origin::Previous(_));
-    !plan.remembers() && plan.imports().is_empty() && !live.any(is_previous)
 }
 
 /// Returns a resource of the host that the pass at position `at` uses, directly or as `.previous`,

@@ -30,6 +30,7 @@ mod frames;
 mod gpu;
 mod growth;
 mod history;
+mod idle;
 mod imports;
 mod keep;
 mod memory;

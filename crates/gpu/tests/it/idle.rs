@@ -1,0 +1,230 @@
+//! Frames before which nothing has changed: no pass runs, and the outputs are those of before.
+
+use crate::given::{STORAGE, buffer};
+use crate::host::{self, GPU, encoder, frame, planned, request, set, submit, words};
+use crate::support::Files;
+use skiagraph_gpu::{Executor, Frame, Provider, ProviderError, import};
+use skiagraph_graph::{Describe, NoProvider, ParamValue, Provided, ProvidedBinding};
+
+const PASSES: [&str; 2] = ["add", "double"];
+
+/// ```text
+/// params ─▶ add ─▶ sum ─▶ double ─▶ out
+/// ```
+fn files() -> Files {
+    Files::graph(
+        r#"
+    params: [U32(name: "more", default: 1)],
+    materials: [Buffer(name: "sum"), Buffer(name: "out")],
+    passes: [
+        Compute(name: "add", dispatch: Groups(1, 1, 1)),
+        Compute(name: "double", dispatch: Groups(1, 1, 1)),
+    ],
+    outputs: ["out"],
+"#,
+    )
+    .with(
+        "add.wgsl",
+        "struct Params { more: u32 }
+         var<uniform> params: Params;
+         var<storage, read_write> sum: u32;
+         @compute @workgroup_size(1) fn main() { sum = 10u + params.more; }",
+    )
+    .with(
+        "double.wgsl",
+        "var<storage, read> sum: u32;
+         var<storage, read_write> out: u32;
+         @compute @workgroup_size(1) fn main() { out = 2u * sum; }",
+    )
+}
+
+/// As [`files`], where the number to add stands in a buffer.
+fn files_of(buffer: &str) -> Files {
+    let global = format!("var<storage, read> {buffer}: u32");
+    files()
+        .edited("add.wgsl", "struct Params { more: u32 }", "")
+        .edited("add.wgsl", "var<uniform> params: Params", &global)
+        .edited("add.wgsl", "params.more", buffer)
+}
+
+/// Runs a frame that shows `out`, and tells whether its passes ran.
+#[track_caller]
+fn runs(executor: &mut Executor, out: u32) -> bool {
+    let report = frame(executor, &["out"]);
+    assert_eq!(words(&report, 0), [out]);
+    match &report.skipped[..] {
+        [] => true,
+        skipped => {
+            assert_eq!(skipped, PASSES);
+            false
+        }
+    }
+}
+
+#[test]
+fn passes_run_again_only_after_a_change() {
+    let mut executor = host::executor(&files(), &request(&NoProvider));
+    assert!(runs(&mut executor, 22));
+    assert!(!runs(&mut executor, 22));
+    assert!(!runs(&mut executor, 22));
+    set(&mut executor, "more", ParamValue::U32(5));
+    assert!(runs(&mut executor, 30));
+    assert!(!runs(&mut executor, 30));
+    // All that a host may ask for besides is there.
+    let all = submit(&mut executor, &Frame::new().with_all(true));
+    assert_eq!(all.skipped, [""; 0]);
+    let timed = submit(&mut executor, &Frame::new().with_timing(true));
+    assert_eq!(timed.skipped, [""; 0]);
+    assert_eq!(timed.timing.expect("it was asked for").passes.len(), 2);
+    assert!(!runs(&mut executor, 30));
+    // Another plan has other memory.
+    let plan = planned(&files(), &request(&NoProvider));
+    executor.replace_graph(plan, &mut NoProvider).unwrap();
+    assert!(runs(&mut executor, 22));
+    assert!(!runs(&mut executor, 22));
+}
+
+/// Until the GPU is done with a frame it may still be dropped.
+#[test]
+fn frames_that_are_not_done_are_repeated() {
+    let mut executor = host::executor(&files(), &request(&NoProvider));
+    let encode = |executor: &mut Executor| {
+        let mut encoder = encoder();
+        executor.encode(&mut encoder, &Frame::default()).unwrap();
+        encoder
+    };
+    drop(encode(&mut executor));
+    let (first, second) = (encode(&mut executor), encode(&mut executor));
+    GPU.queue.submit([first.finish()]);
+    drop(second);
+    // The first one may be done behind this, or not.
+    runs(&mut executor, 22);
+    assert!(!runs(&mut executor, 22));
+    // The frame of the change is dropped, one before it is done.
+    let before = encode(&mut executor);
+    set(&mut executor, "more", ParamValue::U32(7));
+    let changed = encode(&mut executor);
+    GPU.queue.submit([before.finish()]);
+    drop(changed);
+    assert!(runs(&mut executor, 34));
+    assert!(!runs(&mut executor, 34));
+}
+
+/// Provides `host.more`.
+struct More {
+    number: u32,
+    version: u64,
+    has_versions: bool,
+    made: Option<wgpu::Buffer>,
+}
+
+impl Describe for More {
+    fn names(&self) -> Vec<String> {
+        vec!["host.more".to_owned()]
+    }
+
+    fn describe(&self, name: &str) -> Option<Provided> {
+        (name == "host.more").then_some(Provided::new(ProvidedBinding::Storage, Some(1), 4))
+    }
+}
+
+impl Provider for More {
+    fn version(&self, _: &str) -> u64 {
+        self.version
+    }
+
+    fn has_versions(&self) -> bool {
+        self.has_versions
+    }
+
+    fn build(
+        &mut self,
+        _: &str,
+        _: &wgpu::Device,
+        _: &wgpu::Queue,
+    ) -> Result<wgpu::Buffer, ProviderError> {
+        let made = buffer(&[self.number], STORAGE | wgpu::BufferUsages::COPY_DST);
+        Ok(self.made.insert(made).clone())
+    }
+}
+
+#[test]
+fn what_a_host_changes_is_seen() {
+    let mut provider = More {
+        number: 1,
+        version: 0,
+        has_versions: true,
+        made: None,
+    };
+    let plan = planned(&files_of("host_more"), &request(&provider));
+    let mut executor = Executor::new(&GPU.device, &GPU.queue, plan, &mut provider).unwrap();
+    assert!(runs(&mut executor, 22));
+    executor.refresh(&mut provider).unwrap();
+    assert!(!runs(&mut executor, 22));
+    (provider.version, provider.number) = (1, 2);
+    executor.refresh(&mut provider).unwrap();
+    assert!(runs(&mut executor, 24));
+    assert!(!runs(&mut executor, 24));
+    let write = |provider: &More, number: u32| {
+        let made = provider.made.as_ref().expect("it was built");
+        GPU.queue.write_buffer(made, 0, &number.to_ne_bytes());
+    };
+    write(&provider, 3);
+    executor.touch("host.more").unwrap();
+    assert!(runs(&mut executor, 26));
+    // A provider that promises no versions may write behind the executor.
+    provider.has_versions = false;
+    executor.refresh(&mut provider).unwrap();
+    write(&provider, 4);
+    assert!(runs(&mut executor, 28));
+    assert!(runs(&mut executor, 28));
+}
+
+/// A host may write to its own buffers without a word.
+#[test]
+fn a_plan_with_imports_never_rests() {
+    let inputs = "inputs: [Buffer(name: \"more\")], materials:";
+    let files = files_of("more").edited("graph.ron", "materials:", inputs);
+    let more = buffer(&[1], STORAGE | wgpu::BufferUsages::COPY_DST);
+    let mut request = request(&NoProvider);
+    let described = import::buffer(&more, None);
+    request.imports.insert("more".to_owned(), described);
+    let mut executor = host::executor(&files, &request);
+    executor.import_buffer("more", &more).unwrap();
+    for (number, out) in [(1u32, 22), (2, 24), (2, 24)] {
+        GPU.queue.write_buffer(&more, 0, &number.to_ne_bytes());
+        assert!(runs(&mut executor, out));
+    }
+}
+
+/// Frames that look back, or that tell their number, compute something new.
+#[test]
+fn a_plan_that_remembers_never_rests() {
+    let previous = files()
+        .edited(
+            "graph.ron",
+            "Compute(name: \"add\",",
+            "Compute(name: \"add\", bind: {\"before\": \"sum.previous\"},",
+        )
+        .edited(
+            "add.wgsl",
+            "var<uniform>",
+            "var<storage, read> before: u32; var<uniform>",
+        )
+        .edited("add.wgsl", "10u", "before");
+    let mut executor = host::executor(&previous, &request(&NoProvider));
+    for out in [2, 4, 6] {
+        assert!(runs(&mut executor, out));
+    }
+    let numbered = files()
+        .edited(
+            "add.wgsl",
+            "struct Params",
+            "struct Frame { index: u32 } var<uniform> frame: Frame; struct Params",
+        )
+        .edited("add.wgsl", "10u", "frame.index");
+    let mut executor = host::executor(&numbered, &request(&NoProvider));
+    for out in [2, 4, 6] {
+        assert!(runs(&mut executor, out));
+    }
+}

@@ -74,16 +74,13 @@ fn main() {
         let mut host = Host::new(&gpu, of, &stone);
         // The first frames make what later ones have.
         for turn in 0..3 {
-            host.frame(turn, MOVING);
+            host.frame(turn, MOVING, false);
         }
         for (what, moving) in FRAMES {
             let mut works = Vec::new();
             let frame = |turn| {
-                if what == CAMERA {
-                    host.provider.set_camera(&view(turn).camera(VIEWPORT));
-                }
                 let before = host.provider.work();
-                let times = host.frame(turn, moving);
+                let times = host.frame(turn, moving, what == CAMERA);
                 works.push(host.provider.work().since(before));
                 times
             };
@@ -252,14 +249,17 @@ impl<'a> Host<'a> {
         }
     }
 
-    /// Runs a frame in which the first parts move.
-    fn frame(&mut self, turn: usize, moving: usize) -> Times {
+    /// Runs a frame in which the first parts move, or the camera.
+    fn frame(&mut self, turn: usize, moving: usize, is_camera: bool) -> Times {
         for (index, map) in self.places[..moving].iter_mut().enumerate() {
             *map = place(index, turn + 1);
         }
         let descriptor = wgpu::CommandEncoderDescriptor::default();
         let mut encoder = self.gpu.device.create_command_encoder(&descriptor);
         let start = Instant::now();
+        if is_camera {
+            self.provider.set_camera(&view(turn).camera(VIEWPORT));
+        }
         self.provider
             .set_transforms(&self.places)
             .expect("the maps are turns and shifts");
@@ -292,7 +292,7 @@ impl<'a> Host<'a> {
     /// Prints what one more frame builds, and how long each takes.
     fn print_built(&mut self, moving: usize) {
         let before: Vec<_> = self.provider.built().to_vec();
-        self.frame(1000, moving);
+        self.frame(1000, moving, false);
         let times = |name: &str| before.iter().find(|it| it.name == name).map(|it| it.times);
         let built = self.provider.built().iter();
         let made = built.filter(|built| times(built.name) != Some(built.times));
@@ -315,7 +315,7 @@ impl<'a> Host<'a> {
             .refresh(&mut self.provider)
             .expect("there is room for it");
         let time = since(start);
-        self.frame(0, 0);
+        self.frame(0, 0, false);
         time
     }
 }

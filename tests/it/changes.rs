@@ -171,14 +171,19 @@ fn passes_that_read_nothing_of_a_change_are_skipped() {
         "create_shadow_map.draw[0]",
     ];
     assert_eq!(next(&gpu, &mut executor).skipped, [""; 0]);
-    assert_eq!(next(&gpu, &mut executor).skipped, of_map);
+    let passes: Vec<String> = executor
+        .plan()
+        .live()
+        .map(|pass| pass.name.value.clone())
+        .collect();
+    assert_eq!(next(&gpu, &mut executor).skipped, passes);
 
     // The same again is no change.
     let light = provider.light();
     provider.set_light(light);
     provider.set_view(&park.view(), VIEWPORT);
     executor.refresh(&mut provider).unwrap();
-    assert_eq!(next(&gpu, &mut executor).skipped, of_map);
+    assert_eq!(next(&gpu, &mut executor).skipped, passes);
 
     provider.set_camera(&park.scene.views[1].camera(VIEWPORT));
     executor.refresh(&mut provider).unwrap();
@@ -187,7 +192,7 @@ fn passes_that_read_nothing_of_a_change_are_skipped() {
     provider.set_transforms(&park.lean(1.0)).unwrap();
     executor.refresh(&mut provider).unwrap();
     assert_eq!(next(&gpu, &mut executor).skipped, [""; 0]);
-    assert_eq!(next(&gpu, &mut executor).skipped, of_map);
+    assert_eq!(next(&gpu, &mut executor).skipped, passes);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::sync::{
     Arc,
-    atomic::{AtomicU8, Ordering},
+    atomic::{AtomicU32, Ordering},
 };
 
 /// State of a piece of work that a [`Signal`] follows.
@@ -18,21 +18,26 @@ pub(crate) enum Progress {
     Dropped,
 }
 
+/// Bits of the state of a piece of work.
+const STATE: u32 = 0b11;
+
 impl Progress {
     /// All states by number.
     const ALL: [Self; 4] = [Self::Done, Self::UnderWay, Self::Failed, Self::Dropped];
 }
 
-/// Follows the progress of one piece of work after another.
+/// Follows the progress of one piece of work after another. Holds the number of the work and, in
+/// the two lowest bits, its state.
 #[derive(Debug, Default)]
-pub(crate) struct Signal(Arc<AtomicU8>);
+pub(crate) struct Signal(Arc<AtomicU32>);
 
-/// The other end of a [`Signal`], which a callback holds.
-struct Teller(Arc<AtomicU8>);
+/// The other end of a [`Signal`], which a callback holds, and the value while its work is under
+/// way. A callback of earlier work, which another thread may be ending, thus tells nothing.
+struct Teller(Arc<AtomicU32>, u32);
 
 impl Signal {
     pub fn progress(&self) -> Progress {
-        Progress::ALL[usize::from(self.0.load(Ordering::Acquire))]
+        Progress::ALL[(self.0.load(Ordering::Acquire) & STATE) as usize]
     }
 
     /// Signals when the GPU is done with the commands of the encoder.
@@ -61,9 +66,10 @@ impl Signal {
 
     /// Returns the teller of new work; earlier work must be over.
     fn teller(&self) -> Teller {
-        let teller = Teller(self.0.clone());
-        teller.tell(Progress::UnderWay);
-        teller
+        let work = (self.0.load(Ordering::Acquire) | STATE).wrapping_add(1);
+        let under_way = work | Progress::UnderWay as u32;
+        self.0.store(under_way, Ordering::Release);
+        Teller(self.0.clone(), under_way)
     }
 }
 
@@ -75,16 +81,17 @@ impl Teller {
         });
     }
 
+    /// Tells how the work ended, unless it has been told, or the signal follows other work.
     fn tell(&self, how: Progress) {
-        self.0.store(how as u8, Ordering::Release);
+        let ended = self.1 & !STATE | how as u32;
+        let (before, after) = (Ordering::AcqRel, Ordering::Acquire);
+        self.0.compare_exchange(self.1, ended, before, after).ok();
     }
 }
 
 /// wgpu drops the callbacks of an encoder that is dropped.
 impl Drop for Teller {
     fn drop(&mut self) {
-        if self.0.load(Ordering::Acquire) == Progress::UnderWay as u8 {
-            self.tell(Progress::Dropped);
-        }
+        self.tell(Progress::Dropped);
     }
 }

@@ -82,8 +82,9 @@ pub fn follow(
     path.frames.show(0, plan.viewport(), provider)?;
     let mut prepared = context.prepare(plan, provider)?;
     if prepared.steady.is_none() {
+        let all = Frame::new().with_all(true);
         for _ in 0..warmup {
-            frame::run(context.session, &mut prepared.executor, &Frame::default())?;
+            frame::run(context.session, &mut prepared.executor, &all)?;
         }
     }
     let mut walk = Walk {

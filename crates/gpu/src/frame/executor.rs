@@ -44,9 +44,9 @@ const CALLBACK: Duration = Duration::from_secs(10);
 /// times, statistics or readbacks, collect its report with [`poll`](Self::poll), which does not
 /// wait, in this frame or a later one, or with [`finish`](Self::finish), which waits. Submit the
 /// encoders of all frames, in the order of encoding: later frames use the results of earlier ones,
-/// in skipped passes and as `.previous`. If an encoder is dropped instead, its passes count as run:
-/// encode the next frame with [`Frame::all`], which runs them again; its `.previous` contents are
-/// then not those of the frame before.
+/// in skipped passes and as `.previous`. If an encoder is dropped instead, or wgpu refuses its
+/// submission, its passes count as run: encode the next frame with [`Frame::all`], which runs them
+/// again; its `.previous` contents are then not those of the frame before.
 ///
 /// Terms: a pass is [*live*](skiagraph_graph#terms) if its results are needed. *Outputs* are the
 /// results that the graph document lists, *captures* are further contents that
@@ -168,9 +168,10 @@ impl Executor {
     ///
     /// If nothing has changed since a frame that the GPU is done with, no pass is encoded: the
     /// outputs of that frame are still there. This needs a provider that
-    /// [has versions](Provider::has_versions), and a plan without imports that does not
-    /// [remember](Plan::remembers) frames. [`Frame::all`], [`Frame::timing`] and
-    /// [`Frame::statistics`] make passes run all the same.
+    /// [has versions](Provider::has_versions), or a plan without provided resources; and a plan
+    /// without imports in which no pass reads `.previous` contents, a resource with `keep` or the
+    /// uniform `frame`. Frames with [`Frame::all`], [`Frame::timing`] or [`Frame::statistics`] are
+    /// never left out so.
     ///
     /// # Errors
     /// If the plan lacks an output or capture of [`Frame::read`] or it cannot be copied; an import
@@ -225,7 +226,9 @@ impl Executor {
         let is_measured = frame.timing || frame.statistics;
         let may_rest = !frame.all && !is_measured && self.knows_changes;
         self.state.decide(frame.all, may_rest, &mut self.decision);
-        let FrameDecision { runs, ping_pong } = &self.decision;
+        let FrameDecision {
+            runs, ping_pong, ..
+        } = &self.decision;
         self.state.bind(runs, ping_pong, &self.device)?;
         let mut frame_in_flight = self.frames_in_flight.begin();
         if let Err(error) = self.prepare(&mut frame_in_flight, frame) {
@@ -234,8 +237,9 @@ impl Executor {
         }
         // From here on nothing can fail but work of the CPU.
         if let Err(error) = self.record(&mut frame_in_flight, encoder, gives_up) {
-            // Its queries are not resolved.
+            // Its queries are not resolved, and what it has written stays.
             frame_in_flight.timer = None;
+            self.state.idle.note_change();
             self.frames_in_flight.recycle(frame_in_flight);
             return Err(error);
         }
@@ -284,7 +288,11 @@ impl Executor {
         gives_up: Option<&dyn Fn() -> bool>,
     ) -> Result<(), ExecuteError> {
         let state = &mut self.state;
-        let FrameDecision { runs, ping_pong } = &self.decision;
+        let FrameDecision {
+            runs,
+            rests,
+            ping_pong,
+        } = &self.decision;
         if let (Some(id), Some(copy)) = (state.uniform, &mut frame_in_flight.uniform)
             && let Ok(uniform) = state.memory.buffer(id, ping_pong)
         {
@@ -316,7 +324,7 @@ impl Executor {
             .fetches
             .iter()
             .for_each(|fetch| fetch.copy(encoder));
-        if runs.contains(&true) {
+        if !rests {
             let mut is_counted = true;
             for readback in &mut state.growth_readbacks {
                 is_counted &= readback.copy(&state.plan, &state.memory, ping_pong, encoder);
@@ -505,7 +513,8 @@ impl Executor {
 
     /// Marks the content of the import or provided resource `name` as changed, after the host has
     /// written to it. In the next frame, passes with `run: OnChange` (which run only when an input
-    /// has changed) that read it run; the frame after that finds this content as `.previous`
+    /// has changed) that read it run, and all others too if that frame would have been left out
+    /// (see [`encode`](Self::encode)); the frame after that finds this content as `.previous`
     /// (content of the frame before). With a provider that counts [`versions`](Provider::version),
     /// call [`refresh`](Self::refresh) instead.
     ///
@@ -542,6 +551,8 @@ impl Executor {
     /// of light), or the device is lost. That resource and those after it stay as they are; the
     /// next call asks for them again.
     pub fn refresh(&mut self, provider: &mut dyn Provider) -> Result<(), ExecuteError> {
+        // If it fails half way, some resources are this provider's.
+        self.knows_changes &= provider.has_versions();
         let mut built = Vec::new();
         let refreshed = self.refresh_live(provider, &mut built);
         let refreshed = refreshed.and(self.submit_built(provider, &built));
@@ -630,6 +641,7 @@ impl Executor {
     /// is not set. Fetch the view anew after [`resize`](Self::resize) or another change of the
     /// plan, and in every frame if a pass also reads the resource as `.previous` (content of the
     /// frame before), or if it may grow (`grow`): [`encode`](Self::encode) may then replace it.
+    /// Only read it: a frame in which nothing has changed leaves it as it is.
     pub fn output_view(&self, name: &str) -> Option<wgpu::TextureView> {
         let target = self.plan().readable_target(name)?;
         let dimension = match &self.plan().resource(target.id).kind {
@@ -646,7 +658,7 @@ impl Executor {
     /// Returns the buffer of the output or capture `name` (see [`Executor`]) with the content of
     /// the last encoded frame; the whole buffer, even if only some of its items belong to the
     /// output. `None` if no buffer is an output or capture of this name, or it is an import that is
-    /// not set. Fetch it anew when [`output_view`](Self::output_view) says so.
+    /// not set. Fetch it anew when [`output_view`](Self::output_view) says so, and only read it.
     pub fn output_buffer(&self, name: &str) -> Option<wgpu::Buffer> {
         let target = self.plan().readable_target(name)?;
         self.state
@@ -933,7 +945,12 @@ impl Executor {
                 self.state.growth_readbacks.clear();
                 Ok(None)
             }
-            report => report.map(Some),
+            // It is to be counted again.
+            Err(error) => {
+                self.state.idle.note_change();
+                Err(error)
+            }
+            Ok(report) => Ok(Some(report)),
         }
     }
 }

@@ -92,8 +92,10 @@ pub struct FrameReport {
     /// draws and dispatches.
     pub statistics: Option<Vec<PassStatistics>>,
     /// Names of the passes that did not run although their results are needed, because their inputs
-    /// were unchanged (`run: OnChange`), they had run before (`run: Once`) or their condition was
-    /// false (`run: When(…)`). They stand in the order in which the passes would have run.
+    /// were unchanged (`run: OnChange`), they had run before (`run: Once`), their condition was
+    /// false (`run: When(…)`), or the frame would have computed the same as one before (see
+    /// [`Executor::encode`](crate::Executor::encode)). They stand in the order in which the passes
+    /// would have run.
     pub skipped: Vec<String>,
     /// Contents of the requested outputs and captures: one entry for each name in [`Frame::read`],
     /// in that order.

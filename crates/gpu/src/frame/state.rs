@@ -50,6 +50,8 @@ pub(super) struct State {
 pub(super) struct FrameDecision {
     /// True for each pass of the schedule that runs.
     pub runs: Vec<bool>,
+    /// True if no pass runs because the outputs of an earlier frame are right.
+    pub rests: bool,
     pub ping_pong: PingPong,
 }
 
@@ -171,13 +173,18 @@ impl State {
         &mut self,
         all: bool,
         may_rest: bool,
-        FrameDecision { runs, ping_pong }: &mut FrameDecision,
+        FrameDecision {
+            runs,
+            rests,
+            ping_pong,
+        }: &mut FrameDecision,
     ) {
         // Its content is another one in every frame.
         if let Some(uniform) = self.uniform {
             self.contents.touch(uniform);
         }
-        if may_rest && self.idle.is_settled() {
+        *rests = may_rest && self.idle.is_settled();
+        if *rests {
             runs.clear();
             runs.resize(self.passes.len(), false);
         } else {
@@ -255,7 +262,9 @@ impl State {
     fn clear_ahead(
         &self,
         at: usize,
-        FrameDecision { runs, ping_pong }: &FrameDecision,
+        FrameDecision {
+            runs, ping_pong, ..
+        }: &FrameDecision,
         encoder: &mut wgpu::CommandEncoder,
     ) -> usize {
         let mut until = at;

@@ -477,6 +477,10 @@ impl Provider for Wanted {
         self.version
     }
 
+    fn has_versions(&self) -> bool {
+        true
+    }
+
     fn build(
         &mut self,
         _: &str,
@@ -507,7 +511,33 @@ fn filled_from(buffer: &str) -> Files {
         .edited("fill.wgsl", "params.wanted", buffer)
 }
 
-/// Counters are not read back in frames that answer as one did in which all had room.
+/// A change comes while the count of the frame before is on its way, and no pass runs later.
+#[test]
+fn a_count_that_was_missed_is_made_up_for() {
+    let on_change = |file: Files, at: &str| {
+        let with_run = format!("{at}, run: OnChange");
+        file.edited("graph.ron", at, &with_run)
+    };
+    let files = filled().edited("graph.ron", "Over(\"wanted\")", "Over(64)");
+    let files = on_change(on_change(files, "target: \"needed\""), "Over(64)");
+    let mut executor = executor(&files, &request(&NoProvider));
+    let mut encoders = Vec::new();
+    for wanted in [4, 10] {
+        set(&mut executor, "wanted", ParamValue::U32(wanted));
+        let mut encoder = encoder();
+        executor.encode(&mut encoder, &Frame::default()).unwrap();
+        encoders.push(encoder);
+    }
+    for encoder in encoders {
+        GPU.queue.submit([encoder.finish()]);
+    }
+    for _ in 0..3 {
+        frame(&mut executor, &[]);
+    }
+    has_room(&mut executor, 10, 12);
+}
+
+/// Frames that would compute the same again count nothing.
 #[test]
 fn a_change_after_frames_that_had_room_is_counted() {
     // A param that is in uniforms only, so that the plan stays.

@@ -2,7 +2,7 @@
 //! who may run it.
 
 use crate::buffers::{compute, shader, writes};
-use crate::host::{GPU, encoder, request};
+use crate::host::{GPU, encoder, request, words};
 use crate::support::{Files, right};
 use serde::Deserialize;
 use skiagraph_gpu::{CpuWork, ExecuteError, Executor, Frame, Provider, ProviderError};
@@ -62,6 +62,10 @@ impl Provider for Given {
         u64::from(self.0)
     }
 
+    fn has_versions(&self) -> bool {
+        true
+    }
+
     fn build(
         &mut self,
         name: &str,
@@ -76,6 +80,11 @@ impl Provider for Given {
     }
 }
 
+thread_local! {
+    /// True while all work fails.
+    static FAILS: Cell<bool> = const { Cell::new(false) };
+}
+
 #[derive(Debug)]
 struct Adder(u32);
 
@@ -83,7 +92,7 @@ impl CpuWork for Adder {
     fn run(&self, entry: &str, reads: &[&[u8]], writes: &mut [u8]) -> Result<(), ProviderError> {
         assert_eq!((entry, reads.len()), ("add", 1));
         assert_eq!(reads[0].len(), writes.len());
-        if self.0 == 0 {
+        if self.0 == 0 || FAILS.get() {
             return Err(ProviderError::new("adds nothing".to_owned()));
         }
         for (from, to) in reads[0].chunks(4).zip(writes.chunks_mut(4)) {
@@ -184,6 +193,25 @@ fn work_that_fails_ends_its_frame_alone() {
     provider.0 = 2;
     executor.refresh(&mut provider).unwrap();
     assert_eq!(doubled(&mut executor), [4, 24, 44, 18]);
+}
+
+/// It has overwritten what the frames before it left.
+#[test]
+fn no_frame_rests_on_one_whose_work_failed() {
+    let mut executor = executor(&mut Given(2));
+    let sums = |executor: &mut Executor| {
+        let frame = Frame::new().with_read(&["sums"]);
+        executor.submit(&frame, &|| false).unwrap();
+        let report = executor.finish().unwrap();
+        (words(&report, 0), report.skipped.len())
+    };
+    assert_eq!(sums(&mut executor), (vec![2, 12, 22, 9], 0));
+    assert_eq!(sums(&mut executor), (vec![2, 12, 22, 9], 3));
+    FAILS.set(true);
+    let failed = executor.submit(&Frame::new().with_all(true), &|| false);
+    FAILS.set(false);
+    assert!(matches!(failed, Err(ExecuteError::CpuWork { .. })));
+    assert_eq!(sums(&mut executor), (vec![2, 12, 22, 9], 0));
 }
 
 #[test]

@@ -287,7 +287,7 @@ impl<'de> Deserialize<'de> for Expose {
 )]
 #[serde(rename = "run")]
 pub(crate) enum Run {
-    /// In every frame.
+    /// In every frame that may compute something new.
     #[default]
     Always,
     /// In the first frame after planning.

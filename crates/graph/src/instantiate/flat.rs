@@ -20,7 +20,7 @@ use std::{collections::BTreeSet, ops::Range};
 /// Frames in which a pass runs, as its document gives them in the pass's field `run`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Run {
-    /// In every frame, which is the default.
+    /// In every frame that may compute something new, which is the default.
     Always,
     /// In the first frame, and again when the content that the pass wrote is lost, for example by a
     /// change of the viewport.

@@ -70,7 +70,9 @@ pub enum EyeError {
 impl Eye {
     /// Creates an eye from a camera's matrices, which multiply column vectors, as in glam and WGSL:
     /// `view` maps world space to eye space, `projection` (with its jitter) maps eye space to
-    /// wgpu's clip space (y up, depth 0 to 1). `depth` tells which end of the depth range is near.
+    /// wgpu's clip space (y up, depth 0 to 1). Eye space may be right-handed or left-handed, and
+    /// look along −z or +z: only the two matrices together matter. `depth` tells which end of the
+    /// depth range is near.
     ///
     /// # Errors
     /// [`EyeError`] for matrices that do not form a camera.

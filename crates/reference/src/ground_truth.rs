@@ -11,7 +11,8 @@ use skiagraph_scene::{Camera, LightKind, Mesh};
 use std::borrow::Cow;
 
 /// The oracle's answer for a pixel: tells if light reaches its receiver, the point that the pixel
-/// shows.
+/// shows. For lights with extent [`ground_truth`](crate::ground_truth()) counts shares, while
+/// [`Oracle::shade`](crate::Oracle::shade) asks the light's centre alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
     /// The pixel shows no geometry.
@@ -19,9 +20,9 @@ pub enum Class {
     /// The receiver faces away from the light, dot(interpolated normal, vector to the light) ≤ 0,
     /// whether or not a caster is in between; or it lies outside of a spot light's cone.
     FacingAway,
-    /// The receiver faces the light and sees it; of a light with extent, at least half.
+    /// The receiver faces the light and sees it; where shares are counted, at least half of it.
     Lit,
-    /// The receiver faces the light and does not see it; of a light with extent, less than half.
+    /// The receiver faces the light and does not see it; where shares are counted, less than half.
     Shadow,
 }
 

@@ -151,7 +151,7 @@ impl<'a> Oracle<'a> {
 
     /// Classifies every pixel of a G-buffer as lit, in shadow, facing away or background, with one
     /// ray to the light's centre; for the share that a pixel sees of a light with extent call
-    /// [`ground_truth`](crate::ground_truth). `primitives` holds the primitive id (index of a
+    /// [`ground_truth`](crate::ground_truth()). `primitives` holds the primitive id (index of a
     /// triangle of the mesh) that each pixel shows, row by row from the top left; [`BACKGROUND`]
     /// for a pixel without geometry. The receiver is the point where the ray through the pixel's
     /// centre meets that primitive. At a triangle's edge a rasteriser, which snaps corners, may

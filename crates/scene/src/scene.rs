@@ -9,6 +9,10 @@ use crate::{
 use glam::DVec3;
 
 /// Scene to be drawn: a mesh with its views and lights.
+///
+/// A scene that was loaded is right. One made by hand is not checked: [`View::check`] and
+/// [`Light::check`] find numbers that no camera or light has, and the names of views, which files
+/// are called by, must differ, as those of lights must.
 #[derive(Clone, Debug)]
 pub struct Scene {
     /// Name of the scene, shown in tables and results.

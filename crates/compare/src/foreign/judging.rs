@@ -137,9 +137,10 @@ pub(crate) struct Truth<'a> {
     pub(crate) surfaces: &'static str,
 }
 
-/// Judges pictures of a view of a scene against the [reference](crate#terms), under the default
-/// light of the view ([`Scene::light_of`]); [`under_lights`] gives views a certain one. A GPU is
-/// opened unless [`Surfaces::Ids`] gives the surfaces.
+/// Judges pictures of a view of a scene, made as docs/judge.md says (one sample at the pixel's
+/// centre, no tone mapping), against the [reference](crate#terms), under the default light of the
+/// view ([`Scene::light_of`]); [`under_lights`] gives views a certain one. A GPU is opened unless
+/// [`Surfaces::Ids`] gives the surfaces.
 ///
 /// [`under_lights`]: crate::measuring::view_or_path::under_lights
 ///

@@ -49,9 +49,10 @@ pub fn load_all(names: &[String], sources: &dyn Sources) -> Result<Vec<Arc<Prese
 
 /// Loads the shadow methods that `words` name, such as `nsm` or `crsm@n=1`
 /// ([`MethodArgument`](crate::graphs::argument::MethodArgument)). `params` are set in every method
-/// that has them. Each method is returned once for each setting, and for each of `map_sizes`,
-/// widths of the shadow map in texels. A method without a shadow map, or any method if that list is
-/// empty, is returned once for each setting.
+/// that has them. A value may be a list, `1,2,4`, or a range, `0..0.01/5`
+/// ([`variants`](crate::graphs::variants)); each combination is a setting. Each method is returned
+/// once for each setting, and for each of `map_sizes`, widths of the shadow map in texels. A method
+/// without a shadow map, or any method if that list is empty, is returned once for each setting.
 ///
 /// # Errors
 /// The errors of [`method::load`]; graphs that are not shadow methods.

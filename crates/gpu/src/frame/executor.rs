@@ -40,13 +40,14 @@ const CALLBACK: Duration = Duration::from_secs(10);
 /// Runs a [`Plan`] on a wgpu device: creates its resources and pipelines, and encodes its frames
 /// into the host's command encoders.
 ///
-/// For each frame call [`encode`](Self::encode), then submit the encoder. If the [`Frame`] requests
-/// times, statistics or readbacks, collect its report with [`poll`](Self::poll), which does not
-/// wait, in this frame or a later one, or with [`finish`](Self::finish), which waits. Submit the
-/// encoders of all frames, in the order of encoding: later frames use the results of earlier ones,
-/// in skipped passes and as `.previous`. If an encoder is dropped instead, or wgpu refuses its
-/// submission, its passes count as run: encode the next frame with [`Frame::all`], which runs them
-/// again; its `.previous` contents are then not those of the frame before.
+/// For each frame call [`refresh`](Self::refresh) if the provider may have changed, and
+/// [`encode`](Self::encode), then submit the encoder. If the [`Frame`] requests times, statistics
+/// or readbacks, collect its report with [`poll`](Self::poll), which does not wait, in this frame
+/// or a later one, or with [`finish`](Self::finish), which waits. Submit the encoders of all
+/// frames, in the order of encoding: later frames use the results of earlier ones, in skipped
+/// passes and as `.previous`. If an encoder is dropped instead, or wgpu refuses its submission, its
+/// passes count as run: encode the next frame with [`Frame::all`], which runs them again; its
+/// `.previous` contents are then not those of the frame before.
 ///
 /// Terms: a pass is [*live*](skiagraph_graph#terms) if its results are needed. *Outputs* are the
 /// results that the graph document lists, *captures* are further contents that
@@ -161,10 +162,10 @@ impl Executor {
     /// frame's number, counted from 0. It never waits; any number of frames may be in flight.
     /// Several may be encoded before the first is submitted, with changes of params, plan, imports
     /// and provider between them: each keeps the resources and values that it was encoded with.
-    /// Submit them in the order of encoding. Textures and buffers that the graph document declares
-    /// with `grow` and that proved too small for an earlier, submitted frame are larger from this
-    /// frame on (see [`Plan::grown`]), and their views are others
-    /// ([`output_view`](Self::output_view)).
+    /// Changes of the provider are seen from the next [`refresh`](Self::refresh) on. Submit them in
+    /// the order of encoding. Textures and buffers that the graph document declares with `grow` and
+    /// that proved too small for an earlier, submitted frame are larger from this frame on (see
+    /// [`Plan::grown`]), and their views are others ([`output_view`](Self::output_view)).
     ///
     /// If nothing has changed since a frame that the GPU is done with, no pass is encoded: the
     /// outputs of that frame are still there. This needs a provider that

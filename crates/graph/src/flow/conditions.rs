@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Frames in which a pass of a [`Schedule`](crate::Schedule) runs: the [`Run`] of its document,
 /// with the condition of [`Run::When`] evaluated. An executor leaves out all passes of a frame that
-/// would compute the same as one before; *every frame* is each of the others.
+/// would compute the same as one before: *every frame* leaves those out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum When {
     /// In every frame: the pass has [`Run::Always`], or the condition of its [`Run::When`] is true
@@ -36,9 +36,10 @@ pub enum When {
 
 /// Run conditions of the passes of a schedule. A *position* is an index into
 /// [`Schedule::passes`](crate::Schedule::passes). A *group* is a set of passes that run or are
-/// skipped together in a frame, because they write the same resource or read content of it that a
-/// later pass overwrites; its number is the position of its first pass. All passes of a group have
-/// the same [`When`], except copies that captures need, which have [`When::Follows`].
+/// skipped together in a frame, because they write the same resource (without `keep`) or read
+/// content of it that a later pass overwrites; its number is the position of its first pass. All
+/// passes of a group have the same [`When`], except copies that captures need, which have
+/// [`When::Follows`].
 #[derive(Clone, Debug, Default)]
 pub struct Conditions {
     /// Number of the group of each pass, by position in

@@ -21,8 +21,9 @@ pub trait Provider: Describe {
     }
 
     /// Returns true if each change of a resource's content or buffer changes its
-    /// [version](Self::version), or is told by [`Executor::touch`](crate::Executor::touch). An
-    /// executor then encodes no passes in frames that would compute the same again (see
+    /// [version](Self::version), or is told by [`Executor::touch`](crate::Executor::touch);
+    /// [`CpuWork`] that would give other results counts as changed, too. An executor then encodes
+    /// no passes in frames that would compute the same again (see
     /// [`Executor::encode`](crate::Executor::encode)). The default implementation returns false, as
     /// a host may write into a buffer behind its provider. A provider around another one must hand
     /// the call on.

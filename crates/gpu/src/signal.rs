@@ -64,7 +64,7 @@ impl Signal {
         buffer.map_async(mode, .., move |result| teller.tell_mapped(&result));
     }
 
-    /// Returns the teller of new work; earlier work must be over.
+    /// Returns the teller of new work. Earlier work must be over, though its callback may not be.
     fn teller(&self) -> Teller {
         let work = (self.0.load(Ordering::Acquire) | STATE).wrapping_add(1);
         let under_way = work | Progress::UnderWay as u32;

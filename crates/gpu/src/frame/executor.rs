@@ -65,7 +65,7 @@ pub struct Executor {
     ping_pong: PingPong,
     decision: FrameDecision,
     host_changes: HostChanges,
-    /// True if the provider tells each change of a content by a version.
+    /// True if the provider tells each change of a content by a version, or there is none to tell.
     knows_changes: bool,
     /// Frames that were encoded.
     frames: u32,
@@ -170,9 +170,10 @@ impl Executor {
     /// If nothing has changed since a frame that the GPU is done with, no pass is encoded: the
     /// outputs of that frame are still there. This needs a provider that
     /// [has versions](Provider::has_versions), or a plan without provided resources; and a plan
-    /// without imports in which no pass reads `.previous` contents, a resource with `keep` or the
+    /// without imports in which no pass uses `.previous` contents, a resource with `keep` or the
     /// uniform `frame`. Frames with [`Frame::all`], [`Frame::timing`] or [`Frame::statistics`] are
-    /// never left out so.
+    /// never left out so. A submission that wgpu refuses counts as done: encode the next frame with
+    /// [`Frame::all`].
     ///
     /// # Errors
     /// If the plan lacks an output or capture of [`Frame::read`] or it cannot be copied; an import
@@ -240,7 +241,7 @@ impl Executor {
         if let Err(error) = self.record(&mut frame_in_flight, encoder, gives_up) {
             // Its queries are not resolved, and what it has written stays.
             frame_in_flight.timer = None;
-            self.state.idle.note_change();
+            self.state.forget_frame(&self.decision);
             self.frames_in_flight.recycle(frame_in_flight);
             return Err(error);
         }
@@ -326,9 +327,10 @@ impl Executor {
             .iter()
             .for_each(|fetch| fetch.copy(encoder));
         if !rests {
-            let mut is_counted = true;
+            let (mut is_counted, change) = (true, state.idle.changes());
             for readback in &mut state.growth_readbacks {
-                is_counted &= readback.copy(&state.plan, &state.memory, ping_pong, encoder);
+                let (plan, memory) = (&state.plan, &state.memory);
+                is_counted &= readback.copy(change, plan, memory, ping_pong, encoder);
             }
             // Else a resource that has no room could stay so.
             if is_counted {
@@ -514,10 +516,10 @@ impl Executor {
 
     /// Marks the content of the import or provided resource `name` as changed, after the host has
     /// written to it. In the next frame, passes with `run: OnChange` (which run only when an input
-    /// has changed) that read it run, and all others too if that frame would have been left out
-    /// (see [`encode`](Self::encode)); the frame after that finds this content as `.previous`
-    /// (content of the frame before). With a provider that counts [`versions`](Provider::version),
-    /// call [`refresh`](Self::refresh) instead.
+    /// has changed) that read it run, and those with `run: Always` also where the frame would
+    /// otherwise compute nothing new (see [`encode`](Self::encode)); the frame after that finds
+    /// this content as `.previous` (content of the frame before). With a provider that counts
+    /// [`versions`](Provider::version), call [`refresh`](Self::refresh) instead.
     ///
     /// # Errors
     /// [`ExecuteError::NotOfHost`] if the plan has neither an import nor a provided resource of
@@ -567,7 +569,12 @@ impl Executor {
 
     /// Notes which provided resources have changed; called after live passes have the new ones.
     fn note_changes(&mut self, provider: &dyn Provider) {
-        self.knows_changes = provider.has_versions() || self.state.memory.provided().is_empty();
+        let knows = provider.has_versions() || self.state.memory.provided().is_empty();
+        if knows && !self.knows_changes {
+            // There may have been others before.
+            self.state.idle.note_change();
+        }
+        self.knows_changes = knows;
         match self.state.uniform {
             Some(_) => self.host_changes.compare(provider),
             None => self.host_changes.forget(),

@@ -27,6 +27,9 @@ pub(super) struct GrowthReadback {
     mapped: Signal,
     /// True while a counter is in flight.
     is_asked: bool,
+    /// Number of the last change before the frame of the last counter; `None` before the first one
+    /// of this plan.
+    counted: Option<u64>,
 }
 
 impl GrowthReadback {
@@ -53,6 +56,7 @@ impl GrowthReadback {
                 staging,
                 mapped: Signal::default(),
                 is_asked: false,
+                counted: None,
             }))
         };
         plan.growing().into_iter().filter_map(readback).collect()
@@ -73,10 +77,12 @@ impl GrowthReadback {
         }
     }
 
-    /// Encodes the copy of the counter, unless an earlier one is in flight; returns true if the
-    /// counter of this frame will be read.
+    /// Encodes the copy of the counter, unless an earlier one is in flight. Returns true if the
+    /// counter of this frame will be read, or that of an earlier one since the last change, which
+    /// has the number `change`.
     pub fn copy(
         &mut self,
+        change: u64,
         plan: &Plan,
         memory: &Memory,
         ping_pong: &PingPong,
@@ -84,7 +90,7 @@ impl GrowthReadback {
     ) -> bool {
         let counter = &self.growth.counter;
         if self.is_asked {
-            return false;
+            return self.counted == Some(change);
         }
         let Ok(buffer) = memory.buffer(counter.id, ping_pong) else {
             return false;
@@ -94,6 +100,7 @@ impl GrowthReadback {
         self.mapped
             .when_mapped(&self.staging, wgpu::MapMode::Read, encoder);
         self.is_asked = true;
+        self.counted = Some(change);
         true
     }
 

@@ -25,6 +25,11 @@ impl Idle {
         }
     }
 
+    /// Returns the number of changes that were noted.
+    pub fn changes(&self) -> u64 {
+        self.changes
+    }
+
     /// Notes that the host has made or reported a change.
     pub fn note_change(&mut self) {
         self.changes += 1;

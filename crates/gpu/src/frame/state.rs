@@ -167,6 +167,14 @@ impl State {
         self.bind(&ready, &self.ping_pong(true), device)
     }
 
+    /// Notes that a frame has failed when some of its passes had run: all of them run again.
+    pub fn forget_frame(&mut self, FrameDecision { runs, .. }: &FrameDecision) {
+        self.idle.note_change();
+        for (pass, _) in self.passes.iter_mut().zip(runs).filter(|(_, runs)| **runs) {
+            pass.input_versions.versions = None;
+        }
+    }
+
     /// Decides which passes run in the next frame, and which allocations they use. None runs if
     /// `may_rest` is set and nothing has changed since a frame that is done.
     pub fn decide(

@@ -28,9 +28,9 @@ pub enum Trust {
 /// waiting.
 const LONG: Duration = Duration::from_millis(30);
 
-/// Number of comparisons, each with other frames, that disagree before timestamps are not believed:
-/// other load may have been most of the wall time in all frames of some.
-const COMPARISONS: u32 = 4;
+/// Number of comparisons of dispatches of four times that length that disagree before timestamps
+/// are not believed: other load may have been most of the wall time in all frames of some.
+const COMPARISONS: u32 = 3;
 
 /// Number of frames that are run for a comparison; the first one only warms up.
 const FRAMES: usize = 5;
@@ -85,14 +85,17 @@ pub fn check(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Trust, Execut
             .map(|(wall, _)| *wall)
             .min()
             .unwrap_or_default();
-        let is_long = shortest >= LONG || rounds >= 1 << 30;
+        let is_last = rounds >= 1 << 30;
         let trust = judge(&frames[1..]);
-        compared += u32::from(is_long);
-        if is_long && (compared == COMPARISONS || trust == Trust::Trusted) {
+        if trust == Trust::Trusted && (shortest >= LONG || is_last) {
             return Ok(trust);
         }
-        // The second comparison is of a longer dispatch, the others are of the same.
-        if compared < 2 {
+        if shortest >= 4 * LONG || is_last {
+            compared += 1;
+            if compared == COMPARISONS {
+                return Ok(trust);
+            }
+        } else {
             rounds = rounds.saturating_mul(4);
         }
     }

@@ -1,9 +1,9 @@
 //! Clears of buffers, which frames encode ahead of the compute pass that dispatches share.
 
 use crate::buffers::{INPUT, OUT, compute, document, shader, writes};
-use crate::host::{executor, frame, request, words};
+use crate::host::{executor, request, submit, words};
 use crate::support::Files;
-use skiagraph_gpu::Executor;
+use skiagraph_gpu::{Executor, Frame};
 use skiagraph_graph::NoProvider;
 
 const CLEAR: &str = "        Clear(name: \"CLEAR\", target: \"BUFFER\"),\n";
@@ -16,7 +16,9 @@ fn clear(name: &str, buffer: &str) -> String {
 fn run(files: &Files) -> (Executor, [[u32; 2]; 3]) {
     let mut executor = executor(files, &request(&NoProvider));
     let seen = [0; 3].map(|_| {
-        let report = frame(&mut executor, &["first", "second"]);
+        // As if something had changed in each.
+        let all = Frame::new().with_all(true).with_read(&["first", "second"]);
+        let report = submit(&mut executor, &all);
         [0, 1].map(|index| words(&report, index)[0])
     });
     (executor, seen)

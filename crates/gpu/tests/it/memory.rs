@@ -2,15 +2,18 @@
 //! unwritten.
 
 use crate::buffers::{INPUT, compute, document, writes};
-use crate::host::{self, executor, planned, request, submit, words};
+use crate::host::{executor, planned, request, submit, words};
 use crate::support::Files;
 use skiagraph_gpu::{Executor, Frame};
 use skiagraph_graph::{Capture, NoProvider};
 use std::fmt::Write as _;
 
-/// The first number of an output after a frame.
+/// The first number of an output after a frame in which every pass runs.
 fn number(executor: &mut Executor, output: &str) -> u32 {
-    host::numbers(executor, output)[0]
+    let frame = Frame::new()
+        .with_all(true)
+        .with_read(std::slice::from_ref(&output));
+    words(&submit(executor, &frame), 0)[0]
 }
 
 /// The bytes that a graph takes, and those that it saves.

@@ -198,7 +198,20 @@ fn work_that_fails_ends_its_frame_alone() {
 /// It has overwritten what the frames before it left.
 #[test]
 fn no_frame_rests_on_one_whose_work_failed() {
-    let mut executor = executor(&mut Given(2));
+    for run in ["", "run: OnChange,"] {
+        rests_on_no_failed_frame(run);
+    }
+}
+
+fn rests_on_no_failed_frame(run: &str) {
+    let mut provider = Given(2);
+    let add = format!("{ADD}, {run}");
+    let files = ["fill", "double"].iter().fold(files(&add), |files, pass| {
+        let name = format!("name: \"{pass}\",");
+        files.edited("graph.ron", &name, &format!("{name} {run}"))
+    });
+    let plan = right(graph(&files).plan(&request(&provider)));
+    let mut executor = Executor::new(&GPU.device, &GPU.queue, plan, &mut provider).unwrap();
     let sums = |executor: &mut Executor| {
         let frame = Frame::new().with_read(&["sums"]);
         executor.submit(&frame, &|| false).unwrap();
@@ -212,6 +225,7 @@ fn no_frame_rests_on_one_whose_work_failed() {
     FAILS.set(false);
     assert!(matches!(failed, Err(ExecuteError::CpuWork { .. })));
     assert_eq!(sums(&mut executor), (vec![2, 12, 22, 9], 0));
+    assert_eq!(sums(&mut executor), (vec![2, 12, 22, 9], 3));
 }
 
 #[test]

@@ -294,7 +294,7 @@ pub(crate) enum Run {
     Once,
     /// In frames where something that it reads has changed.
     OnChange,
-    /// In frames where an expression over params is true.
+    /// In frames where an expression over params is true and something new may be computed.
     When(Expr),
 }
 

@@ -120,6 +120,13 @@ impl Program {
         }
     }
 
+    /// True if a pass reads the host's buffer. Only then does the document have it as an input, as
+    /// with one each pass runs in every frame.
+    pub fn reads_host(&self) -> bool {
+        let mut passes = self.passes.iter();
+        passes.any(|pass| pass.reads.contains(&Read::Host))
+    }
+
     /// The document: every material that is not kept is set to zero before it is first used, so
     /// that lifetimes are short and memory is shared.
     pub fn files(&self) -> Files {
@@ -147,12 +154,16 @@ impl Program {
             })
             .collect();
         let outputs: Vec<String> = self.outputs.iter().map(|at| format!("m{at}")).collect();
+        let input = match self.reads_host() {
+            true => "Buffer(name: \"host\")",
+            false => "",
+        };
         files.document(
             "graph.ron",
             &format!(
                 "\n    params: [{SEED_PARAM} Bool(name: \"flag\", default: true), \
                  Bool(name: \"extra\", default: true)],\n    \
-                 inputs: [Buffer(name: \"host\")],\n    materials: [{materials}],\n    \
+                 inputs: [{input}],\n    materials: [{materials}],\n    \
                  passes: [\n{passes}    ],\n    outputs: {outputs:?},\n"
             ),
         )

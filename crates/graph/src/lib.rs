@@ -37,7 +37,8 @@
 //! # Terms
 //!
 //! - *Document*: a RON file that describes a graph. [`Graph::load`] reads it with the documents
-//!   that it *extends* (takes over and edits) and *includes* (uses as parts).
+//!   that it *extends* (takes over and edits) and *includes* (uses as parts). docs/authoring.md is
+//!   the guide to its language.
 //! - *Host*: the program that loads a graph and runs it in its own frames.
 //! - *Material*: a texture, buffer or sampler that a document declares; in a plan a [`Resource`]. A
 //!   buffer consists of *items*, the elements of the array that shaders declare.

@@ -154,11 +154,12 @@ impl<'a> Oracle<'a> {
     /// [`ground_truth`](crate::ground_truth()). `primitives` holds the primitive id (index of a
     /// triangle of the mesh) that each pixel shows, row by row from the top left; [`BACKGROUND`]
     /// for a pixel without geometry. The receiver is the point where the ray through the pixel's
-    /// centre meets that primitive. At a triangle's edge a rasteriser, which snaps corners, may
-    /// name a primitive that the centre lies slightly outside of; the receiver is within the
-    /// primitive's edges all the same ([`Receiver::new`]). Casters are two-sided and count if they
-    /// lie in front of the ray's origin (t > 0) by more than f64 rounding; rays to a spot or point
-    /// light end before it, by the share [`LIGHT_GAP`] of their length.
+    /// centre (moved by [`Camera::jitter`]) meets that primitive. At a triangle's edge a
+    /// rasteriser, which snaps corners, may name a primitive that the centre lies slightly outside
+    /// of; the receiver is within the primitive's edges all the same ([`Receiver::new`]). Casters
+    /// are two-sided and count if they lie in front of the ray's origin (t > 0) by more than f64
+    /// rounding; rays to a spot or point light end before it, by the share [`LIGHT_GAP`] of their
+    /// length.
     ///
     /// # Errors
     /// [`Error::PixelCount`], [`Error::UnknownPrimitive`], [`Error::Light`], [`Error::Offset`],

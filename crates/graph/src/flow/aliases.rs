@@ -34,8 +34,8 @@ pub struct Aliases {
     /// with no other.
     pub list: Vec<Allocation>,
     /// Index in [`list`](Self::list) of the allocation of each resource. A resource that is not a
-    /// key has no allocation: no [live](crate#terms) pass uses it, it is a sampler, or the host
-    /// makes it.
+    /// key has no allocation: no [live](crate#terms) pass uses it, it is a sampler, the host makes
+    /// it, or it is the `.previous` of another ([`Origin::Previous`]), whose allocation it has.
     pub of: BTreeMap<ResourceId, usize>,
 }
 

@@ -10,7 +10,8 @@ use std::collections::BTreeMap;
 
 /// Lifetimes in a frame, by resource. Only resources of which a scheduled pass uses the content of
 /// this frame or of the frame before are listed, the host's among them; only these are created on
-/// the device, or asked of the host.
+/// the device, or asked of the host. The `.previous` of a resource
+/// ([`Origin::Previous`](crate::Origin::Previous)) has an entry of its own.
 pub type Lifetimes = BTreeMap<ResourceId, Lifetime>;
 
 /// First and last use of one resource in a schedule, and the usages to create it with on the

@@ -34,6 +34,9 @@ pub enum HostIndices<'a> {
 /// The host hands over the vertices at rest once, while loading, in the format that they have in
 /// the buffer. Of them the mesh is welded, and its hierarchy is built, which any thread may do.
 /// What is on the CPU from then on is the welded mesh at rest and its hierarchy.
+///
+/// Its triangles have no materials: they are opaque and single-sided. Masked and double-sided ones
+/// come by [`SceneProvider::add_part`](crate::SceneProvider::add_part).
 #[derive(Clone, Debug)]
 pub struct HostMesh {
     pub(super) own: Arc<Own>,

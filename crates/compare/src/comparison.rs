@@ -96,7 +96,9 @@ impl Protocol {
 pub struct Comparison {
     /// The scene that the methods draw.
     pub scene: Arc<Scene>,
-    /// Still views and camera paths from which the scene is seen.
+    /// Still views and camera paths from which the scene is seen, each under its default light
+    /// ([`Scene::light_of`]); [`under_lights`](crate::measuring::view_or_path::under_lights) makes
+    /// one view for each light.
     pub views: Vec<ViewOrPath>,
     /// Width and height of each viewport in pixels; these replace [`Method::viewport`].
     pub viewports: Vec<[u32; 2]>,

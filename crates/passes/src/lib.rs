@@ -1,5 +1,5 @@
 //! Scene resources for Skiagraph's graphs, the tracer, and the shadow presets (shadow methods that
-//! ship with Skiagraph).
+//! ship with Skiagraph). docs/embedding.md is the guide for engines.
 //!
 //! ```no_run
 //! use skiagraph_gpu::{Executor, Frame, device};

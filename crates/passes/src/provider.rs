@@ -49,7 +49,7 @@ use std::{ops::Range, sync::Arc, time::Instant};
 /// | `scene.uv_indices` | `array<u32>`, three per primitive |
 /// | `scene.materials` | 32-byte [`MaterialRecord`](crate::MaterialRecord)s |
 /// | `scene.material_indices` | `array<u32>`, one per primitive |
-/// | `scene.texels` | `array<u32>`, RGBA8 texels of all base-colour textures, sRGB, red lowest
+/// | `scene.texels` | `array<u32>`, RGBA8 texels of all base-colour textures, sRGB, red lowest |
 /// | `camera` | [`CameraUniform`] |
 /// | `unprojection` | [`UnprojectionUniform`] |
 /// | `light` | [`LightUniform`] |
@@ -717,12 +717,13 @@ impl SceneProvider {
         self.geometry.parts().iter().copied()
     }
 
-    /// Makes room for parts that [`add_part`](Self::add_part) adds, besides the room that is left
-    /// from earlier calls. The room that a [removed](Self::remove_part) part leaves between others
-    /// serves only parts that fit into it, as the positions of a part follow each other, and so do
-    /// its normals and its triangles. The numbers of positions, triangles and other items become
-    /// larger by all of `room`, on which plans depend (see [`set_mesh`](Self::set_mesh)): reserve
-    /// before graphs are planned. `limits` are those of the device that the provider is used with.
+    /// Makes room for parts that [`add_part`](Self::add_part) and
+    /// [`add_host_part`](Self::add_host_part) add, besides the room that is left from earlier
+    /// calls. The room that a [removed](Self::remove_part) part leaves between others serves only
+    /// parts that fit into it, as the positions of a part follow each other, and so do its normals
+    /// and its triangles. The numbers of positions, triangles and other items become larger by all
+    /// of `room`, on which plans depend (see [`set_mesh`](Self::set_mesh)): reserve before graphs
+    /// are planned. `limits` are those of the device that the provider is used with.
     ///
     /// # Errors
     /// [`Error::NoParts`] if the mesh was not given in parts, [`Error::TooLarge`] if the device

@@ -170,8 +170,9 @@ impl Movable {
     }
 
     /// Joins meshes into one. Part number n is `meshes[n]`, which is given in a space of its own,
-    /// such as the model space of an instance. If only some of the meshes have materials, the
-    /// others get a plain one.
+    /// such as the model space of an instance. Triangles stand in the order of `meshes`, and within
+    /// a mesh in its own; without a mesh the scene is empty until parts are added. If only some of
+    /// the meshes have materials, the others get a plain one.
     pub fn joined(meshes: &[&Mesh]) -> Self {
         let mut rest = Mesh::default();
         let has_materials = meshes.iter().any(|mesh| !mesh.surfaces.of.is_empty());

@@ -17,7 +17,8 @@ use std::collections::{BTreeMap, BTreeSet};
 #[non_exhaustive]
 pub struct Allocation {
     /// Resources that use the allocation, at least one, in the order of their first use in a frame.
-    /// Each is first used after the last use of the one before.
+    /// Each is first used after the last use of the one before. All have equal sizes, formats and
+    /// usages ([`Lifetime`]): the allocation can be created from any of them.
     pub aliases: Vec<ResourceId>,
     /// Position in the schedule of the last use of the last of these resources.
     until: usize,

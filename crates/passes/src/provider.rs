@@ -646,10 +646,12 @@ impl SceneProvider {
         self.geometry = self.geometry.replaced_by(Geometry::parted(parts));
     }
 
-    /// Deforms the mesh: replaces its positions (scene units) and unit normals by as many others in
-    /// the same order. The next [`refresh`](skiagraph_gpu::Executor::refresh) of an executor refits
-    /// the bounding-volume hierarchies, or rebuilds them if refitting has made them bad; adjacency
-    /// and all else is kept. Triangles keep their winding: for a mirrored mesh use
+    /// Deforms the mesh: replaces the positions (world space, scene units) and unit normals of
+    /// [`scene`](Self::scene)'s mesh by as many others in the same order. Of a mesh in parts they
+    /// are where the parts are now; maps that are set later move parts from their original places,
+    /// and undo the deformation. The next [`refresh`](skiagraph_gpu::Executor::refresh) of an
+    /// executor refits the bounding-volume hierarchies, or rebuilds them if refitting has made them
+    /// bad; adjacency and all else is kept. Triangles keep their winding: for a mirrored mesh use
     /// [`set_mesh`](Self::set_mesh) or [`set_transforms`](Self::set_transforms). Nothing is rebuilt
     /// for equal positions and normals.
     ///
@@ -721,8 +723,8 @@ impl SceneProvider {
     /// [`add_host_part`](Self::add_host_part) add, besides the room that is left from earlier
     /// calls. The room that a [removed](Self::remove_part) part leaves between others serves only
     /// parts that fit into it, as the positions of a part follow each other, and so do its normals
-    /// and its triangles. The numbers of positions, triangles and other items become larger by all
-    /// of `room`, on which plans depend (see [`set_mesh`](Self::set_mesh)): reserve before graphs
+    /// and its triangles. Plans depend on the numbers of positions, triangles and other items (see
+    /// [`set_mesh`](Self::set_mesh)), which become larger by all of `room`: reserve before graphs
     /// are planned. `limits` are those of the device that the provider is used with.
     ///
     /// # Errors

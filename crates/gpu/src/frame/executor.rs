@@ -77,11 +77,12 @@ pub struct Executor {
 }
 
 impl Executor {
-    /// Creates an executor for a plan. It creates the plan's textures, buffers and pipelines and
-    /// asks the provider for the resources that [live](skiagraph_graph#terms) passes bind. It
-    /// encodes each of these passes once into a throw-away encoder, so that errors of the device
-    /// are found here. A pass that uses an import (a resource that the host sets later), or a
-    /// resource that the provider cannot build yet, is tried only in [`Executor::encode`], before
+    /// Creates an executor for a plan that was made for the limits and features of `device`
+    /// ([`PlanRequest`](skiagraph_graph::PlanRequest)). It creates the plan's textures, buffers and
+    /// pipelines and asks the provider for the resources that [live](skiagraph_graph#terms) passes
+    /// bind. It encodes each of these passes once into a throw-away encoder, so that errors of the
+    /// device are found here. A pass that uses an import (a resource that the host sets later), or
+    /// a resource that the provider cannot build yet, is tried only in [`Executor::encode`], before
     /// the host's encoder is touched.
     ///
     /// # Errors
@@ -643,13 +644,14 @@ impl Executor {
     }
 
     /// Returns a view of the output or capture `name` (see [`Executor`]) with the content of the
-    /// last encoded frame, for the host to bind. It covers the mips and layers that belong to the
-    /// output; its dimension is `D3` for a 3D texture, `D2` for a single layer, `D2Array` for
-    /// several. `None` if no texture is an output or capture of this name, or it is an import that
-    /// is not set. Fetch the view anew after [`resize`](Self::resize) or another change of the
-    /// plan, and in every frame if a pass also reads the resource as `.previous` (content of the
-    /// frame before), or if it may grow (`grow`): [`encode`](Self::encode) may then replace it.
-    /// Only read it: a frame in which nothing has changed leaves it as it is.
+    /// last encoded frame, for the host to bind: outputs and captures have the usages
+    /// `TEXTURE_BINDING` and `COPY_SRC`. It covers the mips and layers that belong to the output;
+    /// its dimension is `D3` for a 3D texture, `D2` for a single layer, `D2Array` for several.
+    /// `None` if no texture is an output or capture of this name, or it is an import that is not
+    /// set. Fetch the view anew after [`resize`](Self::resize) or another change of the plan, and
+    /// in every frame if a pass also reads the resource as `.previous` (content of the frame
+    /// before), or if it may grow (`grow`): [`encode`](Self::encode) may then replace it. Only read
+    /// it: a frame in which nothing has changed leaves it as it is.
     pub fn output_view(&self, name: &str) -> Option<wgpu::TextureView> {
         let target = self.plan().readable_target(name)?;
         let dimension = match &self.plan().resource(target.id).kind {

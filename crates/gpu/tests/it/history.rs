@@ -2,10 +2,11 @@
 //! that survives another plan.
 
 use crate::buffers::{OUT, compute, document, shader, writes};
+use crate::given::Number;
 use crate::host::{GPU, encoder, executor, frame, numbers, planned, request, submit, words};
 use crate::support::{Files, right};
-use skiagraph_gpu::{Executor, Frame, Provider, ProviderError};
-use skiagraph_graph::{Describe, NoProvider, ParamValue, Plan, Provided, ProvidedBinding};
+use skiagraph_gpu::{Executor, Frame};
+use skiagraph_graph::{NoProvider, ParamValue, Plan};
 
 /// `frame.index` and the bits of `frame.seconds`.
 fn clock(run: &str) -> Files {
@@ -76,70 +77,6 @@ fn each_of_two_frames_in_one_encoder_has_its_own_number() {
     }
     GPU.queue.submit([commands.finish()]);
     assert_eq!(numbers(&mut executor, "sum"), [123]);
-}
-
-/// A provider of one number, in the same buffer or in another one for each version.
-struct Number {
-    buffer: wgpu::Buffer,
-    value: u32,
-    in_place: bool,
-}
-
-impl Number {
-    fn new(in_place: bool) -> Self {
-        let number = Self {
-            buffer: number_buffer(),
-            value: 1,
-            in_place,
-        };
-        number.fill();
-        number
-    }
-
-    fn fill(&self) {
-        GPU.queue
-            .write_buffer(&self.buffer, 0, &self.value.to_le_bytes());
-    }
-}
-
-fn number_buffer() -> wgpu::Buffer {
-    GPU.device.create_buffer(&wgpu::BufferDescriptor {
-        label: None,
-        size: 4,
-        usage: wgpu::BufferUsages::STORAGE
-            | wgpu::BufferUsages::COPY_DST
-            | wgpu::BufferUsages::COPY_SRC,
-        mapped_at_creation: false,
-    })
-}
-
-impl Describe for Number {
-    fn names(&self) -> Vec<String> {
-        vec!["host.number".to_owned()]
-    }
-
-    fn describe(&self, name: &str) -> Option<Provided> {
-        (name == "host.number").then_some(Provided::new(ProvidedBinding::Storage, Some(1), 4))
-    }
-}
-
-impl Provider for Number {
-    fn version(&self, _: &str) -> u64 {
-        u64::from(self.value)
-    }
-
-    fn build(
-        &mut self,
-        _: &str,
-        _: &wgpu::Device,
-        _: &wgpu::Queue,
-    ) -> Result<wgpu::Buffer, ProviderError> {
-        if !self.in_place {
-            self.buffer = number_buffer();
-        }
-        self.fill();
-        Ok(self.buffer.clone())
-    }
 }
 
 /// ```text

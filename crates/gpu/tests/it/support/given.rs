@@ -6,8 +6,8 @@ use crate::{
     host::{GPU, request},
     support::Files,
 };
-use skiagraph_gpu::import;
-use skiagraph_graph::{NoProvider, PlanRequest};
+use skiagraph_gpu::{Provider, ProviderError, import};
+use skiagraph_graph::{Describe, NoProvider, PlanRequest, Provided, ProvidedBinding};
 use wgpu::util::DeviceExt;
 
 /// The numbers in a buffer of the host.
@@ -127,4 +127,68 @@ pub fn sums_request() -> PlanRequest<'static> {
         ("more".to_owned(), import::buffer(&more, None)),
     ]);
     request
+}
+
+/// A provider of one number, in the same buffer or in another one for each version.
+pub struct Number {
+    pub buffer: wgpu::Buffer,
+    pub value: u32,
+    pub in_place: bool,
+}
+
+impl Number {
+    pub fn new(in_place: bool) -> Self {
+        let number = Self {
+            buffer: number_buffer(),
+            value: 1,
+            in_place,
+        };
+        number.fill();
+        number
+    }
+
+    pub fn fill(&self) {
+        GPU.queue
+            .write_buffer(&self.buffer, 0, &self.value.to_le_bytes());
+    }
+}
+
+fn number_buffer() -> wgpu::Buffer {
+    GPU.device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: 4,
+        usage: wgpu::BufferUsages::STORAGE
+            | wgpu::BufferUsages::COPY_DST
+            | wgpu::BufferUsages::COPY_SRC,
+        mapped_at_creation: false,
+    })
+}
+
+impl Describe for Number {
+    fn names(&self) -> Vec<String> {
+        vec!["host.number".to_owned()]
+    }
+
+    fn describe(&self, name: &str) -> Option<Provided> {
+        (name == "host.number").then_some(Provided::new(ProvidedBinding::Storage, Some(1), 4))
+    }
+}
+
+impl Provider for Number {
+    fn version(&self, _: &str) -> u64 {
+        u64::from(self.value)
+    }
+
+    fn build(
+        &mut self,
+        _: &str,
+        _: &wgpu::Device,
+        _: &wgpu::Queue,
+    ) -> Result<wgpu::Buffer, ProviderError> {
+        if !self.in_place {
+            self.buffer = number_buffer();
+        }
+        self.fill();
+        Ok(self.buffer.clone())
+    }
 }

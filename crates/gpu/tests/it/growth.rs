@@ -1,11 +1,9 @@
 //! Buffers and textures that grow between frames.
 
-use crate::given::{STORAGE, buffer};
+use crate::given::{with_more, write};
 use crate::host::{self, GPU, encoder, executor, frame, planned, request, set, submit, words};
 use crate::support::Files;
-use skiagraph_gpu::{
-    ExecuteError, Executor, Frame, Provider, ProviderError, ReplanReport, device, import,
-};
+use skiagraph_gpu::{ExecuteError, Executor, Frame, Provider, ProviderError, ReplanReport, device};
 use skiagraph_graph::{
     Describe, NoProvider, ParamValue, Plan, PlanRequest, Provided, ProvidedBinding, ResourceKind,
 };
@@ -588,19 +586,9 @@ fn a_change_of_the_host_after_frames_that_had_room_is_counted() {
         has_room(&mut executor, number, items);
     }
     // A host writes to a buffer of its own without a word.
-    let files = filled_from("more").edited(
-        "graph.ron",
-        "materials:",
-        "inputs: [Buffer(name: \"more\")], materials:",
-    );
-    let more = buffer(&[4], STORAGE | wgpu::BufferUsages::COPY_DST);
-    let mut request = request(&NoProvider);
-    let described = import::buffer(&more, None);
-    request.imports.insert("more".to_owned(), described);
-    let mut executor = host::executor(&files, &request);
-    executor.import_buffer("more", &more).unwrap();
+    let (mut executor, more) = with_more(filled_from("more"), 4);
     has_room(&mut executor, 4, 4);
-    GPU.queue.write_buffer(&more, 0, &10u32.to_ne_bytes());
+    write(&more, 10);
     frame(&mut executor, &[]);
     grown(&mut executor);
     has_room(&mut executor, 10, 12);

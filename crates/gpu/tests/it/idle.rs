@@ -1,10 +1,10 @@
 //! Frames before which nothing has changed: no pass runs, and the outputs are those of before.
 
-use crate::given::{STORAGE, buffer};
+use crate::given::{Number, with_more, write};
 use crate::host::{self, GPU, encoder, frame, planned, request, set, submit, words};
 use crate::support::Files;
-use skiagraph_gpu::{Executor, Frame, Provider, ProviderError, import};
-use skiagraph_graph::{Describe, NoProvider, ParamValue, Provided, ProvidedBinding};
+use skiagraph_gpu::{Executor, Frame};
+use skiagraph_graph::{NoProvider, ParamValue};
 
 const PASSES: [&str; 2] = ["add", "double"];
 
@@ -110,72 +110,26 @@ fn frames_that_are_not_done_are_repeated() {
     assert!(!runs(&mut executor, 34));
 }
 
-/// Provides `host.more`.
-struct More {
-    number: u32,
-    version: u64,
-    has_versions: bool,
-    made: Option<wgpu::Buffer>,
-}
-
-impl Describe for More {
-    fn names(&self) -> Vec<String> {
-        vec!["host.more".to_owned()]
-    }
-
-    fn describe(&self, name: &str) -> Option<Provided> {
-        (name == "host.more").then_some(Provided::new(ProvidedBinding::Storage, Some(1), 4))
-    }
-}
-
-impl Provider for More {
-    fn version(&self, _: &str) -> u64 {
-        self.version
-    }
-
-    fn has_versions(&self) -> bool {
-        self.has_versions
-    }
-
-    fn build(
-        &mut self,
-        _: &str,
-        _: &wgpu::Device,
-        _: &wgpu::Queue,
-    ) -> Result<wgpu::Buffer, ProviderError> {
-        let made = buffer(&[self.number], STORAGE | wgpu::BufferUsages::COPY_DST);
-        Ok(self.made.insert(made).clone())
-    }
-}
-
 #[test]
 fn what_a_host_changes_is_seen() {
-    let mut provider = More {
-        number: 1,
-        version: 0,
-        has_versions: true,
-        made: None,
-    };
-    let plan = planned(&files_of("host_more"), &request(&provider));
+    let mut provider = Number::new(false);
+    provider.has_versions = true;
+    let plan = planned(&files_of("host_number"), &request(&provider));
     let mut executor = Executor::new(&GPU.device, &GPU.queue, plan, &mut provider).unwrap();
     assert!(runs(&mut executor, 22));
     executor.refresh(&mut provider).unwrap();
     assert!(!runs(&mut executor, 22));
-    (provider.version, provider.number) = (1, 2);
+    provider.value = 2;
     executor.refresh(&mut provider).unwrap();
     assert!(runs(&mut executor, 24));
     assert!(!runs(&mut executor, 24));
-    let write = |provider: &More, number: u32| {
-        let made = provider.made.as_ref().expect("it was built");
-        GPU.queue.write_buffer(made, 0, &number.to_ne_bytes());
-    };
-    write(&provider, 3);
-    executor.touch("host.more").unwrap();
+    write(&provider.buffer, 3);
+    executor.touch("host.number").unwrap();
     assert!(runs(&mut executor, 26));
     // A provider that promises no versions may write behind the executor.
     provider.has_versions = false;
     executor.refresh(&mut provider).unwrap();
-    write(&provider, 4);
+    write(&provider.buffer, 4);
     assert!(runs(&mut executor, 28));
     assert!(runs(&mut executor, 28));
 }
@@ -183,16 +137,9 @@ fn what_a_host_changes_is_seen() {
 /// A host may write to its own buffers without a word.
 #[test]
 fn a_plan_with_imports_never_rests() {
-    let inputs = "inputs: [Buffer(name: \"more\")], materials:";
-    let files = files_of("more").edited("graph.ron", "materials:", inputs);
-    let more = buffer(&[1], STORAGE | wgpu::BufferUsages::COPY_DST);
-    let mut request = request(&NoProvider);
-    let described = import::buffer(&more, None);
-    request.imports.insert("more".to_owned(), described);
-    let mut executor = host::executor(&files, &request);
-    executor.import_buffer("more", &more).unwrap();
-    for (number, out) in [(1u32, 22), (2, 24), (2, 24)] {
-        GPU.queue.write_buffer(&more, 0, &number.to_ne_bytes());
+    let (mut executor, more) = with_more(files_of("more"), 1);
+    for (number, out) in [(1, 22), (2, 24), (2, 24)] {
+        write(&more, number);
         assert!(runs(&mut executor, out));
     }
 }
@@ -212,10 +159,6 @@ fn a_plan_that_remembers_never_rests() {
             "var<storage, read> before: u32; var<uniform>",
         )
         .edited("add.wgsl", "10u", "before");
-    let mut executor = host::executor(&previous, &request(&NoProvider));
-    for out in [2, 4, 6] {
-        assert!(runs(&mut executor, out));
-    }
     let numbered = files()
         .edited(
             "add.wgsl",
@@ -223,8 +166,10 @@ fn a_plan_that_remembers_never_rests() {
             "struct Frame { index: u32 } var<uniform> frame: Frame; struct Params",
         )
         .edited("add.wgsl", "10u", "frame.index");
-    let mut executor = host::executor(&numbered, &request(&NoProvider));
-    for out in [2, 4, 6] {
-        assert!(runs(&mut executor, out));
+    for files in [previous, numbered] {
+        let mut executor = host::executor(&files, &request(&NoProvider));
+        for out in [2, 4, 6] {
+            assert!(runs(&mut executor, out));
+        }
     }
 }

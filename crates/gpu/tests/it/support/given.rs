@@ -3,10 +3,10 @@
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
 use crate::{
-    host::{GPU, request},
+    host::{GPU, executor, request},
     support::Files,
 };
-use skiagraph_gpu::{Provider, ProviderError, import};
+use skiagraph_gpu::{Executor, Provider, ProviderError, import};
 use skiagraph_graph::{Describe, NoProvider, PlanRequest, Provided, ProvidedBinding};
 use wgpu::util::DeviceExt;
 
@@ -97,6 +97,24 @@ pub fn buffer(numbers: &[u32], usage: wgpu::BufferUsages) -> wgpu::Buffer {
         })
 }
 
+/// Writes a number into a buffer of the host.
+pub fn write(buffer: &wgpu::Buffer, number: u32) {
+    GPU.queue.write_buffer(buffer, 0, &number.to_ne_bytes());
+}
+
+/// An executor of a graph whose shaders read `more`, a buffer that the host hands in with a number.
+pub fn with_more(files: Files, number: u32) -> (Executor, wgpu::Buffer) {
+    let inputs = "inputs: [Buffer(name: \"more\")], materials:";
+    let files = files.edited("graph.ron", "materials:", inputs);
+    let more = buffer(&[number], STORAGE | wgpu::BufferUsages::COPY_DST);
+    let mut request = request(&NoProvider);
+    let described = import::buffer(&more, None);
+    request.imports.insert("more".to_owned(), described);
+    let mut executor = executor(&files, &request);
+    executor.import_buffer("more", &more).unwrap();
+    (executor, more)
+}
+
 /// ```text
 /// image, more ─▶ add ─▶ sum
 /// ```
@@ -134,34 +152,25 @@ pub struct Number {
     pub buffer: wgpu::Buffer,
     pub value: u32,
     pub in_place: bool,
+    /// Answer of [`Provider::has_versions`].
+    pub has_versions: bool,
 }
 
 impl Number {
     pub fn new(in_place: bool) -> Self {
         let number = Self {
-            buffer: number_buffer(),
+            buffer: buffer(&[0], STORAGE | wgpu::BufferUsages::COPY_DST),
             value: 1,
             in_place,
+            has_versions: false,
         };
         number.fill();
         number
     }
 
     pub fn fill(&self) {
-        GPU.queue
-            .write_buffer(&self.buffer, 0, &self.value.to_le_bytes());
+        write(&self.buffer, self.value);
     }
-}
-
-fn number_buffer() -> wgpu::Buffer {
-    GPU.device.create_buffer(&wgpu::BufferDescriptor {
-        label: None,
-        size: 4,
-        usage: wgpu::BufferUsages::STORAGE
-            | wgpu::BufferUsages::COPY_DST
-            | wgpu::BufferUsages::COPY_SRC,
-        mapped_at_creation: false,
-    })
 }
 
 impl Describe for Number {
@@ -179,6 +188,10 @@ impl Provider for Number {
         u64::from(self.value)
     }
 
+    fn has_versions(&self) -> bool {
+        self.has_versions
+    }
+
     fn build(
         &mut self,
         _: &str,
@@ -186,7 +199,7 @@ impl Provider for Number {
         _: &wgpu::Queue,
     ) -> Result<wgpu::Buffer, ProviderError> {
         if !self.in_place {
-            self.buffer = number_buffer();
+            self.buffer = buffer(&[0], STORAGE | wgpu::BufferUsages::COPY_DST);
         }
         self.fill();
         Ok(self.buffer.clone())

@@ -612,6 +612,53 @@ fn a_part_that_is_added_is_work_of_its_own_size() {
     }
 }
 
+/// A plan without masks binds none, so that no other resource tells that it is no longer right.
+#[test]
+fn the_first_masked_part_asks_for_another_plan() {
+    let gpu = open();
+    let (floor, leaves) = (
+        meshes::box_over_floor(12.0, Vec3::splat(0.5)),
+        meshes::foliage(12, 1.5, 0.5, 1),
+    );
+    let maps =
+        [DVec3::new(7.0, 0.0, 8.0), DVec3::new(7.0, 3.0, 12.0)].map(DAffine3::from_translation);
+    let mut whole = provider(Movable::joined(&[&floor, &leaves]));
+    whole.set_transforms(&maps).unwrap();
+    let mut solid = leaves.clone();
+    solid.surfaces = Default::default();
+    let mut solid = provider(Movable::joined(&[&floor, &solid]));
+    solid.set_transforms(&maps).unwrap();
+    for preset in PRESETS {
+        let mut scene = provider(Movable::joined(&[&floor]));
+        let room = Room::of_copies(&leaves, 1);
+        scene.reserve(room, &gpu.device.limits()).unwrap();
+        scene.set_transforms(&maps[..1]).unwrap();
+        let mut executor = start(&gpu, preset, &mut scene);
+        let relies_on: Vec<&String> = executor.plan().relies_on().keys().collect();
+        assert_eq!(relies_on, ["scene.masks"], "{preset}");
+        scene.add_part(&leaves, &maps[1]).unwrap();
+        let of_masks = |error: ExecuteError| {
+            let text = error.to_string();
+            assert!(text.contains("`scene.masks`"), "{preset}: {text}");
+            assert!(
+                matches!(error, ExecuteError::OtherThanPlanned { .. }),
+                "{preset}: {text}"
+            );
+        };
+        of_masks(executor.refresh(&mut scene).unwrap_err());
+        of_masks(executor.refresh(&mut scene).unwrap_err());
+        let old = executor.plan().clone();
+        of_masks(Executor::on(&gpu, old, &mut scene).map(|_| ()).unwrap_err());
+        let plan = executor.plan().with(|request| request.provider = &scene);
+        executor.replace_graph(plan.unwrap(), &mut scene).unwrap();
+        assert!(executor.plan().relies_on().is_empty(), "{preset}");
+        let seen = shown(&gpu, &mut executor);
+        let [masked, solid] =
+            [&mut whole, &mut solid].map(|of| shown(&gpu, &mut start(&gpu, preset, of)));
+        assert!(seen == masked && seen != solid, "{preset}");
+    }
+}
+
 /// The lines of docs/embedding.md, whose text `readme.rs` compares with this file.
 fn parts_of_the_document(gpu: &Gpu) -> Result<Vec<u32>, Box<dyn std::error::Error>> {
     let (floor, stone) = (

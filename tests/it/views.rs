@@ -227,8 +227,11 @@ fn of_each(method: &str) -> String {
 }
 
 fn of_each_planned(method: &str, provider: &SceneProvider) -> Plan {
-    let document = of_each(method);
-    let sources = graphs::layered(&[("pipelines/test.ron", &document)]);
+    planned_lit(&of_each(method), provider)
+}
+
+fn planned_lit(document: &str, provider: &SceneProvider) -> Plan {
+    let sources = graphs::layered(&[("pipelines/test.ron", document)]);
     Graph::load("pipelines/test.ron", &registry(), &sources)
         .and_then(|graph| graph.plan(&PlanRequest::new(SIZES[0], provider)))
         .unwrap_or_else(|faults| panic!("{faults}"))
@@ -325,8 +328,23 @@ fn other_lights_than_planned_are_named() {
         matches!(&error, ExecuteError::OtherThanPlanned { name, .. } if name == "lights.2"),
         "{error}"
     );
-    provider.set_lights(&lights(0.0)[..3]).unwrap();
-    let error = executor.refresh(&mut provider).unwrap_err();
+    // One that counts them, and one that names four of them.
+    let four = of_each("rt").replace("lights.count", "4");
+    provider.set_lights(&lights(0.0)).unwrap();
+    let plan = planned_lit(&four, &provider);
+    let mut of_four = sharing(&Pipelines::new(&gpu.device), &gpu, plan, &mut provider);
+    let five = [&lights(0.0)[..], &[sun()]].concat();
+    for lights in [&five[..3], &five] {
+        provider.set_lights(lights).unwrap();
+        let error = executor.refresh(&mut provider).unwrap_err();
+        assert!(
+            matches!(&error, ExecuteError::OtherThanPlanned { name, .. } if name == "lights"),
+            "{error}"
+        );
+    }
+    of_four.refresh(&mut provider).unwrap();
+    provider.set_lights(&five[..3]).unwrap();
+    let error = of_four.refresh(&mut provider).unwrap_err();
     let mut chain = successors(error.source(), |&error| error.source());
     let cause = chain.find_map(|cause| cause.downcast_ref::<Error>());
     assert!(

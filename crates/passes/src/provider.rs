@@ -609,10 +609,10 @@ impl SceneProvider {
     /// with `run: OnChange` that reads `lights[2]` but no other light runs again only if that light
     /// or the mesh has changed.
     ///
-    /// A plan depends on the number of the lights and the kind of each: after a change of these,
-    /// graphs that read them must be planned anew. Until then
-    /// [`refresh`](skiagraph_gpu::Executor::refresh) fails with an error that names the light, or
-    /// the list.
+    /// A plan depends on the kind of each light that it reads, and on the number of the lights if
+    /// its documents count them (`lights.count`): after a change of these, graphs must be planned
+    /// anew. Until then [`refresh`](skiagraph_gpu::Executor::refresh) fails with an error that
+    /// names the light, or the list.
     ///
     /// # Errors
     /// [`Error::LightNumber`] for a light that cannot be used, [`Error::NoLights`] for an empty
@@ -740,12 +740,16 @@ impl SceneProvider {
 
     /// Adds a part to a mesh in parts, and returns its handle. `map` takes it from its own space to
     /// its place in world space. If it fits into the [room](Self::reserve) that is left, only this
-    /// part is uploaded and gets a hierarchy, plans stay valid, and its triangles get primitive ids
-    /// that are unused or that a removed part had. If it does not fit, the mesh grows by a half,
-    /// all of it is uploaded, and graphs must be planned anew, as after
-    /// [`set_mesh`](Self::set_mesh). In a scene with materials the part's own are uploaded, in a
-    /// scene with masks those of all parts; a graph that reads `scene.materials`, `scene.uvs` or
-    /// `scene.masks` must be planned anew.
+    /// part is uploaded and gets a hierarchy, and its triangles get primitive ids that are unused
+    /// or that a removed part had. If it does not fit, the mesh grows by a half, and all of it is
+    /// uploaded.
+    ///
+    /// A part that fits leaves plans valid, unless it changes the number of items of `scene.masks`
+    /// (as each part with masked triangles does, and the first with double-sided ones) or of
+    /// materials and texture coordinates (as each part with materials does): graphs that bind or
+    /// [count](skiagraph_graph::Plan::relies_on) those must be planned anew, as all must if the
+    /// mesh grows. Until then [`refresh`](skiagraph_gpu::Executor::refresh) returns
+    /// [`ExecuteError::OtherThanPlanned`](skiagraph_gpu::ExecuteError::OtherThanPlanned).
     ///
     /// # Errors
     /// [`Error::NoParts`] if the mesh was not given in parts, [`Error::Move`] for a map that cannot

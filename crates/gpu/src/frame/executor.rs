@@ -21,7 +21,7 @@ use crate::{
     error::{ExecuteError, poll, wait, with_table},
     memory::{
         import::differs,
-        memory::{Memory, ResourceFactory},
+        memory::{Memory, ResourceFactory, check_relied_on},
         physical::{Physical, PingPong},
     },
     pipelines::pipelines::Pipelines,
@@ -553,7 +553,8 @@ impl Executor {
     /// If a resource cannot be built or its description differs from the one that the graph was
     /// planned for ([`ExecuteError::OtherThanPlanned`], for example with more items or another kind
     /// of light), or the device is lost. That resource and those after it stay as they are; the
-    /// next call asks for them again.
+    /// next call asks for them again. [`Plan::relies_on`] lists resources whose description counts
+    /// although no live pass binds them: if one of them differs, all stay as they are.
     pub fn refresh(&mut self, provider: &mut dyn Provider) -> Result<(), ExecuteError> {
         // If it fails half way, some resources are this provider's.
         self.knows_changes &= provider.has_versions();
@@ -612,6 +613,7 @@ impl Executor {
         provider: &mut dyn Provider,
         built: &mut Vec<ResourceId>,
     ) -> Result<(), ExecuteError> {
+        check_relied_on(&self.state.plan, provider)?;
         for (id, version) in self.state.memory.provided().clone() {
             let state = &mut self.state;
             if Ok(provider.version(&state.plan.resource(id).name)) == version {
@@ -681,6 +683,8 @@ impl Executor {
     /// Changes the viewport to a width and height in pixels and plans the graph again. Textures
     /// whose size follows the viewport are recreated: their contents are lost, contents read as
     /// `.previous` (from the frame before) are zero, and the passes that write them run again.
+    /// Imports stay as they are described: if their sizes follow the viewport, change both with
+    /// [`Plan::with`] and [`replace_graph`](Self::replace_graph) instead.
     ///
     /// # Errors
     /// If the graph cannot be planned for this viewport, a provided resource cannot be built, or
@@ -694,10 +698,10 @@ impl Executor {
         self.replace_graph(plan, provider)
     }
 
-    /// Changes the value of the param `name` of the graph document that was loaded (not of one that
-    /// it includes). If shaders read the param only in `var<uniform> params`, the change costs an
-    /// upload. For every other param the graph is planned again, and the cost depends on the
-    /// param's use:
+    /// Changes the value of the param `name` of the graph document that was loaded, which may be
+    /// one that the document exposes of an include, such as `left.radius`. If shaders read the
+    /// param only in `var<uniform> params`, the change costs an upload. For every other param the
+    /// graph is planned again, and the cost depends on the param's use:
     ///
     /// - an `override` constant, a culling mode, a depth bias or the like: new pipelines for the
     ///   passes that use it;

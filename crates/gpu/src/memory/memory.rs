@@ -63,6 +63,7 @@ impl Memory {
         old: Option<(&Plan, &Memory)>,
         factory: &mut ResourceFactory<'_>,
     ) -> Result<Self, ExecuteError> {
+        check_relied_on(plan, factory.provider)?;
         let mut memory = Self {
             of: plan.schedule().aliases.of.clone(),
             ..Self::default()
@@ -300,21 +301,12 @@ impl Memory {
             self.provided.insert(id, Ok(version));
             return Ok(());
         }
-        // The plan has counted items and sized buffers by what was described to it.
         let planned = match &resource.kind {
             ResourceKind::Provided(planned) => *planned,
             ResourceKind::CpuWork => Provided::CPU_WORK,
             _ => Provided::ACCELERATION_STRUCTURE,
         };
-        if let Some(given) = provider.describe(&resource.name)
-            && given != planned
-        {
-            return Err(ExecuteError::OtherThanPlanned {
-                name: resource.name.clone(),
-                planned,
-                given,
-            });
-        }
+        check_as_planned(&resource.name, planned, provider)?;
         if let Some(why) = provider.missing(&resource.name) {
             self.host.remove(&id);
             self.provided.insert(id, Err(why));
@@ -417,6 +409,29 @@ impl Memory {
         };
         let (a, b) = (versions(self, id), versions(other, of_other));
         a.is_some() && a == b
+    }
+}
+
+/// Returns an error if the provider describes a resource on which a plan relies, though no live
+/// pass binds it, otherwise than the plan was made for.
+pub(crate) fn check_relied_on(plan: &Plan, provider: &dyn Provider) -> Result<(), ExecuteError> {
+    let mut relied_on = plan.relies_on().iter();
+    relied_on.try_for_each(|(name, planned)| check_as_planned(name, *planned, provider))
+}
+
+/// A plan has counted items and sized buffers by the descriptions that it was made for.
+fn check_as_planned(
+    name: &str,
+    planned: Provided,
+    provider: &dyn Provider,
+) -> Result<(), ExecuteError> {
+    match provider.describe(name) {
+        Some(given) if given != planned => Err(ExecuteError::OtherThanPlanned {
+            name: name.to_owned(),
+            planned,
+            given,
+        }),
+        _ => Ok(()),
     }
 }
 

@@ -30,6 +30,7 @@ use crate::{
     source::span::{Located, SourceFile, Span},
 };
 use std::{
+    cell::RefCell,
     collections::{BTreeMap, BTreeSet, HashMap},
     ops::Range,
     sync::Arc,
@@ -68,6 +69,8 @@ pub(crate) struct SymbolTable<'a> {
     wgsl_name: HashMap<String, String>,
     /// Last frame's version of each resource that has one.
     previous: BTreeMap<ResourceId, ResourceId>,
+    /// Names of the provider's resources whose number of items or kind was asked for.
+    asked: RefCell<BTreeSet<String>>,
 }
 
 impl<'a> SymbolTable<'a> {
@@ -90,7 +93,26 @@ impl<'a> SymbolTable<'a> {
             scene: HashMap::new(),
             wgsl_name: names.map(|name| (wgsl_identifier(&name), name)).collect(),
             previous: BTreeMap::new(),
+            asked: RefCell::default(),
         }
+    }
+
+    /// Returns the number of items of a provided resource, and notes that the plan depends on it.
+    fn items(&self, name: &str) -> Option<u64> {
+        let items = self.request.provider.describe(name)?.items;
+        self.asked.borrow_mut().insert(name.to_owned());
+        items
+    }
+
+    /// Returns the descriptions of the provided resources whose number of items or kind was asked
+    /// for.
+    pub fn asked(&self) -> BTreeMap<String, Provided> {
+        let asked = self.asked.borrow();
+        let described = asked.iter().filter_map(|name| {
+            let provided = self.request.provider.describe(name)?;
+            Some((name.clone(), provided))
+        });
+        described.collect()
     }
 
     /// Returns an environment for expressions at a position in a document. `shader` is the shader
@@ -284,6 +306,7 @@ impl<'a> SymbolTable<'a> {
     pub fn provided_kind(&mut self, name: &str, scope: ScopeId) -> Option<ProvidedKind> {
         let target = self.find_scene(name, scope)?.ok()?;
         if let ResourceKind::Provided(provided) = &self.get(target.id).kind {
+            self.asked.borrow_mut().insert(name.to_owned());
             return provided.kind;
         }
         let kind = self.request.provider.describe(name)?.kind?;
@@ -724,9 +747,9 @@ impl<'a> At<'_, 'a> {
         if self.symbols.scopes.scene(instance, list).is_some() {
             return None;
         }
-        let provider = self.symbols.request.provider;
-        provider.describe(&format!("{list}.0"))?;
-        let count = provider.describe(list)?.items?;
+        let first = format!("{list}.0");
+        self.symbols.request.provider.describe(&first)?;
+        let count = self.symbols.request.provider.describe(list)?.items?;
         let number = match eval::count(number, self) {
             Ok(number) => number,
             Err(reported) => return Some(Err(reported)),
@@ -808,7 +831,7 @@ impl Environment for At<'_, '_> {
     }
 
     fn provided_items(&self, name: &str) -> Option<u64> {
-        self.symbols.request.provider.describe(name)?.items
+        self.symbols.items(name)
     }
 
     fn is_provided(&self, name: &str) -> bool {
@@ -860,7 +883,14 @@ impl Environment for At<'_, '_> {
 
     fn attribute(&mut self, of: &Reference, attribute: Attribute, span: &Span) -> Reported<Value> {
         let target = self.symbols.resolve(of, self.position)?;
-        if let Some(value) = parts::attribute(self.symbols.get(target.id), &target, attribute) {
+        let resource = self.symbols.get(target.id);
+        if let ResourceKind::Provided(_) = resource.kind {
+            self.symbols
+                .asked
+                .borrow_mut()
+                .insert(resource.name.clone());
+        }
+        if let Some(value) = parts::attribute(resource, &target, attribute) {
             return Ok(value);
         }
         if attribute == Attribute::Kind

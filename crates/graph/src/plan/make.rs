@@ -33,7 +33,7 @@ use crate::{
         pass::{Access, LinkedPass, PassId},
     },
     param::ParamValue,
-    provider::Described,
+    provider::{Described, Provided},
     request::{PlanRequest, Request},
     resource::{Buffer, Growth, Origin, Resource, ResourceId, ResourceKind, Target},
     source::span::Located,
@@ -59,6 +59,8 @@ pub(super) struct Planned {
     /// Params of the loaded document of which another value may need another plan. The values of
     /// all other params stand only in the bytes of `params` uniforms.
     pub depends_on: BTreeSet<String>,
+    /// Provided resources that no live pass uses and whose number of items or kind was asked for.
+    pub relies_on: BTreeMap<String, Provided>,
 }
 
 /// A pass that a plan does not run because nothing needs its results, with the reason.
@@ -157,6 +159,7 @@ fn schedule(
         return None;
     }
     let named_values = linked.symbols.found_values();
+    let mut relies_on = linked.symbols.asked();
     let (passes, resources) = (linked.passes, linked.symbols.resources);
     let view = GraphView {
         passes: &passes,
@@ -195,6 +198,7 @@ fn schedule(
         .collect();
     let aliases = aliases(view, &sequence, &lifetimes, &kept);
     let culled = culled(view, &live);
+    relies_on.retain(|name, _| lifetimes.keys().all(|id| view.resource(*id).name != *name));
     let own = previous
         .values()
         .filter(|base| view.resource(**base).origin == Origin::Own);
@@ -217,6 +221,7 @@ fn schedule(
         culled,
         warnings: Vec::new(),
         depends_on: BTreeSet::new(),
+        relies_on,
     })
 }
 

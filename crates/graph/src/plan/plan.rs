@@ -22,7 +22,7 @@ use crate::{
         pass::{LinkedPass, PassId},
     },
     param::{ParamType, ParamValue},
-    provider::Import,
+    provider::{Import, Provided},
     request::{PartialBackend, PlanRequest},
     resource::{Growth, Origin, Resource, ResourceId, ResourceKind, Target},
     shader::items::Item,
@@ -124,9 +124,10 @@ impl Plan {
         &self.0.request.imports
     }
 
-    /// Returns the [`grown`](crate::Request::grown) of the request: the number of
-    /// [items](crate#terms) that growing buffers need, and of layers that growing textures need, by
-    /// [full name](crate#terms) of the material ([`Resource::name`]).
+    /// Returns the number of [items](crate#terms) that growing buffers need, and of layers that
+    /// growing textures need, by [full name](crate#terms) of the material ([`Resource::name`]): the
+    /// [`grown`](crate::Request::grown) of the request, and in the plan of an executor all that has
+    /// grown since.
     pub fn grown(&self) -> &BTreeMap<String, u64> {
         &self.0.request.grown
     }
@@ -331,6 +332,14 @@ impl Plan {
         };
         let provided = self.used().filter(is_provided);
         provided.map(|resource| resource.name.as_str()).collect()
+    }
+
+    /// Returns the provider's resources that no [live](Self::live) pass uses and whose number of
+    /// [items](crate#terms) or kind expressions of the documents ask for (as in `if:
+    /// "scene.masks.count > 0"`), by name, each with the description for which this plan was made.
+    /// If the provider describes one otherwise, the graph must be planned anew.
+    pub fn relies_on(&self) -> &BTreeMap<String, Provided> {
+        &self.0.relies_on
     }
 
     /// Returns true if the outputs may differ from frame to frame although the host changes

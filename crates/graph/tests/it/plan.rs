@@ -112,6 +112,9 @@ fn what_nobody_needs_neither_runs_nor_is_provided() {
     );
     // `scene.indices` only counts; no pass binds it, so it is not built.
     assert_eq!(culled_plan.provided(), ["scene.positions"]);
+    let relied_on = culled_plan.relies_on();
+    assert_eq!(relied_on.keys().collect::<Vec<_>>(), ["scene.indices"]);
+    assert_eq!(relied_on["scene.indices"].items, Some(3));
     assert_eq!(culled_plan.memory_bytes(), 2 * 8 * 4 * 4);
 
     let captured = plan(&materials, &passes, r#""result""#, &[("rest", None)]);
@@ -120,6 +123,16 @@ fn what_nobody_needs_neither_runs_nor_is_provided() {
     provided.sort_unstable();
     assert_eq!(provided, ["camera", "scene.positions"]);
     assert!(captured.culled().is_empty());
+}
+
+/// A kind that decides something counts though nothing binds the resource.
+#[test]
+fn a_plan_relies_on_kinds_that_were_asked_for() {
+    let pass = fill("fill", "image").replace("color", "if: \"lights.lamp.kind == spot\", color");
+    let plan = plan(&[texture("image")], &[&pass], r#""image""#, &[]);
+    assert!(plan.provided().is_empty());
+    let kind = plan.relies_on()["lights.lamp"].kind.unwrap();
+    assert_eq!(kind.words[kind.number as usize], "spot");
 }
 
 /// Only the outputs that are asked for keep their passes.

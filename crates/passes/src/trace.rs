@@ -98,17 +98,8 @@ fn hierarchy() -> Chosen<Engine> {
 /// )
 /// ```
 ///
-/// - `rays`: items of 32 bytes, `origin: vec3<f32>, t_min: f32, direction: vec3<f32>, t_max: f32`.
-///   A hit counts if t_min < t ≤ t_max, with t in units of `direction`.
-/// - `hits`: items of 16 bytes, `t: f32, primitive: u32, u: f32, v: f32`, where u and v are the
-///   weights of the primitive's second and third corner. A miss has t_max and the primitive
-///   `0xffffffff`; a ray without an answer, because the driver ended the shader's loops early,
-///   has `0xfffffffd`.
-/// - `count`: one u32, the number of rays. `groups`: three u32, the workgroups for them. `skip`: a
-///   u32 for each ray, the primitive that it does not see.
-///
-/// docs/reference.md describes all fields. Triangles are two-sided; those without area are never
-/// hit, and a masked one only where its mask is opaque.
+/// docs/reference.md describes the fields and the layout of the buffers. Triangles are two-sided;
+/// those without area are never hit, and a masked one only where its mask is opaque.
 #[derive(Clone, Debug, Deserialize)]
 #[cfg_attr(
     feature = "schema",

@@ -82,7 +82,7 @@ pub struct Judging {
     /// Conventions of the pictures' rows, numbers and sense; those of rows and numbers hold for
     /// `unshadowed`, too. Files of [`Surfaces`] always have their first row at the top.
     pub reading: Reading,
-    /// Source of the surface that each pixel shows.
+    /// Source of the surface that each pixel shows; by default [`Surfaces::Rasterised`].
     pub surfaces: Surfaces,
     /// Mode of the [reference](crate#terms)'s shadow rays; by default [`OracleMode::Exact`].
     pub oracle: OracleMode,

@@ -476,8 +476,9 @@ impl<'a> Series<'a> {
         }
     }
 
-    /// Writes the finished runs into the folder, and the files `pictures` of the last run. Does
-    /// nothing if results stay in memory.
+    /// Writes the finished runs into the folder, and `pictures`, files of the last run. Measuring
+    /// does this by itself after each run; call it, with an empty list, after a change of the runs.
+    /// Does nothing if results stay in memory.
     ///
     /// # Errors
     /// An [early end](crate#terms); a file that cannot be written; a results.json that another

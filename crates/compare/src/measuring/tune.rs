@@ -74,8 +74,8 @@ const LONGEST_SIDE: u32 = 8192;
 /// method whose document promises exact shadows for all casters is not searched. Values are chosen
 /// in the first of the comparison's viewports, and run in all. If it has fewer than 256 × 256
 /// pixels, they are chosen in a larger one: both sides are multiplied by the least whole number
-/// that gives so many. It stays if the comparison's [`budgets`](Comparison::budgets) limit time or
-/// memory, as a larger one costs more.
+/// that gives so many; but not if the comparison's [`budgets`](Comparison::budgets) limit time or
+/// memory, as a larger viewport costs more.
 ///
 /// The work is bounded: plans and frames of a method, those of its tuned setting included, are at
 /// most ten times those of its part in the comparison.

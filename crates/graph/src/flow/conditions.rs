@@ -21,13 +21,9 @@ pub enum When {
     Always,
     /// In no frame: the condition of its [`Run::When`] is false in this plan.
     Never,
-    /// In the first frame, and again when the content that the pass wrote is lost, for example by a
-    /// change of the viewport.
+    /// In the frames of [`Run::Once`].
     Once,
-    /// In the first frame, in frames where content that the pass reads, params included, has
-    /// changed since the pass last ran, and when the content that the pass wrote is lost. Contents
-    /// are not compared: content has changed if a pass that writes it has run, or the host reports
-    /// a change.
+    /// In the frames of [`Run::OnChange`].
     OnChange,
     /// In frames where another pass of its group (see [`Conditions`]) runs: the pass copies a
     /// material for a [capture](crate#terms) between two passes that write the material.

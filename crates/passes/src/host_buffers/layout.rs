@@ -20,7 +20,8 @@ const FORMATS: [VertexFormat; 11] = [
 ];
 
 /// Range of vertices in a buffer of the host, such as one mesh of a mega-buffer. Positions are
-/// three f32 at the start of each vertex, and there are no normals, unless it is told otherwise.
+/// three f32 at the start of each vertex, and there are no normals, unless its methods say
+/// otherwise.
 ///
 /// Attributes have one of the formats `Float32x3`, `Float32x4`, `Float16x4`, and `Snorm`, `Unorm`,
 /// `Sint`, `Uint` of `16x4` and `8x4`, of which the fourth component is not read. A mesh whose

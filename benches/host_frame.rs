@@ -1,8 +1,9 @@
 //! CPU time of an engine's frame: 300 meshes of 173,400 triangles, of which none, or five, move in
-//! each frame, or only the camera. Setting the transforms, `refresh`, `encode` and finishing the
-//! encoder is measured; submission and the GPU's work are not: each frame is submitted and waited
-//! for outside the clock, so that the CPU is the frame's own. At the end the same of the fifty
-//! lines of docs/embedding.md, which know no more than where everything is.
+//! each frame, or only the camera; and where nothing moves, but all passes are encoded. Setting the
+//! transforms, `refresh`, `encode` and finishing the encoder is measured; submission and the GPU's
+//! work are not: each frame is submitted and waited for outside the clock, so that the CPU is the
+//! frame's own. At the end the same of the fifty lines of docs/embedding.md, which know no more
+//! than where everything is.
 
 use glam::{DAffine3, DVec3};
 use skiagraph_gpu::{
@@ -23,10 +24,45 @@ const MESHES: usize = 300;
 const ROOM: usize = 20;
 /// Parts that move in each frame.
 const MOVING: usize = 5;
-/// Names of the kinds of frames, each with the number of parts that move.
-const FRAMES: [(&str, usize); 3] = [(NOTHING, 0), (CAMERA, 0), ("five move", MOVING)];
-const NOTHING: &str = "nothing moves";
-const CAMERA: &str = "the camera moves";
+
+/// A kind of frames.
+#[derive(Clone, Copy)]
+struct Kind {
+    name: &'static str,
+    /// Number of the parts that move.
+    moving: usize,
+    /// True if the camera moves.
+    camera: bool,
+    /// True if all passes are encoded, whether or not something has changed.
+    all: bool,
+}
+
+const NOTHING: Kind = Kind {
+    name: "nothing moves",
+    moving: 0,
+    camera: false,
+    all: false,
+};
+const FIVE: Kind = Kind {
+    name: "five move",
+    moving: MOVING,
+    ..NOTHING
+};
+const KINDS: [Kind; 4] = [
+    NOTHING,
+    Kind {
+        name: "nothing moves, all passes",
+        all: true,
+        ..NOTHING
+    },
+    Kind {
+        name: "the camera moves",
+        camera: true,
+        ..NOTHING
+    },
+    FIVE,
+];
+
 /// Presets, with the engine of their rays if it is not `hierarchy`.
 const METHODS: [(&str, Option<&str>); 4] = [
     ("light_buffer", None),
@@ -74,20 +110,20 @@ fn main() {
         let mut host = Host::new(&gpu, of, &stone);
         // The first frames make what later ones have.
         for turn in 0..3 {
-            host.frame(turn, MOVING, false);
+            host.frame(turn, FIVE);
         }
-        for (what, moving) in FRAMES {
+        for kind in KINDS {
             let mut works = Vec::new();
             let frame = |turn| {
                 let before = host.provider.work();
-                let times = host.frame(turn, moving, what == CAMERA);
+                let times = host.frame(turn, kind);
                 works.push(host.provider.work().since(before));
                 times
             };
             let times: Vec<Times> = (0..frames).map(frame).collect();
-            print(preset, what, &times);
+            print(preset, kind.name, &times);
             print_work(&works);
-            host.print_built(moving);
+            host.print_built(kind);
         }
         let mut times: Vec<f64> = (0..added).map(|_| host.add(&stone)).collect();
         times.sort_by(f64::total_cmp);
@@ -102,14 +138,14 @@ fn fifty_lines(gpu: &Gpu, stone: &Mesh, frames: usize) {
     let (of, on) = (vec![stone; MESHES], (&gpu.device, &gpu.queue));
     let mut program = shadows::Shadows::new(on, VIEWPORT, &of).expect("the preset runs anywhere");
     let mut places: Vec<DAffine3> = (0..MESHES).map(|index| place(index, 0)).collect();
-    let mut frame = |turn: usize, moving: usize, is_camera: bool| {
-        for (index, map) in places[..moving].iter_mut().enumerate() {
+    let mut frame = |turn: usize, kind: Kind| {
+        for (index, map) in places[..kind.moving].iter_mut().enumerate() {
             *map = place(index, turn + 1);
         }
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let start = Instant::now();
         let light = DVec3::new(0.4, -1.0, -0.3);
-        let turn = if is_camera { turn } else { 0 };
+        let turn = if kind.camera { turn } else { 0 };
         let seen = program.frame(&mut encoder, &view(turn).camera(VIEWPORT), light, &places);
         seen.expect("the frame was encoded before");
         let commands = encoder.finish();
@@ -120,15 +156,14 @@ fn fifty_lines(gpu: &Gpu, stone: &Mesh, frames: usize) {
         time
     };
     (0..3).for_each(|turn| {
-        frame(turn, MOVING, false);
+        frame(turn, FIVE);
     });
-    for (what, moving) in FRAMES {
-        let mut times: Vec<f64> = (0..frames)
-            .map(|turn| frame(turn, moving, what == CAMERA))
-            .collect();
+    // Those lines have no say in which passes are encoded.
+    for kind in KINDS.into_iter().filter(|kind| !kind.all) {
+        let mut times: Vec<f64> = (0..frames).map(|turn| frame(turn, kind)).collect();
         times.sort_by(f64::total_cmp);
         let [median, most] = [0.5, 0.99].map(|share| times[(share * (frames - 1) as f64) as usize]);
-        println!("the fifty lines, {what}: {median:.3} ({most:.3})");
+        println!("the fifty lines, {}: {median:.3} ({most:.3})", kind.name);
     }
 }
 
@@ -249,15 +284,15 @@ impl<'a> Host<'a> {
         }
     }
 
-    /// Runs a frame in which the first parts move, or the camera.
-    fn frame(&mut self, turn: usize, moving: usize, is_camera: bool) -> Times {
-        for (index, map) in self.places[..moving].iter_mut().enumerate() {
+    /// Runs a frame.
+    fn frame(&mut self, turn: usize, kind: Kind) -> Times {
+        for (index, map) in self.places[..kind.moving].iter_mut().enumerate() {
             *map = place(index, turn + 1);
         }
         let descriptor = wgpu::CommandEncoderDescriptor::default();
         let mut encoder = self.gpu.device.create_command_encoder(&descriptor);
         let start = Instant::now();
-        if is_camera {
+        if kind.camera {
             self.provider.set_camera(&view(turn).camera(VIEWPORT));
         }
         self.provider
@@ -271,7 +306,7 @@ impl<'a> Host<'a> {
         let refresh = since(start);
         let start = Instant::now();
         self.executor
-            .encode(&mut encoder, &Frame::default())
+            .encode(&mut encoder, &Frame::new().with_all(kind.all))
             .expect("the frame was encoded before");
         let commands = encoder.finish();
         let encode = since(start);
@@ -290,9 +325,9 @@ impl<'a> Host<'a> {
     }
 
     /// Prints what one more frame builds, and how long each takes.
-    fn print_built(&mut self, moving: usize) {
+    fn print_built(&mut self, kind: Kind) {
         let before: Vec<_> = self.provider.built().to_vec();
-        self.frame(1000, moving, false);
+        self.frame(1000, kind);
         let times = |name: &str| before.iter().find(|it| it.name == name).map(|it| it.times);
         let built = self.provider.built().iter();
         let made = built.filter(|built| times(built.name) != Some(built.times));
@@ -315,7 +350,7 @@ impl<'a> Host<'a> {
             .refresh(&mut self.provider)
             .expect("there is room for it");
         let time = since(start);
-        self.frame(0, 0, false);
+        self.frame(0, NOTHING);
         time
     }
 }

@@ -42,12 +42,12 @@ pub trait Provider: Describe {
     }
 
     /// Builds the buffer of the resource `name`, or returns the buffer built before. It is called
-    /// only for names that a pass binds whose results are needed. The buffer needs the
+    /// only for names that a [live](skiagraph_graph#terms) pass binds. The buffer needs the
     /// [usages](skiagraph_graph::ProvidedBinding::usages) of its description's binding, and
-    /// `COPY_SRC` if it may be read back or is read as `.previous` (as it was in the frame before).
-    /// It holds at least the described number of items. If it is larger, a shader that binds all of
-    /// it sees the rest, too: `arrayLength` counts it, while numbers in the document, such as
-    /// `scene.indices.count`, do not.
+    /// `COPY_SRC` if it may be read back, is read as `.previous` (as it was in the frame before) or
+    /// by a pass that works on the CPU. It holds at least the described number of items. If it is
+    /// larger, a shader that binds all of it sees the rest, too: `arrayLength` counts it, while
+    /// numbers in the document, such as `scene.indices.count`, do not.
     ///
     /// The commands that fill the buffer are submitted before this method returns, or by
     /// [`submit_built`](Self::submit_built). A frame reads the content that the buffer has when the
@@ -68,8 +68,8 @@ pub trait Provider: Describe {
     /// [`Describe::describe`] describes as
     /// [`ACCELERATION_STRUCTURE`](skiagraph_graph::Provided::ACCELERATION_STRUCTURE), or returns
     /// the structure built before. The commands that build it must be submitted to `queue` before
-    /// this method returns. It is called only for names that a pass binds whose results are needed,
-    /// on devices with `EXPERIMENTAL_RAY_QUERY`.
+    /// this method returns. It is called only for names that a [live](skiagraph_graph#terms) pass
+    /// binds, on devices with `EXPERIMENTAL_RAY_QUERY`.
     ///
     /// # Errors
     /// If the structure cannot be built. The default implementation always fails.

@@ -27,8 +27,9 @@ const FARTHEST: f64 = 65536.0;
 /// use a symmetric frustum that holds the camera's own. That frustum ends at 65,536 times the
 /// distance of its near plane if the camera has no far plane. `shared/gbuffer.ron` draws the
 /// symmetric frustum, too, in reversed depth whatever the host's depth is. So the pixels of a
-/// preset that draws its own G-buffer are the host's only if its projection is symmetric and
-/// without jitter; for any other, `shared/from_depth.ron` takes the place of `shared/gbuffer.ron`.
+/// preset that draws its own G-buffer are the host's only if its projection is perspective,
+/// symmetric and without jitter; for any other, orthographic ones included, `shared/from_depth.ron`
+/// takes the place of `shared/gbuffer.ron`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Eye {
     pub(crate) camera: CameraUniform,

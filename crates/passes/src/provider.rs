@@ -518,8 +518,8 @@ impl SceneProvider {
     }
 
     /// Creates a provider of a mesh under a light. Both can be changed later. A camera must be set
-    /// before frames are encoded ([`set_camera`](Self::set_camera)); until then the resource
-    /// `camera` is all zeros.
+    /// before frames are encoded ([`set_camera`](Self::set_camera) or [`set_eye`](Self::set_eye));
+    /// until then the resource `camera` is all zeros.
     pub fn from_mesh(mesh: Mesh, light: impl Into<LightKind>) -> Self {
         Self::new(Arc::new(Scene {
             name: String::new(),
@@ -531,8 +531,9 @@ impl SceneProvider {
 
     /// Creates a provider of a mesh under a light; the mesh is cut into parts that
     /// [`set_transforms`](Self::set_transforms) moves. Mesh and light can be changed later. A
-    /// camera must be set before frames are encoded ([`set_camera`](Self::set_camera)). Parts that
-    /// were [joined](Movable::joined) from several meshes need transforms before that, too.
+    /// camera must be set before frames are encoded ([`set_camera`](Self::set_camera) or
+    /// [`set_eye`](Self::set_eye)). Parts that were [joined](Movable::joined), each from a mesh in
+    /// a space of its own, need transforms before that, too.
     pub fn from_parts(parts: impl Into<Arc<Movable>>, light: impl Into<LightKind>) -> Self {
         let mut provider = Self::from_mesh(Mesh::default(), light);
         provider.set_parts(parts);
@@ -637,8 +638,8 @@ impl SceneProvider {
 
     /// Replaces the mesh by one that is cut into parts, which
     /// [`set_transforms`](Self::set_transforms) moves. Plans depend on the mesh as described at
-    /// [`set_mesh`](Self::set_mesh). Parts that were [joined](Movable::joined) from several meshes
-    /// need transforms; executors may be created before these are set, but
+    /// [`set_mesh`](Self::set_mesh). Parts that were [joined](Movable::joined) need transforms;
+    /// executors may be created before these are set, but
     /// [`encode`](skiagraph_gpu::Executor::encode) then returns an error.
     pub fn set_parts(&mut self, parts: impl Into<Arc<Movable>>) {
         let parts = parts.into();
@@ -648,12 +649,14 @@ impl SceneProvider {
 
     /// Deforms the mesh: replaces the positions (world space, scene units) and unit normals of
     /// [`scene`](Self::scene)'s mesh by as many others in the same order. Of a mesh in parts they
-    /// are where the parts are now; maps that are set later move parts from their original places,
-    /// and undo the deformation. The next [`refresh`](skiagraph_gpu::Executor::refresh) of an
-    /// executor refits the bounding-volume hierarchies, or rebuilds them if refitting has made them
-    /// bad; adjacency and all else is kept. Triangles keep their winding: for a mirrored mesh use
-    /// [`set_mesh`](Self::set_mesh) or [`set_transforms`](Self::set_transforms). Nothing is rebuilt
-    /// for equal positions and normals.
+    /// are where the parts are now. The next [`set_transforms`](Self::set_transforms), even with
+    /// maps equal to those before, moves all parts from their original places and so undoes the
+    /// deformation; [`set_transform`](Self::set_transform) does this for its part. The next
+    /// [`refresh`](skiagraph_gpu::Executor::refresh) of an executor refits the bounding-volume
+    /// hierarchies, or rebuilds them if refitting has made them bad; adjacency and all else is
+    /// kept. Triangles keep their winding: for a mirrored mesh use [`set_mesh`](Self::set_mesh) or
+    /// [`set_transforms`](Self::set_transforms). Nothing is rebuilt for equal positions and
+    /// normals.
     ///
     /// # Errors
     /// [`Error::Deformed`] for another number of positions or normals, [`Error::NotFinite`] for a
@@ -685,10 +688,10 @@ impl SceneProvider {
 
     /// Moves each part of the mesh: `maps[n]` takes part number n of [`parts`](Self::parts) from
     /// its original place, in which its triangles were given, to its new place in world space. Only
-    /// parts whose map has changed are moved, and equal maps cost nothing. If a map mirrors its
-    /// part, the winding of the part's triangles is reversed (the rule of glTF), so that the
-    /// outside stays the front face. Executors show it from their next
-    /// [`refresh`](skiagraph_gpu::Executor::refresh) on.
+    /// parts whose map has changed are moved, and equal maps cost nothing, but after
+    /// [`deform`](Self::deform), when all parts are moved. If a map mirrors its part, the winding
+    /// of the part's triangles is reversed (the rule of glTF), so that the outside stays the front
+    /// face. Executors show it from their next [`refresh`](skiagraph_gpu::Executor::refresh) on.
     ///
     /// # Errors
     /// [`Error::NoParts`] if the mesh was not given in parts; [`Error::Move`] if the number of maps

@@ -135,10 +135,10 @@ pub fn plan(
 /// folder. `scenes` are those of which the plan was made.
 ///
 /// # Errors
-/// A folder that holds the cells of another plan; cells that are not here what was planned; a
-/// machine that measures a cell or traces a reference with another outcome; the errors of
-/// [`Series::measure`]; [`CompareError::InvalidOutputs`] for graphs whose outputs are not a shadow
-/// method's.
+/// A folder that holds the cells of another plan; cells that this machine plans otherwise than they
+/// were planned; a machine that measures a cell or traces a reference with another outcome; the
+/// errors of [`Series::measure`]; [`CompareError::InvalidOutputs`] for graphs whose outputs are not
+/// a shadow method's.
 pub fn measure(
     share: &Share,
     scenes: &[SceneCells],

@@ -476,13 +476,13 @@ impl<'a> Series<'a> {
         }
     }
 
-    /// Writes the finished runs into the folder, and `pictures`, files of the last run. Measuring
+    /// Writes the finished runs and the picture files of the last run into the folder. Measuring
     /// does this by itself after each run; call it, with an empty list, after a change of the runs.
     /// Does nothing if results stay in memory.
     ///
     /// # Errors
     /// An [early end](crate#terms); a file that cannot be written; a results.json that another
-    /// process has meanwhile written of another adapter, scene or protocol.
+    /// process has meanwhile written, of another adapter, scene or protocol.
     pub fn save(&mut self, pictures: &[PictureFile]) -> Result<(), CompareError> {
         match &mut self.store {
             Store::Memory => Ok(()),

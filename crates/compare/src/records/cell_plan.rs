@@ -188,7 +188,8 @@ impl CellPlan {
         })
     }
 
-    /// Checks that this program wrote the plan; `commit` is the one that it was built from.
+    /// Checks that this program wrote the plan; `commit` is the commit that this program was built
+    /// from.
     ///
     /// # Errors
     /// Another version or commit.

@@ -59,7 +59,7 @@ pub struct JudgedPictures {
     /// [band](crate#terms), but the picture may show one of several surfaces there, whose right
     /// answers differ. A picture's rank does not count them.
     pub unattributable: u64,
-    /// The pictures, in the order of the command.
+    /// The pictures, in the order of those of the [`Judging`](crate::foreign::judging::Judging).
     pub pictures: Vec<JudgedPicture>,
 }
 

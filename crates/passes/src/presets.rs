@@ -85,12 +85,13 @@ pub fn presets() -> Vec<Preset> {
 /// method's `visibility` (R8Uint, R32Uint or R32Float) as a texture of the format R8Unorm. It is
 /// the share of the light that arrives at each pixel, 0 in shadow to 1 in full light, and has as
 /// many layers as `visibility`. Pixels that show no geometry or face away from the light have any
-/// share: the host's shading decides there. The graph's other output is `visibility`; what else the
-/// document has, such as `status`, is a [capture](skiagraph_graph::PlanRequest::with_capture) under
-/// its own name. The document's params and inputs stay; its claims do not, nor its `proven_on`, so
-/// that executors on GL refuse the graph. The conversion costs one pass over the picture, or none
-/// in a plan that does not compute `unit_visibility`
-/// ([`PlanRequest::outputs`](skiagraph_graph::PlanRequest)). `sources` must hold
+/// share: the host's shading decides there. The graph's other output is `visibility`; the
+/// document's other materials are [captures](skiagraph_graph::PlanRequest::with_capture) under the
+/// [full names](skiagraph_graph#terms) that [`Plan::resources`](skiagraph_graph::Plan::resources)
+/// lists, where an output of the document such as `status` keeps its name. The document's params
+/// and inputs stay; its claims do not, nor its `proven_on`, so that executors on GL refuse the
+/// graph. The conversion costs one pass over the picture, or none in a plan that does not compute
+/// `unit_visibility` ([`PlanRequest::outputs`](skiagraph_graph::PlanRequest)). `sources` must hold
 /// `pipelines/shared/unit_visibility.ron`; [`EmbeddedSources`] does.
 ///
 /// ```

@@ -688,7 +688,7 @@ impl SceneProvider {
 
     /// Moves each part of the mesh: `maps[n]` takes part number n of [`parts`](Self::parts) from
     /// its original place, in which its triangles were given, to its new place in world space. Only
-    /// parts whose map has changed are moved, and equal maps cost nothing, but after
+    /// parts whose map has changed are moved, and equal maps cost nothing, except after
     /// [`deform`](Self::deform), when all parts are moved. If a map mirrors its part, the winding
     /// of the part's triangles is reversed (the rule of glTF), so that the outside stays the front
     /// face. Executors show it from their next [`refresh`](skiagraph_gpu::Executor::refresh) on.

@@ -97,7 +97,7 @@ pub struct JudgedPicture {
     pub wrong_blockers: Option<BlockerCounts>,
     /// Warnings: what was left out of the file, and mistakes that are suspected.
     pub warnings: Vec<String>,
-    /// File names of the pictures that were drawn of it; absent without a folder.
+    /// File names of the pictures that were drawn of it; absent if none were drawn.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub images: Option<Images>,
 }

@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Frames in which a pass of a [`Schedule`](crate::Schedule) runs: the [`Run`] of its document,
 /// with the condition of [`Run::When`] evaluated. An executor leaves out all passes of a frame that
-/// would compute the same as one before: *every frame* below does not count such frames.
+/// would compute the same as one before; such frames are not meant by *every frame* below.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum When {
     /// In every frame: the pass has [`Run::Always`], or the condition of its [`Run::When`] is true

@@ -16,8 +16,8 @@ const NO_NORMALS: &str = "fn decode_normal(first: u32) -> vec3<f32> { return vec
 /// bytes, which the module does not declare. Its other names begin with `decode_`.
 ///
 /// Positions are equal in all kernels where the module computes them in integers, or in f32 without
-/// rounding. A module that rounds may differ between kernels by what a compiler fuses: bounds are
-/// then [stated](crate::HostMesh::with_bounds) so much larger.
+/// rounding. A module that rounds may differ between kernels by what a compiler fuses: the
+/// [stated](crate::HostMesh::with_bounds) bounds must then be larger by as much.
 #[derive(Clone, Debug)]
 pub struct HostDecoder {
     pub(super) made: Arc<KernelModule>,

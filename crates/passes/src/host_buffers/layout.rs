@@ -25,7 +25,10 @@ const FORMATS: [VertexFormat; 11] = [
 ///
 /// Attributes have one of the formats `Float32x3`, `Float32x4`, `Float16x4`, and `Snorm`, `Unorm`,
 /// `Sint`, `Uint` of `16x4` and `8x4`, of which the fourth component is not read. A mesh whose
-/// integers stand for other lengths gets the scale and offset in the map of its part.
+/// integers stand for other lengths gets the scale and offset in the map of its part. The inverse
+/// transpose of a part's map moves its normals, so normals are those of the surface that the stored
+/// positions form; where the map's scale differs by axis, normals of the mesh in its true shape
+/// need a [decoder](Self::with_decoder).
 #[derive(Clone, Debug)]
 pub struct HostVertices {
     pub(super) buffer: wgpu::Buffer,

@@ -32,7 +32,7 @@ pub enum HostIndices<'a> {
 /// positions and normals into the scene's; no frame brings vertices to the CPU.
 ///
 /// The host hands over the vertices at rest once, while loading, in the format that they have in
-/// the buffer. Of them the mesh is welded, and its hierarchy is built, which any thread may do.
+/// the buffer. The mesh is welded from them, and its hierarchy is built, which any thread may do.
 /// What is on the CPU from then on is the welded mesh at rest and its hierarchy.
 ///
 /// Its triangles have no materials: they are opaque and single-sided. Masked and double-sided ones

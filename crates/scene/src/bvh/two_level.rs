@@ -25,8 +25,8 @@ pub struct Piece<'a> {
     pub triangles: &'a [u32],
     /// Number of the piece that this one is a copy of, or its own number if it is no copy. Pieces
     /// are numbered from 0 in the order of the list given to [`TwoLevelBvh::build`]. A copy has as
-    /// many triangles as its original, in the same order: in both meshes of `build` an affine map
-    /// takes each triangle of the original to that of the copy. A copy of a copy, or of a piece
+    /// many triangles as its original, in the same order: in both meshes of `build` one affine map
+    /// takes all triangles of the original to those of the copy. A copy of a copy, or of a piece
     /// that there is not, is left out of the hierarchy.
     pub copy_of: usize,
 }

@@ -334,9 +334,9 @@ impl Plan {
         provided.map(|resource| resource.name.as_str()).collect()
     }
 
-    /// Returns the provider's resources that no [live](Self::live) pass uses and whose number of
-    /// [items](crate#terms) or kind expressions of the documents ask for (as in `if:
-    /// "scene.masks.count > 0"`), by name, each with the description for which this plan was made.
+    /// Returns the provider's resources that no [live](Self::live) pass uses, but whose number of
+    /// [items](crate#terms) or kind planning has asked for (as for the condition
+    /// `"scene.masks.count > 0"`), by name, each with the description for which this plan was made.
     /// If the provider describes one otherwise, the graph must be planned anew.
     pub fn relies_on(&self) -> &BTreeMap<String, Provided> {
         &self.0.relies_on

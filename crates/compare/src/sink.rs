@@ -60,8 +60,8 @@ pub trait Sink: Sync {
     fn end_step(&self, _is_whole: bool) {}
 
     /// Returns the flag that asks the work to end early. A
-    /// [`Series`](crate::measuring::series::Series) keeps the results until then. By default the
-    /// flag is never set.
+    /// [`Series`](crate::measuring::series::Series) keeps the results that it has by then. By
+    /// default the flag is never set.
     fn stop(&self) -> &AtomicBool {
         static NEVER: AtomicBool = AtomicBool::new(false);
         &NEVER

@@ -137,7 +137,8 @@ pub enum Error {
         /// Handle that was given.
         PartId,
     ),
-    /// A part was said to be rewritten whose vertices are in no buffer of the host.
+    /// [`rewrite_part`](crate::SceneProvider::rewrite_part) was called for a part whose vertices
+    /// are in no buffer of the host.
     #[error(
         "the vertices of part {0:?} are in no buffer of the host: only parts of `add_host_part` \
          are rewritten"

@@ -5,7 +5,8 @@ use std::ops::Range;
 
 /// Handle of a part of a provider's mesh, as [`SceneProvider::add_part`] and
 /// [`SceneProvider::parts`] return it. It names the same part after other parts were added or
-/// removed.
+/// removed, and in [branches](crate::SceneProvider::branch) that were made while the part was
+/// there. No two parts of the process have equal handles.
 ///
 /// [`SceneProvider::add_part`]: crate::SceneProvider::add_part
 /// [`SceneProvider::parts`]: crate::SceneProvider::parts

@@ -103,7 +103,8 @@ pub fn presets() -> Vec<Preset> {
 /// ```
 ///
 /// # Errors
-/// Those of [`Graph::load`], and an error if the document has no output `visibility`.
+/// Those of [`Graph::load`], and an error if the document has no output `visibility`. One of
+/// another format is an error of [`Graph::plan`].
 pub fn load_unit_visibility(
     path: &str,
     registry: &Registry,

@@ -114,11 +114,12 @@ impl SceneProvider {
         }
     }
 
-    /// Creates a second provider of the same scene that shares all built resources. It can be
-    /// changed and [prepared](Self::prepare) on another thread while frames are encoded with this
-    /// provider, and then be passed to [`refresh`](skiagraph_gpu::Executor::refresh) in its place.
-    /// Both can also be used side by side. The new provider starts with the scene, camera and
-    /// lights of this one; later changes of either do not show in the other.
+    /// Creates a second provider of the same scene, a clone, that shares all built resources. It
+    /// can be changed and [prepared](Self::prepare) on another thread while frames are encoded with
+    /// this provider, and then be passed to [`refresh`](skiagraph_gpu::Executor::refresh) in its
+    /// place. Both can also be used side by side. The new provider starts with the scene, parts
+    /// (the same [handles](PartId) name them), camera and lights of this one; later changes of
+    /// either do not show in the other.
     pub fn branch(&self) -> Self {
         self.clone()
     }

@@ -3,9 +3,9 @@
 //! ```
 //! use skiagraph_compare::records::published_row::{HEADER, PublishedFile};
 //!
-//! let named: PublishedFile = "D:docs/dissertation.csv".parse()?;
+//! let named: PublishedFile = "D:docs/data/dissertation.csv".parse()?;
 //! assert_eq!(named.label, "D");
-//! let file = "docs/dissertation.csv".parse::<PublishedFile>()?;
+//! let file = "docs/data/dissertation.csv".parse::<PublishedFile>()?;
 //! assert_eq!(file.label, "dissertation");
 //! println!("its first line: {}", HEADER.join(","));
 //! # Ok::<(), String>(())

@@ -141,8 +141,8 @@ impl HostMesh {
         })
     }
 
-    /// Returns the mesh with stated bounds, low and high corner in the space of its vertices, where
-    /// a host will rewrite them within these.
+    /// Returns the mesh with stated bounds, low and high corner in the space of its vertices, for a
+    /// host that will rewrite the vertices within these bounds.
     ///
     /// # Errors
     /// [`HostMeshError::Bounds`] if a vertex at rest lies outside, or a corner is not finite.

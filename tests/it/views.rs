@@ -334,6 +334,12 @@ fn other_lights_than_planned_are_named() {
     let plan = planned_lit(&four, &provider);
     let mut of_four = sharing(&Pipelines::new(&gpu.device), &gpu, plan, &mut provider);
     let five = [&lights(0.0)[..], &[sun()]].concat();
+    // The light that no pass binds is of no account to either.
+    let relies_on = |executor: &Executor| -> Vec<String> {
+        executor.plan().relies_on().keys().cloned().collect()
+    };
+    assert_eq!(relies_on(&executor), ["lights", "scene.masks"]);
+    assert_eq!(relies_on(&of_four), ["scene.masks"]);
     for lights in [&five[..3], &five] {
         provider.set_lights(lights).unwrap();
         let error = executor.refresh(&mut provider).unwrap_err();

@@ -612,9 +612,9 @@ impl SceneProvider {
     /// or the mesh has changed.
     ///
     /// A plan depends on the kind of each light that it reads, and on the number of the lights if
-    /// its documents count them (`lights.count`): after a change of these, graphs must be planned
-    /// anew. Until then [`refresh`](skiagraph_gpu::Executor::refresh) fails with an error that
-    /// names the light, or the list.
+    /// its documents count them (`lights.count`) or its shaders bind the list: after a change of
+    /// these, graphs must be planned anew. Until then [`refresh`](skiagraph_gpu::Executor::refresh)
+    /// fails with an error that names the light, or the list.
     ///
     /// # Errors
     /// [`Error::LightNumber`] for a light that cannot be used, [`Error::NoLights`] for an empty
@@ -748,11 +748,13 @@ impl SceneProvider {
     /// or that a removed part had. If it does not fit, the mesh grows by a half, and all of it is
     /// uploaded.
     ///
-    /// A part that fits leaves plans valid, unless it changes the number of items of `scene.masks`
-    /// (as each part with masked triangles does, and the first with double-sided ones) or of
-    /// materials and texture coordinates (as each part with materials does): graphs that bind or
-    /// [count](skiagraph_graph::Plan::relies_on) those must be planned anew, as all must if the
-    /// mesh grows. Until then [`refresh`](skiagraph_gpu::Executor::refresh) returns
+    /// A part that fits leaves plans valid that neither bind nor
+    /// [count](skiagraph_graph::Plan::relies_on) masks, materials and texture coordinates
+    /// (`scene.masks`, `scene.materials`, `scene.uvs` and their like), and others if their numbers
+    /// of items stay: in a mesh without masks a part with masked or double-sided triangles changes
+    /// that of masks, and where the mesh or the part has materials a part changes those of
+    /// materials. Plans that are no longer valid, as all are if the mesh grows, must be made anew.
+    /// Until then [`refresh`](skiagraph_gpu::Executor::refresh) returns
     /// [`ExecuteError::OtherThanPlanned`](skiagraph_gpu::ExecuteError::OtherThanPlanned).
     ///
     /// # Errors

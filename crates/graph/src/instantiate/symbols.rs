@@ -305,8 +305,10 @@ impl<'a> SymbolTable<'a> {
     /// kinds.
     pub fn provided_kind(&mut self, name: &str, scope: ScopeId) -> Option<ProvidedKind> {
         let target = self.find_scene(name, scope)?.ok()?;
-        if let ResourceKind::Provided(provided) = &self.get(target.id).kind {
-            self.asked.borrow_mut().insert(name.to_owned());
+        let resource = self.get(target.id);
+        if let ResourceKind::Provided(provided) = &resource.kind {
+            // An include may bind another one to the name.
+            self.asked.borrow_mut().insert(resource.name.clone());
             return provided.kind;
         }
         let kind = self.request.provider.describe(name)?.kind?;

@@ -69,8 +69,8 @@ pub(crate) struct SymbolTable<'a> {
     wgsl_name: HashMap<String, String>,
     /// Last frame's version of each resource that has one.
     previous: BTreeMap<ResourceId, ResourceId>,
-    /// Names of the provider's resources whose number of items or kind was asked for.
-    asked: RefCell<BTreeSet<String>>,
+    /// Descriptions of the provider's resources whose number of items or kind was asked for.
+    asked: RefCell<BTreeMap<String, Provided>>,
 }
 
 impl<'a> SymbolTable<'a> {
@@ -97,22 +97,10 @@ impl<'a> SymbolTable<'a> {
         }
     }
 
-    /// Returns the number of items of a provided resource, and notes that the plan depends on it.
-    fn items(&self, name: &str) -> Option<u64> {
-        let items = self.request.provider.describe(name)?.items;
-        self.asked.borrow_mut().insert(name.to_owned());
-        items
-    }
-
-    /// Returns the descriptions of the provided resources whose number of items or kind was asked
+    /// Takes the descriptions of the provided resources whose number of items or kind was asked
     /// for.
-    pub fn asked(&self) -> BTreeMap<String, Provided> {
-        let asked = self.asked.borrow();
-        let described = asked.iter().filter_map(|name| {
-            let provided = self.request.provider.describe(name)?;
-            Some((name.clone(), provided))
-        });
-        described.collect()
+    pub fn take_asked(&mut self) -> BTreeMap<String, Provided> {
+        self.asked.take()
     }
 
     /// Returns an environment for expressions at a position in a document. `shader` is the shader
@@ -308,7 +296,8 @@ impl<'a> SymbolTable<'a> {
         let resource = self.get(target.id);
         if let ResourceKind::Provided(provided) = &resource.kind {
             // An include may bind another one to the name.
-            self.asked.borrow_mut().insert(resource.name.clone());
+            let mut asked = self.asked.borrow_mut();
+            asked.insert(resource.name.clone(), *provided);
             return provided.kind;
         }
         let kind = self.request.provider.describe(name)?.kind?;
@@ -749,9 +738,9 @@ impl<'a> At<'_, 'a> {
         if self.symbols.scopes.scene(instance, list).is_some() {
             return None;
         }
-        let first = format!("{list}.0");
-        self.symbols.request.provider.describe(&first)?;
-        let count = self.symbols.request.provider.describe(list)?.items?;
+        let provider = self.symbols.request.provider;
+        provider.describe(&format!("{list}.0"))?;
+        let count = provider.describe(list)?.items?;
         let number = match eval::count(number, self) {
             Ok(number) => number,
             Err(reported) => return Some(Err(reported)),
@@ -833,7 +822,10 @@ impl Environment for At<'_, '_> {
     }
 
     fn provided_items(&self, name: &str) -> Option<u64> {
-        self.symbols.items(name)
+        let provided = self.symbols.request.provider.describe(name)?;
+        let mut asked = self.symbols.asked.borrow_mut();
+        asked.insert(name.to_owned(), provided);
+        provided.items
     }
 
     fn is_provided(&self, name: &str) -> bool {
@@ -886,11 +878,9 @@ impl Environment for At<'_, '_> {
     fn attribute(&mut self, of: &Reference, attribute: Attribute, span: &Span) -> Reported<Value> {
         let target = self.symbols.resolve(of, self.position)?;
         let resource = self.symbols.get(target.id);
-        if let ResourceKind::Provided(_) = resource.kind {
-            self.symbols
-                .asked
-                .borrow_mut()
-                .insert(resource.name.clone());
+        if let ResourceKind::Provided(provided) = resource.kind {
+            let mut asked = self.symbols.asked.borrow_mut();
+            asked.insert(resource.name.clone(), provided);
         }
         if let Some(value) = parts::attribute(resource, &target, attribute) {
             return Ok(value);

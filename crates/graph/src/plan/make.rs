@@ -159,7 +159,7 @@ fn schedule(
         return None;
     }
     let named_values = linked.symbols.found_values();
-    let mut relies_on = linked.symbols.asked();
+    let mut relies_on = linked.symbols.take_asked();
     let (passes, resources) = (linked.passes, linked.symbols.resources);
     let view = GraphView {
         passes: &passes,

@@ -425,7 +425,7 @@ impl Executor {
             std::thread::sleep(Duration::from_micros(50));
         }
         // The profiler never gives up a frame whose timestamps cannot be mapped.
-        self.frames_in_flight.give_up_times();
+        self.frames_in_flight.give_up();
         let report = self.frames_in_flight.report(&self.device, &self.presence)?;
         report.ok_or(ExecuteError::NotSubmitted)
     }

@@ -204,6 +204,11 @@ impl Fetch {
         mapped.when_mapped(buffer, wgpu::MapMode::Read, encoder);
     }
 
+    /// True until the mapping of the staging buffer is known to be done or refused.
+    pub fn is_being_mapped(&self) -> bool {
+        self.staging.mapped.progress() == Progress::UnderWay
+    }
+
     /// Returns the content of a finished frame's output or capture.
     pub fn take(self, pool: &mut StagingPool) -> Result<Readback, ExecuteError> {
         let Self {

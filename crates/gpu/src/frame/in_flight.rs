@@ -31,6 +31,8 @@ pub(super) struct FrameInFlight {
     pub cpu: Vec<(Arc<str>, Duration)>,
     pub skipped: Vec<Arc<str>>,
     pub fetches: Vec<Fetch>,
+    /// True if no mapping is waited for any longer.
+    is_given_up: bool,
     /// Source of the uniform `frame`, kept for the next frame as the timer is.
     pub uniform: Option<FrameUniform>,
 }
@@ -46,6 +48,16 @@ pub(super) struct FramesInFlight {
 impl FrameInFlight {
     fn is_asked(&self) -> bool {
         self.is_timed || self.counters.is_some() || !self.fetches.is_empty()
+    }
+
+    /// True if a buffer is not mapped yet although the frame is done: another thread that polls the
+    /// device holds the callback, and is about to call it.
+    fn is_being_mapped(&self) -> bool {
+        let mut fetches = self.fetches.iter();
+        let counters = self.counters.as_ref();
+        !self.is_given_up
+            && (fetches.any(Fetch::is_being_mapped)
+                || counters.is_some_and(Counters::is_being_mapped))
     }
 
     /// Starts the mapping of the timestamps and returns the frame's times. `None` if another thread
@@ -90,6 +102,7 @@ impl FramesInFlight {
         frame_in_flight.cpu.clear();
         frame_in_flight.skipped.clear();
         frame_in_flight.is_timed = false;
+        frame_in_flight.is_given_up = false;
         frame_in_flight.counters = None;
         self.spare.push(frame_in_flight);
     }
@@ -116,13 +129,13 @@ impl FramesInFlight {
         self.sweep();
         while let Some(mut frame_in_flight) = self.under_way.pop_front() {
             match frame_in_flight.done.progress() {
-                Progress::UnderWay => {
+                Progress::Done if !frame_in_flight.is_being_mapped() => {}
+                Progress::Done | Progress::UnderWay => {
                     self.under_way.push_front(frame_in_flight);
                     // A lost device does not report that work under way will never come.
                     presence.check()?;
                     return Ok(None);
                 }
-                Progress::Done => {}
                 Progress::Failed | Progress::Dropped => {
                     // Results already written into its queries are dropped.
                     frame_in_flight.timer = None;
@@ -177,15 +190,16 @@ impl FramesInFlight {
         Ok(None)
     }
 
-    /// Gives up the GPU times of the oldest frame with requests: they did not arrive although the
-    /// GPU is done.
-    pub fn give_up_times(&mut self) {
+    /// Gives up the GPU times of the oldest frame with requests, and waits for no mapping: they did
+    /// not arrive although the GPU is done.
+    pub fn give_up(&mut self) {
         if let Some(frame_in_flight) = self
             .under_way
             .iter_mut()
             .find(|frame_in_flight| frame_in_flight.is_asked())
         {
             frame_in_flight.timer = None;
+            frame_in_flight.is_given_up = true;
         }
     }
 }

@@ -109,6 +109,11 @@ impl Counters {
             .when_mapped(&self.staging, wgpu::MapMode::Read, encoder);
     }
 
+    /// True until the mapping of the counts is known to be done or refused.
+    pub fn is_being_mapped(&self) -> bool {
+        self.mapped.progress() == Progress::UnderWay
+    }
+
     /// Returns the counts of a finished frame, in the order of its passes.
     pub fn take(&mut self) -> Result<Vec<PassStatistics>, ExecuteError> {
         let failed = || ExecuteError::Readback {

@@ -4,7 +4,7 @@ use crate::support::{Files, Triangle, load, right};
 use crate::tiny::{self, image, u32s};
 use skiagraph_gpu::{Executor, Frame, FrameReport, device};
 use skiagraph_graph::{NoProvider, ParamValue, PlanRequest};
-use std::sync::LazyLock;
+use std::sync::{LazyLock, mpsc::channel};
 use std::time::{Duration, Instant};
 
 /// A device of these tests' own: on one that others use, too, a poll clears up after their frames.
@@ -237,4 +237,49 @@ fn what_is_under_way_outlives_a_change_of_the_plan() {
         assert_eq!(tiny::f32s(content), numbered);
         assert!(report.timing.is_some());
     }
+}
+
+/// Another thread that polls the device may hold the callback of a readback's mapping while this
+/// one is told that the frame is done.
+#[test]
+fn a_thread_that_polls_takes_no_content_away() {
+    let gpu = device::open(None).unwrap_or_else(|error| panic!("{error}"));
+    let plan = right(right(load(&image())).plan(&PlanRequest::new(tiny::SIZE, &Triangle)));
+    let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, &mut Triangle)
+        .unwrap_or_else(|error| panic!("{error}"));
+    let buffer = |usage| {
+        gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: 4,
+            usage,
+            mapped_at_creation: false,
+        })
+    };
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    let ((taken, is_taken), (go_on, may_go_on)) = (channel(), channel());
+    // The other thread stops at this callback, which comes before that of the readback.
+    let held = buffer(wgpu::BufferUsages::MAP_READ);
+    encoder.map_buffer_on_submit(&held, wgpu::MapMode::Read, .., move |_| {
+        taken.send(()).unwrap();
+        may_go_on.recv().unwrap();
+    });
+    let wanted = Frame::new().with_statistics(true).with_read(&["image"]);
+    executor.encode(&mut encoder, &wanted).unwrap();
+    // Its refusal is told at once: after the mappings, before the request to tell that all is done.
+    let device = gpu.device.clone();
+    let refused = buffer(wgpu::BufferUsages::COPY_DST);
+    encoder.map_buffer_on_submit(&refused, wgpu::MapMode::Read, .., move |_| {
+        std::thread::spawn(move || device.poll(wgpu::PollType::wait_indefinitely()));
+        is_taken.recv().unwrap();
+    });
+    let refusal = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
+    gpu.queue.submit([encoder.finish()]);
+    assert!(pollster::block_on(refusal.pop()).is_some());
+    for _ in 0..3 {
+        assert!(poll(&mut executor).is_none());
+    }
+    go_on.send(()).unwrap();
+    let report = executor.finish().unwrap_or_else(|error| panic!("{error}"));
+    let numbered = tiny::pixels(tiny::SIZE, |x, y| (x + 100 * y) as f32);
+    assert_eq!(tiny::f32s(&report.readbacks[0].content), numbered);
 }

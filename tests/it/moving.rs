@@ -457,7 +457,7 @@ fn a_light_of_another_kind_is_an_error_of_its_own() {
     else {
         panic!("{error}");
     };
-    let word = |kind: &skiagraph_graph::Provided| kind.kind.map(|kind| kind.word());
+    let word = |of: &Option<skiagraph_graph::Provided>| of.and_then(|of| of.kind?.word().into());
     assert_eq!(name, "light");
     assert_eq!(
         [word(planned), word(given)],

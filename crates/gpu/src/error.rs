@@ -72,7 +72,8 @@ pub enum ExecuteError {
         why: ProviderError,
     },
     /// The [`Provider`](crate::Provider) now describes a resource in another way than when the
-    /// graph was planned: with another binding, number of items, bytes per item or kind of light.
+    /// graph was planned: with another binding, number of items, bytes per item or kind of light;
+    /// or only one of the two describes it.
     #[error(
         "{}: plan the graph anew (`executor.plan().with(|request| request.provider = …)`) and hand \
          the plan to `replace_graph`",
@@ -81,10 +82,11 @@ pub enum ExecuteError {
     OtherThanPlanned {
         /// Name of the resource whose description changed.
         name: String,
-        /// The provider's description when the graph was planned.
-        planned: Provided,
-        /// The provider's description now.
-        given: Provided,
+        /// The provider's description when the graph was planned; `None` if it had no such
+        /// resource.
+        planned: Option<Provided>,
+        /// The provider's description now; `None` if it has no such resource any more.
+        given: Option<Provided>,
     },
     /// A pass that runs in the frame reads a resource that the [`Provider`](crate::Provider) cannot
     /// build yet.
@@ -220,7 +222,18 @@ pub enum ExecuteError {
 }
 
 /// Says how a provided resource differs from the description that the graph was planned for.
-fn change(name: &str, planned: &Provided, given: &Provided) -> String {
+fn change(name: &str, planned: &Option<Provided>, given: &Option<Provided>) -> String {
+    let (planned, given) = match (planned, given) {
+        (Some(planned), Some(given)) => (planned, given),
+        (None, _) => {
+            return format!("the provider has `{name}` now, but the graph was planned without it");
+        }
+        (Some(_), None) => {
+            return format!(
+                "the provider no longer has `{name}`, with which the graph was planned"
+            );
+        }
+    };
     if let (Some(planned), Some(given)) = (&planned.kind, &given.kind)
         && planned != given
     {

@@ -58,6 +58,17 @@ impl Resource {
             keep: false,
         }
     }
+
+    /// True if the host's provider describes the resource, and makes it.
+    pub(crate) fn is_provided(&self) -> bool {
+        self.origin == Origin::Host
+            && matches!(
+                self.kind,
+                ResourceKind::Provided(_)
+                    | ResourceKind::AccelerationStructure
+                    | ResourceKind::CpuWork
+            )
+    }
 }
 
 /// Origin of the content of a [`Resource`].

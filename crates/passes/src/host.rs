@@ -136,7 +136,7 @@ pub(crate) fn read(
     queue.submit([encoder.finish()]);
     let (sender, receiver) = mpsc::channel();
     staging.map_async(wgpu::MapMode::Read, .., move |done| {
-        let _ = sender.send(done); // nobody waits any more after an error below
+        let _ = sender.send(done); // after an error below the receiver is gone
     });
     let failed = |why| GpuMeshError::Device { what, why };
     let waited = device.poll(wgpu::PollType::wait_indefinitely());

@@ -4,6 +4,7 @@
 use crate::desired_state::{DesiredMethod, MethodSnapshot, PassSnapshot};
 use skiagraph_compare::error::{explain, is_fatal};
 use skiagraph_compare::files::fingerprint::{Fingerprint, RecordedSources};
+use skiagraph_compare::graphs::light_kinds::kind_and_number;
 use skiagraph_compare::graphs::planning::Capabilities;
 use skiagraph_compare::graphs::preset::{self, Preset, VISIBILITY};
 use skiagraph_compare::measuring::frame;
@@ -22,7 +23,7 @@ pub struct Lost;
 struct PlannedFor {
     desired: DesiredMethod,
     size: [u32; 2],
-    light: &'static str,
+    lights: (&'static str, usize),
     reads: u64,
 }
 
@@ -104,7 +105,7 @@ impl Slot {
         let planned = PlannedFor {
             desired: desired.clone(),
             size: how.size,
-            light: provider.light().word(),
+            lights: kind_and_number(provider),
             reads: self.reads,
         };
         if self.refused.as_ref() != Some(&planned) {

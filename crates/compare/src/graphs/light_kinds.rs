@@ -14,7 +14,7 @@
 use crate::error::CompareError;
 use crate::wording::did_you_mean;
 use skiagraph_graph::Graph;
-use skiagraph_passes::uniforms::LIGHT_KINDS;
+use skiagraph_passes::{SceneProvider, uniforms::LIGHT_KINDS};
 
 /// Splits the words `directional`, `spot` and `point` into two lists in this order: the kinds of
 /// light that a graph takes, and those that it does not. A document that lists no kinds takes
@@ -32,6 +32,12 @@ pub fn split(graph: &Graph) -> [Vec<&'static str>; 2] {
 /// True if a graph takes lights of the kind `kind`, such as `point`.
 pub fn takes(graph: &Graph, kind: &str) -> bool {
     split(graph)[0].contains(&kind)
+}
+
+/// Returns the word for the kind of the light that is set (`light`), and the number of all lights
+/// of the scene (`lights`): a plan holds only for these.
+pub fn kind_and_number(provider: &SceneProvider) -> (&'static str, usize) {
+    (provider.light().word(), provider.lights().len())
 }
 
 /// Checks that each kind of light that a graph's document lists is `directional`, `spot` or

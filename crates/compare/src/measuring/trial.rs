@@ -1,10 +1,11 @@
 //! Tries settings of a method on some views: runs and judges each once.
 
 use crate::error::CompareError;
+use crate::graphs::ground_truth;
+use crate::graphs::light_kinds::{self, kind_and_number};
 use crate::graphs::method::{Method, ParamValues};
 use crate::graphs::planning::Capabilities;
 use crate::graphs::shadow_method::Outputs;
-use crate::graphs::{ground_truth, light_kinds};
 use crate::measuring::frame;
 use crate::measuring::ground_truth::GroundTruthView;
 use crate::measuring::run::scene_bytes;
@@ -13,7 +14,6 @@ use crate::measuring::stop::{Stop, attempt};
 use crate::measuring::timing::{self, FrameMode, Times};
 use crate::records::budgets::Budgets;
 use crate::sink::Session;
-use itertools::Itertools;
 use skiagraph_gpu::{Executor, Frame};
 use skiagraph_passes::SceneProvider;
 use skiagraph_scene::{LightKind, View};
@@ -67,8 +67,8 @@ pub struct Trials<'a> {
     holds_memory: bool,
     /// Bytes of the scene data that plans read, by its names.
     scene_bytes: BTreeMap<Vec<String>, u64>,
-    /// Executor of the last setting, and the kind of light that it is planned for.
-    executor: Option<(Executor, &'static str)>,
+    /// Executor of the last setting.
+    executor: Option<Executor>,
     /// Pixels facing the light, over all views.
     facing_light: f64,
     /// Work that may still be done: a plan or a frame is one.
@@ -178,8 +178,7 @@ impl<'a> Trials<'a> {
             return Ok(true);
         };
         let set = self.set(params);
-        let kinds = self.views.iter().unique_by(|view| view.light.word());
-        for view in kinds.copied().collect::<Vec<_>>() {
+        for view in self.one_of_each_light() {
             self.provider.set_view(&view.view, self.viewport);
             let capabilities = Capabilities::new(self.session.gpu);
             let Ok(plan) = set.plan(self.viewport, capabilities, self.provider) else {
@@ -215,19 +214,33 @@ impl<'a> Trials<'a> {
         };
         let set = self.set(params);
         self.provider.set_view(&view.view, self.viewport);
-        let timed = self.timed(&set, view.light.word());
+        let timed = self.timed(&set);
         Ok(match attempt(self.session, &set, timed)? {
             Ok(Some(ms)) => ms <= MARGIN * most,
             Ok(None) | Err(_) => false,
         })
     }
 
+    /// One view for each kind of light and number of lights: others may need other plans.
+    fn one_of_each_light(&mut self) -> Vec<&'a TrialView<'a>> {
+        let mut seen = Vec::new();
+        let mut views = self.views.clone();
+        views.retain(|view| {
+            self.provider.set_view(&view.view, self.viewport);
+            let lights = kind_and_number(self.provider);
+            let is_new = !seen.contains(&lights);
+            seen.push(lights);
+            is_new
+        });
+        views
+    }
+
     /// Median milliseconds of a frame with every pass; `None` if it cannot be planned.
-    fn timed(&mut self, set: &Method, kind: &'static str) -> Result<Option<f64>, Stop> {
-        if !self.plan(set, kind)? {
+    fn timed(&mut self, set: &Method) -> Result<Option<f64>, Stop> {
+        if !self.plan(set)? {
             return Ok(None);
         }
-        let Some((executor, _)) = &mut self.executor else {
+        let Some(executor) = &mut self.executor else {
             return Ok(None);
         };
         executor.refresh(self.provider)?;
@@ -247,7 +260,7 @@ impl<'a> Trials<'a> {
         let mut idle: Vec<&String> = new
             .filter(|name| !self.method.params.contains_key(*name))
             .collect();
-        for view in self.views.iter().unique_by(|view| view.light.word()) {
+        for view in self.one_of_each_light() {
             if idle.is_empty() {
                 return false;
             }
@@ -267,12 +280,12 @@ impl<'a> Trials<'a> {
         let mut errors: Vec<(f64, &TrialView)> = Vec::new();
         for view in self.views.clone() {
             self.provider.set_view(&view.view, self.viewport);
-            let kind = view.light.word();
-            if planned != Some(kind) {
-                if !self.plan(set, kind)? {
+            let lights = kind_and_number(self.provider);
+            if planned != Some(lights) {
+                if !self.plan(set)? {
                     return Ok(Trial::Worse);
                 }
-                planned = Some(kind);
+                planned = Some(lights);
             }
             let wrong = self.error_on(set, view)?;
             errors.push((wrong, view));
@@ -300,7 +313,7 @@ impl<'a> Trials<'a> {
 
     /// Plans a setting under the light of the provider; false if it cannot run, or if it remembers
     /// earlier frames.
-    fn plan(&mut self, set: &Method, kind: &'static str) -> Result<bool, Stop> {
+    fn plan(&mut self, set: &Method) -> Result<bool, Stop> {
         self.left = self.left.saturating_sub(1);
         let capabilities = Capabilities::new(self.session.gpu);
         let Ok(plan) = set.plan(self.viewport, capabilities, self.provider) else {
@@ -311,11 +324,11 @@ impl<'a> Trials<'a> {
             return Ok(false);
         }
         self.executor = Some(match self.executor.take() {
-            Some((mut executor, before)) if before == kind => {
+            Some(mut executor) => {
                 executor.replace_graph(plan, self.provider)?;
-                (executor, kind)
+                executor
             }
-            _ => (frame::executor(self.session, plan, self.provider)?, kind),
+            None => frame::executor(self.session, plan, self.provider)?,
         });
         Ok(true)
     }
@@ -323,7 +336,7 @@ impl<'a> Trials<'a> {
     /// Error on one view, in pixels: wrong ones outside the band, or the sum of squared errors of
     /// the shares of light.
     fn error_on(&mut self, set: &Method, view: &TrialView) -> Result<f64, Stop> {
-        let Some((executor, _)) = &mut self.executor else {
+        let Some(executor) = &mut self.executor else {
             return Ok(f64::INFINITY);
         };
         executor.refresh(self.provider)?;

@@ -918,10 +918,13 @@ impl Executor {
         let Some(plan) = self.larger() else {
             return Ok(());
         };
+        let before = self.plan();
         let known = self.state.memory.provided().iter();
-        let known =
-            known.map(|(id, version)| (self.plan().resource(*id).name.clone(), version.clone()));
-        let mut unchanged = Unchanged(known.collect());
+        let known = known.map(|(id, version)| (before.resource(*id).name.clone(), version.clone()));
+        let mut unchanged = Unchanged {
+            plan: before.clone(),
+            versions: known.collect(),
+        };
         self.grow_to(plan, &mut unchanged).map(drop)
     }
 

@@ -2,32 +2,38 @@
 //! needed.
 
 use crate::provider::{Provider, ProviderError};
-use skiagraph_graph::{Describe, Provided};
+use skiagraph_graph::{Describe, Plan, Provided};
 use std::collections::BTreeMap;
 
-/// Provider for a change of plan in which no provided resource has changed. It holds by name the
-/// version that the executor has, or the missing part.
-pub(super) struct Unchanged(pub BTreeMap<String, Result<u64, String>>);
+/// Provider for a change of plan in which no provided resource has changed.
+pub(super) struct Unchanged {
+    /// The plan before, whose descriptions still hold.
+    pub plan: Plan,
+    /// Version of each resource that the executor has, or the part that is missing to build it.
+    pub versions: BTreeMap<String, Result<u64, String>>,
+}
 
 impl Describe for Unchanged {
     fn names(&self) -> Vec<String> {
-        self.0.keys().cloned().collect()
+        self.plan.descriptions().names()
     }
 
-    /// Returns `None`: the plan's descriptions still hold.
-    fn describe(&self, _: &str) -> Option<Provided> {
-        None
+    fn describe(&self, name: &str) -> Option<Provided> {
+        self.plan.descriptions().describe(name)
     }
 }
 
 impl Provider for Unchanged {
     fn version(&self, name: &str) -> u64 {
-        let known = self.0.get(name).and_then(|known| known.as_ref().ok());
+        let known = self
+            .versions
+            .get(name)
+            .and_then(|known| known.as_ref().ok());
         known.copied().unwrap_or_default()
     }
 
     fn missing(&self, name: &str) -> Option<String> {
-        match self.0.get(name) {
+        match self.versions.get(name) {
             Some(Ok(_)) => None,
             Some(Err(missing)) => Some(missing.clone()),
             None => Some("call `Executor::refresh`".to_owned()),

@@ -292,6 +292,12 @@ impl Memory {
     ) -> Result<(), ExecuteError> {
         let resource = plan.resource(id);
         let (provider, device) = (&mut *factory.provider, factory.device);
+        let planned = match &resource.kind {
+            ResourceKind::Provided(planned) => *planned,
+            ResourceKind::CpuWork => Provided::CPU_WORK,
+            _ => Provided::ACCELERATION_STRUCTURE,
+        };
+        check_as_planned(&resource.name, Some(planned), provider)?;
         let version = provider.version(&resource.name);
         if let Some((plan, memory)) = old
             && let Some((known, physical)) = memory.host_by_name(plan, &resource.name)
@@ -301,12 +307,6 @@ impl Memory {
             self.provided.insert(id, Ok(version));
             return Ok(());
         }
-        let planned = match &resource.kind {
-            ResourceKind::Provided(planned) => *planned,
-            ResourceKind::CpuWork => Provided::CPU_WORK,
-            _ => Provided::ACCELERATION_STRUCTURE,
-        };
-        check_as_planned(&resource.name, planned, provider)?;
         if let Some(why) = provider.missing(&resource.name) {
             self.host.remove(&id);
             self.provided.insert(id, Err(why));
@@ -422,17 +422,18 @@ pub(crate) fn check_relied_on(plan: &Plan, provider: &dyn Provider) -> Result<()
 /// A plan has counted items and sized buffers by the descriptions that it was made for.
 fn check_as_planned(
     name: &str,
-    planned: Provided,
+    planned: Option<Provided>,
     provider: &dyn Provider,
 ) -> Result<(), ExecuteError> {
-    match provider.describe(name) {
-        Some(given) if given != planned => Err(ExecuteError::OtherThanPlanned {
-            name: name.to_owned(),
-            planned,
-            given,
-        }),
-        _ => Ok(()),
+    let given = provider.describe(name);
+    if given == planned {
+        return Ok(());
     }
+    Err(ExecuteError::OtherThanPlanned {
+        name: name.to_owned(),
+        planned,
+        given,
+    })
 }
 
 fn is_copyable(built: &Physical) -> bool {

@@ -3,32 +3,48 @@
 
 use crate::buffers::{INPUT, compute, document, writes};
 use crate::host::{GPU, encoder, frame, numbers, planned, request};
-use crate::support::Files;
+use crate::support::{Files, right};
+use serde::Deserialize;
 use skiagraph_gpu::{ExecuteError, Executor, Frame, Provider, ProviderError};
-use skiagraph_graph::{Describe, ParamValue, Provided, ProvidedBinding, ProvidedKind};
+use skiagraph_graph::{
+    Describe, Graph, Lowering, ParamValue, PassKind, Provided, ProvidedBinding, ProvidedKind,
+    Reference, Registry, step::Step,
+};
 
 /// Gives `host.value`, another buffer for another value.
 struct Given {
     /// None that was not set yet.
     value: Option<u32>,
+    /// `host.value` is not described if there are none.
     items: u64,
     kind: u32,
+    /// Items of `host.extra`, which no pass binds; it is not described if there are none.
+    extra: u64,
 }
 
 const KIND: [&str; 2] = ["round", "square"];
 
 impl Describe for Given {
     fn names(&self) -> Vec<String> {
-        vec!["host.value".to_owned()]
+        let names = ["host.value", "host.extra"].map(str::to_owned);
+        let known = names
+            .into_iter()
+            .filter(|name| self.describe(name).is_some());
+        known.collect()
     }
 
     fn describe(&self, name: &str) -> Option<Provided> {
-        (name == "host.value").then_some(
-            Provided::new(ProvidedBinding::Storage, Some(self.items), 4).with_kind(ProvidedKind {
-                words: &KIND,
-                number: self.kind,
-            }),
-        )
+        let items = match name {
+            "host.value" => self.items,
+            "host.extra" => self.extra,
+            _ => 0,
+        };
+        let kind = ProvidedKind {
+            words: &KIND,
+            number: self.kind,
+        };
+        let described = Provided::new(ProvidedBinding::Storage, Some(items), 4).with_kind(kind);
+        (items > 0).then_some(described)
     }
 }
 
@@ -68,6 +84,7 @@ fn one() -> Given {
         value: Some(1),
         items: 1,
         kind: 0,
+        extra: 0,
     }
 }
 
@@ -203,4 +220,74 @@ fn what_is_no_longer_as_planned_is_an_error_of_its_own() {
     let count = error(&mut Given { items: 3, ..one() });
     let expected = "`host.value` has 3 items of 4 bytes now, but the graph was planned for 1 items";
     assert!(count.starts_with(expected), "{count}");
+    let gone = error(&mut Given { items: 0, ..one() });
+    let expected = "the provider no longer has `host.value`, with which the graph was planned: ";
+    assert!(gone.starts_with(expected), "{gone}");
+}
+
+/// A plan may be for another number of items than a provider has, also if the version is the same.
+#[test]
+fn a_plan_for_another_provider_is_refused() {
+    let mut provider = one();
+    let mut executor = start(&mut provider);
+    let other = Given { items: 3, ..one() };
+    let plan = executor.plan().with(|request| request.provider = &other);
+    let refused = executor.replace_graph(plan.unwrap(), &mut provider);
+    let error = refused.unwrap_err().to_string();
+    let expected = "`host.value` has 1 items of 4 bytes now, but the graph was planned for 3 items";
+    assert!(error.starts_with(expected), "{error}");
+    frame(&mut executor, &[]);
+    assert_eq!(numbers(&mut executor, "seen"), [1]);
+}
+
+/// Clears a texture to the number of items of `host.extra`.
+#[derive(Debug, Deserialize)]
+struct CountExtra {
+    target: Reference,
+}
+
+impl PassKind for CountExtra {
+    fn lower(&self, pass: &mut Lowering<'_>) {
+        let items = pass.provided_items("host.extra") as f64;
+        pass.step(Step::Clear {
+            target: (&self.target).into(),
+            value: [items, 0.0, 0.0, 0.0],
+        });
+    }
+}
+
+/// A kind may ask for a resource that the provider does not have yet.
+#[test]
+fn a_resource_that_comes_later_needs_another_plan() {
+    let mut registry = Registry::standard();
+    registry.register::<CountExtra>("CountExtra");
+    let files = Files::graph(
+        r#"materials: [Texture(name: "seen", format: R32Float, size: (1, 1))],
+        passes: [CountExtra(name: "count", target: "seen")], outputs: ["seen"]"#,
+    );
+    let graph = right(Graph::load("graph.ron", &registry, &files));
+    let mut provider = one();
+    let plan = right(graph.plan(&request(&provider)));
+    let mut executor = Executor::new(&GPU.device, &GPU.queue, plan, &mut provider).unwrap();
+    let shown = |executor: &mut Executor| {
+        let report = frame(executor, &["seen"]);
+        report.readbacks[0]
+            .content
+            .as_f32()
+            .expect("it holds numbers")
+    };
+    assert_eq!(shown(&mut executor), [0.0]);
+    executor.refresh(&mut provider).unwrap();
+    provider.extra = 2;
+    let error = executor.refresh(&mut provider).unwrap_err().to_string();
+    let expected = "the provider has `host.extra` now, but the graph was planned without it: plan";
+    assert!(error.starts_with(expected), "{error}");
+    let plan = executor.plan().with(|request| request.provider = &provider);
+    executor
+        .replace_graph(plan.unwrap(), &mut provider)
+        .unwrap();
+    assert_eq!(shown(&mut executor), [2.0]);
+    provider.extra = 0;
+    let error = executor.refresh(&mut provider).unwrap_err().to_string();
+    assert!(error.contains("no longer has `host.extra`"), "{error}");
 }

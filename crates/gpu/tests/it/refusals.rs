@@ -107,7 +107,7 @@ fn a_provider_that_fails() {
     let error = Executor::new(&GPU.device, &GPU.queue, plan(), &mut NoProvider)
         .expect_err("nothing is provided");
     assert!(
-        matches!(&error, ExecuteError::Provider { name, .. } if name == "items"),
+        matches!(&error, ExecuteError::OtherThanPlanned { name, given: None, .. } if name == "items"),
         "{error}"
     );
 }

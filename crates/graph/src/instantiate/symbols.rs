@@ -69,8 +69,9 @@ pub(crate) struct SymbolTable<'a> {
     wgsl_name: HashMap<String, String>,
     /// Last frame's version of each resource that has one.
     previous: BTreeMap<ResourceId, ResourceId>,
-    /// Descriptions of the provider's resources whose number of items or kind was asked for.
-    asked: RefCell<BTreeMap<String, Provided>>,
+    /// Descriptions of the provider's resources whose number of items, kind or presence was asked
+    /// for; `None` where the provider knows no such resource.
+    asked: RefCell<BTreeMap<String, Option<Provided>>>,
 }
 
 impl<'a> SymbolTable<'a> {
@@ -97,10 +98,27 @@ impl<'a> SymbolTable<'a> {
         }
     }
 
-    /// Takes the descriptions of the provided resources whose number of items or kind was asked
-    /// for.
-    pub fn take_asked(&mut self) -> BTreeMap<String, Provided> {
+    /// Takes the descriptions of the provider's resources whose number of items, kind or presence
+    /// was asked for; `None` where the provider knows no such resource.
+    pub fn take_asked(&mut self) -> BTreeMap<String, Option<Provided>> {
         self.asked.take()
+    }
+
+    /// Asks the provider for a description, and notes the answer.
+    fn ask(&self, name: &str) -> Option<Provided> {
+        let described = self.request.provider.describe(name);
+        self.asked.borrow_mut().insert(name.to_owned(), described);
+        described
+    }
+
+    /// Notes the description of a resource, or of the one that it is the last frame's copy of.
+    fn note_asked(&self, resource: &Resource, provided: Provided) {
+        let name = match resource.origin {
+            Origin::Previous(base) => &self.get(base).name,
+            _ => &resource.name,
+        };
+        let mut asked = self.asked.borrow_mut();
+        asked.insert(name.clone(), Some(provided));
     }
 
     /// Returns an environment for expressions at a position in a document. `shader` is the shader
@@ -292,15 +310,17 @@ impl<'a> SymbolTable<'a> {
     /// to the name, returns the first kind. `None` for an unknown name, and for a resource without
     /// kinds.
     pub fn provided_kind(&mut self, name: &str, scope: ScopeId) -> Option<ProvidedKind> {
-        let target = self.find_scene(name, scope)?.ok()?;
+        let Some(target) = self.find_scene(name, scope) else {
+            return self.ask(name)?.kind;
+        };
+        let target = target.ok()?;
         let resource = self.get(target.id);
         if let ResourceKind::Provided(provided) = &resource.kind {
             // An include may bind another one to the name.
-            let mut asked = self.asked.borrow_mut();
-            asked.insert(resource.name.clone(), *provided);
+            self.note_asked(resource, *provided);
             return provided.kind;
         }
-        let kind = self.request.provider.describe(name)?.kind?;
+        let kind = self.ask(name)?.kind?;
         Some(ProvidedKind { number: 0, ..kind })
     }
 
@@ -822,14 +842,11 @@ impl Environment for At<'_, '_> {
     }
 
     fn provided_items(&self, name: &str) -> Option<u64> {
-        let provided = self.symbols.request.provider.describe(name)?;
-        let mut asked = self.symbols.asked.borrow_mut();
-        asked.insert(name.to_owned(), provided);
-        provided.items
+        self.symbols.ask(name)?.items
     }
 
     fn is_provided(&self, name: &str) -> bool {
-        self.symbols.request.provider.describe(name).is_some()
+        self.symbols.ask(name).is_some()
     }
 
     fn param(&mut self, name: &str, span: &Span) -> Reported<Value> {
@@ -879,8 +896,7 @@ impl Environment for At<'_, '_> {
         let target = self.symbols.resolve(of, self.position)?;
         let resource = self.symbols.get(target.id);
         if let ResourceKind::Provided(provided) = resource.kind {
-            let mut asked = self.symbols.asked.borrow_mut();
-            asked.insert(resource.name.clone(), provided);
+            self.symbols.note_asked(resource, provided);
         }
         if let Some(value) = parts::attribute(resource, &target, attribute) {
             return Ok(value);

@@ -59,8 +59,9 @@ pub(super) struct Planned {
     /// Params of the loaded document of which another value may need another plan. The values of
     /// all other params stand only in the bytes of `params` uniforms.
     pub depends_on: BTreeSet<String>,
-    /// Provided resources that no live pass uses and whose number of items or kind was asked for.
-    pub relies_on: BTreeMap<String, Provided>,
+    /// Provided resources that no live pass uses and whose number of items, kind or presence was
+    /// asked for; `None` for those that the provider did not know.
+    pub relies_on: BTreeMap<String, Option<Provided>>,
 }
 
 /// A pass that a plan does not run because nothing needs its results, with the reason.
@@ -159,7 +160,7 @@ fn schedule(
         return None;
     }
     let named_values = linked.symbols.found_values();
-    let mut relies_on = linked.symbols.take_asked();
+    let asked = linked.symbols.take_asked();
     let (passes, resources) = (linked.passes, linked.symbols.resources);
     let view = GraphView {
         passes: &passes,
@@ -198,7 +199,7 @@ fn schedule(
         .collect();
     let aliases = aliases(view, &sequence, &lifetimes, &kept);
     let culled = culled(view, &live);
-    relies_on.retain(|name, _| lifetimes.keys().all(|id| view.resource(*id).name != *name));
+    let relies_on = unbound(asked, &lifetimes, view);
     let own = previous
         .values()
         .filter(|base| view.resource(**base).origin == Origin::Own);
@@ -223,6 +224,20 @@ fn schedule(
         depends_on: BTreeSet::new(),
         relies_on,
     })
+}
+
+/// Leaves out the provided resources that live passes bind.
+fn unbound<T>(
+    mut asked: BTreeMap<String, T>,
+    lifetimes: &Lifetimes,
+    view: GraphView<'_>,
+) -> BTreeMap<String, T> {
+    for resource in lifetimes.keys().map(|id| view.resource(*id)) {
+        if resource.is_provided() {
+            asked.remove(&resource.name);
+        }
+    }
+    asked
 }
 
 fn finish(

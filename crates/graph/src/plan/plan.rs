@@ -22,7 +22,7 @@ use crate::{
         pass::{LinkedPass, PassId},
     },
     param::{ParamType, ParamValue},
-    provider::{Import, Provided},
+    provider::{Describe, Import, Provided},
     request::{PartialBackend, PlanRequest},
     resource::{Growth, Origin, Resource, ResourceId, ResourceKind, Target},
     shader::items::Item,
@@ -322,23 +322,21 @@ impl Plan {
     /// Returns the names of the provider's resources that [live](Self::live) passes bind, in the
     /// order of [`resources`](Self::resources). The host needs to make only these.
     pub fn provided(&self) -> Vec<&str> {
-        let is_provided = |resource: &&Resource| {
-            matches!(
-                resource.kind,
-                ResourceKind::Provided(_)
-                    | ResourceKind::AccelerationStructure
-                    | ResourceKind::CpuWork
-            )
-        };
-        let provided = self.used().filter(is_provided);
+        let provided = self.used().filter(|resource| resource.is_provided());
         provided.map(|resource| resource.name.as_str()).collect()
     }
 
+    /// Returns the provider's descriptions for which this plan was made, as they were then.
+    pub fn descriptions(&self) -> &dyn Describe {
+        &self.0.request.provider
+    }
+
     /// Returns the provider's resources that no [live](Self::live) pass uses, but whose number of
-    /// [items](crate#terms) or kind planning has asked for (as for the condition
-    /// `"scene.masks.count > 0"`), by name, each with the description for which this plan was made.
-    /// If the provider describes one otherwise, the graph must be planned anew.
-    pub fn relies_on(&self) -> &BTreeMap<String, Provided> {
+    /// [items](crate#terms), kind or presence planning has asked for (as for the condition
+    /// `"scene.masks.count > 0"`), by name, each with the description for which this plan was made;
+    /// `None` if the provider had no resource of the name. If the provider describes one otherwise
+    /// later, the graph must be planned anew.
+    pub fn relies_on(&self) -> &BTreeMap<String, Option<Provided>> {
         &self.0.relies_on
     }
 

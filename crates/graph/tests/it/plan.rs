@@ -114,7 +114,7 @@ fn what_nobody_needs_neither_runs_nor_is_provided() {
     assert_eq!(culled_plan.provided(), ["scene.positions"]);
     let relied_on = culled_plan.relies_on();
     assert_eq!(relied_on.keys().collect::<Vec<_>>(), ["scene.indices"]);
-    assert_eq!(relied_on["scene.indices"].items, Some(3));
+    assert_eq!(relied_on["scene.indices"].unwrap().items, Some(3));
     assert_eq!(culled_plan.memory_bytes(), 2 * 8 * 4 * 4);
 
     let captured = plan(&materials, &passes, r#""result""#, &[("rest", None)]);
@@ -131,7 +131,7 @@ fn a_plan_relies_on_kinds_that_were_asked_for() {
     let pass = fill("fill", "image").replace("color", "if: \"lights.lamp.kind == spot\", color");
     let plan = plan(&[texture("image")], &[&pass], r#""image""#, &[]);
     assert!(plan.provided().is_empty());
-    let kind = plan.relies_on()["lights.lamp"].kind.unwrap();
+    let kind = plan.relies_on()["lights.lamp"].unwrap().kind.unwrap();
     assert_eq!(kind.words[kind.number as usize], "spot");
 }
 

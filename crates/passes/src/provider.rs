@@ -40,9 +40,9 @@ use std::{ops::Range, sync::Arc, time::Instant};
 /// | `scene.adjacency` | `array<u32>`, three per primitive: [`Adjacency::opposite`] |
 /// | `scene.bvh_nodes` | 32-byte [`BvhNode`]s, node 0 is the root |
 /// | `scene.bvh_primitives` | `array<u32>`, primitive ids in leaf order |
-/// | `scene.light_space_nodes` | 32-byte [`LightSpaceNode`]s, node 0 the root, the last a centre |
+/// | `scene.light_space_nodes` | 32-byte [`LightSpaceNode`]s, node 0 the root; last the [centre] |
 /// | `scene.light_space_primitives` | `array<u32>`, primitive ids in their leaf order |
-/// | `scene.tlas` | `acceleration_structure`, instances: primitives count from their custom data |
+/// | `scene.tlas` | `acceleration_structure`; instance custom data + primitive index = primitive id |
 /// | `scene.embree` | work for the CPU, with the feature `embree` |
 /// | `scene.masks` | `array<u32>`: [`mask_words`], what `shared/masks.wgsl` reads |
 /// | `scene.uvs` | `array<vec2<f32>>`, v down |
@@ -74,6 +74,7 @@ use std::{ops::Range, sync::Arc, time::Instant};
 /// [`Describe::describe`] still says 0 items, so that nothing is drawn.
 ///
 /// [`Adjacency::opposite`]: skiagraph_scene::Adjacency::opposite
+/// [centre]: LightSpaceNode::centre
 #[derive(Clone)]
 pub struct SceneProvider {
     pub(crate) scene: Arc<Scene>,
@@ -96,7 +97,7 @@ impl SceneProvider {
     /// or [`prepare`](Self::prepare), first needs it. Until [`set_view`](Self::set_view),
     /// [`set_camera`](Self::set_camera) or [`set_eye`](Self::set_eye) is called, the resource
     /// `camera` is all zeros. Until [`set_view`](Self::set_view) or [`set_light`](Self::set_light)
-    /// is called, the resource `light` is the scene's default light.
+    /// is called, the resource `light` is the scene's [default light](Scene::light).
     pub fn new(scene: Arc<Scene>) -> Self {
         let lights = lights::from_scene(&scene);
         Self {
@@ -564,7 +565,8 @@ impl SceneProvider {
 
     /// Sets the camera, for a graph whose depth buffer has 1 at the near and 0 at the far plane, as
     /// `shared/gbuffer.ron` draws it. For a host's own depth buffer use [`set_eye`](Self::set_eye):
-    /// an [`Eye`] tells which depth is near.
+    /// an [`Eye`] tells which depth is near. A camera with numbers that are not finite is an error
+    /// of the next [`refresh`](skiagraph_gpu::Executor::refresh) ([`Error::Camera`]).
     pub fn set_camera(&mut self, camera: &Camera) {
         self.set_eye(&Eye::from(camera));
     }
@@ -759,8 +761,9 @@ impl SceneProvider {
     ///
     /// # Errors
     /// [`Error::NoParts`] if the mesh was not given in parts, [`Error::Move`] for a map that cannot
-    /// move the part, [`Error::TooLarge`] if the mesh must grow and the device cannot bind a larger
-    /// one. The mesh then stays as it was.
+    /// move the part, [`Error::TooLarge`] if the mesh must grow beyond the limits that
+    /// [`reserve`](Self::reserve) was given. The mesh then stays as it was. If `reserve` was not
+    /// called, a mesh that the device cannot bind is an error of the next refresh instead.
     pub fn add_part(&mut self, mesh: &Mesh, map: &DAffine3) -> Result<PartId, Error> {
         let (part, change) = self.geometry.add(mesh, map, &mut self.scene)?;
         self.note_change(change);

@@ -29,7 +29,8 @@ pub enum Engine {
     /// watertight, on every device.
     Hierarchy,
     /// The device's own ray queries, on devices with `EXPERIMENTAL_RAY_QUERY`; how they round is up
-    /// to the device. A ray hits nothing if its t_min is negative or a coordinate is not finite.
+    /// to the device. A ray hits nothing if its t_min (the t beyond which hits count) is negative
+    /// or a coordinate is not finite.
     RayQuery,
     /// A hierarchy for rays that all go towards one directional light; watertight, the same hits as
     /// `Hierarchy`, on every device. Needs `direction: Light`.

@@ -164,17 +164,18 @@ impl Executor {
     /// Several may be encoded before the first is submitted, with changes of params, plan, imports
     /// and provider between them: each keeps the resources and values that it was encoded with.
     /// Changes of the provider are seen from the next [`refresh`](Self::refresh) on. Submit them in
-    /// the order of encoding. Textures and buffers that the graph document declares with `grow` and
-    /// that proved too small for an earlier, submitted frame are larger from this frame on (see
-    /// [`Plan::grown`]), and their views are others ([`output_view`](Self::output_view)).
+    /// the order of encoding. Textures and buffers that the graph document declares with
+    /// [`grow`](skiagraph_graph::Growth) and that proved too small for an earlier, submitted frame
+    /// are larger from this frame on (see [`Plan::grown`]), and their views are others
+    /// ([`output_view`](Self::output_view)).
     ///
     /// If nothing has changed since a frame that the GPU is done with, no pass is encoded: the
     /// outputs of that frame are still there. This needs a provider that
     /// [has versions](Provider::has_versions), or a plan without provided resources; and a plan
-    /// without imports in which no pass uses `.previous` contents, a resource with `keep` or the
-    /// uniform `frame`. Frames with [`Frame::all`], [`Frame::timing`] or [`Frame::statistics`] are
-    /// never left out so. A submission that wgpu refuses counts as done: encode the next frame with
-    /// [`Frame::all`].
+    /// without imports in which no pass uses `.previous` contents, a resource with
+    /// [`keep`](Resource::keep) or the uniform [`frame`](skiagraph_graph::FRAME_BYTES). Frames with
+    /// [`Frame::all`], [`Frame::timing`] or [`Frame::statistics`] are never left out so. A
+    /// submission that wgpu refuses counts as done: encode the next frame with [`Frame::all`].
     ///
     /// # Errors
     /// If the plan lacks an output or capture of [`Frame::read`] or it cannot be copied; an import
@@ -196,9 +197,10 @@ impl Executor {
     }
 
     /// Encodes a frame as [`encode`](Self::encode) does, and submits it. Where a pass works on the
-    /// CPU it submits what is encoded so far, waits until the GPU is done with that, and then until
-    /// the work is done. While the GPU works, `gives_up` is called about every 100 ms; if it
-    /// returns true, the frame ends. It waits for nothing else.
+    /// CPU ([`CpuWork`](crate::CpuWork)) it submits what is encoded so far, waits until the GPU is
+    /// done with that, and then until the work is done. While the GPU works, `gives_up` is called
+    /// about every 100 ms; if it returns true, the frame ends. `submit` waits for nothing else,
+    /// such as the end of the frame on the GPU.
     ///
     /// # Errors
     /// Those of `encode`, except that passes may work on the CPU; [`ExecuteError::CpuWork`] if
@@ -369,14 +371,14 @@ impl Executor {
         self.frames_in_flight.asked()
     }
 
-    /// Waits until the GPU has finished all submitted work, and returns the report that
-    /// [`poll`](Self::poll) would. If no frame waits for its report, it returns a report of the
-    /// last encoded frame that holds only the frame's number and its skipped passes; the number is
-    /// `u32::MAX` if no frame was encoded.
+    /// Returns the report that [`poll`](Self::poll) would; if there is none yet, first waits until
+    /// the GPU has finished all submitted work. If no frame waits for its report, `finish` returns
+    /// a report of the last encoded frame that holds only the frame's number and its skipped
+    /// passes; the number is `u32::MAX` if no frame was encoded.
     ///
     /// # Errors
-    /// Those of [`poll`](Self::poll), and [`ExecuteError::NotSubmitted`] if the frame to report was
-    /// not submitted.
+    /// Those of [`poll`](Self::poll), and [`ExecuteError::NotSubmitted`], after ten seconds, if the
+    /// frame to report was not submitted.
     pub fn finish(&mut self) -> Result<FrameReport, ExecuteError> {
         self.finish_within(None)
     }
@@ -712,7 +714,7 @@ impl Executor {
     /// # Errors
     /// If the graph has no such param, its value is out of range, the graph cannot be planned with
     /// it, a changed provided resource cannot be built, or the device refuses a resource or pass.
-    /// After an error the executor is unchanged.
+    /// After an error the plan and its params are unchanged.
     pub fn set_param(
         &mut self,
         name: &str,

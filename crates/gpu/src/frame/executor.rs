@@ -753,7 +753,8 @@ impl Executor {
 
     /// Replaces the plan by another, of the same graph or of a different one. It keeps the
     /// pipelines, textures and buffers that both plans have in common (matched by name), the
-    /// imports, and the provided resources whose version is unchanged.
+    /// imports whose description is unchanged, and the provided resources whose version is
+    /// unchanged.
     ///
     /// # Errors
     /// If a provided resource cannot be built or the device refuses a resource or pass. After an

@@ -42,7 +42,7 @@ use std::{ops::Range, sync::Arc, time::Instant};
 /// | `scene.bvh_primitives` | `array<u32>`, primitive ids in leaf order |
 /// | `scene.light_space_nodes` | 32-byte [`LightSpaceNode`]s, node 0 the root; last the [centre] |
 /// | `scene.light_space_primitives` | `array<u32>`, primitive ids in their leaf order |
-/// | `scene.tlas` | `acceleration_structure`; primitive id = custom data + primitive index of a hit |
+/// | `scene.tlas` | `acceleration_structure`; primitive id = custom data + primitive index |
 /// | `scene.embree` | work for the CPU, with the feature `embree` |
 /// | `scene.masks` | `array<u32>`: [`mask_words`], what `shared/masks.wgsl` reads |
 /// | `scene.uvs` | `array<vec2<f32>>`, v down |

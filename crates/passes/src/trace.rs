@@ -29,8 +29,7 @@ pub enum Engine {
     /// watertight, on every device.
     Hierarchy,
     /// The device's own ray queries, on devices with `EXPERIMENTAL_RAY_QUERY`; how they round is up
-    /// to the device. A ray hits nothing if its t_min (the t beyond which hits count) is negative
-    /// or a coordinate is not finite.
+    /// to the device. A ray hits nothing if its t_min is negative or a coordinate is not finite.
     RayQuery,
     /// A hierarchy for rays that all go towards one directional light; watertight, the same hits as
     /// `Hierarchy`, on every device. Needs `direction: Light`.
@@ -99,8 +98,9 @@ fn hierarchy() -> Chosen<Engine> {
 /// )
 /// ```
 ///
-/// docs/reference.md describes the fields and the layout of the buffers. Triangles are two-sided;
-/// those without area are never hit, and a masked one only where its mask is opaque.
+/// docs/reference.md describes the fields and the layout of the buffers. Of a ray, hits at t_min <
+/// t ≤ t_max count, t in units of its direction's length. Triangles are two-sided; those without
+/// area are never hit, and a masked one only where its mask is opaque.
 #[derive(Clone, Debug, Deserialize)]
 #[cfg_attr(
     feature = "schema",

@@ -98,9 +98,9 @@ fn hierarchy() -> Chosen<Engine> {
 /// )
 /// ```
 ///
-/// docs/reference.md describes the fields and the layout of the buffers. Of a ray, hits at t_min <
-/// t ≤ t_max count, t in units of its direction's length. Triangles are two-sided; those without
-/// area are never hit, and a masked one only where its mask is opaque.
+/// docs/reference.md describes the fields and the layout of the buffers. A hit counts if t_min < t
+/// ≤ t_max, where t is in units of the length of the ray's direction. Triangles are two-sided;
+/// those without area are never hit, and a masked one only where its mask is opaque.
 #[derive(Clone, Debug, Deserialize)]
 #[cfg_attr(
     feature = "schema",

@@ -46,8 +46,8 @@ const CALLBACK: Duration = Duration::from_secs(10);
 /// or a later one, or with [`finish`](Self::finish), which waits. Submit the encoders of all
 /// frames, in the order of encoding: later frames use the results of earlier ones, in skipped
 /// passes and as `.previous`. If an encoder is dropped instead, or wgpu refuses its submission, its
-/// passes count as run: encode the next frame with [`Frame::all`], which runs them again; its
-/// `.previous` contents are then not those of the frame before.
+/// passes count as run: encode the next frame with [`Frame::all`], which runs them again; the
+/// `.previous` contents of that next frame are then not those of the frame before.
 ///
 /// Terms: a pass is [*live*](skiagraph_graph#terms) if its results are needed. *Outputs* are the
 /// results that the graph document lists, *captures* are further contents that
@@ -163,8 +163,8 @@ impl Executor {
     /// frame's number, counted from 0. It never waits; any number of frames may be in flight.
     /// Several may be encoded before the first is submitted, with changes of params, plan, imports
     /// and provider between them: each keeps the resources and values that it was encoded with.
-    /// Changes of the provider are seen from the next [`refresh`](Self::refresh) on. Submit them in
-    /// the order of encoding. Textures and buffers that the graph document declares with
+    /// Changes of the provider are seen from the next [`refresh`](Self::refresh) on. Submit the
+    /// frames in the order of encoding. Textures and buffers that the graph document declares with
     /// [`grow`](skiagraph_graph::Growth) and that proved too small for an earlier, submitted frame
     /// are larger from this frame on (see [`Plan::grown`]), and their views are others
     /// ([`output_view`](Self::output_view)).
@@ -702,8 +702,9 @@ impl Executor {
 
     /// Changes the value of the param `name` of the graph document that was loaded, which may be
     /// one that the document exposes of an include, such as `left.radius`. If shaders read the
-    /// param only in `var<uniform> params`, the change costs an upload. For every other param the
-    /// graph is planned again, and the cost depends on the param's use:
+    /// param only in `var<uniform> params`, and it is not a
+    /// [`Choice`](skiagraph_graph::ParamType::Choice), the change costs an upload. For every other
+    /// param the graph is planned again, and the cost depends on the param's use:
     ///
     /// - an `override` constant, a culling mode, a depth bias or the like: new pipelines for the
     ///   passes that use it;

@@ -773,7 +773,7 @@ impl SceneProvider {
     /// Adds a part whose vertices are in a buffer of the host, as [`add_part`](Self::add_part)
     /// does. Refreshes read the buffer if the part was added, has moved or was
     /// [rewritten](Self::rewrite_part), and write its positions and normals for all passes: the
-    /// vertices must be in the buffer, or their upload submitted, before the first of them. No
+    /// vertices must be in the buffer, or their upload submitted, before the first such refresh. No
     /// frame brings them to the CPU: shadow maps and light spaces are fitted to the bounds of the
     /// [`HostMesh`], which must hold all its vertices ([`HostMesh::with_bounds`]), and
     /// [`scene`](Self::scene) has the part's positions at rest.
@@ -815,7 +815,8 @@ impl SceneProvider {
     ///
     /// # Errors
     /// [`Error::Beyond`] with a part and the first vertex of it that lies outside or is not finite;
-    /// [`Error::Read`] if the device cannot tell.
+    /// [`Error::HostVertices`] or [`Error::TooLarge`] if the device cannot read a part's vertices,
+    /// [`Error::Read`] if the result cannot be read back.
     pub fn check_bounds(
         &mut self,
         device: &wgpu::Device,

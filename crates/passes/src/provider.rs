@@ -54,7 +54,8 @@ use std::{ops::Range, sync::Arc, time::Instant};
 /// | `unprojection` | [`UnprojectionUniform`] |
 /// | `light` | [`LightUniform`] |
 /// | `light_area` | [`LightAreaUniform`] |
-/// | `lights`, `light_areas` | arrays with an item for each light; `lights[2]` alone is a uniform |
+/// | `lights` | array of [`LightUniform`], one per light; `lights[2]` alone is a uniform |
+/// | `light_areas` | array of [`LightAreaUniform`]; `light_areas[2]` alone is a uniform |
 ///
 /// Resources that are built stay, and are shared by all graphs that are executed with the same
 /// provider. A provider therefore belongs to the device that it was first used with. Executors that

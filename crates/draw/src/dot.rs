@@ -7,9 +7,9 @@ use crate::{
 use skiagraph_graph::Hazard;
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-/// Returns the drawing as text in Graphviz's DOT language. Passes are boxes and materials are
-/// ellipses; passes that do not run are dashed. Passes and materials whose names have the same
-/// prefix, such as `eye` in `eye.draw`, form a cluster.
+/// Returns the drawing as text in Graphviz's DOT language. Passes are boxes, and materials that a
+/// pass uses are ellipses; passes that do not run are dashed. Passes and materials whose names have
+/// the same prefix, such as `eye` in `eye.draw`, form a cluster.
 pub fn to_dot(drawing: &Drawing) -> String {
     render(drawing).join("\n") + "\n"
 }

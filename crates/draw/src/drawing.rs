@@ -5,7 +5,7 @@ use skiagraph_graph::Hazard;
 use std::{collections::HashMap, ops::Range};
 
 /// A graph's plan as plain values, for display and serialisation. Passes and materials (textures,
-/// buffers, samplers, acceleration structures) refer to each other by name.
+/// buffers, samplers, acceleration structures, work for the CPU) refer to each other by name.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Drawing {
     /// Heading of the picture, for example the graph's path and the viewport.
@@ -20,8 +20,9 @@ pub struct Drawing {
     /// Reads and writes of materials by passes: an entry for each pass, material and part, in the
     /// order of `passes`.
     pub accesses: Vec<Access>,
-    /// Pairs of passes that must run in a given order, each pair once. For a pass that does not run
-    /// there are only edges from the passes whose results it would read.
+    /// Pairs of passes that must run in a given order, each pair once, sorted by the place of
+    /// `from` in `passes`, then by that of `to`. For a pass that does not run there are only edges
+    /// from the passes whose results it would read.
     pub edges: Vec<Edge>,
     /// Bytes of the textures and buffers that the graph allocates; memory that materials share
     /// counts once.
@@ -86,7 +87,7 @@ pub enum Kind {
     Sampler,
     /// An acceleration structure.
     AccelerationStructure,
-    /// Work for the CPU.
+    /// Work for the CPU ([`CPU_WORK`](skiagraph_graph::Provided::CPU_WORK)).
     CpuWork,
 }
 
@@ -103,12 +104,13 @@ pub enum Origin {
     Scratch,
     /// Copy of another material as it is after a pass, made to be read back.
     Capture,
-    /// Built by the host's provider: a buffer or acceleration structure, such as a scene buffer.
+    /// Built by the host's [provider](skiagraph_graph#terms): a buffer, acceleration structure or
+    /// work for the CPU, such as a scene buffer.
     Provided,
     /// Texture, buffer or sampler that the host creates and hands over.
     Imported,
-    /// The uniform `frame`, with the number, time and flags of the frame, which every graph can
-    /// bind.
+    /// The uniform [`frame`](skiagraph_graph::FRAME_BYTES), with the number, time and flags of the
+    /// frame, which every graph can bind.
     Frame,
     /// Content of another material at the end of the previous frame.
     Previous,
@@ -127,7 +129,7 @@ impl Origin {
     }
 }
 
-/// A material: a texture, buffer, sampler or acceleration structure.
+/// A material: a texture, buffer, sampler, acceleration structure or work for the CPU.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Material {
     /// Full name, for example `sample[3].rays`.
@@ -151,7 +153,8 @@ pub struct Material {
     pub samples: u32,
     /// Number of allocations: 1, or 2 if the material is also read as it was in the previous frame.
     pub versions: usize,
-    /// Bytes of all allocations of a texture or buffer that the graph makes; `None` for others.
+    /// Bytes of all allocations of a texture or buffer of the graph, as if a pass used it; `None`
+    /// for others, and for a buffer whose size no shader tells.
     pub bytes: Option<u64>,
     /// Positions ([`Pass::position`]) of the first and the last pass that use the material. `None`
     /// if no pass that runs uses it; it is then not allocated.
@@ -228,6 +231,6 @@ impl Edge {
 pub struct Reason {
     /// Kind of conflict that the order avoids.
     pub hazard: Hazard,
-    /// Names of the materials that cause the conflict.
+    /// Names of the materials that cause the conflict, in the order of [`Drawing::materials`].
     pub materials: Vec<String>,
 }

@@ -22,8 +22,9 @@ const RIM: &str = r##"stroke="#ffffff" stroke-width="2.5" paint-order="stroke""#
 const SHARED: &str = r##"fill="#e69f00" fill-opacity="0.12" stroke="#e69f00""##;
 
 /// Returns the drawing as the text of an SVG chart. Rows are passes in the order in which they run;
-/// columns are materials with their lifetimes. Edges between passes are on the left; passes that do
-/// not run are below, with the reason. The file refers to nothing outside itself.
+/// columns are the materials that passes use, with their lifetimes. Edges between passes are on the
+/// left; passes that do not run are below, with the reason. The file refers to nothing outside
+/// itself.
 pub fn to_svg(drawing: &Drawing) -> String {
     render(&chart(drawing))
 }

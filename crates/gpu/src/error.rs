@@ -53,10 +53,12 @@ pub enum ExecuteError {
         /// was at hand when the error arose.
         table: String,
     },
-    /// The [`Provider`](crate::Provider) failed to build a resource.
+    /// The [`Provider`](crate::Provider) failed to build a resource, or to submit the commands that
+    /// fill resources ([`submit_built`](crate::Provider::submit_built)).
     #[error("the provided resource `{name}` could not be built: {why}")]
     Provider {
-        /// Name of the resource that was to be built, such as `scene.positions`.
+        /// Name of the resource that was to be built, such as `scene.positions`; `what the provider
+        /// copies` if `submit_built` failed.
         name: String,
         /// The provider's reason.
         #[source]
@@ -167,7 +169,7 @@ pub enum ExecuteError {
     /// buffer of the host that was created without the usage `COPY_SRC`.
     #[error("`{name}` cannot be read back: the host must make it with {usage}")]
     NotReadable {
-        /// Name of the output that cannot be copied.
+        /// Name of the output or buffer that cannot be copied.
         name: String,
         /// The usage that the texture or buffer lacks, as wgpu writes it: `TextureUsages::COPY_SRC`
         /// or `BufferUsages::COPY_SRC`.
@@ -193,7 +195,8 @@ pub enum ExecuteError {
     Unfinished {
         /// Time that the call waited before it gave up.
         after: Duration,
-        /// Names of the passes that ran in the frame that was encoded last, separated by commas.
+        /// Names of the passes that ran in the frame that was encoded last, separated by commas;
+        /// for a frame of `submit` the text `passes in front of work of the CPU`.
         passes: String,
     },
     /// A pass does its work on the CPU, for which a frame waits, and

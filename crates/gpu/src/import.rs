@@ -1,6 +1,6 @@
 //! Describes textures and buffers of the host program for
 //! [`PlanRequest::imports`](skiagraph_graph::PlanRequest::imports), which the host later sets in
-//! the executor under the same names.
+//! the executor under the same names. Samplers are described by [`Import::sampler`].
 //!
 //! ```no_run
 //! use skiagraph_gpu::{Executor, device::Gpu, import};

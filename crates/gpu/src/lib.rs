@@ -20,9 +20,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`Executor`] puts a plan on a device: it creates the textures, buffers and pipelines that live
-//! passes use, and it encodes, times and reads back frames. [`Provider`] builds the resources that
-//! a graph expects from its host, such as scene buffers.
+//! [`Executor`] puts a plan on a device: it creates the textures, buffers and pipelines that
+//! [live](skiagraph_graph#terms) passes use, and it encodes, times and reads back frames.
+//! [`Provider`] builds the resources that a graph expects from its host, such as scene buffers.
 
 mod buffer;
 pub mod device;

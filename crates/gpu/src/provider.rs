@@ -93,7 +93,8 @@ pub trait Provider: Describe {
     ///
     /// # Errors
     /// If the commands are refused. The executor then asks for all these resources again at the
-    /// next [`refresh`](crate::Executor::refresh).
+    /// next [`refresh`](crate::Executor::refresh); until then they count as
+    /// [missing](Self::missing).
     fn submit_built(
         &mut self,
         device: &wgpu::Device,
@@ -122,7 +123,8 @@ pub trait CpuWork: Debug + Send + Sync {
     /// ([`CpuCall::entry`](skiagraph_graph::step::CpuCall::entry)). `reads` has the bytes of the
     /// items of each buffer that the call reads, in the order of
     /// [`CpuCall::reads`](skiagraph_graph::step::CpuCall::reads). `writes` is for the items of the
-    /// buffer that the call writes, and zero at first. Each has the same number of items.
+    /// buffer that the call writes, and zero at first. `writes` and each of `reads` hold the same
+    /// number of items, at least 1.
     ///
     /// # Errors
     /// If the work cannot be done; the executor reports

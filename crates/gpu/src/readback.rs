@@ -73,8 +73,8 @@ impl Content {
     }
 
     /// Returns the channels of a `Uint` or `Stencil8` texture, texel after texel, or the
-    /// little-endian 32-bit words of a buffer. `None` for a texture of any other format, packed
-    /// formats included.
+    /// little-endian 32-bit words of a buffer (up to 3 bytes behind the last whole word are left
+    /// out). `None` for a texture of any other format, packed formats included.
     pub fn as_u32(&self) -> Option<Vec<u32>> {
         match self {
             Self::Buffer(bytes) => Some(bytes.chunks_exact(4).map(unsigned).collect()),

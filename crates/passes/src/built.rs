@@ -21,10 +21,10 @@ pub struct Built {
 /// Kind of work that builds a resource of a [`SceneProvider`](crate::SceneProvider).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum How {
-    /// The resource was built from scratch and uploaded.
+    /// The resource, or those of its items that have changed, was built and uploaded.
     Made,
-    /// The boxes of a bounding-volume hierarchy were fitted to a deformed mesh and uploaded; its
-    /// tree stayed as it was.
+    /// A bounding-volume hierarchy was kept, and its boxes were fitted to a mesh that was deformed
+    /// or whose parts have moved, come or gone.
     Refitted,
 }
 
@@ -40,7 +40,7 @@ pub struct Work {
     /// when only some of its items have changed.
     pub copied: u64,
     /// Number of positions in the parts of the mesh (or in the whole mesh, if it has no parts) that
-    /// were moved, deformed or added.
+    /// were moved, deformed, rewritten or added.
     pub moved: u64,
     /// Number of nodes of bounding-volume hierarchies whose boxes were fitted or built.
     pub nodes: u64,

@@ -147,7 +147,8 @@ pub enum Error {
         /// Handle of the part.
         PartId,
     ),
-    /// The bounds of a part hold nothing: they are not finite, or the low corner is not the lower.
+    /// The bounds of a part hold nothing: they are not finite, or a coordinate of the low corner is
+    /// greater than that of the high corner.
     #[error(
         "the bounds of part {part:?} hold nothing: {low} to {high}; give the low corner, then the \
          high one, both finite"
@@ -166,7 +167,8 @@ pub enum Error {
          host: trace with `engine: Hierarchy`, or add the part by `add_part`"
     )]
     OnDevice(
-        /// Name of it: `deform`, or a resource such as `scene.light_space_nodes`.
+        /// Name of what needs the positions: `deform`, or a resource such as
+        /// `scene.light_space_nodes`.
         &'static str,
         /// Handle of the part.
         PartId,
@@ -178,7 +180,8 @@ pub enum Error {
         /// Reason that wgpu gives.
         String,
     ),
-    /// The device could not bring back what was asked of it.
+    /// The device could not read back the result of
+    /// [`SceneProvider::check_bounds`](crate::SceneProvider::check_bounds).
     #[error(transparent)]
     Read(#[from] crate::host::GpuMeshError),
     /// A vertex lies beyond the bounds of its part, as
@@ -191,7 +194,8 @@ pub enum Error {
     Beyond {
         /// Handle of the part.
         part: PartId,
-        /// Number of the vertex, from the mesh's first one.
+        /// Index of the vertex, counted from the first one of the part's
+        /// [`HostVertices`](crate::HostVertices).
         vertex: u32,
         /// Low and high corner of the bounds that were stated, in the space of the vertices.
         bounds: [glam::Vec3; 2],
@@ -200,8 +204,8 @@ pub enum Error {
     /// number of transforms is not the number of parts.
     #[error(transparent)]
     Move(#[from] skiagraph_scene::MoveError),
-    /// The device has refused to copy what has not changed into the next buffers of resources, for
-    /// example because it has no memory for them.
+    /// The device has refused to copy the unchanged items of resources into their new buffers, for
+    /// example because it has no memory for these.
     #[error("{} could not be copied: {why}", names.join(", "))]
     Copies {
         /// Names of the resources.

@@ -1,4 +1,5 @@
-//! Names of the resources that a [`SceneProvider`](crate::SceneProvider) offers to graphs.
+//! Names of resources that a [`SceneProvider`](crate::SceneProvider) offers to graphs; its table
+//! lists all of them.
 //!
 //! A plan lists the names that its passes ask for:
 //!

@@ -89,9 +89,10 @@ pub fn presets() -> Vec<Preset> {
 /// document's other materials are [captures](skiagraph_graph::PlanRequest::with_capture) under the
 /// [full names](skiagraph_graph#terms) that [`Plan::resources`](skiagraph_graph::Plan::resources)
 /// lists, where an output of the document such as `status` keeps its name. The document's params
-/// and inputs stay; its claims do not, nor its `proven_on`, so that executors on GL refuse the
-/// graph. The conversion costs one pass over the picture, or none in a plan that does not compute
-/// `unit_visibility` ([`PlanRequest::outputs`](skiagraph_graph::PlanRequest)). `sources` must hold
+/// and inputs stay; its [claims](skiagraph_graph::Claim) do not, nor its `proven_on`, so that
+/// executors on GL refuse the graph. The conversion costs one pass over the picture, or none in a
+/// plan that does not compute `unit_visibility`
+/// ([`PlanRequest::outputs`](skiagraph_graph::PlanRequest)). `sources` must hold
 /// `pipelines/shared/unit_visibility.ron`; [`EmbeddedSources`] does.
 ///
 /// ```
@@ -103,8 +104,8 @@ pub fn presets() -> Vec<Preset> {
 /// ```
 ///
 /// # Errors
-/// Those of [`Graph::load`], and an error if the document has no output `visibility`. One of
-/// another format is an error of [`Graph::plan`].
+/// Those of [`Graph::load`], and an error if the document has no output `visibility`. A
+/// `visibility` of another format is an error of [`Graph::plan`].
 pub fn load_unit_visibility(
     path: &str,
     registry: &Registry,

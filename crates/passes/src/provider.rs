@@ -40,9 +40,9 @@ use std::{ops::Range, sync::Arc, time::Instant};
 /// | `scene.adjacency` | `array<u32>`, three per primitive: [`Adjacency::opposite`] |
 /// | `scene.bvh_nodes` | 32-byte [`BvhNode`]s, node 0 is the root |
 /// | `scene.bvh_primitives` | `array<u32>`, primitive ids in leaf order |
-/// | `scene.light_space_nodes` | 32-byte [`LightSpaceNode`]s, node 0 the root, the last a centre |
+/// | `scene.light_space_nodes` | 32-byte [`LightSpaceNode`]s, node 0 the root; last the [centre] |
 /// | `scene.light_space_primitives` | `array<u32>`, primitive ids in their leaf order |
-/// | `scene.tlas` | `acceleration_structure`, instances: primitives count from their custom data |
+/// | `scene.tlas` | `acceleration_structure`; primitive id = custom data + primitive index |
 /// | `scene.embree` | work for the CPU, with the feature `embree` |
 /// | `scene.masks` | `array<u32>`: [`mask_words`], what `shared/masks.wgsl` reads |
 /// | `scene.uvs` | `array<vec2<f32>>`, v down |
@@ -54,7 +54,8 @@ use std::{ops::Range, sync::Arc, time::Instant};
 /// | `unprojection` | [`UnprojectionUniform`] |
 /// | `light` | [`LightUniform`] |
 /// | `light_area` | [`LightAreaUniform`] |
-/// | `lights`, `light_areas` | arrays with an item for each light; `lights[2]` alone is a uniform |
+/// | `lights` | array of [`LightUniform`], one per light; `lights[2]` alone is a uniform |
+/// | `light_areas` | array of [`LightAreaUniform`]; `light_areas[2]` alone is a uniform |
 ///
 /// Resources that are built stay, and are shared by all graphs that are executed with the same
 /// provider. A provider therefore belongs to the device that it was first used with. Executors that
@@ -74,6 +75,7 @@ use std::{ops::Range, sync::Arc, time::Instant};
 /// [`Describe::describe`] still says 0 items, so that nothing is drawn.
 ///
 /// [`Adjacency::opposite`]: skiagraph_scene::Adjacency::opposite
+/// [centre]: LightSpaceNode::centre
 #[derive(Clone)]
 pub struct SceneProvider {
     pub(crate) scene: Arc<Scene>,
@@ -96,7 +98,7 @@ impl SceneProvider {
     /// or [`prepare`](Self::prepare), first needs it. Until [`set_view`](Self::set_view),
     /// [`set_camera`](Self::set_camera) or [`set_eye`](Self::set_eye) is called, the resource
     /// `camera` is all zeros. Until [`set_view`](Self::set_view) or [`set_light`](Self::set_light)
-    /// is called, the resource `light` is the scene's default light.
+    /// is called, the resource `light` is the scene's [default light](Scene::light).
     pub fn new(scene: Arc<Scene>) -> Self {
         let lights = lights::from_scene(&scene);
         Self {
@@ -564,7 +566,8 @@ impl SceneProvider {
 
     /// Sets the camera, for a graph whose depth buffer has 1 at the near and 0 at the far plane, as
     /// `shared/gbuffer.ron` draws it. For a host's own depth buffer use [`set_eye`](Self::set_eye):
-    /// an [`Eye`] tells which depth is near.
+    /// an [`Eye`] tells which depth is near. A camera with numbers that are not finite is an error
+    /// of the next [`refresh`](skiagraph_gpu::Executor::refresh) ([`Error::Camera`]).
     pub fn set_camera(&mut self, camera: &Camera) {
         self.set_eye(&Eye::from(camera));
     }
@@ -759,8 +762,9 @@ impl SceneProvider {
     ///
     /// # Errors
     /// [`Error::NoParts`] if the mesh was not given in parts, [`Error::Move`] for a map that cannot
-    /// move the part, [`Error::TooLarge`] if the mesh must grow and the device cannot bind a larger
-    /// one. The mesh then stays as it was.
+    /// move the part, [`Error::TooLarge`] if the mesh must grow beyond the limits that
+    /// [`reserve`](Self::reserve) was given. The mesh then stays as it was. If `reserve` was not
+    /// called, a mesh that the device cannot bind is an error of the next refresh instead.
     pub fn add_part(&mut self, mesh: &Mesh, map: &DAffine3) -> Result<PartId, Error> {
         let (part, change) = self.geometry.add(mesh, map, &mut self.scene)?;
         self.note_change(change);
@@ -770,7 +774,7 @@ impl SceneProvider {
     /// Adds a part whose vertices are in a buffer of the host, as [`add_part`](Self::add_part)
     /// does. Refreshes read the buffer if the part was added, has moved or was
     /// [rewritten](Self::rewrite_part), and write its positions and normals for all passes: the
-    /// vertices must be in the buffer, or their upload submitted, before the first of them. No
+    /// vertices must be in the buffer, or their upload submitted, before the first such refresh. No
     /// frame brings them to the CPU: shadow maps and light spaces are fitted to the bounds of the
     /// [`HostMesh`], which must hold all its vertices ([`HostMesh::with_bounds`]), and
     /// [`scene`](Self::scene) has the part's positions at rest.
@@ -812,7 +816,8 @@ impl SceneProvider {
     ///
     /// # Errors
     /// [`Error::Beyond`] with a part and the first vertex of it that lies outside or is not finite;
-    /// [`Error::Read`] if the device cannot tell.
+    /// [`Error::HostVertices`] or [`Error::TooLarge`] if the device cannot read a part's vertices,
+    /// [`Error::Read`] if the result cannot be read back.
     pub fn check_bounds(
         &mut self,
         device: &wgpu::Device,

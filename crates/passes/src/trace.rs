@@ -98,7 +98,8 @@ fn hierarchy() -> Chosen<Engine> {
 /// )
 /// ```
 ///
-/// docs/reference.md describes the fields and the layout of the buffers. Triangles are two-sided;
+/// docs/reference.md describes the fields and the layout of the buffers. A hit counts if t_min < t
+/// ≤ t_max, where t is in units of the length of the ray's direction. Triangles are two-sided;
 /// those without area are never hit, and a masked one only where its mask is opaque.
 #[derive(Clone, Debug, Deserialize)]
 #[cfg_attr(

@@ -38,7 +38,8 @@ pub struct SceneView {
 }
 
 impl SceneView {
-    /// Creates a view of `size`, width and height in pixels, from a camera under a light.
+    /// Creates a view of `size`, width and height in pixels, from a camera under a light. A light
+    /// that cannot be used is an error of the next [`refresh`](Self::refresh).
     pub fn new(size: [u32; 2], eye: &Eye, light: impl Into<LightKind>) -> Self {
         Self {
             size,

@@ -46,8 +46,8 @@ const CALLBACK: Duration = Duration::from_secs(10);
 /// or a later one, or with [`finish`](Self::finish), which waits. Submit the encoders of all
 /// frames, in the order of encoding: later frames use the results of earlier ones, in skipped
 /// passes and as `.previous`. If an encoder is dropped instead, or wgpu refuses its submission, its
-/// passes count as run: encode the next frame with [`Frame::all`], which runs them again; its
-/// `.previous` contents are then not those of the frame before.
+/// passes count as run: encode the next frame with [`Frame::all`], which runs them again; the
+/// `.previous` contents of that next frame are then not those of the frame before.
 ///
 /// Terms: a pass is [*live*](skiagraph_graph#terms) if its results are needed. *Outputs* are the
 /// results that the graph document lists, *captures* are further contents that
@@ -163,18 +163,19 @@ impl Executor {
     /// frame's number, counted from 0. It never waits; any number of frames may be in flight.
     /// Several may be encoded before the first is submitted, with changes of params, plan, imports
     /// and provider between them: each keeps the resources and values that it was encoded with.
-    /// Changes of the provider are seen from the next [`refresh`](Self::refresh) on. Submit them in
-    /// the order of encoding. Textures and buffers that the graph document declares with `grow` and
-    /// that proved too small for an earlier, submitted frame are larger from this frame on (see
-    /// [`Plan::grown`]), and their views are others ([`output_view`](Self::output_view)).
+    /// Changes of the provider are seen from the next [`refresh`](Self::refresh) on. Submit the
+    /// frames in the order of encoding. Textures and buffers that the graph document declares with
+    /// [`grow`](skiagraph_graph::Growth) and that proved too small for an earlier, submitted frame
+    /// are larger from this frame on (see [`Plan::grown`]), and their views are others
+    /// ([`output_view`](Self::output_view)).
     ///
     /// If nothing has changed since a frame that the GPU is done with, no pass is encoded: the
     /// outputs of that frame are still there. This needs a provider that
     /// [has versions](Provider::has_versions), or a plan without provided resources; and a plan
-    /// without imports in which no pass uses `.previous` contents, a resource with `keep` or the
-    /// uniform `frame`. Frames with [`Frame::all`], [`Frame::timing`] or [`Frame::statistics`] are
-    /// never left out so. A submission that wgpu refuses counts as done: encode the next frame with
-    /// [`Frame::all`].
+    /// without imports in which no pass uses `.previous` contents, a resource with
+    /// [`keep`](Resource::keep) or the uniform [`frame`](skiagraph_graph::FRAME_BYTES). Frames with
+    /// [`Frame::all`], [`Frame::timing`] or [`Frame::statistics`] are never left out so. A
+    /// submission that wgpu refuses counts as done: encode the next frame with [`Frame::all`].
     ///
     /// # Errors
     /// If the plan lacks an output or capture of [`Frame::read`] or it cannot be copied; an import
@@ -196,9 +197,10 @@ impl Executor {
     }
 
     /// Encodes a frame as [`encode`](Self::encode) does, and submits it. Where a pass works on the
-    /// CPU it submits what is encoded so far, waits until the GPU is done with that, and then until
-    /// the work is done. While the GPU works, `gives_up` is called about every 100 ms; if it
-    /// returns true, the frame ends. It waits for nothing else.
+    /// CPU ([`CpuWork`](crate::CpuWork)) it submits what is encoded so far, waits until the GPU is
+    /// done with that, and then until the work is done. While the GPU works, `gives_up` is called
+    /// about every 100 ms; if it returns true, the frame ends. `submit` waits for nothing else,
+    /// such as the end of the frame on the GPU.
     ///
     /// # Errors
     /// Those of `encode`, except that passes may work on the CPU; [`ExecuteError::CpuWork`] if
@@ -369,14 +371,14 @@ impl Executor {
         self.frames_in_flight.asked()
     }
 
-    /// Waits until the GPU has finished all submitted work, and returns the report that
-    /// [`poll`](Self::poll) would. If no frame waits for its report, it returns a report of the
-    /// last encoded frame that holds only the frame's number and its skipped passes; the number is
-    /// `u32::MAX` if no frame was encoded.
+    /// Returns the report that [`poll`](Self::poll) would; if there is none yet, first waits until
+    /// the GPU has finished all submitted work. If no frame waits for its report, `finish` returns
+    /// a report of the last encoded frame that holds only the frame's number and its skipped
+    /// passes; the number is `u32::MAX` if no frame was encoded.
     ///
     /// # Errors
-    /// Those of [`poll`](Self::poll), and [`ExecuteError::NotSubmitted`] if the frame to report was
-    /// not submitted.
+    /// Those of [`poll`](Self::poll), and [`ExecuteError::NotSubmitted`], after ten seconds, if the
+    /// frame to report was not submitted.
     pub fn finish(&mut self) -> Result<FrameReport, ExecuteError> {
         self.finish_within(None)
     }
@@ -700,8 +702,9 @@ impl Executor {
 
     /// Changes the value of the param `name` of the graph document that was loaded, which may be
     /// one that the document exposes of an include, such as `left.radius`. If shaders read the
-    /// param only in `var<uniform> params`, the change costs an upload. For every other param the
-    /// graph is planned again, and the cost depends on the param's use:
+    /// param only in `var<uniform> params`, and it is not a
+    /// [`Choice`](skiagraph_graph::ParamType::Choice), the change costs an upload. For every other
+    /// param the graph is planned again, and the cost depends on the param's use:
     ///
     /// - an `override` constant, a culling mode, a depth bias or the like: new pipelines for the
     ///   passes that use it;
@@ -712,7 +715,7 @@ impl Executor {
     /// # Errors
     /// If the graph has no such param, its value is out of range, the graph cannot be planned with
     /// it, a changed provided resource cannot be built, or the device refuses a resource or pass.
-    /// After an error the executor is unchanged.
+    /// After an error the plan and its params are unchanged.
     pub fn set_param(
         &mut self,
         name: &str,
@@ -751,7 +754,8 @@ impl Executor {
 
     /// Replaces the plan by another, of the same graph or of a different one. It keeps the
     /// pipelines, textures and buffers that both plans have in common (matched by name), the
-    /// imports, and the provided resources whose version is unchanged.
+    /// imports whose description is unchanged, and the provided resources whose version is
+    /// unchanged.
     ///
     /// # Errors
     /// If a provided resource cannot be built or the device refuses a resource or pass. After an

@@ -28,8 +28,8 @@ pub struct ReplanReport {
     /// Names of the passes whose uniform buffer `params` was uploaded again with other values; new
     /// passes are not listed.
     pub uploads: Vec<String>,
-    /// Names of the passes that got new pipelines: new passes, and passes with another shader,
-    /// target format, `override` constant, or state such as culling or depth bias.
+    /// Names of the new passes, and of the passes that got other pipelines: those with another
+    /// shader, target format, `override` constant, or state such as culling or depth bias.
     pub pipelines: Vec<String>,
     /// Names of the textures and buffers of the graph itself (not those of the host) that were
     /// created anew without their former content.

@@ -24,9 +24,9 @@ const UNUSED: usize = 64;
 /// of them has made costs the others nothing, also after a change of a plan. Clones are handles of
 /// the same object; threads may share it.
 ///
-/// Pipelines are equal if shader text (with imports in place), entry points, `override` constants,
-/// bind group layouts, target formats and fixed-function state are. The last 64 pipelines that no
-/// executor uses any more are kept, others are dropped.
+/// Pipelines are equal if shader text (with the modules that it `#import`s), entry points,
+/// `override` constants, bind group layouts, target formats and fixed-function state are. The last
+/// 64 pipelines that no executor uses any more are kept, others are dropped.
 ///
 /// ```no_run
 /// use skiagraph_gpu::{Executor, Pipelines, device};

@@ -7,17 +7,19 @@ use std::sync::Arc;
 /// Normals of a module that has none: triangles get those of their planes.
 const NO_NORMALS: &str = "fn decode_normal(first: u32) -> vec3<f32> { return vec3(0.0); }";
 
-/// WGSL module of the host that decodes vertices, in the place of ours
+/// WGSL module of the host that decodes vertices, in the place of the built-in formats
 /// ([`HostVertices::with_decoder`](super::HostVertices::with_decoder)).
 ///
 /// It has the function `decode_position(first: u32) -> vec3<f32>`, and
 /// `decode_normal(first: u32) -> vec3<f32>` where it decodes normals, of any length. `first` is the
-/// number of the vertex's first word in `vertices: array<u32>`, the host's buffer in words of four
-/// bytes, which the module does not declare. Its other names begin with `decode_`.
+/// index of the vertex's first word in `vertices: array<u32>`, which the module does not declare:
+/// the range of the host's buffer that holds the mesh's vertices, in words of four bytes. Other
+/// names that the module declares begin with `decode_`.
 ///
-/// Positions are equal in all kernels where the module computes them in integers, or in f32 without
-/// rounding. A module that rounds may differ between kernels by what a compiler fuses: the
-/// [stated](crate::HostMesh::with_bounds) bounds must then be larger by as much.
+/// Positions are equal in all compute shaders that call the module where it computes them in
+/// integers, or in f32 without rounding. A module that rounds may differ between them by what a
+/// compiler fuses: the [stated](crate::HostMesh::with_bounds) bounds must then be larger by as
+/// much.
 #[derive(Clone, Debug)]
 pub struct HostDecoder {
     pub(super) made: Arc<KernelModule>,
@@ -25,7 +27,8 @@ pub struct HostDecoder {
 }
 
 impl HostDecoder {
-    /// Compiles a module that decodes positions. Triangles have the normals of their planes.
+    /// Compiles a module that decodes positions and has no `decode_normal`. Triangles have the
+    /// normals of their planes.
     ///
     /// # Errors
     /// [`HostMeshError::Module`] with the line that is wrong.

@@ -53,7 +53,8 @@ pub(super) struct Attribute {
 impl HostVertices {
     /// Creates the range of `count` vertices from byte `offset` of a buffer on, each `stride` bytes
     /// after the one before. The buffer needs the usage `STORAGE`; `offset` and `stride` are
-    /// divisible by 4.
+    /// divisible by 4. [`HostMesh::new`](crate::HostMesh::new) checks this, and that the formats
+    /// can be read.
     pub fn new(buffer: &wgpu::Buffer, offset: u64, stride: u64, count: u32) -> Self {
         Self {
             buffer: buffer.clone(),

@@ -17,7 +17,8 @@ use wgpu::util::{BufferInitDescriptor, DeviceExt};
 const NONE: u32 = u32::MAX;
 
 /// Indices of a mesh, three for each triangle, counter-clockwise as seen from outside. They count
-/// from the first vertex of the mesh's [`HostVertices`]: a base vertex is in the offset of these.
+/// from the first vertex of the mesh's [`HostVertices`]: a base vertex is part of the offset given
+/// to [`HostVertices::new`].
 #[derive(Clone, Copy, Debug)]
 pub enum HostIndices<'a> {
     /// 16-bit indices.
@@ -164,7 +165,8 @@ impl HostMesh {
         Ok(self)
     }
 
-    /// Returns the bounds of its vertices before they are moved: low and high corner.
+    /// Returns the bounds, low and high corner in the space of the vertices: those given to
+    /// [`with_bounds`](Self::with_bounds), or else those of the vertices at rest.
     pub fn bounds(&self) -> [Vec3; 2] {
         self.bounds
     }

@@ -863,18 +863,23 @@ impl SceneProvider {
     }
 }
 
+/// Names of the resources that every provider has.
+fn known() -> impl Iterator<Item = String> {
+    let names = NAMES.iter().copied();
+    let names = names.filter(|name| *name != EMBREE || cfg!(feature = "embree"));
+    names.map(str::to_owned)
+}
+
 fn unknown(name: &str) -> Error {
     Error::Unknown {
         name: name.to_owned(),
-        known: NAMES.iter().copied().map(str::to_owned).collect(),
+        known: known().collect(),
     }
 }
 
 impl Describe for SceneProvider {
     fn names(&self) -> Vec<String> {
-        let names = NAMES.iter().copied().map(str::to_owned);
-        let names = names.filter(|name| *name != EMBREE || cfg!(feature = "embree"));
-        names.chain(lights::names(self.lights().len())).collect()
+        known().chain(lights::names(self.lights().len())).collect()
     }
 
     fn describe(&self, name: &str) -> Option<Provided> {

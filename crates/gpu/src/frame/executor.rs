@@ -689,8 +689,9 @@ impl Executor {
     /// [`Plan::with`] and [`replace_graph`](Self::replace_graph) instead.
     ///
     /// # Errors
-    /// If the graph cannot be planned for this viewport, a provided resource cannot be built, or
-    /// the device refuses a resource or pass. After an error the executor is unchanged.
+    /// If the graph cannot be planned for this viewport, a provided resource cannot be built or is
+    /// [no longer as planned](ExecuteError::OtherThanPlanned), or the device refuses a resource or
+    /// pass. After an error the executor is unchanged.
     pub fn resize(
         &mut self,
         viewport: [u32; 2],
@@ -714,8 +715,9 @@ impl Executor {
     ///
     /// # Errors
     /// If the graph has no such param, its value is out of range, the graph cannot be planned with
-    /// it, a changed provided resource cannot be built, or the device refuses a resource or pass.
-    /// After an error the plan and its params are unchanged.
+    /// it, a changed provided resource cannot be built or is [no longer as
+    /// planned](ExecuteError::OtherThanPlanned), or the device refuses a resource or pass. After an
+    /// error the plan and its params are unchanged.
     pub fn set_param(
         &mut self,
         name: &str,
@@ -758,7 +760,8 @@ impl Executor {
     /// unchanged.
     ///
     /// # Errors
-    /// If a provided resource cannot be built or the device refuses a resource or pass. After an
+    /// If a provided resource cannot be built or is not [as this plan was made
+    /// for](ExecuteError::OtherThanPlanned), or the device refuses a resource or pass. After an
     /// error the executor is unchanged.
     pub fn replace_graph(
         &mut self,
@@ -892,8 +895,9 @@ impl Executor {
     /// document says.
     ///
     /// # Errors
-    /// If the device was lost, or a changed provided resource cannot be built. After an error the
-    /// executor is unchanged, and the next frame tries to grow again.
+    /// If the device was lost, or a changed provided resource cannot be built or is [no longer as
+    /// planned](ExecuteError::OtherThanPlanned). After an error the executor is unchanged, and the
+    /// next frame tries to grow again.
     pub fn grow(
         &mut self,
         provider: &mut dyn Provider,

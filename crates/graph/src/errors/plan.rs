@@ -37,14 +37,15 @@ mistakes! {
         .at(&material, format!("`{material}` is never written"))
         .help("let a pass write it, or name another `material`");
 
-    UnreadableOutput { name: Located<String>, material: Span, what: String } =>
+    UnreadableOutput {
+        name: Located<String>,
+        material: Span,
+        what: String,
+        way_out: &'static str,
+    } =>
         FormatMismatch("the output `{name}` cannot be read back")
         .at(material, &what)
-        .help(if what.contains("samples") {
-            "name a texture of one sample that a `resolve` is written to"
-        } else {
-            "use Depth32Float or Depth16Unorm"
-        });
+        .help(way_out);
 
     Light { graph: String, kind: &'static str, takes: Vec<String>, place: Span } =>
         Light("`{graph}` takes no {kind} light")

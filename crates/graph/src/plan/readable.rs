@@ -53,11 +53,12 @@ pub(super) fn readable(
         if !written(&target) {
             let material = material.located();
             at.report(OutputError::UnwrittenOutput { name, material });
-        } else if let Some(what) = unreadable(at.symbols(), &target) {
+        } else if let Some((what, way_out)) = unreadable(at.symbols(), &target) {
             at.report(OutputError::UnreadableOutput {
                 name,
                 material: material.span.clone(),
                 what,
+                way_out,
             });
         } else if is_wanted(&name.value, output.on_request) {
             readable.push((name.value, target));
@@ -81,7 +82,7 @@ pub(super) fn readable(
             at.report(OutputError::Provided(name));
         } else if !written(&target) {
             at.report(OutputError::Unwritten(name));
-        } else if let Some(what) = unreadable(at.symbols(), &target) {
+        } else if let Some((what, _)) = unreadable(at.symbols(), &target) {
             at.report(OutputError::Unreadable { name, what });
         } else {
             readable.push((name, target));
@@ -136,19 +137,32 @@ pub(super) fn check_captures(
     }
 }
 
-/// Describes a resource whose content cannot be read back; `None` for one whose content can.
-fn unreadable(symbols: &SymbolTable<'_>, target: &Target) -> Option<String> {
-    match &symbols.get(target.id).kind {
-        ResourceKind::Texture(texture) if texture.samples > 1 => {
-            Some(format!("a texture of {} samples", texture.samples))
+/// Describes a resource whose content cannot be read back, and tells a way out; `None` for one whose
+/// content can.
+fn unreadable(symbols: &SymbolTable<'_>, target: &Target) -> Option<(String, &'static str)> {
+    let texture = match &symbols.get(target.id).kind {
+        ResourceKind::Texture(texture) => texture,
+        ResourceKind::Sampler(_) => {
+            let what = "a sampler, which has no content";
+            return Some((what.to_owned(), "name a texture or buffer"));
         }
-        ResourceKind::Texture(texture) if texture.format.block_copy_size(None).is_none() => {
-            let format = texture.format;
-            Some(format!(
-                "a texture of format {format:?}, whose layout is the driver's own"
-            ))
-        }
-        ResourceKind::Sampler(_) => Some("a sampler, which has no content".to_owned()),
-        _ => None,
+        _ => return None,
+    };
+    let (samples, format) = (texture.samples, texture.format);
+    if samples > 1 {
+        let way_out = "name a texture of one sample that a `resolve` is written to";
+        return Some((format!("a texture of {samples} samples"), way_out));
     }
+    if format.is_compressed() {
+        let what = format!("a texture of the compressed format {format:?}");
+        return Some((
+            what,
+            "draw it to a texture of another format, and name that",
+        ));
+    }
+    if format.block_copy_size(None).is_none() {
+        let what = format!("a texture of format {format:?}, whose layout is the driver's own");
+        return Some((what, "use Depth32Float or Depth16Unorm"));
+    }
+    None
 }

@@ -227,6 +227,23 @@ fn requests_that_cannot_be_met() {
     insta::assert_snapshot!("requests", texts.join(""));
 }
 
+/// Only a host's texture can be compressed, and only a copy can write it.
+#[test]
+fn a_compressed_texture_is_not_read_back() {
+    let files = Files::graph(
+        r#"inputs: [Texture(name: "from"), Texture(name: "to")],
+        passes: [Copy(name: "copy", from: "from", to: "to")], outputs: ["to"]"#,
+    );
+    let usage = wgt::TextureUsages::COPY_SRC | wgt::TextureUsages::COPY_DST;
+    let texture = Import::plain_texture(wgt::TextureFormat::Bc1RgbaUnorm, [8, 8], usage);
+    let mut request = PlanRequest::new([8, 8], &Triangle);
+    for name in ["from", "to"] {
+        request.imports.insert(name.to_owned(), texture);
+    }
+    let found = text(right(load(&files)).plan(&request));
+    insta::assert_snapshot!("compressed", found);
+}
+
 #[test]
 fn values_of_params_from_text() {
     let graph = right(load(&asked()));

@@ -137,8 +137,7 @@ pub(super) fn check_captures(
     }
 }
 
-/// Describes a resource whose content cannot be read back, and tells a way out; `None` for one whose
-/// content can.
+/// Describes a resource that cannot be read back, with a way out; `None` for any other.
 fn unreadable(symbols: &SymbolTable<'_>, target: &Target) -> Option<(String, &'static str)> {
     let texture = match &symbols.get(target.id).kind {
         ResourceKind::Texture(texture) => texture,

@@ -256,9 +256,11 @@ pub struct Growth {
 pub struct Sampler {
     /// Filter of the sampler for minification, for magnification and between mips.
     pub filter: Filter,
-    /// Address mode of the sampler in all directions, for coordinates outside of the texture.
+    /// Address mode of the sampler in all directions, for coordinates outside of the texture;
+    /// without meaning for an import.
     pub address: Address,
-    /// Comparison function of a comparison sampler; `None` for a sampler that does not compare.
+    /// Comparison function of a comparison sampler; `None` for a sampler that does not compare. Any
+    /// function for an import that compares.
     pub compare: Option<wgt::CompareFunction>,
 }
 

@@ -80,9 +80,10 @@ pub struct Request<P> {
     /// [`Plan::grown`]: crate::Plan::grown
     pub grown: BTreeMap<String, u64>,
     /// Byte that the memory of the graph's own textures and buffers is filled with before its first
-    /// use in a frame; `None` fills nothing. Resources whose content lasts from frame to frame are
-    /// left out. A graph whose outputs change with this byte reads memory that it has not written.
-    /// Filling costs time; it is meant for finding mistakes.
+    /// use in a frame; textures with depth or several samples are cleared to a value made of it.
+    /// `None` fills nothing. Resources whose content lasts from frame to frame are left out. A
+    /// graph whose outputs change with this byte reads memory that it has not written. Filling
+    /// costs time; it is meant for finding mistakes.
     pub poison: Option<u8>,
     /// True if the device that will run the graph is not known. Planning then warns of needs beyond
     /// `limits` and `features`, which are errors otherwise.

@@ -373,7 +373,8 @@ pub struct CpuCall<S: Stage> {
     /// gets it.
     pub entry: String,
     /// Buffer of one u32: the number of [items](crate#terms) that the work reads of each buffer and
-    /// writes. Items beyond the end of the shortest buffer are left out.
+    /// writes. Items beyond the end of the shortest buffer are left out, and for 0 items the work
+    /// is not called.
     pub count: S::Operand,
     /// Buffers whose first `count` [items](crate#terms) the work reads.
     pub reads: Vec<CpuItems<S>>,
@@ -386,6 +387,7 @@ pub struct CpuCall<S: Stage> {
 pub struct CpuItems<S: Stage> {
     /// The buffer, whole or in part.
     pub buffer: S::Operand,
-    /// Size of an item in bytes, a multiple of 4.
+    /// Size of an item in bytes, a multiple of 4: the stride that shaders or the provider give the
+    /// buffer, if they do.
     pub bytes: u64,
 }

@@ -76,8 +76,8 @@ impl Graph {
 
     /// Loads and plans the document at `path` in `sources` and reports all mistakes at once. The
     /// readable part of a document is planned even if another part is wrong. For an input that the
-    /// request does not import, the check assumes the texture, buffer or sampler that the document
-    /// asks for.
+    /// request does not import, the check assumes the texture (of the viewport's size), buffer or
+    /// sampler that the document asks for.
     ///
     /// If this finds no mistake, the graph is planned again for other values of each param that an
     /// `if` depends on, and of each `Choice` or `Bool` param in the fields of a pass's kind, one at

@@ -7,11 +7,11 @@ use std::collections::BTreeMap;
 /// Source of descriptions of the resources that the host's renderer makes and a graph only reads:
 /// scene buffers, camera and light uniforms, acceleration structures, work for the CPU.
 ///
-/// Names may have dots, such as `scene.positions`; the parts are spelt as a [`Name`](crate::Name).
-/// A shader's global has underscores in their place: `scene_positions`. A list whose items differ
-/// in kind is described as a whole, as `lights` with its number of [items](crate#terms), and item
-/// by item as `lights.0`, `lights.1` and so on: a document's `lights[1]` is the resource
-/// `lights.1`.
+/// Names may have dots, such as `scene.positions`; the parts are spelt as a [`Name`](crate::Name),
+/// or are numbers of items as below. A shader's global has underscores in the place of the dots:
+/// `scene_positions`. A list whose items differ in kind is described as a whole, as `lights` with
+/// its number of [items](crate#terms), and item by item as `lights.0`, `lights.1` and so on: a
+/// document's `lights[1]` is the resource `lights.1`.
 pub trait Describe {
     /// Returns every name that [`Describe::describe`] knows. Error messages suggest names from this
     /// list.

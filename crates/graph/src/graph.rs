@@ -67,18 +67,21 @@ impl Graph {
     ///
     /// # Errors
     /// All mistakes found while planning: those in a document or shader with their place in it,
-    /// those of the request, such as an unknown param or output, without one.
+    /// those of the request, such as an unknown param or output, without one. Planning stops early,
+    /// with these mistakes alone, if the viewport or a param is wrong, the device lacks a feature
+    /// in `requires`, or `proven_on` lacks the backend.
     pub fn plan(&self, request: &PlanRequest<'_>) -> Result<Plan, Diagnostics> {
         Plan::new(&self.0, request)
     }
 
     /// Loads and plans the document at `path` in `sources` and reports all mistakes at once. The
     /// readable part of a document is planned even if another part is wrong. For an input that the
-    /// request does not import, the check assumes the texture, buffer or sampler that the document
-    /// asks for.
+    /// request does not import, the check assumes the texture (of the viewport's size), buffer or
+    /// sampler that the document asks for.
     ///
     /// If this finds no mistake, the graph is planned again for other values of each param that an
-    /// `if` depends on, one at a time: each word, true and false, or `min` and `max`; and with and
+    /// `if` depends on, and of each `Choice` or `Bool` param in the fields of a pass's kind, one at
+    /// a time: each word, true and false, or `min` and `max` (vectors are left out); and with and
     /// without each device feature that an `if` asks for.
     ///
     /// Returns the graph, and the plan for the values of `request`. The plan contains the assumed
@@ -104,8 +107,8 @@ impl Graph {
 
     /// Returns the document at `path` as RON text, with the documents that it extends merged in;
     /// included documents stay separate. A comment at the end of a line names the file and line of
-    /// its origin. The text loads as the same graph. Params, values, inputs and materials that
-    /// nothing uses are left out, unless the document has mistakes.
+    /// its origin. The text loads as the same graph. Params, [named values](Plan::named_values),
+    /// inputs and materials that nothing uses are left out, unless the document has mistakes.
     ///
     /// # Errors
     /// A document that is missing, a mistake in the syntax of a document, or in an edit that a
@@ -154,8 +157,8 @@ impl Graph {
     }
 
     /// Returns the names of all outputs that are textures or buffers, in the order of the document;
-    /// outputs that are named values are left out. Outputs marked `on_request`, and outputs whose
-    /// `if` may be false, are in the list, too.
+    /// outputs that are [named values](Plan::named_values) are left out. Outputs marked
+    /// `on_request`, and outputs whose `if` may be false, are in the list, too.
     pub fn outputs(&self) -> Vec<&str> {
         let outputs = self.0.document.material_outputs();
         outputs.map(|output| output.name.as_str()).collect()
@@ -171,8 +174,9 @@ impl Graph {
     }
 
     /// Returns the words of the document's section `lights`, each with its place: the kinds of
-    /// light that the graph can be planned with, such as `spot`. If there are none, the graph takes
-    /// the first kind in [`ProvidedKind::words`](crate::ProvidedKind::words) alone.
+    /// light that the graph can be planned with, such as `spot`. Words that the document in an open
+    /// include ([`openings`](Self::openings)) does not take are left out. If there are no words,
+    /// the graph takes the first kind in [`ProvidedKind::words`](crate::ProvidedKind::words) alone.
     pub fn lights(&self) -> impl Iterator<Item = &Located<Name>> {
         self.0.document.lights.iter()
     }
@@ -254,7 +258,7 @@ impl Graph {
     /// for a viewport of this width and height in pixels on a device with these features.
     ///
     /// # Errors
-    /// If a value in `asked` does not fit its param, or a condition cannot be evaluated.
+    /// If [`values`](Self::values) returns an error, or a condition cannot be evaluated.
     pub fn claims(
         &self,
         asked: &BTreeMap<String, ParamValue>,

@@ -5,8 +5,8 @@
 /// number, `override light_kind: u32`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProvidedKind {
-    /// Words for all kinds that the resource can have, such as `directional` and `spot`. The index
-    /// of a word is its number in shaders.
+    /// Words for all kinds that the resource can have, such as `directional` and `spot`, each spelt
+    /// as a [`Name`](crate::Name). The index of a word is its number in shaders.
     pub words: &'static [&'static str],
     /// Index in [`words`](Self::words) of the kind that the resource has.
     pub number: u32,

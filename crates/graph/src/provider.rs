@@ -7,9 +7,10 @@ use std::collections::BTreeMap;
 /// Source of descriptions of the resources that the host's renderer makes and a graph only reads:
 /// scene buffers, camera and light uniforms, acceleration structures, work for the CPU.
 ///
-/// Names may have dots, such as `scene.positions`. A shader's global has underscores in their
-/// place: `scene_positions`. A list whose items differ in kind is described as a whole, as `lights`
-/// with its number of [items](crate#terms), and item by item as `lights.0`, `lights.1` and so on: a
+/// Names may have dots, such as `scene.positions`; the parts are spelt as a [`Name`](crate::Name),
+/// or are numbers of items as below. A shader's global has underscores in the place of the dots:
+/// `scene_positions`. A list whose items differ in kind is described as a whole, as `lights` with
+/// its number of [items](crate#terms), and item by item as `lights.0`, `lights.1` and so on: a
 /// document's `lights[1]` is the resource `lights.1`.
 pub trait Describe {
     /// Returns every name that [`Describe::describe`] knows. Error messages suggest names from this
@@ -87,13 +88,14 @@ impl Provided {
 pub enum ProvidedBinding {
     /// The whole buffer, as `var<uniform>`.
     Uniform,
-    /// The whole array or some of its items, as `var<storage, read>`.
+    /// The whole array or some of its items, as `var<storage, read>`; items that are bound by
+    /// themselves need the stride that [`Both`](Self::Both) describes.
     Storage,
     /// The whole array or some of its items, as `var<storage, read>`, or one of its items as
     /// `var<uniform>`. An item that is bound by itself must begin at a multiple of the device's
     /// `min_uniform_buffer_offset_alignment` (256 bytes on many), so the [stride](Provided::stride)
-    /// must be one; planning refuses others. Shorter items that are described one by one, as
-    /// `lights.2` is, need no such stride: each is a buffer of its own, with the binding
+    /// must be such a multiple; planning refuses others. Shorter items that are described one by
+    /// one, as `lights.2` is, need no such stride: each is a buffer of its own, with the binding
     /// [`Uniform`](Self::Uniform).
     Both,
     /// The whole acceleration structure, as `acceleration_structure`, for ray queries. The resource
@@ -118,8 +120,8 @@ impl ProvidedBinding {
 }
 
 /// Description of a texture, buffer or sampler that the host hands over for an input of the loaded
-/// document. The resource has content before the first pass runs. A pass that writes it is never
-/// culled.
+/// document. The resource has content before the first pass runs. A pass may write it only if the
+/// document lists the input as an output, too; such a pass is never culled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Import {
     /// A texture, which the host has created.
@@ -156,7 +158,7 @@ pub enum Import {
     /// A sampler, which the host has created.
     #[non_exhaustive]
     Sampler {
-        /// Filter that the sampler was created with.
+        /// Filter that the sampler was created with: `Linear` if any of its filters is linear.
         filter: Filter,
         /// True for a comparison sampler, which the document's input must then ask for (`compare:
         /// true`).
@@ -196,8 +198,9 @@ impl Import {
         }
     }
 
-    /// Describes a buffer of so many bytes. `items` is their number of array items; `None` is
-    /// enough unless a pass is dispatched over the items or an expression uses their number.
+    /// Describes a buffer of so many bytes. `items` is the number of array items in the buffer;
+    /// `None` is enough unless a pass is dispatched over the items or an expression uses their
+    /// number.
     pub fn buffer(bytes: u64, items: Option<u64>, usage: wgt::BufferUsages) -> Self {
         Self::Buffer {
             bytes,

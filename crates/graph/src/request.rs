@@ -8,7 +8,8 @@ use crate::{
 use std::collections::BTreeMap;
 
 /// A graphics backend that lacks part of WebGPU, such as OpenGL. A graph that passed its checks on
-/// another backend may fail on it.
+/// another backend may fail on it. `device::partial` of `skiagraph-gpu` returns the description of
+/// a wgpu backend.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PartialBackend {
     /// Name of the backend, such as `gl`, as documents list it in `proven_on`.
@@ -43,8 +44,9 @@ pub struct Request<P> {
     /// Values of params by name. A param that is not listed has its default
     /// ([`Param::default`](crate::Param::default)).
     pub params: BTreeMap<String, ParamValue>,
-    /// Names of the outputs to compute; the document must declare them. `None` means all that the
-    /// document declares, except those marked `on_request` that no capture names.
+    /// Names of the outputs to compute; the document must declare them. An empty list computes
+    /// none. `None` means all that the document declares, except those marked `on_request` that no
+    /// capture names.
     pub outputs: Option<Vec<String>>,
     /// Textures and buffers to read back in addition to the outputs, each at the end of a frame or
     /// as it is after one of the passes.
@@ -66,20 +68,22 @@ pub struct Request<P> {
     /// has.)
     pub memory_limit: Option<u64>,
     /// Descriptions of the textures, buffers and samplers that the host hands over, each under the
-    /// name of an input of the loaded document ([`Graph::inputs`](crate::Graph::inputs)).
+    /// name of an input of the loaded document ([`Graph::inputs`](crate::Graph::inputs)). Planning
+    /// reports an error for an input without a description; names that are no inputs are ignored.
     pub imports: BTreeMap<String, Import>,
     /// Number of [items](crate#terms) that growing buffers (with `grow`) need, or of layers that
     /// growing textures need, by [full name](crate#terms) of the material
     /// ([`Resource::name`](crate::Resource::name)). Each is made at least that large, but not
-    /// larger than its `max`. To keep grown sizes when a graph is loaded again, pass the result of
-    /// [`Plan::grown`].
+    /// larger than its `max`; names of other materials are ignored. To keep grown sizes when a
+    /// graph is loaded again, pass the result of [`Plan::grown`].
     ///
     /// [`Plan::grown`]: crate::Plan::grown
     pub grown: BTreeMap<String, u64>,
     /// Byte that the memory of the graph's own textures and buffers is filled with before its first
-    /// use in a frame; `None` fills nothing. Resources whose content lasts from frame to frame are
-    /// left out. A graph whose outputs change with this byte reads memory that it has not written.
-    /// Filling costs time; it is meant for finding mistakes.
+    /// use in a frame; textures with depth or several samples are cleared to a value made of it.
+    /// `None` fills nothing. Resources whose content lasts from frame to frame are left out. A
+    /// graph whose outputs change with this byte reads memory that it has not written. Filling
+    /// costs time; it is meant for finding mistakes.
     pub poison: Option<u8>,
     /// True if the device that will run the graph is not known. Planning then warns of needs beyond
     /// `limits` and `features`, which are errors otherwise.
@@ -90,9 +94,10 @@ pub struct Request<P> {
 }
 
 impl<'a> PlanRequest<'a> {
-    /// Creates a request with wgpu's default limits, no features, default params and the default
-    /// outputs. `viewport` is width and height in pixels; `provider` describes scene buffers,
-    /// camera and lights ([`NoProvider`](crate::NoProvider) for a graph that needs none).
+    /// Creates a request with wgpu's default limits, no features, default params and outputs, and
+    /// all else empty, `None` or false. `viewport` is width and height in pixels; `provider`
+    /// describes scene buffers, camera and lights ([`NoProvider`](crate::NoProvider) for a graph
+    /// that needs none).
     pub fn new(viewport: [u32; 2], provider: &'a dyn Describe) -> Self {
         Self {
             viewport,
@@ -194,14 +199,16 @@ impl<P> Request<P> {
 }
 
 /// A material (texture or buffer) whose content is to be read back after a frame, as it is at the
-/// end of the frame or after one of its passes.
+/// end of the frame or after one of its passes. Planning reports an error for an unknown name, for
+/// a material of the graph that no pass has written by then, and for content that cannot be read
+/// back, such as a multisampled texture.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub struct Capture {
     /// [Full name](crate#terms) of a material ([`Resource::name`](crate::Resource::name)), such as
     /// `left.depth` for the output `depth` of the [include](crate#terms) `left`, or a part of one,
     /// such as `maps[2]`. Without `after` also the name of an output; with `after` also the name of
-    /// a provided buffer.
+    /// a provided buffer whose number of [items](crate#terms) is known.
     pub material: String,
     /// [Full name](crate#terms) of the pass after which the content is captured, as in
     /// [`PassSummary::name`](crate::PassSummary::name); `None` captures it at the end of the frame.

@@ -111,9 +111,10 @@ pub enum ResourceKind {
     Frame,
 }
 
-/// Size in bytes of the uniform buffer `frame`, which any shader may bind. It holds the frame's
-/// index (`u32`, 0 for the first frame), the time in seconds that the host gives (`f32`), and three
-/// flags (`u32`, 1 or 0); the rest is padding.
+/// Size in bytes of the uniform buffer `frame`, which any shader may bind as a `var<uniform>` of
+/// this name. It holds, in this order and 4 bytes each, the frame's index (`u32`, 0 for the first
+/// frame), the time in seconds that the host gives (`f32`), and the flags `changed_scene`,
+/// `changed_light` and `fresh` (`u32`, 1 or 0); the rest is padding.
 ///
 /// The flags `changed_scene` and `changed_light` tell that the scene or a light has changed since
 /// the frame before, `fresh` that a resource whose content lasts from frame to frame has new
@@ -230,11 +231,13 @@ pub struct Buffer {
     /// import without a known number.
     pub count: Option<u64>,
     /// Distance in bytes from one item of the buffer's runtime-sized array to the next, as shaders
-    /// declare it. 0 for an import, and if no shader of the graph declares the buffer as such an
-    /// array.
+    /// declare it, or the size of the items that a [`CpuCall`](crate::step::CpuCall) reads or
+    /// writes. 0 for an import, and for a buffer that no shader of the graph declares as such an
+    /// array and no `CpuCall` uses.
     pub stride: u64,
     /// Size of the buffer in bytes: of the layout that shaders declare, with all items, rounded up
-    /// to a multiple of 4; for an import, of the host's buffer.
+    /// to a multiple of 4; for a buffer that is only copied, of the other buffer of the copy; for
+    /// an import, of the host's buffer.
     pub bytes: u64,
     /// Content that the document gives the buffer (`data: …`): one entry for each item, with one
     /// number for each scalar of the item, in the order of the scalars' offsets. `None` for a
@@ -264,9 +267,11 @@ pub struct Growth {
 pub struct Sampler {
     /// Filter of the sampler for minification, for magnification and between mips.
     pub filter: Filter,
-    /// Address mode of the sampler in all directions, for coordinates outside of the texture.
+    /// Address mode of the sampler in all directions, for coordinates outside of the texture;
+    /// without meaning for an import.
     pub address: Address,
-    /// Comparison function of a comparison sampler; `None` for a sampler that does not compare.
+    /// Comparison function of a comparison sampler; `None` for a sampler that does not compare. Any
+    /// function for an import that compares.
     pub compare: Option<wgt::CompareFunction>,
 }
 

@@ -32,10 +32,10 @@ pub enum When {
 
 /// Run conditions of the passes of a schedule. A *position* is an index into
 /// [`Schedule::passes`](crate::Schedule::passes). A *group* is a set of passes that run or are
-/// skipped together in a frame, because they write the same resource (without `keep`) or read
-/// content of it that a later pass overwrites; its number is the position of its first pass. All
-/// passes of a group have the same [`When`], except copies that captures need, which have
-/// [`When::Follows`].
+/// skipped together in a frame, because they write the same resource or read content of it that a
+/// later pass overwrites (of a resource with `keep`, only its writers with the same [`Run`]); its
+/// number is the position of its first pass. All passes of a group have the same [`When`], except
+/// copies that captures need, which have [`When::Follows`].
 #[derive(Clone, Debug, Default)]
 pub struct Conditions {
     /// Number of the group of each pass, by position in
@@ -52,8 +52,8 @@ pub struct Conditions {
     /// `None` if no scheduled pass writes the resource. A resource with `keep` may be written by
     /// several groups; the entry is the number of the first.
     pub writers: Vec<Option<usize>>,
-    /// Resources with `keep`, and those written by a pass that may be skipped: their content must
-    /// outlive the frame.
+    /// Resources with `keep`, and those written by a pass that may be skipped, whose [`Run`] is not
+    /// `Always`: their content must outlive the frame.
     pub kept: BTreeSet<ResourceId>,
 }
 

@@ -31,8 +31,9 @@ pub enum Run {
     /// a change.
     OnChange,
     /// In every frame if an expression over params is true in the plan, in no frame otherwise.
-    /// Holds the text of the expression; passes with equal texts run in the same frames.
-    /// [`LinkedPass::enabled`](crate::LinkedPass::enabled) holds its value.
+    /// Holds the expression as text, which names params as the loaded document does; passes with
+    /// equal texts run in the same frames. [`LinkedPass::enabled`](crate::LinkedPass::enabled)
+    /// holds its value.
     When(String),
 }
 

@@ -19,8 +19,9 @@ use std::fmt;
 /// its entry in a document's `passes`: all fields except `name`, `shader`, `bind`, `set`, `if`,
 /// `repeat`, `run`, `clear`, `overwrites` and `reads`, which entries of every kind have. Documents
 /// may use it once it is [registered](crate::Registry::register); the module [`step`](crate::step)
-/// has an example. A field that the type lacks is a mistake in the document only if the type says
-/// so to serde (`deny_unknown_fields`).
+/// has an example. Fields of the types [`Expr`], [`Reference`] and [`Chosen`] hold expressions,
+/// references and words. A field that the type lacks is a mistake in the document only if the type
+/// says so to serde (`deny_unknown_fields`).
 pub trait PassKind: fmt::Debug + Send + Sync {
     /// Lowers the body to steps: appends the pass's GPU work to `pass`, step by step
     /// ([`Lowering::step`]). Called more than once, and without a GPU: when the document is loaded,
@@ -125,8 +126,9 @@ impl<'a> Lowering<'a> {
     }
 
     /// Adds a buffer of `bytes` bytes, a multiple of 4, that only this pass uses, and returns its
-    /// handle for steps. A step must write it before another reads it. A capture reads it as the
-    /// material `pass/name`, where `pass` is the [full name](crate#terms) of the pass.
+    /// handle for steps. A step must write it before another reads it. Each buffer of a pass needs
+    /// its own `name`. A capture reads it as the material `pass/name`, where `pass` is the [full
+    /// name](crate#terms) of the pass.
     pub fn scratch(&mut self, name: &str, bytes: u64) -> Scratch {
         self.scratch.push((name.to_owned(), bytes));
         Scratch(self.scratch.len() - 1)
@@ -222,8 +224,9 @@ impl<'a> Lowering<'a> {
     }
 
     /// Returns the word for the kind of the resource `name` that the host's [provider](crate#terms)
-    /// describes, such as `spot` for a `light`. Returns `None` if the provider does not know the
-    /// name or the resource has no kind, and while a document is loaded.
+    /// describes, such as `spot` for a `light`; the first word of its kinds if an include binds a
+    /// material to the name. Returns `None` if the provider does not know the name or the resource
+    /// has no kind, and while a document is loaded.
     pub fn kind_of(&mut self, name: &str) -> Option<&'static str> {
         let environment = self.environment.as_mut()?;
         environment.kind(name).map(|kind| kind.word())

@@ -93,7 +93,7 @@ pub enum Operand {
 }
 
 /// Handle of a buffer that only one pass uses, which
-/// [`Lowering::scratch`](crate::Lowering::scratch) returns. It is valid in the same call of
+/// [`Lowering::scratch`](crate::Lowering::scratch) returns. It is valid only in the same call of
 /// [`PassKind::lower`](crate::PassKind::lower).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Scratch(pub(crate) usize);
@@ -110,7 +110,8 @@ impl From<Scratch> for Operand {
     }
 }
 
-/// Number of threads or workgroups of a [`Dispatch`].
+/// Number of threads or workgroups of a [`Dispatch`], which does nothing if a number is 0. Planning
+/// reports an error for more workgroups than the device allows.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Threads {
     /// This many threads in one dimension, rounded up to whole workgroups: threads beyond the
@@ -138,8 +139,8 @@ pub enum Step<S: Stage> {
     Copy {
         /// Texture, buffer, or part of one, that is copied from.
         from: S::Operand,
-        /// Texture, buffer, or part of one, that is copied to: of the same format and size in
-        /// texels as `from`, or of the same number of bytes.
+        /// Texture, buffer, or part of one, that is copied to: of the same format, size in texels,
+        /// layers, mips and samples as `from`, or of the same number of bytes.
         to: S::Operand,
     },
     /// A clear of a texture, a buffer or a part of one.
@@ -179,20 +180,26 @@ pub struct Program {
     /// error if there are several, or none where a draw needs it.
     pub vertex: Option<Located<String>>,
     /// Name of the fragment entry point. `None` takes the only one in the shader; planning reports
-    /// an error if there are several. A draw without colour attachments takes the only one without
-    /// colour outputs, if there is one.
+    /// an error if there are several, or none where a draw needs it. A draw without colour
+    /// attachments takes the only one without colour outputs, if there is one.
     pub fragment: Option<Located<String>>,
     /// True for a draw without a fragment stage, even if the shader has fragment entry points.
+    /// Without effect on a draw that names [`fragment`](Self::fragment), has colour attachments or
+    /// is [`fullscreen`](Draw::fullscreen).
     pub no_fragment: bool,
     /// Name of the compute entry point. `None` takes the only one in the shader; planning reports
     /// an error if there are several, or none for a dispatch.
     pub compute: Option<Located<String>>,
     /// Values of pipeline-overridable constants by name. A constant that is not listed gets the
     /// value that the pass's entry sets for it (`set`), or else the value of the param or named
-    /// expression of the same name, or else the shader's default.
+    /// expression of the same name, or else the shader's default. The constant `index` gets the
+    /// index of the innermost repetition, and one such as `light_kind` the
+    /// [`number`](crate::ProvidedKind::number) of the kind of `light`. Planning reports an error
+    /// for a constant without any value.
     pub constants: Vec<(String, f64)>,
     /// Names of shader globals, each with the resource that is bound to it. A global that is not
-    /// listed is bound to the resource of the same name, in which dots are underscores.
+    /// listed is bound as a group around the pass says (`bind`), or else to the resource of the
+    /// same name, in which dots are underscores.
     pub bind: Vec<(Located<String>, Operand)>,
 }
 
@@ -214,13 +221,14 @@ impl Program {
     }
 }
 
-/// A render pass with one draw call, a [`Step`].
+/// A render pass with one draw call, a [`Step`]. All attachments have the same size and number of
+/// samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Draw<S: Stage> {
     /// Shader of the draw, with the vertex and fragment entry points.
     pub program: S::Program,
-    /// True if the draw's vertex stage is a built-in triangle over the whole target instead of an
-    /// entry point of the program.
+    /// True if the draw's vertex stage is a built-in triangle over the whole target, of the 3
+    /// vertices that [`call`](Self::call) must have, instead of an entry point of the program.
     pub fullscreen: bool,
     /// Colour attachments of the draw; the index in the list is the fragment shader's `@location`.
     pub colors: Vec<ColorTarget<S>>,
@@ -235,7 +243,8 @@ pub struct Draw<S: Stage> {
     /// attachments.
     pub canvas: Option<S::Canvas>,
     /// Viewport and scissor rectangle of the draw in texels of the target: x and y of its upper
-    /// left corner, width, height. `None` draws to the whole target.
+    /// left corner, width, height. It lies inside the target and is not empty. `None` draws to the
+    /// whole target. A `clear` of an attachment clears all of it even so.
     pub area: Option<[u32; 4]>,
     /// Numbers of vertices and instances of the draw, as numbers or in a buffer.
     pub call: DrawCall<S>,
@@ -364,7 +373,8 @@ pub struct CpuCall<S: Stage> {
     /// gets it.
     pub entry: String,
     /// Buffer of one u32: the number of [items](crate#terms) that the work reads of each buffer and
-    /// writes. Items beyond the end of the shortest buffer are left out.
+    /// writes. Items beyond the end of the shortest buffer are left out, and for 0 items the work
+    /// is not called.
     pub count: S::Operand,
     /// Buffers whose first `count` [items](crate#terms) the work reads.
     pub reads: Vec<CpuItems<S>>,
@@ -377,6 +387,7 @@ pub struct CpuCall<S: Stage> {
 pub struct CpuItems<S: Stage> {
     /// The buffer, whole or in part.
     pub buffer: S::Operand,
-    /// Size of an item in bytes, a multiple of 4.
+    /// Size of an item in bytes, a multiple of 4: the stride that shaders or the provider give the
+    /// buffer, if they do.
     pub bytes: u64,
 }

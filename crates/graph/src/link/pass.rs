@@ -66,7 +66,8 @@ impl LinkedPass {
     }
 }
 
-/// One use of a resource, or of a part of it, by a step: a read, a write or both.
+/// One use of a resource, or of a part of it, by a step: a read, a write or both; neither for the
+/// [`canvas`](crate::step::Draw::canvas) of a draw.
 #[derive(Clone, Debug)]
 pub struct Access {
     /// Id of the resource that the access reads or writes.
@@ -74,7 +75,8 @@ pub struct Access {
     /// Part of the resource that the access reads or writes: mips and layers of a texture, or
     /// [items](crate#terms) of a buffer.
     pub part: SubresourceRange,
-    /// True if the access reads its [`part`](Self::part) of the resource.
+    /// True if the access reads its [`part`](Self::part) of the resource; an attachment that is not
+    /// cleared counts as read, a part in the document's `overwrites` does not.
     pub reads: bool,
     /// True if the access writes its [`part`](Self::part) of the resource.
     pub writes: bool,

@@ -7,8 +7,9 @@
 //! assert_eq!(cut("create_shadow_map.outer", 13), "create_s…uter");
 //! ```
 
-/// Shortens a text to at most `characters` characters: an ellipsis replaces the middle, because the
-/// end of a name often tells more than its middle. A text that is not longer is returned unchanged.
+/// Shortens a text to at most `characters` characters (at least 1): an ellipsis replaces the
+/// middle, because the end of a name often tells more than its middle. A text that is not longer is
+/// returned unchanged.
 pub fn cut(text: &str, characters: usize) -> String {
     let all: Vec<char> = text.chars().collect();
     if all.len() <= characters {

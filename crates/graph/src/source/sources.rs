@@ -14,22 +14,25 @@ use std::{
 /// `shaders/shared/camera.wgsl`), or absolute if the host gave [`Graph::load`](crate::Graph::load)
 /// an absolute one. Names in documents and shaders are resolved before: for a shader `nsm` of
 /// `pipelines/nsm.ron` the store is asked for `pipelines/nsm.wgsl` and then for `shaders/nsm.wgsl`,
-/// until it has the file. No name in a document leads out of the store by `..`.
+/// until it has the file. Documents that a document includes or extends, and pictures, are looked
+/// for beside the document and then in `pipelines`. No name in a document leads out of the store by
+/// `..`.
 pub trait Sources: Send + Sync {
     /// Reads the text of the document or shader file at `path`; `Ok(None)` if the store has no such
-    /// file.
+    /// file. Loading refuses a text that is longer than 8 MiB.
     ///
     /// # Errors
     /// The reason as text, if the file is there but cannot be read.
     fn read(&self, path: &str) -> Result<Option<Arc<str>>, String>;
 
-    /// Returns the names of the files directly in `folder`, sorted, without the folder in front.
-    /// Empty if there is no such folder. Used for listings and for suggestions on misspelt names.
+    /// Returns the names of the files directly in `folder` (empty for the store's root), sorted,
+    /// without the folder in front. Empty if there is no such folder. Used for listings and for
+    /// suggestions on misspelt names.
     fn list(&self, folder: &str) -> Vec<String>;
 
     /// Reads and decodes the picture at `path`, for a `Texture` with a `file`; `Ok(None)` if the
     /// store has no such file. Each store decides which picture formats it decodes; this default
-    /// implementation decodes none.
+    /// implementation decodes none and returns an error for a file that is there.
     ///
     /// # Errors
     /// The reason as text, if the file is there but cannot be read or decoded.
@@ -67,7 +70,7 @@ fn too_long(length: &str) -> String {
 }
 
 /// A store that reads the files of a folder on disk. Absolute paths are read as they are. A text
-/// longer than 8 MiB is an error, and pictures are not decoded.
+/// longer than 8 MiB is an error, and so is a picture: none is decoded.
 #[derive(Clone, Debug)]
 pub struct FolderSources {
     /// Folder on disk that relative paths start from.
@@ -197,7 +200,8 @@ impl Sources for MemorySources {
     }
 }
 
-/// Several stores as one: each file comes from the first store that has it.
+/// Several stores as one: each file comes from the first store that has it. If this store cannot
+/// read its file, its error is returned, and later stores are not asked.
 #[derive(Default)]
 pub struct LayeredSources(
     /// The stores, in the order in which they are searched for a file.

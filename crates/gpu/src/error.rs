@@ -75,7 +75,7 @@ pub enum ExecuteError {
     },
     /// The [`Provider`](crate::Provider) now describes a resource in another way than when the
     /// graph was planned: with another binding, number of items, bytes per item or kind of light;
-    /// or only one of the two describes it.
+    /// or a resource on which the plan [relies](skiagraph_graph::Plan::relies_on) has come or gone.
     #[error(
         "{}: plan the graph anew (`executor.plan().with(|request| request.provider = …)`) and hand \
          the plan to `replace_graph`",

@@ -95,7 +95,7 @@ pub use flow::{
 pub use graph::Graph;
 pub use instantiate::{Claim, Run};
 pub use kinds::{Lowering, PassKind, Registry, step};
-pub use language::{Expr, Name, Reference, Scalar, Value, Word, wgsl_identifier};
+pub use language::{Expr, Name, Reference, wgsl_identifier};
 pub use link::{
     Access, Attachment, BindTarget, Block, CAPTURE, Ids, LinkedBinding, LinkedPass, LinkedProgram,
     PassId, Usage,

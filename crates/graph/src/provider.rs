@@ -88,8 +88,8 @@ impl Provided {
 pub enum ProvidedBinding {
     /// The whole buffer, as `var<uniform>`.
     Uniform,
-    /// The whole array or some of its items, as `var<storage, read>`; items that are bound by
-    /// themselves need the stride that [`Both`](Self::Both) describes.
+    /// The whole array or some of its items, as `var<storage, read>`. Items that are bound by
+    /// themselves must begin at a multiple of the device's `min_storage_buffer_offset_alignment`.
     Storage,
     /// The whole array or some of its items, as `var<storage, read>`, or one of its items as
     /// `var<uniform>`. An item that is bound by itself must begin at a multiple of the device's

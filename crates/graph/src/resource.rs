@@ -181,14 +181,14 @@ impl Texture {
     /// Returns the width and height in texels, each at least 1, of the mip level `mip`, counted
     /// from 0.
     pub fn mip_size(&self, mip: u32) -> [u32; 2] {
-        self.size.map(|edge| (edge >> mip).max(1))
+        self.size.map(|edge| halved(edge, mip))
     }
 
     /// Returns the number of layers, or of slices of a 3D texture, of the mip level `mip`. An array
     /// has the same layers in every mip; the slices of a 3D texture are halved with each mip.
     pub fn mip_layers(&self, mip: u32) -> u32 {
         if self.is_3d {
-            (self.layers >> mip).max(1)
+            halved(self.layers, mip)
         } else {
             self.layers
         }
@@ -246,6 +246,11 @@ pub struct Buffer {
     /// The bytes of `data` in the item layout that shaders declare, numbers in little-endian order;
     /// `None` without `data`.
     pub content: Option<Arc<[u8]>>,
+}
+
+/// Halves an edge so often, rounded down, but to no less than 1.
+fn halved(edge: u32, times: u32) -> u32 {
+    edge.checked_shr(times).unwrap_or_default().max(1)
 }
 
 /// Rule by which a buffer gets more [items](crate#terms), or a texture more layers, in later frames

@@ -297,7 +297,9 @@ impl Memory {
             ResourceKind::CpuWork => Provided::CPU_WORK,
             _ => Provided::ACCELERATION_STRUCTURE,
         };
-        check_as_planned(&resource.name, Some(planned), provider)?;
+        // A provider that has lost a resource says so itself when it is asked for it.
+        let given = provider.describe(&resource.name).unwrap_or(planned);
+        as_planned(&resource.name, Some(planned), Some(given))?;
         let version = provider.version(&resource.name);
         if let Some((plan, memory)) = old
             && let Some((known, physical)) = memory.host_by_name(plan, &resource.name)
@@ -416,16 +418,15 @@ impl Memory {
 /// pass binds it, otherwise than the plan was made for.
 pub(crate) fn check_relied_on(plan: &Plan, provider: &dyn Provider) -> Result<(), ExecuteError> {
     let mut relied_on = plan.relies_on().iter();
-    relied_on.try_for_each(|(name, planned)| check_as_planned(name, *planned, provider))
+    relied_on.try_for_each(|(name, planned)| as_planned(name, *planned, provider.describe(name)))
 }
 
 /// A plan has counted items and sized buffers by the descriptions that it was made for.
-fn check_as_planned(
+fn as_planned(
     name: &str,
     planned: Option<Provided>,
-    provider: &dyn Provider,
+    given: Option<Provided>,
 ) -> Result<(), ExecuteError> {
-    let given = provider.describe(name);
     if given == planned {
         return Ok(());
     }

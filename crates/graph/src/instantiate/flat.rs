@@ -170,11 +170,7 @@ pub(crate) struct PlanInputs {
 impl PlanInputs {
     /// Evaluates the condition of an entry or output, and notes the params and features in it; true
     /// without a condition.
-    pub(super) fn is_there(
-        &mut self,
-        condition: Option<&Expr>,
-        at: &mut At<'_, '_>,
-    ) -> Reported<bool> {
+    pub fn is_there(&mut self, condition: Option<&Expr>, at: &mut At<'_, '_>) -> Reported<bool> {
         let Some(condition) = condition else {
             return Ok(true);
         };

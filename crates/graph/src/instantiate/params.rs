@@ -77,8 +77,7 @@ impl Params {
             .or_else(|| self.list.iter().find(wgsl_name))
     }
 
-    /// Returns the value of the param `name` for an expression, and notes in `reports` that the
-    /// plan depends on it; `None` for an unknown name.
+    /// Returns the values of the params by name, without those that are not valid.
     pub fn values(&self) -> BTreeMap<String, ParamValue> {
         let values = self.list.iter().filter_map(|bound| {
             let value = bound.value.clone().ok()?;
@@ -91,8 +90,8 @@ impl Params {
         self.list.iter().map(|bound| bound.param.name.as_str())
     }
 
-    /// Returns the value of a param for an expression, and notes that the plan depends on it;
-    /// `None` for an unknown name.
+    /// Returns the value of the param `name` for an expression, and notes in `reports` that the
+    /// plan depends on it; `None` for an unknown name.
     pub fn value(&self, name: &str, reports: &mut Reports) -> Option<Reported<Value>> {
         let bound = self.bound(name)?;
         reports.depend_on(bound.roots.iter());

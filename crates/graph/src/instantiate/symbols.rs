@@ -242,7 +242,7 @@ impl<'a> SymbolTable<'a> {
         }
     }
 
-    /// Returns the position of expressions of the loaded document that belong to no entry.
+    /// Returns the names of the loaded document's params on which an expression in a scope depends.
     pub fn roots(&self, scope: ScopeId, expr: &Expr) -> BTreeSet<String> {
         let mut roots = BTreeSet::new();
         self.visit(scope, expr, &mut |scope, leaf| {

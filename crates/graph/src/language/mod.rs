@@ -8,4 +8,3 @@ pub(crate) mod value;
 
 pub use name::{Name, wgsl_identifier};
 pub use syntax::{Expr, Reference};
-pub use value::{Scalar, Value, Word};

@@ -188,7 +188,8 @@ fn uniform_buffer(
             span: global.span.clone(),
         })?;
     }
-    aligned(global, target, scope)?;
+    let alignment = scope.request().limits.min_uniform_buffer_offset_alignment;
+    aligned(global, target, alignment, scope)?;
     Ok((
         BindTarget::Buffer(target.clone()),
         uniform(size),
@@ -198,11 +199,16 @@ fn uniform_buffer(
 
 /// Checks that items of a provided buffer begin at offsets that the device can bind. Those of the
 /// document's buffers are checked when their layout is known.
-fn aligned(global: &Global, target: &Target, scope: &mut PassScope<'_>) -> Reported<()> {
+fn aligned(
+    global: &Global,
+    target: &Target,
+    alignment: u32,
+    scope: &mut PassScope<'_>,
+) -> Reported<()> {
     let ResourceKind::Provided(provided) = &scope.get(target.id).kind else {
         return Ok(());
     };
-    let alignment = u64::from(scope.request().limits.min_uniform_buffer_offset_alignment);
+    let alignment = u64::from(alignment);
     if target.part == SubresourceRange::WHOLE || provided.stride % alignment == 0 {
         return Ok(());
     }
@@ -231,7 +237,8 @@ fn storage_buffer(
             span: global.span.clone(),
         }));
     }
-    aligned(global, target, scope)?;
+    let alignment = scope.request().limits.min_storage_buffer_offset_alignment;
+    aligned(global, target, alignment, scope)?;
     let id = scope.symbols().base(target.id);
     scope.layouts.see(id, &target.part, global);
     Ok((

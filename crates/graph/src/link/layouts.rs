@@ -180,6 +180,12 @@ impl Layouts {
         let resource = symbols.get(id);
         let mut sized = buffer.clone();
         let declared = || resource.declared.clone();
+        // A pass's own buffers and captures have their bytes counted, in fours.
+        let is_declared = resource.declared.is_some();
+        let items = match buffer.count {
+            Some(count) if is_declared => count,
+            _ => 1,
+        };
         let whole = || {
             seen.iter()
                 .filter(|view| view.part == SubresourceRange::WHOLE)
@@ -188,9 +194,9 @@ impl Layouts {
         for view in whole() {
             let size = match (view.stride, buffer.count) {
                 (None, _) => view.fixed,
-                (Some(stride), Some(count)) => {
+                (Some(stride), Some(_)) => {
                     sized.stride = stride;
-                    view.fixed.saturating_add(stride.saturating_mul(count))
+                    view.fixed.saturating_add(stride.saturating_mul(items))
                 }
                 (Some(_), None) => {
                     return Err(LayoutError::NoCount {
@@ -213,24 +219,20 @@ impl Layouts {
                 });
             }
             sized.stride = needed;
-            let count = buffer.count.unwrap_or(1);
-            bytes = Some(bytes.unwrap_or(0).max(count.saturating_mul(needed)));
+            bytes = Some(bytes.unwrap_or(0).max(items.saturating_mul(needed)));
         }
-        // A pass's own buffers and captures have their bytes counted, in fours.
-        let is_own = resource.declared.is_some();
         let is_array = whole().any(|view| view.stride.is_some());
-        if is_own
+        if is_declared
             && !is_array
+            && buffer.data.is_none()
             && let (Some(_), Some(fixed)) = (buffer.count, whole().next())
         {
-            if buffer.data.is_none() {
-                return Err(LayoutError::IgnoredCount {
-                    name: resource.name.clone(),
-                    span: fixed.span.clone(),
-                    declared: declared(),
-                });
-            }
-        } else if !is_own && let Some(count) = buffer.count {
+            return Err(LayoutError::IgnoredCount {
+                name: resource.name.clone(),
+                span: fixed.span.clone(),
+                declared: declared(),
+            });
+        } else if !is_declared && let Some(count) = buffer.count {
             bytes = Some(bytes.unwrap_or(0).max(count * 4));
         }
         self.items(&sized, seen, symbols, &resource.name)?;

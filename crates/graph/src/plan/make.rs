@@ -125,9 +125,10 @@ pub(super) fn plan_all(graph: &Arc<Loaded>, request: &PlanRequest<'_>) -> Outcom
         reports.warn(copies);
         merges = false;
     };
-    let plan_inputs = std::mem::take(&mut linked.plan_inputs);
+    let mut plan_inputs = std::mem::take(&mut linked.plan_inputs);
     let mut reports = std::mem::take(&mut linked.symbols.reports);
-    match schedule(graph, linked, request, values, &mut reports) {
+    let inputs = &mut plan_inputs;
+    match schedule(graph, linked, request, values, inputs, &mut reports) {
         Some(plan) => finish(plan, request, reports, plan_inputs),
         None => Outcome::failed(reports, plan_inputs),
     }
@@ -140,6 +141,7 @@ fn schedule(
     mut linked: Linked<'_>,
     request: &PlanRequest<'_>,
     values: BTreeMap<String, ParamValue>,
+    plan_inputs: &mut PlanInputs,
     reports: &mut Reports,
 ) -> Option<Planned> {
     let is_complete = linked.first_invalid.is_none();
@@ -154,7 +156,8 @@ fn schedule(
     // Outputs are found as names in documents are, and so are their mistakes.
     std::mem::swap(&mut linked.symbols.reports, reports);
     let root = linked.symbols.root();
-    let readable = readable(graph, request, &mut linked.symbols.at(root, None), written);
+    let at = &mut linked.symbols.at(root, None);
+    let readable = readable(graph, request, at, written, plan_inputs);
     std::mem::swap(&mut linked.symbols.reports, reports);
     if !is_complete || reports.errors() > 0 {
         return None;

@@ -4,8 +4,9 @@ use crate::{
     compose::loaded::Loaded,
     diagnostics::reports::Reports,
     errors::plan::OutputError,
-    expressions::eval::{self, Environment},
+    expressions::eval::Environment,
     instantiate::{
+        flat::PlanInputs,
         lower::LoweredPass,
         symbols::{At, SymbolTable},
     },
@@ -14,12 +15,13 @@ use crate::{
 };
 
 /// Returns names and targets of all outputs and captures that the request wants. `written` tells if
-/// a pass writes a target.
+/// a pass writes a target. Notes in `plan_inputs` the params and features in conditions of outputs.
 pub(super) fn readable(
     graph: &Loaded,
     request: &PlanRequest<'_>,
     at: &mut At<'_, '_>,
     written: impl Fn(&Target) -> bool,
+    plan_inputs: &mut PlanInputs,
 ) -> Vec<(String, Target)> {
     let mut readable = Vec::new();
     let outputs = graph.document.material_outputs();
@@ -41,8 +43,7 @@ pub(super) fn readable(
         }
     };
     for output in graph.document.material_outputs() {
-        let condition = output.condition.as_ref();
-        if condition.is_some_and(|condition| !eval::boolean(condition, at).unwrap_or(false)) {
+        if plan_inputs.is_there(output.condition.as_ref(), at) != Ok(true) {
             continue;
         }
         let name = output.name.text();

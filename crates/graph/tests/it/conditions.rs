@@ -120,6 +120,11 @@ fn check_looks_at_every_value_of_a_condition() {
     // In a range without an end no value is tried.
     assert_eq!(told(r#""value < 2.0""#), [""; 0]);
     assert_eq!(told(r#""soft || radius < 9""#), [""; 0]);
+    // The condition of an output, whose material no pass writes.
+    let output = r#""image", (name: "late", material: "blurred", if: "!soft")"#;
+    let found = checked(&files(FIRST, output));
+    let told = |found: &Diagnostic| found.message.starts_with("with `soft` = false: ");
+    assert!(found.iter().any(told), "{found:?}");
 }
 
 /// A group's `if`, `repeat` and `run` are for all of its entries, its `bind` and `set` for each

@@ -1,11 +1,12 @@
 //! Content of materials and how shaders see it: 3D textures, pictures, constant numbers, uniform
 //! buffers, items of buffers, a pass kind's own buffers, sizes by copies.
 
-use crate::support::{Files, checked, codes, load, plan, right};
+use crate::support::{Files, Triangle, checked, codes, load, plan, right};
 use serde::Deserialize;
 use skiagraph_graph::{
     BindTarget, Buffer, Code, Graph, LinkedBinding, Lowering, NoProvider, Origin, PassKind, Plan,
-    PlanRequest, Registry, Resource, ResourceKind, step::Step,
+    PlanRequest, Reference, Registry, Resource, ResourceKind,
+    step::{Dispatch, Groups, Operand, Step, Threads},
 };
 use wgt::{ShaderStages, TextureViewDimension};
 
@@ -62,6 +63,7 @@ fn a_3d_texture_is_bound_whole_and_drawn_to_by_slices() {
     };
     assert!(fog.is_3d);
     assert_eq!((fog.size, fog.layers, fog.mip_layers(1)), ([4, 2], 3, 1));
+    assert_eq!((fog.mip_size(40), fog.mip_layers(40)), ([1, 1], 1));
     assert_eq!(fog.bytes(), 4 * (4 * 2 * 3 + 2));
     let look = found.all_passes().last().expect("there is one");
     let bindings = &look.steps[0].program().expect("it has one").bindings;
@@ -524,7 +526,7 @@ fn sizes_go_through_copies_of_copies() {
     assert!(!checked(&ring).is_empty());
 }
 
-/// A kind with a buffer of its own.
+/// A kind with a buffer of its own, of 64 bytes.
 #[derive(Debug, Deserialize)]
 struct Count {}
 
@@ -573,4 +575,72 @@ fn a_kinds_own_buffer_is_no_material() {
         2,
         "no output needs what only they see"
     );
+}
+
+/// A kind that has a shader fill a buffer of its own, of 64 bytes.
+#[derive(Debug, Deserialize)]
+struct Fill {
+    result: Reference,
+}
+
+impl PassKind for Fill {
+    fn lower(&self, pass: &mut Lowering<'_>) {
+        let scratch = Operand::from(pass.scratch("scratch", 64));
+        let mut program = pass.program_of("fill");
+        program.bind.push((pass.named("items"), scratch.clone()));
+        pass.step(Step::Dispatch(Dispatch {
+            program,
+            groups: Groups::Direct(Threads::Groups([1; 3])),
+        }));
+        pass.step(Step::Copy {
+            from: scratch,
+            to: (&self.result).into(),
+        });
+    }
+}
+
+/// Its size is that which the kind gives it, whatever items a shader sees in it.
+#[test]
+fn a_kinds_own_buffer_has_the_size_that_it_asks_for() {
+    let mut registry = Registry::standard();
+    registry.register::<Fill>("Fill");
+    for item in ["u32", "vec4<u32>"] {
+        let shader = format!(
+            "var<storage, read_write> items: array<{item}>;
+            @compute @workgroup_size(1) fn main() {{ items[0] = {item}(1); }}"
+        );
+        let files = Files::graph(
+            r#"materials: [Buffer(name: "result")], passes: [Fill(name: "fill", result: "result")],
+            outputs: ["result"]"#,
+        )
+        .with("fill.wgsl", shader);
+        let graph = right(Graph::load("graph.ron", &registry, &files));
+        let found = right(graph.plan(&PlanRequest::new([8, 8], &NoProvider)));
+        for name in ["fill/scratch", "result"] {
+            assert_eq!(buffer(&found, name).bytes, 64, "{name} of {item}");
+        }
+    }
+}
+
+/// An item that is bound as storage needs the alignment of storage buffers, whatever uniforms need.
+#[test]
+fn items_of_the_host_are_aligned_as_they_are_bound() {
+    let files = Files::graph(
+        r#"materials: [Texture(name: "image", format: R32Float)],
+        passes: [Fullscreen(name: "one", bind: {"one": "scene.positions[1]"}, color: ["image"])],
+        outputs: ["image"]"#,
+    );
+    let shader = "var<storage, read> one: vec4<f32>;
+        @fragment fn fragment() -> @location(0) f32 { return one.x; }";
+    let graph = right(load(&files.with("one.wgsl", shader)));
+    for (uniform, storage, is_planned) in [(256, 16, true), (16, 256, false)] {
+        let mut request = PlanRequest::new([8, 8], &Triangle);
+        request.limits.min_uniform_buffer_offset_alignment = uniform;
+        request.limits.min_storage_buffer_offset_alignment = storage;
+        assert_eq!(
+            graph.plan(&request).is_ok(),
+            is_planned,
+            "{uniform}, {storage}"
+        );
+    }
 }

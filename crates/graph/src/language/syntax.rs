@@ -3,9 +3,9 @@
 use super::{name::Name, value::Value};
 use crate::source::span::{Located, Span};
 
-/// A parsed expression of a document, whose value ([`Value`]) is a number, size, vector, bool, word
-/// or format: `"ceil_div(viewport.size, 2)"`. docs/authoring.md has the grammar.
-/// [`Lowering`](crate::Lowering) evaluates the expressions in the fields of a pass.
+/// A parsed expression of a document, whose value is a number, size, vector, bool, word or format:
+/// `"ceil_div(viewport.size, 2)"`. docs/authoring.md has the grammar. [`Lowering`](crate::Lowering)
+/// evaluates the expressions in the fields of a pass.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expr {
     pub(crate) kind: ExprKind,

@@ -85,7 +85,7 @@ pub struct Finished {
     pub folder: PathBuf,
     /// The records of all rows that the folder holds now, earlier ones included.
     pub record: AdapterRecord,
-    /// Names of the rows that are not in the record: the time was up, or the user or the system
+    /// Names of the rows that this call did not finish: the time was up, or the user or the system
     /// ended them by a signal (SIGHUP, SIGINT, SIGTERM).
     pub left: Vec<&'static str>,
 }

@@ -76,7 +76,8 @@ pub struct Series<'a> {
     is_done: Vec<bool>,
     /// Which of them others measure.
     is_left_out: Vec<bool>,
-    /// Results so far: the finished runs, in the order in which they were planned.
+    /// Results so far: the finished runs, those reused from earlier results ([`Kept::All`])
+    /// included, in the order in which they were planned.
     pub results: Results,
     /// Where they are kept.
     store: Store,

@@ -41,8 +41,9 @@ pub struct MeshSceneOptions {
     pub file: MeshFileOptions,
     /// Camera of the view that is chosen for a file without cameras. Without an `eye`, the view is
     /// [chosen](default_view) for `up` (y unless given) and `fov_y_degrees` (60 unless given). With
-    /// an `eye`, it looks from there at the middle of the mesh. [`OwnScene::views`] applies all
-    /// parts of the camera: give the same one there. `up` is also up for the floor and the ground.
+    /// an `eye`, the view looks from there at the middle of the mesh. [`OwnScene::views`] applies
+    /// all parts of the camera: give the same one there. `up` is also up for the floor and the
+    /// ground.
     pub camera: OwnCamera,
     /// Direction in which the light of a sun travels, world space, of any length above 0, for a
     /// file without lights; `None` chooses a sun or a lamp.
@@ -165,9 +166,9 @@ impl OwnScene {
     /// Returns the views of the scene that `name` selects: the first view for `None`, every view
     /// for `all`. `camera` replaces parts of their cameras, and `sun`, the direction in which the
     /// light of a sun travels, their lights. Clip planes that `camera` leaves open are fitted to
-    /// the mesh if it has an eye or the view was chosen. Such views are named `own`, or `VIEW-own`
-    /// if there are several, but a chosen view keeps its name. `sun` is ignored if the file had no
-    /// light: give it as [`MeshSceneOptions::sun`] then.
+    /// the mesh if `camera` has an eye or the view was chosen. Views with a replaced part are named
+    /// `own`, or `VIEW-own` if there are several, but a chosen view keeps its name. `sun` is
+    /// ignored if the file had no light: give it as [`MeshSceneOptions::sun`] then.
     ///
     /// # Errors
     /// The scene has no such view, or `camera` or `sun` does not make a valid view or light.

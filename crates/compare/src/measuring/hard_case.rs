@@ -69,9 +69,9 @@ pub struct MethodRun {
 }
 
 impl MethodRun {
-    /// Prepares a method as one that the adapter can run; set [`Column::unavailable`] for another
-    /// one, and no case runs it. `exact` is a list of names of methods or presets: a method in it
-    /// is judged as guaranteed to be exact.
+    /// Prepares a method as one that the adapter can run; set [`Column::unavailable`] of one that
+    /// it cannot run, and every case leaves it out. `exact` is a list of names of methods or
+    /// presets: a method in it is judged as guaranteed to be exact.
     ///
     /// # Errors
     /// The errors of [`guarantee::find`].

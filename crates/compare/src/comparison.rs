@@ -51,15 +51,16 @@ pub struct Protocol {
     /// inputs may be skipped; 0 to time none. A camera path is walked a second time with every pass
     /// run if passes were skipped, unless this is 0.
     pub cached_frames: u32,
-    /// Number of sample positions within a pixel that the camera takes in turns along a camera
-    /// path, frame by frame; the [reference](crate#terms) samples the same ones. All frames of a
-    /// still view sample the first. `None` to sample the pixel's centre.
+    /// Number of sample positions within a pixel (0 counts as 1) that the camera takes in turns
+    /// along a camera path, frame by frame; the [reference](crate#terms) samples the same ones. All
+    /// frames of a still view sample the first. `None` to sample the pixel's centre.
     pub jitter: Option<u32>,
     /// Mode of the reference, an `f64` ray tracer (the oracle): its shadow rays start exactly on
     /// the visible surfaces, or at an offset from them.
     pub oracle: OracleMode,
-    /// Number of shadow rays that the [reference](crate#terms) traces from a pixel to a light [with
-    /// an extent](crate#terms); other lights take one ray.
+    /// Least number of shadow rays that the [reference](crate#terms) traces from a pixel to a light
+    /// [with an extent](crate#terms), rounded up to an even number of at least four; other lights
+    /// take one ray.
     pub reference_samples: u32,
     /// True if pictures of every run are written into the folder of the results.
     pub pictures: bool,
@@ -155,8 +156,9 @@ impl Comparison {
     /// effect.
     ///
     /// # Errors
-    /// The faults of all graphs together; a GPU that can run none of the methods; runs whose
-    /// pictures would have the same file name.
+    /// The faults of all graphs together; outputs whose size or format a shadow method must not
+    /// have; a GPU that can run none of the methods, or not the graph of the visible triangles in a
+    /// viewport; runs whose pictures would have the same file name.
     pub fn check(&self, session: Session) -> Result<(), CompareError> {
         let device = Capabilities::new(session.gpu);
         let mut provider = SceneProvider::new(self.scene.clone());

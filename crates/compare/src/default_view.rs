@@ -64,25 +64,25 @@ struct Eye {
 /// A view that [`default_view`] chose for a mesh, with a position for a lamp.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DefaultView {
-    /// The chosen view. Its far plane lies behind the whole mesh, its near plane at 1/10,000 of the
-    /// far plane's distance.
+    /// The chosen view, named `inside` or `main`, without a light of its own. Its far plane lies
+    /// behind the whole mesh, its near plane at 1/10,000 of the far plane's distance.
     pub view: View,
     /// True if the eye is inside the mesh, with surfaces all around it.
     pub is_inside: bool,
     /// True if the eye is inside, and even the best view under the given light has less than 1 % of
     /// its pixels lit. The view was then chosen as if a lamp at `lamp` were the light.
     pub is_dark: bool,
-    /// Position at which a lamp would light the view, in front of the eye and above it, in the
-    /// mesh's units.
+    /// Position at which a lamp would light the view, in front of the eye and above it, world
+    /// space.
     pub lamp: DVec3,
 }
 
 /// Chooses a view of a mesh under a light, with an up direction and a vertical field of view in
-/// degrees. It tries eyes above the floors of a grid of 9 × 9 columns through the mesh. The view is
-/// from inside if surfaces surround an eye in a quarter or more of the columns that have a floor;
-/// otherwise it is from outside and shows the whole mesh. Views that show both lit and shadowed
-/// surfaces, far away, are preferred. Returns `None` if the mesh is empty, `up` is zero or no
-/// candidate is a valid view.
+/// degrees. Eyes are tried above the floors of a grid of 9 × 9 columns through the mesh. The view
+/// is from inside if surfaces surround an eye in a quarter or more of the columns that have a
+/// floor; otherwise it is from outside and shows the whole mesh. Views that show both lit and
+/// shadowed surfaces, far away, are preferred. Returns `None` if the mesh is empty, `up` is zero or
+/// no candidate is a valid view.
 pub fn default_view(
     mesh: &Mesh,
     light: &LightKind,
@@ -125,8 +125,9 @@ const SAME_ANGLE: f64 = 0.7;
 /// Chooses at most `count` views of a mesh other than `like`, for methods that are to be tried on
 /// several views. First come at most two that show from other sides what `like` shows, then views
 /// in other directions and from other places, inside the mesh if it surrounds the camera. Views
-/// that show both lit and shadowed surfaces, far away, are preferred. Their names are empty. The
-/// list is shorter if there are too few views that differ and show any surface.
+/// that show both lit and shadowed surfaces, far away, are preferred. Their names are empty, and
+/// their own light is that of `like`. The list is shorter if there are too few views that differ
+/// and show any surface.
 pub fn more_views(mesh: &Mesh, light: &LightKind, like: &View, count: usize) -> Vec<View> {
     let (Some((min, max)), Some(up)) = (mesh.bounds(), like.up.try_normalize()) else {
         return Vec::new();

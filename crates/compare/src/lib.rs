@@ -29,7 +29,8 @@
 //! wrong against an exact reference. A [`Sink`](sink::Sink) receives the progress of the work and
 //! may end it early. To write results into a folder, and to continue from earlier ones in it, use a
 //! [`Series`](measuring::series::Series) step by step. In this way an engine's own tests can find
-//! out which methods are right on a scene of that engine (`tests/it/engine.rs`).
+//! out which methods are right on a scene of that engine (`crates/compare/tests/it/engine.rs` in
+//! the repository).
 //!
 //! - [`graphs`]: turns names into methods that can run.
 //! - [`measuring`]: runs methods, times them and judges their pictures.
@@ -37,17 +38,18 @@
 //! - [`pictures`]: writes texels as pictures.
 //! - [`foreign`]: judges pictures of other renderers.
 //! - [`rays`]: times and judges rays without a method.
-//! - [`adapters`]: finds out about one adapter what there is to find out.
+//! - [`adapters`]: tests how right and how fast methods are on one GPU adapter.
 //! - [`files`]: writes, locks and watches files.
 //!
 //! # Terms
 //!
-//! - *Method* ([`Method`](graphs::method::Method)): a shadow method in one setting of its params.
-//!   Its *preset* ([`Preset`](graphs::preset::Preset)) is the graph that it runs: one that ships
-//!   with Skiagraph, or a document of one's own with the output `visibility`.
+//! - *Method* ([`Method`](graphs::method::Method)): a shadow method in one setting of its
+//!   [params](skiagraph_graph::Param). Its *preset* ([`Preset`](graphs::preset::Preset)) is the
+//!   graph that it runs, read from a RON *document*: one that ships with Skiagraph, or one of your
+//!   own with the output `visibility`.
 //! - *Run* ([`Run`](records::results::Run)): one method on one view or camera path, in one
-//!   viewport. *Cell*: the same, with the protocol, as it is known on every machine
-//!   ([`cell::id`](measuring::cell::id)).
+//!   viewport. *Cell*: a run together with the protocol, under an id that is the same on every
+//!   machine ([`cell::id`](measuring::cell::id)).
 //! - *Reference*, *ground truth*, *truth*: the exact answer that methods are judged against. The
 //!   *oracle*, a ray tracer in f64, finds it ([`skiagraph_reference`]).
 //! - *Receiver*: the point of a surface that a pixel shows. *Caster*: a triangle that may keep the

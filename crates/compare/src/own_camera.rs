@@ -46,7 +46,7 @@ impl OwnCamera {
 
     /// Returns a copy of `view` whose camera has these parts instead of its own. If `fits` is true,
     /// a clip plane that is `None` here is fitted to the mesh: far just behind the mesh, near at a
-    /// ten-thousandth of far.
+    /// ten-thousandth of far. The copy is not checked: [`View::check`] does that.
     pub fn of_view(&self, view: &View, mesh: &Mesh, fits: bool) -> View {
         let mut own = View {
             eye: self.eye.unwrap_or(view.eye),

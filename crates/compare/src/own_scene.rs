@@ -39,11 +39,14 @@ const DEFAULT_FOV: f64 = 60.0;
 pub struct MeshSceneOptions {
     /// Settings for reading the file: its polygons and materials.
     pub file: MeshFileOptions,
-    /// Parts of the camera of the view that is chosen for a file without cameras; `near` and `far`
-    /// are ignored here.
+    /// Camera of the view that is chosen for a file without cameras. Without an `eye`, the view is
+    /// [chosen](default_view) for `up` (y unless given) and `fov_y_degrees` (60 unless given). With
+    /// an `eye`, the view looks from there at the middle of the mesh. [`OwnScene::views`] applies
+    /// all parts of the camera: give the same one there. `up` is also up for the floor and the
+    /// ground.
     pub camera: OwnCamera,
-    /// Direction in which the light of a sun travels, world space, for a file without lights;
-    /// `None` chooses a sun or a lamp.
+    /// Direction in which the light of a sun travels, world space, of any length above 0, for a
+    /// file without lights; `None` chooses a sun or a lamp.
     pub sun: Option<DVec3>,
     /// True to add a ground, a square slab, below a mesh that has no floor.
     pub ground: bool,
@@ -79,7 +82,8 @@ pub struct Chosen {
 /// scene or a scene file nothing is chosen, and there are no clips.
 #[derive(Debug)]
 pub struct OwnScene {
-    /// The loaded scene.
+    /// The loaded scene. A view that was chosen for an `eye` in the options gets its clip planes
+    /// only from [`views`](Self::views).
     pub scene: Scene,
     /// Changes that the import made, and parts that it left out.
     pub report: ImportReport,
@@ -161,9 +165,10 @@ impl OwnScene {
 
     /// Returns the views of the scene that `name` selects: the first view for `None`, every view
     /// for `all`. `camera` replaces parts of their cameras, and `sun`, the direction in which the
-    /// light of a sun travels, their lights. Such views are named `own`, or `VIEW-own` if there are
-    /// several, but a chosen view keeps its name. `sun` is ignored if the scene's light was chosen,
-    /// as it is that sun then.
+    /// light of a sun travels, their lights. Clip planes that `camera` leaves open are fitted to
+    /// the mesh if `camera` has an eye or the view was chosen. Views with a replaced part are named
+    /// `own`, or `VIEW-own` if there are several, but a chosen view keeps its name. `sun` is
+    /// ignored if the file had no light: give it as [`MeshSceneOptions::sun`] then.
     ///
     /// # Errors
     /// The scene has no such view, or `camera` or `sun` does not make a valid view or light.

@@ -21,7 +21,7 @@ use itertools::Itertools;
 use skiagraph_scene::{Scene, View};
 
 /// Returns lines on a mesh file that was loaded with `options`: its views and lights, its size, and
-/// the program's options that choose others.
+/// the options of the program `skiagraph` (`--eye`, `--light`) that choose others.
 pub fn notes(options: &MeshSceneOptions, own: &OwnScene) -> Vec<String> {
     let chosen = &own.chosen;
     let notes = [

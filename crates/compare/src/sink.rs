@@ -59,7 +59,7 @@ pub trait Sink: Sync {
     /// Receives the end of the current step. `is_whole` is false if it ended early.
     fn end_step(&self, _is_whole: bool) {}
 
-    /// Returns the flag that asks the work to end early. A
+    /// Returns the flag that asks the work to end early once it is true. A
     /// [`Series`](crate::measuring::series::Series) keeps the results that it has by then. By
     /// default the flag is never set.
     fn stop(&self) -> &AtomicBool {

@@ -1,6 +1,6 @@
-//! Finds out about one adapter what there is to find out, in minutes: each question is a row, a
-//! command of this program in a process of its own with a time limit. A crash, a lost device and a
-//! hang are answers, too.
+//! Tests in minutes how right and how fast methods are on one adapter (a GPU through one backend
+//! and driver). Each question is a *row*: a command of the program `skiagraph` in a process of its
+//! own with a time limit. A crash, a lost device and a hang are answers, too.
 //!
 //! ```no_run
 //! use skiagraph_compare::{adapters::running::{AdapterRequest, run}, sink::Silent};

@@ -17,16 +17,21 @@ pub struct Row {
     pub name: &'static str,
     /// The question, as a line of text.
     pub asks: &'static str,
-    /// Longest time in seconds. It is generous, as a machine may have other work; the limits
-    /// together are longer than the eight minutes after which no row begins and none goes on.
+    /// Longest time in seconds. It is generous, as a machine may have other work; the limits of all
+    /// rows together exceed the default of
+    /// [`AdapterRequest::limit`](crate::adapters::running::AdapterRequest::limit), which ends all
+    /// rows.
     pub seconds: u64,
     /// Words of the command, without the program and without `--out`.
     pub command: Vec<String>,
-    /// Ability without which the row is left out.
+    /// Ability without which the row is not run but recorded as
+    /// [`Outcome::Lacking`](crate::records::adapter::Outcome::Lacking); `None` if it needs none.
     pub needs: Option<Ability>,
-    /// Backends on which the row is left out, as none of its methods is proven there.
+    /// Backends (vulkan, metal, dx12, gl) on which the row is not run either, as its methods are
+    /// not known to be right there.
     pub unproven_on: &'static [&'static str],
-    /// Groups of methods that must answer alike to the bit, the first one as the others.
+    /// Groups of names of methods whose answers must be the same bits; the first of a group is
+    /// compared with each other one.
     pub alike: &'static [&'static [&'static str]],
 }
 
@@ -193,7 +198,8 @@ const LINES: &[Line] = &[
 /// process has measured is kept.
 const COMPARED: &str = "--warmup 1 --cached-frames 0 --images none --resume";
 
-/// Returns the rows in their order. Small ones only try the way. A software adapter gets fewer
+/// Returns the rows in the order in which they run. If `is_small` is true, they are fewer and
+/// measure little, to try in short time that all works. If `is_software` is true, they trace fewer
 /// rays.
 pub fn rows(is_small: bool, is_software: bool) -> Vec<Row> {
     let rays = if is_software { RAYS / 40 } else { RAYS };

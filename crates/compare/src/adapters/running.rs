@@ -1,4 +1,5 @@
-//! Runs the rows of one adapter, one process after the other, and keeps what each found out.
+//! Runs the [rows](crate::adapters::rows) of one adapter, one process after the other, and keeps
+//! the answer of each.
 //!
 //! ```no_run
 //! use skiagraph_compare::{adapters::running::{AdapterRequest, run}, sink::Silent};
@@ -34,29 +35,30 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Name of the file in which all rows end.
+/// Name of the file that holds an [`AdapterRecord`], the records of all rows.
 pub const FILE: &str = "adapter.json";
 
-/// Request to ask one adapter all rows.
+/// Request to run the [rows](crate::adapters::rows::rows) on one adapter.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct AdapterRequest {
-    /// The program `skiagraph`, which answers the rows.
+    /// Path of the program `skiagraph`, whose commands answer the rows.
     pub program: PathBuf,
     /// Words for each command that choose the adapter: `--backend`, `gl`.
     pub arguments: Vec<String>,
-    /// Folder for the rows; `None` for one in the current folder, named by adapter, backend and
-    /// driver.
+    /// Folder for the rows, made if it is missing; `None` for one in the working directory, named
+    /// `adapter-` with the words of adapter, backend and driver.
     pub out: Option<PathBuf>,
-    /// Longest time for all rows. Rows that do not begin in it are left for the next time.
+    /// Longest time for all rows. Rows that do not begin or end in it are left for the next call of
+    /// [`run`].
     pub limit: Duration,
-    /// True for the small rows, which try the way and measure little.
+    /// True for the small rows, which measure little and only try that all works.
     pub is_small: bool,
     /// Names of the rows to run; empty for all.
     pub only: Vec<String>,
-    /// True to run rows that the folder holds once more.
+    /// True to run again the rows that the folder holds already.
     pub again: bool,
-    /// Commit that the program was built from, if it knows.
+    /// Commit that the program was built from, for the record; `None` if unknown.
     pub commit: Option<String>,
 }
 
@@ -76,14 +78,15 @@ impl AdapterRequest {
     }
 }
 
-/// The rows that are there.
+/// Result of [`run`].
 #[derive(Clone, Debug)]
 pub struct Finished {
-    /// Folder with a folder for each row, and [`FILE`].
+    /// Folder with a folder for each row, named like it, and [`FILE`].
     pub folder: PathBuf,
-    /// The rows of the folder.
+    /// The records of all rows that the folder holds now, earlier ones included.
     pub record: AdapterRecord,
-    /// Names of the rows that found no time, or were ended from outside.
+    /// Names of the rows that this call did not finish: the time was up, or the user or the system
+    /// ended them by a signal (SIGHUP, SIGINT, SIGTERM).
     pub left: Vec<&'static str>,
 }
 
@@ -97,13 +100,15 @@ const LEAST: Duration = Duration::from_secs(3);
 /// which pass hung.
 const FRAME_SECONDS: &str = "25";
 
-/// Asks an adapter all rows that its folder does not hold yet. After each row its record is in the
-/// folder of the row, as row.json, and in [`FILE`]; a process that is killed at any time loses no
-/// row but the one under way.
+/// Runs all rows on an adapter that its folder does not hold yet with the same command. After each
+/// row its record is in the folder of the row, as row.json, and in [`FILE`]; a process that is
+/// killed at any time loses no row but the one under way.
 ///
 /// # Errors
-/// An adapter that cannot be opened; a folder of another adapter, program or kind of rows; a file
-/// that cannot be written; an early end. Rows that fail, crash or hang are no error.
+/// An adapter that cannot be opened; an unknown name in [`AdapterRequest::only`]; a folder of
+/// another adapter, program, commit or size of rows, or in which another process runs rows; a file
+/// that cannot be read or written; an [early end](crate#terms). Rows that fail, crash or hang are
+/// no error.
 pub fn run(request: &AdapterRequest, sink: &dyn Sink) -> Result<Finished, CompareError> {
     let began = Instant::now();
     let abilities = abilities(request, sink)?;

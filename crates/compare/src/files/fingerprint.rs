@@ -64,7 +64,7 @@ impl Fingerprint {
         self.with(other.0.to_le_bytes())
     }
 
-    /// Returns the hash extended by a mesh (positions, triangles, normals, masks) and its lights.
+    /// Returns the hash extended by a mesh (positions, triangles, normals, masks) and lights.
     pub fn with_scene(self, mesh: &Mesh, lights: &[Light]) -> Self {
         let floats = |list: &[glam::Vec3]| -> Self {
             let numbers = list.iter().flat_map(|v| v.to_array());

@@ -48,8 +48,8 @@ impl Mistake {
         }
     }
 
-    /// Returns the mistake in a text of which its own is a part that begins at the byte `at`, for
-    /// example a line.
+    /// Moves the mistake from a part of a text, such as a line, to the whole text, in which the
+    /// part begins at the byte `at`.
     pub fn behind(self, at: usize) -> Self {
         Self {
             at: self.at + at,

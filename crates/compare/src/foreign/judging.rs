@@ -145,8 +145,9 @@ pub(crate) struct Truth<'a> {
 /// [`under_lights`]: crate::measuring::view_or_path::under_lights
 ///
 /// # Errors
-/// A file that cannot be read or is not such a picture; pictures of different sizes; ids or depths
-/// that are not those of the scene under this camera; no GPU; an [early end](crate#terms).
+/// An empty list of pictures; a file that cannot be read or is not such a picture; pictures of
+/// different sizes; ids or depths that are not those of the scene under this camera; no GPU; an
+/// [early end](crate#terms).
 pub fn judge(
     judging: &Judging,
     scene: Scene,

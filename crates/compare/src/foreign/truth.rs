@@ -57,9 +57,10 @@ impl TruthRequest {
     }
 }
 
-/// Writes the [reference](crate#terms)'s answers for a view as arrays, one number for each pixel,
-/// and `camera.json` ([`CameraRecord`]) into a folder, which is made if it is missing. Returns a
-/// line of text for each file: its name and meaning.
+/// Writes the [reference](crate#terms)'s answers for a view under its default light
+/// ([`Scene::light_of`]) as arrays, one number for each pixel, and `camera.json` ([`CameraRecord`])
+/// into a folder, which is made if it is missing. Returns a line of text for each file: its name
+/// and meaning.
 ///
 /// # Errors
 /// A view for which the reference cannot be computed, no GPU, an [early end](crate#terms), a file

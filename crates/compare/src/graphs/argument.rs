@@ -46,8 +46,8 @@ pub struct MethodArgument {
 
 impl MethodArgument {
     /// Splits a word of the command line into a preset and its assignments. A part without `=`
-    /// belongs to the value before it, as vectors contain commas. A word that is the path of a file
-    /// is not split.
+    /// belongs to the value before it, as vectors contain commas. A word that is the path of a
+    /// file, or that has no `=` behind the `@`, is not split.
     pub fn new(word: &str) -> Self {
         // Folders have any name.
         let split = word.split_once('@').filter(|_| !Path::new(word).is_file());

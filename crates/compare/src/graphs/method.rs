@@ -38,7 +38,8 @@ pub struct Method {
     pub name: String,
     /// The preset, with its graph.
     pub preset: Arc<Preset>,
-    /// Values of the params that are set; all others have their defaults.
+    /// Values of the params that are set; all others have their defaults. A change here does not
+    /// reach [`value`](Self::value) and [`map_size`](Self::map_size): create a new method instead.
     pub params: ParamValues,
     /// Width and height of the viewport in pixels.
     pub viewport: [u32; 2],
@@ -149,7 +150,8 @@ impl Method {
         scene.with_all(self.preset.fingerprint).to_string()
     }
 
-    /// Returns the value that a param of the method runs with; `None` for an unknown name.
+    /// Returns the value that a param of the method runs with; `None` for an unknown name, and for
+    /// every name if a value in [`params`](Self::params) is not allowed.
     pub fn value(&self, name: &str) -> Option<&ParamValue> {
         self.values.get(name)
     }

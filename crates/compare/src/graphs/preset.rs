@@ -148,8 +148,9 @@ pub fn named_or_all(arguments: &[String], sources: &dyn Sources) -> Vec<String> 
 
 /// A loaded graph with its name, for example a built-in shadow method.
 pub struct Preset {
-    /// Name that tables and file names show: the built-in method's name, or the graph's path as
-    /// given.
+    /// Name that tables and file names show, the argument that the graph was loaded by: `nsm`,
+    /// `my/method.ron`, or `contact.ron@over=msm` with another document in an open include
+    /// ([`load`]).
     pub name: String,
     /// Graph of the preset's document, loaded and not yet planned.
     pub graph: Graph,

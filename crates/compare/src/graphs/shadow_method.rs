@@ -52,7 +52,9 @@ pub fn load_all(names: &[String], sources: &dyn Sources) -> Result<Vec<Arc<Prese
 /// that has them. A value may be a list, `1,2,4`, or a range, `0..0.01/5`
 /// ([`variants`](crate::graphs::variants)); each combination is a setting. Each method is returned
 /// once for each setting, and for each of `map_sizes`, widths of the shadow map in texels. A method
-/// without a shadow map, or any method if that list is empty, is returned once for each setting.
+/// without a shadow map or whose word sets `map_size`, or any method if `map_sizes` is empty, is
+/// returned once for each setting. The list is ordered by word, then by setting, then by map size;
+/// equal words count once.
 ///
 /// # Errors
 /// The errors of [`method::load`]; graphs that are not shadow methods.
@@ -127,7 +129,7 @@ pub fn check_plans(
 }
 
 /// True if a method computes the shadows of all lights in one frame: its output `visibility` has
-/// several layers, one for each light.
+/// several layers, one for each light. False if the method cannot be planned on `device`.
 pub fn is_layered(method: &Method, device: &Capabilities, provider: &SceneProvider) -> bool {
     let plan = method.plan(method.viewport, device.clone(), provider);
     plan.is_ok_and(|plan| {

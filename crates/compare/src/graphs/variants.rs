@@ -36,16 +36,19 @@ pub fn presets(arguments: &[MethodArgument]) -> Vec<String> {
 /// One setting of a preset: the assignments to its params, and a label.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Setting {
-    /// Assignments that tell this setting from other settings of the preset, as text without the
-    /// map size: `n=1,depth=plane`. Empty if there are none.
+    /// Text that the method's name has behind the preset's: the assignments of the method's own
+    /// word, and those for all methods that list several values, without the map size:
+    /// `n=1,depth=plane`. Empty if there are none.
     pub label: String,
     /// All assignments of the setting, each with a single value.
     pub set: Vec<Assignment>,
 }
 
-/// Returns the settings of a preset: one for each combination of the values that `argument` and
-/// `all` list. An assignment of `argument` wins over one of `all`. Assignments of `all` to params
-/// that the preset does not have are ignored.
+/// Returns the settings of a preset: one for each combination of the values that its assignments in
+/// `argument` and those for all methods in `all` list. Values of a list stand between commas,
+/// vectors between semicolons (`1,0,0;0,1,0`); the range `0..0.01/5` is five values at equal
+/// distances, both ends included. An assignment of `argument` wins over one of `all`. Assignments
+/// of `all` to params that the preset does not have are ignored.
 ///
 /// # Errors
 /// A param of `argument` that the preset does not have; a malformed range; more than 1000 settings.

@@ -15,7 +15,7 @@ use crate::records::results::{Adapter, PROGRAM};
 use skiagraph_gpu::device::{self, Gpu};
 use skiagraph_scene::{SceneLibrary, library::ASSETS_VARIABLE};
 
-/// Lists the adapters of this machine, the preferred one first.
+/// Lists the adapters of this machine through all backends, the preferred one first.
 pub fn adapters() -> Vec<Adapter> {
     device::adapters().into_iter().map(adapter).collect()
 }

@@ -29,8 +29,8 @@ pub struct CameraPose {
 
 impl CameraPose {
     /// Creates a pose for each view; item `i` of `views` is the view of frame `i`. `jitter` is the
-    /// number of sample positions within a pixel through which the frames cycle; `None` to sample
-    /// pixel centres.
+    /// number of sample positions within a pixel through which the frames cycle, 0 counting as 1;
+    /// `None` to sample pixel centres.
     pub fn numbered(views: Vec<View>, jitter: Option<u32>) -> Vec<Self> {
         let pose = |(view, frame)| Self {
             view,

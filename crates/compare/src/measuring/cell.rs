@@ -35,8 +35,9 @@ use skiagraph_scene::{
 /// Returns the id of a cell, 16 hexadecimal digits: a hash of the scene's name and number of
 /// triangles; the name, camera and light of the view or path; the viewport in pixels; the preset
 /// with all params that it runs with; and the protocol. The method's name is not part of the hash:
-/// two settings with the same params are one cell. Neither are shaders and the mesh; a change of
-/// these changes the run's [`fingerprint`](crate::records::results::Run::fingerprint).
+/// two settings with the same params are one cell. Neither are shaders and the mesh: a change of
+/// these changes the run's [`fingerprint`](crate::records::results::Run::fingerprint). Defaults of
+/// params may depend on the viewport: call [`Method::at`] with it first.
 pub fn id(
     comparison: &Comparison,
     view: &ViewOrPath,

@@ -88,8 +88,9 @@ pub fn render(
 /// encoding until the GPU was done.
 ///
 /// # Errors
-/// The errors of the executor; a frame that was abandoned after the GPU's timeout, or because the
-/// session's sink asked for an early end.
+/// The errors of the executor; [`ExecuteError::Unfinished`] for a frame that was abandoned after
+/// the GPU's timeout, or because the session's sink asked for an early end. The device cannot be
+/// used after that.
 pub fn run(
     session: Session,
     executor: &mut Executor,

@@ -36,9 +36,10 @@ pub struct FrameSequence {
 }
 
 impl FrameSequence {
-    /// Creates the first `count` frames of a view or path; with `None`, one frame of a view or all
-    /// frames of a path. `jitter` is the number of sample positions within a pixel through which
-    /// the frames cycle; `None` to sample pixel centres.
+    /// Creates `count` frames of a view, all alike but for the jitter, or the first `count` of a
+    /// path (all if it has fewer); with `None`, one frame of a view or all frames of a path.
+    /// `jitter` is the number of sample positions within a pixel through which the frames cycle;
+    /// `None` to sample pixel centres.
     ///
     /// # Errors
     /// A moving part that the mesh does not have, that shares vertices with other parts, or whose
@@ -81,6 +82,9 @@ impl FrameSequence {
     ///
     /// # Errors
     /// Positions that are not finite.
+    ///
+    /// # Panics
+    /// If there is no such frame.
     pub fn show(
         &self,
         frame: usize,

@@ -135,12 +135,13 @@ pub struct GroundTruthView<'a> {
 
 impl<'a> GroundTruthView<'a> {
     /// Runs the oracle (the `f64` ray tracer) for a camera and a light. `primitives` is the visible
-    /// primitive of each pixel, row by row from the top left. `how` is the oracle's mode, and the
-    /// number of rays from a pixel to a light [with an extent](crate#terms). `of` is a name, and
-    /// the sink that receives the progress under it.
+    /// primitive of each pixel, as [`PrimaryVisibility::ids`] returns it. `how` is the oracle's
+    /// mode, and the number of rays from a pixel to a light [with an extent](crate#terms). `of` is
+    /// a name, and the sink that receives the progress under it.
     ///
     /// # Errors
-    /// An [early end](crate#terms), primitive ids of another mesh, an invalid light.
+    /// An [early end](crate#terms), primitive ids of another mesh or in another number than the
+    /// pixels, an invalid light, or an offset of the mode that the mesh does not allow.
     pub fn new(
         oracle: Rc<Oracle<'a>>,
         camera: Camera,

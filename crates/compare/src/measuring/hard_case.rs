@@ -1,4 +1,5 @@
-//! Runs every method on a case of the stress catalogue, and judges the results.
+//! Runs every method on a hard case (a scene of the catalogue [`skiagraph_cases`], on which shadow
+//! methods go wrong), and judges the results.
 //!
 //! ```no_run
 //! use skiagraph_compare::{
@@ -57,7 +58,8 @@ use std::{
 
 /// A method to be run on stress cases, with its guarantee.
 pub struct MethodRun {
-    /// The method with its params as the user gave them.
+    /// The method with its params as the user gave them, for the viewport and the adapter that it
+    /// runs on ([`Method::at`], [`Method::settled`]).
     pub method: Method,
     /// The method with `cull=none`, so that front and back faces cast shadows; `None` if they do so
     /// already, or if it has no param `cull`.
@@ -67,7 +69,8 @@ pub struct MethodRun {
 }
 
 impl MethodRun {
-    /// Prepares a method that this adapter can run. `exact` is a list of names of methods or
+    /// Prepares a method as one that the adapter can run; set [`Column::unavailable`] of one that
+    /// it cannot run, and every case leaves it out. `exact` is a list of names of methods or
     /// presets: a method in it is judged as guaranteed to be exact.
     ///
     /// # Errors
@@ -158,13 +161,13 @@ pub struct HardCaseContext<'a> {
     pub methods: &'a [MethodRun],
     /// Width and height of the viewport in pixels.
     pub viewport: [u32; 2],
-    /// Folder into which pictures are written; `None` to draw no pictures.
+    /// Folder into which pictures are written, which must exist; `None` to draw no pictures.
     pub pictures: Option<&'a Path>,
 }
 
 impl HardCaseContext<'_> {
-    /// Runs every method on a case. Returns the case with the pixel counts and verdict of each
-    /// method.
+    /// Runs on a case every method that is not [unavailable](Column::unavailable) and takes the
+    /// case's kind of light. Returns the case with the pixel counts and verdict of each.
     ///
     /// # Errors
     /// An [early end](crate#terms), a lost device, a picture that cannot be written. All other

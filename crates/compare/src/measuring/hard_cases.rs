@@ -1,4 +1,5 @@
-//! Checks a request for hard cases before any of them runs.
+//! Checks a request for hard cases (the scenes of [`skiagraph_cases`], which the program `skiagraph
+//! stress` runs) before any of them runs.
 //!
 //! ```
 //! use skiagraph_compare::measuring::hard_cases::{cases, with_triangles};
@@ -23,7 +24,8 @@ use skiagraph_cases::HardCase;
 use skiagraph_gpu::device::Gpu;
 use std::path::Path;
 
-/// Returns the cases of these names, each once, or without names all.
+/// Returns the cases of these names, each once, in the order of the names; all cases if `names` is
+/// empty.
 ///
 /// # Errors
 /// A name that no case has.
@@ -43,17 +45,21 @@ pub fn cases(names: &[String]) -> Result<Vec<HardCase>, CompareError> {
     unique(names).into_iter().map(find).collect()
 }
 
-/// Returns a case with something to draw, if there is one: what is wrong with a graph on an empty
-/// mesh is a result, not a mistake in the graph. `cases` has at least one.
+/// Returns the first case whose mesh has triangles, or else the first case. A graph is checked on
+/// it before the cases run, as a fault on an empty mesh is a result, not a mistake in the graph.
+///
+/// # Panics
+/// If `cases` is empty.
 pub fn with_triangles(cases: &[HardCase]) -> HardCase {
     let has_triangles = |case: &&HardCase| !case.scene().mesh.triangles.is_empty();
     *cases.iter().find(has_triangles).unwrap_or(&cases[0])
 }
 
-/// Checks that each method of `exact` is among the methods that run.
+/// Checks that each name of `exact`, the methods to be judged as guaranteed to be exact
+/// ([`MethodRun::new`]), is in `names`, the methods that run.
 ///
 /// # Errors
-/// The first one that is not.
+/// Names the first one that is not.
 pub fn check_exact(exact: &[String], names: &[String]) -> Result<(), CompareError> {
     let Some(name) = exact.iter().find(|name| !names.contains(name)) else {
         return Ok(());
@@ -65,10 +71,11 @@ pub fn check_exact(exact: &[String], names: &[String]) -> Result<(), CompareErro
     )))
 }
 
-/// Checks that any of the methods can run.
+/// Checks that at least one of the methods can run: its
+/// [`Column::unavailable`](crate::records::stress::Column::unavailable) is `None`.
 ///
 /// # Errors
-/// The reasons, if none can.
+/// The reasons why none can run.
 pub fn check_abilities(methods: &[MethodRun], gpu: &Gpu) -> Result<(), CompareError> {
     let reasons = methods.iter().map(|run| {
         let reason = run.column.unavailable.as_ref()?;
@@ -83,10 +90,11 @@ pub fn check_abilities(methods: &[MethodRun], gpu: &Gpu) -> Result<(), CompareEr
     }
 }
 
-/// Checks that no two cells have pictures of one name, and that the folder for them can be written.
+/// Checks that no two pairs of a method and a case have pictures of one file name, and that
+/// pictures can be written into `folder`, which is made if it is missing.
 ///
 /// # Errors
-/// Two cells of one name; a folder that cannot be written.
+/// Two pairs whose pictures have one name; a folder that cannot be written.
 pub fn check_pictures(
     methods: &[MethodRun],
     cases: &[HardCase],
@@ -105,7 +113,8 @@ pub fn check_pictures(
     check_folder(folder)
 }
 
-/// Claims the folder for stress.json, which no other process may write meanwhile.
+/// Claims a folder, which is made if it is missing, for its file stress.json: no other process may
+/// write this file until the returned value is dropped.
 ///
 /// # Errors
 /// A folder that another process has claimed, or that cannot be written.

@@ -50,9 +50,9 @@ pub struct SceneCells<'a> {
 pub struct Share<'a> {
     /// The plan.
     pub plan: &'a CellPlan,
-    /// The part of it.
+    /// The part of the plan to be measured.
     pub shard: Shard,
-    /// Folder of the results. Several machines may write into one.
+    /// Folder of the results, made if it is missing. Several machines may write into one folder.
     pub out: &'a Path,
 }
 
@@ -63,12 +63,14 @@ pub struct ShardOutcome {
     pub cells: usize,
     /// Number of those that the folder held before.
     pub kept: usize,
-    /// Labels of the methods that cannot run here, each with its view.
+    /// Labels of the runs whose methods cannot run here
+    /// ([`Run::label`](crate::records::results::Run::label)).
     pub unavailable: Vec<String>,
 }
 
 /// Plans the cells of scenes, and measures nothing. Defaults of params that depend on the GPU's
-/// features are those on the session's GPU. `arguments` are the words of the command line.
+/// features are those on the session's GPU. `arguments` are the words of the command line without
+/// the program's name, which the plan records.
 ///
 /// # Errors
 /// Two methods that are the same cell.
@@ -129,16 +131,17 @@ pub fn plan(
     Ok(plan)
 }
 
-/// Measures the cells of a shard that its folder does not hold yet. Each becomes a file of its own
-/// when it is finished, `cells/ID.json`; the folder also gets the pictures, a copy of the plan, and
-/// the reference's answers in `truth`, which are traced once for all machines that share the
-/// folder. `scenes` are those of which the plan was made.
+/// Measures the cells of a shard that the folder [`Share::out`] does not hold yet. Each becomes a
+/// file of its own when it is finished, `cells/ID.json`; the folder also gets the pictures, a copy
+/// of the plan, and the reference's answers in `truth`, which are traced once for all machines that
+/// share the folder. `scenes` are those of which the plan was made.
 ///
 /// # Errors
 /// A folder that holds the cells of another plan; cells that this machine plans otherwise than they
-/// were planned; a machine that measures a cell or traces a reference with another outcome; the
-/// errors of [`Series::measure`]; [`CompareError::InvalidOutputs`] for graphs whose outputs are not
-/// a shadow method's.
+/// were planned; a cell in the folder by another version of the program; a cell or reference that
+/// another machine has written meanwhile with other errors or answers; the errors of
+/// [`Series::measure`]; [`CompareError::InvalidOutputs`] for graphs whose outputs are not a shadow
+/// method's.
 pub fn measure(
     share: &Share,
     scenes: &[SceneCells],

@@ -36,10 +36,11 @@ const PATTERNS: [u8; 2] = [0x11, 0xee];
 /// Frames more of each pattern in which an output may show that it differs without another one.
 const AGAIN: usize = 4;
 
-/// Checks that no output of a plan depends on memory that no pass has written, and returns a report
-/// for the terminal. Renders frames with two byte patterns in all unwritten memory, and compares
-/// their outputs. An output that also differs between frames of the same pattern depends on the
-/// order of threads, and is not judged.
+/// Checks that no output of a preset depends on memory that no pass has written, and returns a
+/// report for the terminal. `plan` is a plan of the preset with its [default
+/// outputs](skiagraph_graph::Graph::default_outputs). Renders frames with two byte patterns in all
+/// unwritten memory, and compares their outputs. An output that also differs between frames of the
+/// same pattern depends on the order of threads, and is not judged.
 ///
 /// # Errors
 /// Names the outputs that depend on unwritten memory; a graph that cannot run.

@@ -30,9 +30,9 @@ use skiagraph_passes::SceneProvider;
 use skiagraph_scene::{Scene, View};
 use std::sync::Arc;
 
-/// Times a method on a view: runs `warmup` untimed frames, then `frames` timed ones in which every
-/// pass runs. Returns the profile, and the times of each timed frame. If the sink asks for an early
-/// end, the frames timed until then are returned.
+/// Times a method on a view in [`Method::viewport`]: runs `warmup` untimed frames, then `frames`
+/// (at least 1) timed ones in which every pass runs. Returns the profile, and the times of each
+/// timed frame. If the sink asks for an early end, the frames timed until then are returned.
 ///
 /// # Errors
 /// The graph cannot be planned or run here; an [early end](crate#terms) before any frame was timed.

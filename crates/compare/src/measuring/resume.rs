@@ -29,7 +29,7 @@ use std::path::Path;
 /// Which earlier results in a folder a comparison keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kept {
-    /// No runs are kept.
+    /// No runs are kept: the first new results replace the file.
     Nothing,
     /// Runs of other methods, views, viewports and map sizes than this comparison measures are
     /// kept.
@@ -39,10 +39,11 @@ pub enum Kept {
     All,
 }
 
-/// Opens a folder of results, and finds the earlier runs that need not be measured again. The
-/// returned list is parallel to `planned`: the earlier run, or `None` if the run must be measured.
-/// Only [`Kept::All`] reuses any. Tells the sink how many runs are kept. `now` holds the adapter,
-/// scene and protocol of this comparison.
+/// Opens a folder of results, and finds the earlier runs that need not be measured again;
+/// [`Series::new`](crate::measuring::series::Series::new) calls it. The returned list is parallel
+/// to `planned`: the earlier run, or `None` if the run must be measured. Only [`Kept::All`] reuses
+/// any. Tells the sink how many runs are kept. `now` holds the adapter, scene and protocol of this
+/// comparison.
 ///
 /// # Errors
 /// A file that cannot be read, is not a results.json, or was measured with another adapter, scene

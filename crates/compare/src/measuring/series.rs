@@ -76,12 +76,13 @@ pub struct Series<'a> {
     is_done: Vec<bool>,
     /// Which of them others measure.
     is_left_out: Vec<bool>,
-    /// Results so far: the finished runs, in the order in which they were planned.
+    /// Results so far: the finished runs, those reused from earlier results ([`Kept::All`])
+    /// included, in the order in which they were planned.
     pub results: Results,
     /// Where they are kept.
     store: Store,
-    /// Messages on graphs that ran but whose outputs do not have the size, format or values that a
-    /// shadow method's must have.
+    /// Messages, added by [`measure`](Self::measure), on graphs that ran but whose outputs do not
+    /// have the size, format or values that a shadow method's must have.
     pub broken: Vec<String>,
     /// Counts the runs that are measured now.
     progress: Runs<'a>,
@@ -121,7 +122,8 @@ pub fn run(comparison: &Comparison, session: Session) -> Result<Results, Compare
 const ROOM: u64 = 1 << 30;
 
 impl<'a> Series<'a> {
-    /// Begins a comparison. `kept_in` is the folder to write results to, and the choice of earlier
+    /// Begins a comparison. `kept_in` is the folder to write results to, which must exist
+    /// ([`check_folder`](crate::files::write::check_folder) makes it), and the choice of earlier
     /// results in it to keep; with `None` results stay in memory.
     ///
     /// # Errors
@@ -258,8 +260,9 @@ impl<'a> Series<'a> {
     }
 
     /// Measures the runs of a view and viewport that are not finished, and writes the results into
-    /// the folder, if there is one. Both arguments are indices, into [`Comparison::views`] and
-    /// [`Comparison::viewports`].
+    /// the folder, if there is one. A method that cannot run here gets a run that says why
+    /// ([`Run::unavailable`]), and the others are measured all the same. Both arguments are
+    /// indices, into [`Comparison::views`] and [`Comparison::viewports`].
     ///
     /// # Errors
     /// An [early end](crate#terms), a lost device, a file that cannot be written, a reference that
@@ -477,8 +480,8 @@ impl<'a> Series<'a> {
     }
 
     /// Writes the finished runs and the picture files of the last run into the folder. Measuring
-    /// does this by itself after each run; call it, with an empty list, after a change of the runs.
-    /// Does nothing if results stay in memory.
+    /// does this by itself after each run; call it, with an empty list, after you change
+    /// [`results`](Self::results). Does nothing if results stay in memory.
     ///
     /// # Errors
     /// An [early end](crate#terms); a file that cannot be written; a results.json that another

@@ -77,7 +77,8 @@ impl ViewOrPath {
     /// several.
     ///
     /// # Errors
-    /// The scene has no path of this name, no light of this name, or no paths at all.
+    /// The scene has no path of this name, no light of this name, or no paths at all; a path is not
+    /// valid under the light ([`CameraPath::check`]).
     pub fn paths(
         scene: &Scene,
         paths: Vec<CameraPath>,

@@ -156,10 +156,15 @@ impl Comparison {
     /// effect.
     ///
     /// # Errors
-    /// The faults of all graphs together; outputs whose size or format a shadow method must not
-    /// have; a GPU that can run none of the methods, or not the graph of the visible triangles in a
-    /// viewport; runs whose pictures would have the same file name.
+    /// A protocol without timed frames; the faults of all graphs together; outputs whose size or
+    /// format a shadow method must not have; a GPU that can run none of the methods, or not the
+    /// graph of the visible triangles in a viewport; runs whose pictures would have the same file
+    /// name.
     pub fn check(&self, session: Session) -> Result<(), CompareError> {
+        if self.protocol.frames == 0 {
+            let text = "a comparison needs at least one timed frame (`Protocol::frames`)";
+            return Err(CompareError::Input(text.to_owned()));
+        }
         let device = Capabilities::new(session.gpu);
         let mut provider = SceneProvider::new(self.scene.clone());
         if self.protocol.has_files() {

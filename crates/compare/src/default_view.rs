@@ -100,7 +100,7 @@ pub fn default_view(
     };
     let views = eyes.iter().cartesian_product(turns);
     let views = views.map(|(eye, turn)| {
-        let direction = room.around(turn) - up * SLOPE;
+        let direction = room.around(turn) - room.up * SLOPE;
         room.view(eye.place, direction, fov_y_degrees)
     });
     match best(views.clone(), seen)? {
@@ -588,5 +588,8 @@ mod tests {
         let sun = DirectionalLight::new(DVec3::new(-0.3, 0.4, -1.0)).into();
         let seen = default_view(&room, &sun, DVec3::Z, 60.0).unwrap().view;
         assert!(seen.eye.z > 0.2 && seen.eye.y.abs() < 3.0, "{seen:?}");
+        // The length of the axis counts for nothing.
+        let same = default_view(&room, &sun, 5.0 * DVec3::Z, 60.0);
+        assert_eq!(same.unwrap().view, seen);
     }
 }

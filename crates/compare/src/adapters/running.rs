@@ -38,7 +38,7 @@ use std::{
 /// Name of the file that holds an [`AdapterRecord`], the records of all rows.
 pub const FILE: &str = "adapter.json";
 
-/// Request to run the [rows](crate::adapters::rows::rows) on one adapter.
+/// Request to run the [`rows`] on one adapter.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct AdapterRequest {

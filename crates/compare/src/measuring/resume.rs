@@ -48,7 +48,7 @@ pub enum Kept {
 /// # Errors
 /// A file that cannot be read, is not a results.json, or was measured with another adapter, scene
 /// or protocol than `now`. With [`Kept::Nothing`], such a file is not an error.
-pub fn earlier(
+pub(crate) fn earlier(
     folder: &Path,
     keep: Kept,
     now: &Results,

@@ -85,7 +85,8 @@ pub struct Series<'a> {
     /// have the size, format or values that a shadow method's must have.
     pub broken: Vec<String>,
     /// Counts the runs that are measured now.
-    progress: Runs<'a>,
+    /// `None` before the first run that is to be measured.
+    progress: Option<Runs<'a>>,
 }
 
 /// Where the results of a comparison are kept.
@@ -127,7 +128,8 @@ impl<'a> Series<'a> {
     /// results in it to keep; with `None` results stay in memory.
     ///
     /// # Errors
-    /// The errors of [`earlier`].
+    /// A results.json in the folder that cannot be read, or was measured with another adapter,
+    /// scene or protocol; with [`Kept::Nothing`], such a file is not an error.
     pub fn new(
         comparison: &'a Comparison,
         session: Session<'a>,
@@ -187,7 +189,7 @@ impl<'a> Series<'a> {
             results,
             store: Store::Memory,
             broken: Vec::new(),
-            progress: Runs::begin(session.sink, 0),
+            progress: None,
             methods,
         }
     }
@@ -226,7 +228,7 @@ impl<'a> Series<'a> {
             }
         }
         let left = (0..self.planned()).filter(|place| self.is_missing(*place));
-        self.progress = Runs::begin(self.session.sink, left.count() as u64);
+        self.progress = Some(Runs::begin(self.session.sink, left.count() as u64));
     }
 
     /// True if a planned run is to be measured yet.
@@ -605,7 +607,7 @@ impl<'a> Series<'a> {
         let index = self.done_before(place);
         self.results.runs.insert(index, run);
         self.is_done[place] = true;
-        self.progress.count();
+        self.progress.iter().for_each(Runs::count);
     }
 
     /// How many runs of earlier places are done.

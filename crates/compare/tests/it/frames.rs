@@ -1,6 +1,6 @@
 //! Frames one after the other: what grows has room, and what is remembered fills.
 
-use crate::support::{NOWHERE, TEMPORAL, gpu, park, sources};
+use crate::support::{NOWHERE, TEMPORAL, gpu, park, park_comparison, sources, timed};
 use skiagraph_compare::{
     graphs::{method::load_one, planning::Capabilities},
     measuring::frame::{self, Contents},
@@ -115,4 +115,12 @@ fn what_a_first_frame_leaves_uncertain_is_the_same_in_every_run() {
     assert!(!status.contains(&4), "none is uncertain");
     assert_eq!(first("light_buffer", 128).1, status);
     assert_eq!(first("nsm", 16).0, "", "nothing of it grows");
+}
+
+#[test]
+fn a_comparison_without_timed_frames_is_refused() {
+    let comparison = timed(park_comparison(&["nsm"], NOWHERE.as_ref(), 16), [1, 0, 1]);
+    let error = comparison.check(Session::new(gpu(), &Silent)).unwrap_err();
+    let expected = "a comparison needs at least one timed frame (`Protocol::frames`)";
+    assert_eq!(error.to_string(), expected);
 }

@@ -27,6 +27,22 @@ fn compare(
     (heard.notes(), heard.steps(), results)
 }
 
+/// Runs that are kept are not among those that begin.
+#[test]
+fn a_sink_hears_of_the_runs_that_are_left() {
+    let folder = tempfile::tempdir().unwrap();
+    let progress = |methods: &[&str]| {
+        let mut comparison = comparison(park(), methods, NOWHERE.as_ref(), &[8]);
+        comparison.viewports = vec![[16, 16]];
+        let (heard, _) = keep(&comparison, folder.path(), Kept::All).unwrap();
+        heard.runs()
+    };
+    let one = "1 begin, one done, all end, ";
+    assert_eq!(progress(&["nsm"]), one);
+    assert_eq!(progress(&["nsm", "rt"]), one);
+    assert_eq!(progress(&["nsm"]), "0 begin, all end, ");
+}
+
 #[test]
 #[ignore = "a suite: `./test.sh --all` runs it"]
 fn a_resumed_comparison_is_the_one_in_one_go() {

@@ -133,11 +133,12 @@ pub fn runs(comparison: &Comparison) -> Vec<Value> {
     runs.map(|run| serde_json::to_value(run).unwrap()).collect()
 }
 
-/// Keeps notes, and the names of steps that begin.
+/// Keeps notes, the names of steps that begin, and the progress of runs.
 #[derive(Default)]
 pub struct Heard {
     notes: Mutex<String>,
     steps: Mutex<Vec<String>>,
+    runs: Mutex<String>,
 }
 
 impl Heard {
@@ -150,11 +151,28 @@ impl Heard {
     pub fn steps(&self) -> Vec<String> {
         self.steps.lock().unwrap().clone()
     }
+
+    /// The progress of runs so far: `2 begin, one done, one done, all end, `.
+    pub fn runs(&self) -> String {
+        self.runs.lock().unwrap().clone()
+    }
 }
 
 impl Sink for Heard {
     fn note(&self, text: &str) {
         *self.notes.lock().unwrap() += text;
+    }
+
+    fn begin_runs(&self, total: u64) {
+        *self.runs.lock().unwrap() += &format!("{total} begin, ");
+    }
+
+    fn count_run(&self) {
+        *self.runs.lock().unwrap() += "one done, ";
+    }
+
+    fn end_runs(&self) {
+        *self.runs.lock().unwrap() += "all end, ";
     }
 
     fn begin_step(&self, name: &str, _total: u64, _unit: &'static str) {

@@ -45,8 +45,8 @@ pub struct MovedPart {
 }
 
 impl MovedPart {
-    /// Creates a part whose moved positions and normals another one writes, such as a GPU:
-    /// [`Movable::put_at`] winds its triangles and moves nothing.
+    /// Creates a part whose moved positions and normals are written elsewhere, such as by a GPU.
+    /// [`Movable::put_at`] then only winds the part's triangles.
     pub fn written_elsewhere(is_mirrored: bool) -> Self {
         Self {
             positions: Vec::new(),
@@ -170,9 +170,10 @@ impl Movable {
     }
 
     /// Joins meshes into one. Part number n is `meshes[n]`, which is given in a space of its own,
-    /// such as the model space of an instance. Triangles stand in the order of `meshes`, and within
-    /// a mesh in its own; without a mesh the scene is empty until parts are added. If only some of
-    /// the meshes have materials, the others get a plain one.
+    /// such as the model space of an instance; its map leads from there to world space. Triangles
+    /// stand in the order of `meshes`, and within a mesh in its own; without meshes
+    /// [`rest`](Self::rest) is empty. If only some of the meshes have materials, the others get a
+    /// plain white one.
     pub fn joined(meshes: &[&Mesh]) -> Self {
         let mut rest = Mesh::default();
         let has_materials = meshes.iter().any(|mesh| !mesh.surfaces.of.is_empty());
@@ -226,8 +227,8 @@ impl Movable {
         [around(part.positions.iter().copied()), around(normals)]
     }
 
-    /// Returns the number of the first part that was [joined](Self::joined) from the same mesh as
-    /// part number `part`; `part` itself if no earlier part was.
+    /// Returns the number of the first part that was [joined](Self::joined) from the same mesh (the
+    /// same reference) as part number `part`; `part` itself if no earlier part was.
     ///
     /// # Panics
     /// If there is no part of that number.

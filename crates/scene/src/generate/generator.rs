@@ -9,7 +9,7 @@ use std::{fmt, ops::RangeInclusive, str::FromStr};
 pub const TRIANGLES: RangeInclusive<u32> = 10_000..=10_000_000;
 
 /// Mesh that this crate generates. Its name as text is `park`, `avenue`, `level`, `city:100000` or
-/// `forest:100000`; the number is the number of triangles.
+/// `forest:100000`; the number is the number of triangles. Up is +y, and the ground lies at y = 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Generator {
     /// A bench, flowers, a lamp and trees on a lawn: about 55,000 triangles, in closed parts

@@ -91,7 +91,7 @@ pub enum SceneError {
         path: PathBuf,
     },
     /// A mesh is so small, so large or so far from the origin that products of its lengths do not
-    /// fit into f32.
+    /// fit into f32: less than 1e-12 or more than 1e12 scene units.
     #[error(
         "{}: the model is {across:.1e} units across and reaches {farthest:.1e} from the origin, \
          but f32 can only tell right from wrong between {:.0e} and {:.0e}: scale it",

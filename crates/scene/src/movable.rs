@@ -151,7 +151,7 @@ impl MoveError {
 
 impl Movable {
     /// Cuts a mesh into parts to be moved. Part number n consists of all groups with the name
-    /// `parts[n]`.
+    /// `parts[n]`; the names must differ.
     ///
     /// # Errors
     /// Text that names the part: a name that no group has, or a part that shares positions with

@@ -198,7 +198,8 @@ impl Movable {
         self.parts.len()
     }
 
-    /// Returns the triangles of part number `part`, as primitive ids in ascending order.
+    /// Returns the triangles of part number `part`, as primitive ids of [`rest`](Self::rest) in
+    /// ascending order.
     ///
     /// # Panics
     /// If there is no part of that number.
@@ -206,8 +207,8 @@ impl Movable {
         &self.parts[part].triangles
     }
 
-    /// Returns the positions of part number `part` that its triangles use, as indices into
-    /// [`Mesh::positions`] in ascending order.
+    /// Returns the positions of part number `part` that its triangles use, as indices into the
+    /// positions of [`rest`](Self::rest) in ascending order.
     ///
     /// # Panics
     /// If there is no part of that number.
@@ -216,8 +217,8 @@ impl Movable {
         part.corners.as_deref().unwrap_or(&part.positions)
     }
 
-    /// Returns the smallest ranges of [`Mesh::positions`] and [`Mesh::normals`] that hold those of
-    /// part number `part`.
+    /// Returns the smallest ranges of the positions and of the normals of [`rest`](Self::rest) that
+    /// hold those of part number `part`; `0..0` if it has none.
     ///
     /// # Panics
     /// If there is no part of that number.

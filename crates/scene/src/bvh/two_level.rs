@@ -51,7 +51,8 @@ pub struct TwoLevelBvh {
     /// Nodes of the tree, the root first. [`top`](Self::top) and [`nodes_of`](Self::nodes_of) tell
     /// which nodes are of the top level and of a piece; others are unused. The two children of an
     /// inner node follow each other. No path from the root to a leaf has more than
-    /// [`MAX_DEPTH`](super::MAX_DEPTH) nodes, through both levels. Empty without triangles.
+    /// [`MAX_DEPTH`](super::MAX_DEPTH) nodes, through both levels. Empty after a
+    /// [`build`](Self::build) without triangles.
     pub nodes: Vec<BvhNode>,
     /// Primitive ids (indices into [`Mesh::triangles`]) in the order of the leaves. Each leaf names
     /// a range of this list; ids outside these ranges are unused.

@@ -27,8 +27,9 @@ pub enum Generator {
         /// Approximate number of triangles, within [`TRIANGLES`].
         triangles: u32,
     },
-    /// Trees on both sides of a straight lane. The number of trees and the number of leaves of a
-    /// tree both grow with the square root of the number of triangles.
+    /// Trees on both sides of a straight lane, on a square 960 scene units wide. The number of
+    /// trees and the number of leaves of a tree both grow with the square root of the number of
+    /// triangles.
     Forest {
         /// Approximate number of triangles, within [`TRIANGLES`].
         triangles: u32,

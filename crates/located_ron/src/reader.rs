@@ -1,7 +1,7 @@
 //! Reads RON piece by piece, so that every mistake in a file is found and every name keeps its
 //! place.
 //!
-//! ron stops at its first error, so each list entry and each field of a pass is deserialised by
+//! ron stops at its first error, so each list entry and each field of a struct is deserialised by
 //! itself from its raw text. A raw value borrows the source, so the difference of their pointers is
 //! the value's byte offset.
 
@@ -378,8 +378,8 @@ impl<'de> Deserialize<'de> for Word {
 /// `whole` is the place of the struct, where a missing field is reported.
 ///
 /// # Errors
-/// The first mistake as a diagnostic at its place: an unknown, missing or duplicate field, or a
-/// value of the wrong type.
+/// The first mistake as a diagnostic at its place: an unknown field (if `T` denies unknown fields),
+/// a missing or duplicate field, or a value of the wrong type.
 pub fn from_fields<T: DeserializeOwned>(fields: &[Field], whole: &Span) -> Result<T, Diagnostic> {
     from_some_fields(fields, whole, &[])
 }
@@ -389,8 +389,7 @@ pub fn from_fields<T: DeserializeOwned>(fields: &[Field], whole: &Span) -> Resul
 /// suggestion for a misspelt field knows them, too.
 ///
 /// # Errors
-/// The first mistake as a diagnostic at its place: an unknown, missing or duplicate field, or a
-/// value of the wrong type.
+/// The errors of [`from_fields`].
 pub fn from_some_fields<T: DeserializeOwned>(
     fields: &[Field],
     whole: &Span,

@@ -21,7 +21,7 @@ const SAME: f64 = 1.0 / 255.0;
 ///
 /// `ground_truth` is of this camera and light, found with `mode` and `samples`, which is ignored
 /// for a light without extent; `candidates` are those of [`candidates`](crate::candidates), one
-/// list for each pixel.
+/// list for each pixel. The result has an entry for each pixel, row by row from the top left.
 ///
 /// # Errors
 /// [`Error::PixelCount`], [`Error::UnknownPrimitive`], [`Error::Interrupted`].

@@ -17,10 +17,10 @@ use serde::{Deserialize, Serialize};
 /// Pixels within which a wrong pixel counts as lying at an edge.
 const NEAR: f64 = 2.0;
 
-/// Distances of a method's wrong pixels from the nearest shadow edge of the reference.
-/// Indeterminate pixels ([`GroundTruthPixels::indeterminate`]) are left out. A pixel is at a shadow
-/// edge if it and one of its four neighbours face the light, and one of the two is lit and the
-/// other in shadow.
+/// Distances of a method's wrong pixels from the nearest shadow edge of the reference. Wrong pixels
+/// that are indeterminate ([`GroundTruthPixels::indeterminate`]) are left out. A pixel is at a
+/// shadow edge if it and one of its four neighbours face the light, and one of the two is lit and
+/// the other in shadow.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct EdgeDistances {
     /// Distances of the pixels that the method wrongly shows lit.

@@ -24,8 +24,8 @@ const END_ROUNDINGS: f64 = 16.0;
 /// position, plus −1 to 1 times each segment, plus a vector in a ball.
 #[derive(Clone, Copy, Debug)]
 pub struct Uncertainty {
-    /// Displacements in the receiver's plane, in scene units; each may act with a factor from −1 to
-    /// 1. Errors of the receiver's barycentrics cause them.
+    /// Displacements in the receiver's plane, in world space and scene units; each may act with a
+    /// factor from −1 to 1. Errors of the receiver's barycentrics cause them.
     pub segments: [DVec3; 3],
     /// Radius of the ball, in scene units: the bound on all further errors of the position.
     pub radius: f64,

@@ -230,9 +230,10 @@ impl Image {
         Ok(image)
     }
 
-    /// Draws the scene in its base colours, or in grey without materials, under Lambert's law:
-    /// max(n · l, 0) × visibility + ambient, with n · l and base colours of `truth`. `visibility`
-    /// has one value per pixel, row by row from the top left.
+    /// Draws the scene in its base colours, or in grey without materials, under Lambert's law: 0.8
+    /// max(n · l, 0) × visibility + ambient light of 0.1 to 0.2, the more the greater n · l is.
+    /// `truth` has n · l and the base colours. `visibility` has one value per pixel, row by row
+    /// from the top left.
     ///
     /// # Errors
     /// [`Error::PixelCount`] if `visibility` does not have one value per pixel of `truth`.

@@ -198,8 +198,8 @@ impl<'a> Oracle<'a> {
 
     /// Traces rays, each given by its origin and direction (world space, any length but zero), and
     /// returns an answer for each, in their order. A ray has no end. Tracers in f32 are tested
-    /// against the result. Origin and direction count as exact, hits count at t > 0, triangles are
-    /// two-sided, and rays pass through the holes of their masks.
+    /// against the result. Origin and direction count as exact, hits count at t > 0 by more than
+    /// f64 rounding, triangles are two-sided, and rays pass through the holes of their masks.
     pub fn occlusion(&self, rays: &[(Vec3, Vec3)]) -> Vec<Occlusion> {
         let exact = Uncertainty {
             segments: [DVec3::ZERO; 3],

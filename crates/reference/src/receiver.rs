@@ -56,11 +56,11 @@ pub struct Receiver {
     /// Dot product of the interpolated, unnormalised vertex normal and the unit vector towards the
     /// light's centre. The normal is turned round for the back of a double-sided primitive.
     pub n_dot_l: f64,
-    /// Bound on the f32 error of `n_dot_l`; infinite for a primitive seen edge-on, and for a
-    /// receiver at the position of a spot or point light.
+    /// Bound on the f32 error of `n_dot_l`; infinite for a primitive seen edge-on or nearly so, and
+    /// for a receiver at the position of a spot or point light.
     pub n_dot_l_error: f64,
-    /// Region in which f32 arithmetic may put the receiver; `None` for a primitive seen edge-on,
-    /// where f32 may put it anywhere.
+    /// Region in which f32 arithmetic may put the receiver; `None` for a primitive seen edge-on or
+    /// nearly so, where f32 may put the receiver anywhere.
     pub uncertainty: Option<Uncertainty>,
 }
 
@@ -91,6 +91,9 @@ impl Receiver {
     /// it. So the point is moved inside, [`INSET`] of a pixel from the edges, or to the middle of a
     /// primitive that is narrower than twice that; shaders do the same. A primitive exactly edge-on
     /// has no such point; its centroid stands in, and the pixel is always indeterminate.
+    ///
+    /// # Panics
+    /// If the mesh has no triangle `primitive`.
     pub fn new(
         mesh: &Mesh,
         primitive: u32,

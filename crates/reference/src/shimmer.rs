@@ -25,7 +25,7 @@ pub struct Shimmer {
     /// ([`GroundTruthPixels::indeterminate`](crate::GroundTruthPixels::indeterminate)) in neither.
     pub compared: u64,
     /// Number of pixels of `compared` whose visibility, 0 to 1, the method changed by more than
-    /// 1/16, or to or from NaN.
+    /// 1/16, or is NaN in either frame.
     pub changed: u64,
 }
 

@@ -164,9 +164,8 @@ impl Statistics {
     /// Judges a method's outputs against the reference. Both buffers hold one value per pixel, row
     /// by row from the top left, as u8 or u32: `visibility` is 0 in shadow and 1 in light, `status`
     /// is one of [`status`]. If a method has no status, give that of the reference,
-    /// [`GroundTruthPixels::status`]: `pixels`, `wrong` but for `wrong.certain`, and `band` are
-    /// then the method's, while its certain, uncertain and facing pixels are taken from the
-    /// reference.
+    /// [`GroundTruthPixels::status`]: `pixels`, `band`, and `wrong` but for `wrong.certain` are
+    /// then right, while the counts of certain, uncertain and facing pixels are the reference's.
     ///
     /// # Errors
     /// [`Error::PixelCount`] if a buffer does not have one value per pixel of `truth`,

@@ -68,10 +68,11 @@ pub struct Candidate {
     pub distances: [f64; 2],
 }
 
-/// Finds, for each pixel, the surfaces that a renderer may show there whose sample lies anywhere
-/// within a sixteenth of a pixel from the pixel's centre, and whose depths are rounded as those of
-/// a rasteriser: they touch that square, and at one of its corners or its centre no surface surely
-/// hides them. The result has a list for each pixel, row by row from the top left; none is empty.
+/// Finds, for each pixel, the surfaces that a renderer may show there, if its sample lies anywhere
+/// in the square of an eighth of a pixel around the pixel's centre, and its depths are rounded as
+/// those of a rasteriser. Such a surface touches the square, and at a corner or the centre of the
+/// square no other surface surely hides it. The result has a list for each pixel, row by row from
+/// the top left. No list is empty; the order within a list is arbitrary.
 ///
 /// # Errors
 /// [`Error::Interrupted`] if the caller stops the run.

@@ -17,7 +17,7 @@ pub struct Adjacency {
     /// is the triangle on the other side of the edge, and `k` (0 to 2) is the corner of `q` that is
     /// not on the edge. The value is [`NO_NEIGHBOUR`] for an edge of one triangle or of more than
     /// two. It is the same for an edge beside a masked triangle (one cut out by an alpha mask),
-    /// whose surface may end anywhere. Winding plays no part.
+    /// whose surface may end anywhere. Neighbours may be wound against each other.
     pub opposite: Vec<u32>,
 }
 

@@ -19,10 +19,11 @@ pub struct View {
     /// Position of the camera, world space.
     #[serde(with = "Vector")]
     pub eye: DVec3,
-    /// Direction in which the camera looks, of any length above 0.
+    /// Direction in which the camera looks, world space, of any length above 0.
     #[serde(with = "Vector")]
     pub direction: DVec3,
-    /// Direction up in the picture, of any length above 0, not parallel to `direction`.
+    /// Direction up in the picture, world space, of any length above 0, not parallel to
+    /// `direction`.
     #[serde(default = "y_axis", with = "Vector")]
     pub up: DVec3,
     /// Vertical field of view in degrees: more than 0, less than 180.

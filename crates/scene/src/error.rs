@@ -79,9 +79,9 @@ pub enum SceneError {
         /// Number of faces (triangles and polygons) read, without faces of groups that were left
         /// out.
         faces: usize,
-        /// Number of lines in the file (`l` records of an OBJ file).
+        /// Number of lines in the file: of an OBJ file, `l` records and faces of two corners.
         lines: usize,
-        /// Number of points in the file (`p` records of an OBJ file).
+        /// Number of points in the file: of an OBJ file, `p` records and faces of one corner.
         points: usize,
     },
     /// A mesh is too large for 32-bit indices.
@@ -91,7 +91,7 @@ pub enum SceneError {
         path: PathBuf,
     },
     /// A mesh is so small, so large or so far from the origin that products of its lengths do not
-    /// fit into f32.
+    /// fit into f32: less than 1e-12 or more than 1e12 scene units.
     #[error(
         "{}: the model is {across:.1e} units across and reaches {farthest:.1e} from the origin, \
          but f32 can only tell right from wrong between {:.0e} and {:.0e}: scale it",
@@ -191,10 +191,12 @@ pub enum SceneError {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("face {number} of group {:?}{}", beginning(group), in_line(*line))]
 pub struct FaceRef {
-    /// Name of the group that the face is in.
+    /// Name of the group that the face is in; `unnamed` for an OBJ group without a name, such as
+    /// that of faces before the first `g` or `o`.
     pub group: String,
     /// Number of the face within its group, from 1. A group that begins anew further down in the
-    /// file counts from 1 again.
+    /// file counts from 1 again. In a glTF file it is the number of the triangle within its mesh
+    /// primitive.
     pub number: u32,
     /// Line of the face in the file, from 1; 0 for a glTF file.
     pub line: u32,
@@ -227,7 +229,7 @@ pub enum FaceProblem {
         beginning(written), counted(written, *available, ["vertex", "vertices"])
     )]
     NoSuchVertex {
-        /// Number of the vertex as written in the face; negative numbers count back from it.
+        /// Number of the vertex as written in the face; negative numbers count back from the face.
         written: String,
         /// Number of vertices in the file; for a number that counts back, of vertices above the
         /// face.
@@ -240,7 +242,7 @@ pub enum FaceProblem {
     )]
     NoSuchUv {
         /// Number of the texture coordinates as written in the face; negative numbers count back
-        /// from it.
+        /// from the face.
         written: String,
         /// Number of texture coordinate pairs in the file; for a number that counts back, of pairs
         /// above the face.

@@ -76,10 +76,11 @@ pub fn has_ground(mesh: &Mesh, up: DVec3) -> bool {
     covered.sum::<f64>() >= COVERED * size.x * size.z
 }
 
-/// Adds a square slab below the middle of a mesh, as a group of its own. The upper side of the slab
-/// lies just below the mesh's lowest point; its edge is three times the diagonal of the mesh's box.
-/// Returns the height and size of the slab, or `None` for an empty mesh or an `up` without a
-/// direction.
+/// Adds a square slab below the middle of a mesh, as a group of its own ([`GROUND`]). The upper
+/// side of the slab lies just below the mesh's lowest point; its edge is three times the diagonal
+/// of the mesh's box, its thickness a hundredth of the diagonal. If the mesh has materials, the
+/// slab gets a plain white one. Returns the height and size of the slab, or `None` for an empty
+/// mesh or an `up` without a direction.
 pub fn add_ground(mesh: &mut Mesh, up: DVec3) -> Option<Ground> {
     let extent = Extent::new(mesh, up)?;
     let diagonal = (extent.max - extent.min).length().max(f64::MIN_POSITIVE);

@@ -65,9 +65,10 @@ impl Indexed<'_> {
     /// which [`positions`](Self::positions) first has them, unused ones too; −0 becomes 0.
     /// Triangles keep their order. One with equal positions at two corners is left out, so that the
     /// primitive ids of those after it are lower by one. A missing normal is replaced by the
-    /// geometric normal of its triangle. Equal normals are one, in the order in which triangles
-    /// first use them. The mesh has one group and no materials; its [`surfaces`](Mesh::surfaces)
-    /// may be set for the triangles that are left.
+    /// geometric normal of its triangle (+y if the triangle has no area). Equal normals are one, in
+    /// the order in which triangles first use them. The mesh has one group, whose name is empty,
+    /// and no materials; its [`surfaces`](Mesh::surfaces) may be set for the triangles that are
+    /// left.
     ///
     /// # Errors
     /// [`IndexedError`] for lists of the wrong length, an index without a position, or a number

@@ -87,7 +87,8 @@ pub struct SceneListing {
     pub paths: Vec<String>,
     /// True if the scene's mesh is generated, or its file was found on disk.
     pub mesh_found: bool,
-    /// Path of the scene file; `None` for a built-in scene.
+    /// Path of the scene file; `None` for a built-in scene, or if the text of the file cannot be
+    /// read.
     pub file: Option<PathBuf>,
 }
 
@@ -102,7 +103,8 @@ pub struct SceneLibrary {
 
 impl SceneLibrary {
     /// Returns the default folders. Scenes are in `scenes/` below the working directory. Meshes are
-    /// in the folders of `SKIAGRAPH_ASSETS`, then in the user's cache folder.
+    /// in the folders of `SKIAGRAPH_ASSETS` ([`ASSETS_VARIABLE`]), then in Skiagraph's folder of
+    /// the user's cache, on Linux `~/.cache/skiagraph`.
     pub fn from_environment() -> Self {
         let variable = std::env::var_os(ASSETS_VARIABLE).unwrap_or_default();
         let mut assets: Vec<PathBuf> = std::env::split_paths(&variable)
@@ -122,8 +124,9 @@ impl SceneLibrary {
     /// parts of the file that it left out.
     ///
     /// # Errors
-    /// [`SceneError`]: an unknown scene, a broken scene file or mesh, a mesh that was not found
-    /// (with every place searched), a bare mesh file without view and light.
+    /// [`SceneError`]: an unknown scene, a number of triangles that the mesh cannot have, a broken
+    /// scene file or mesh, a mesh that was not found (with every place searched), a bare mesh file
+    /// without view and light, a view and light for a scene that has its own.
     pub fn load(&self, request: &SceneRequest) -> Result<(Scene, ImportReport), SceneError> {
         let path = Path::new(&request.argument);
         if MeshFile::is_one(path) {
@@ -144,7 +147,8 @@ impl SceneLibrary {
     /// at which the file was found.
     ///
     /// # Errors
-    /// The errors of [`load`](Self::load), except for errors in the content of the mesh.
+    /// The errors of [`load`](Self::load), except for errors in the content of the mesh. The path
+    /// of a mesh file, which has no scene file, is [`SceneError::UnknownScene`].
     pub fn scene_file(&self, argument: &str) -> Result<SceneFile, SceneError> {
         let (file, mut scene) = self.parse_sized(argument)?;
         let found = match &scene.mesh {
@@ -256,8 +260,8 @@ impl SceneLibrary {
         listing
     }
 
-    /// Finds a scene file by its name or by its path, which ends in `.ron`. Returns its path
-    /// (`None` for a built-in scene) and its text.
+    /// Finds a scene file by its name, without a number of triangles, or by its path, which ends in
+    /// `.ron`. Returns its path (`None` for a built-in scene) and its text.
     ///
     /// # Errors
     /// [`SceneError`]: an unknown scene, a file that cannot be read.
@@ -290,7 +294,7 @@ impl SceneLibrary {
         }
     }
 
-    /// Returns the text of the scene file with the name or path `argument`.
+    /// Returns the text of the scene file that [`locate`](Self::locate) finds for `argument`.
     ///
     /// # Errors
     /// [`SceneError`]: an unknown scene, a file that cannot be read.
@@ -301,7 +305,7 @@ impl SceneLibrary {
     /// Returns the path of the file in the folder [`scenes`](Self::scenes) that replaces the
     /// built-in scene `argument`: a name such as `park`, or with a number of triangles
     /// `city:100000`. Returns `None` if `argument` is not the name of a built-in scene, if there is
-    /// no such file, or if the file's text equals that of the built-in scene.
+    /// no such file or it cannot be read, or if its text equals that of the built-in scene.
     pub fn stand_in(&self, argument: &str) -> Option<PathBuf> {
         let name = sized(argument).0;
         let (_, text) = BUILT_IN.iter().find(|(built_in, _)| *built_in == name)?;

@@ -12,7 +12,7 @@ use serde::Deserialize;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, rename = "Light")]
 pub struct DirectionalLight {
-    /// Direction in which the light travels, of any length above 0.
+    /// Direction in which the light travels, world space, of any length above 0.
     #[serde(with = "Vector")]
     pub direction: DVec3,
     /// Angular diameter in degrees as seen from the scene: at least 0, less than 90. A light of 0
@@ -32,7 +32,7 @@ pub struct LightFit {
     /// Matrix from world space to the light's clip space: x and y from −1 to 1, z from 0 at the
     /// side of the box towards the light to 1 at its far side. It is affine: w stays 1.
     pub view_projection: DMat4,
-    /// World units per unit of light-space clip x, y and z: half the box's width, half its height,
+    /// Scene units per unit of light-space clip x, y and z: half the box's width, half its height,
     /// its whole depth.
     pub extent: DVec3,
 }
@@ -95,8 +95,8 @@ impl DirectionalLight {
     /// the light's direction as its third axis. One side of the rectangle of least area around a
     /// convex polygon lies on an edge of it (Freeman and Shapira, CACM 18(7), 1975). An empty list
     /// counts as one point at the origin. No side of the box is 0: each is at least a millionth of
-    /// the longest, which counts as no shorter than a millionth of the largest coordinate and 10⁻¹²
-    /// scene units.
+    /// the longest, which counts as no shorter than a millionth of the largest coordinate and than
+    /// 10⁻¹² scene units.
     pub fn fit(&self, points: impl IntoIterator<Item = Vec3>) -> LightFit {
         self.fit_outline(&self.outline(points))
     }

@@ -32,7 +32,7 @@ pub enum LightKind {
 pub struct SpotLight {
     /// Apex of the cone, world space.
     pub position: DVec3,
-    /// Axis of the cone, pointing away from the light, of any length but zero.
+    /// Axis of the cone, world space, pointing away from the light, of any length but zero.
     pub direction: DVec3,
     /// Whole angle of the cone at its apex, in degrees: more than 0 and less than 180.
     pub cone_degrees: f64,

@@ -51,10 +51,10 @@ impl Limit {
         Ok(bytes)
     }
 
-    /// Reads the text of the file at `path`, without its byte order mark.
+    /// Reads the text of the file at `path`, UTF-8 or UTF-16, without its byte order mark.
     ///
     /// # Errors
-    /// The errors of [`Self::read`]; bytes that are not UTF-8.
+    /// The errors of [`Self::read`]; bytes that are neither encoding.
     pub fn read_text(&self, path: &Path) -> io::Result<String> {
         String::from_utf8(without_mark(&self.read(path)?).into_owned())
             .map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "it is not UTF-8 text"))

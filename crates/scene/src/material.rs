@@ -68,8 +68,8 @@ impl Surfaces {
     }
 
     /// Adds surfaces for triangles that were appended to the mesh, which now has `triangles`
-    /// triangles: the appended ones get the first material. Does nothing for a mesh without
-    /// materials.
+    /// triangles: the appended ones get the first material and the first texture coordinates. Does
+    /// nothing for a mesh without materials.
     pub fn pad(&mut self, triangles: usize) {
         if !self.of.is_empty() {
             self.of.resize(triangles, 0);
@@ -79,7 +79,9 @@ impl Surfaces {
 
     /// Gives `triangles` triangles of the mesh, from the primitive id `first` on, the surfaces of
     /// `other`, which is of another mesh with that many triangles. `all` is the number of triangles
-    /// of this mesh. The materials and texture coordinates of `other` are appended to the lists.
+    /// of this mesh. The materials and texture coordinates of `other` are appended to the lists. If
+    /// only one of the two meshes has materials, the other counts as plain white; if neither has,
+    /// nothing changes.
     ///
     /// # Panics
     /// If `first` and `triangles` together are more than `all`.

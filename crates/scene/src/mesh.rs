@@ -19,7 +19,7 @@ pub struct Mesh {
     /// Three indices into `normals` per triangle, parallel to `triangles`.
     pub normal_indices: Vec<[u32; 3]>,
     /// Named runs of consecutive triangles, in the order of `triangles`, such as the groups of an
-    /// OBJ file or the nodes of a glTF file.
+    /// OBJ file or the nodes of a glTF file. Several may have the same name.
     pub groups: Vec<Group>,
     /// Materials of the triangles, and texture coordinates of their corners.
     pub surfaces: Surfaces,

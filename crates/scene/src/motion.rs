@@ -28,7 +28,7 @@ pub enum Motion {
     Rigid {
         /// Point on the axis, which stays where it is while the part turns; world space.
         pivot: DVec3,
-        /// Axis about which the part turns, of any length but zero.
+        /// Axis about which the part turns, world space, of any length but zero.
         axis: DVec3,
         /// Keys in the order of their times, at least one. Before the first and after the last key
         /// the part stands still.
@@ -46,11 +46,11 @@ pub enum Motion {
     /// `degrees · sin(2π t / seconds)` at the time t on the clock of the path's keyframes. The foot
     /// stands still.
     Sway {
-        /// Direction in which the part leans while a is positive, of any length but zero and not
-        /// along `up`.
+        /// Direction in which the part leans while a is positive, world space, of any length but
+        /// zero and not along `up`.
         axis: DVec3,
-        /// Direction in which the part grows, of any length but zero: that of the `up` of the path
-        /// that the motion belongs to.
+        /// Direction in which the part grows, world space, of any length but zero: that of the `up`
+        /// of the path that the motion belongs to.
         up: DVec3,
         /// Greatest angle of the swing in degrees, more than −90 and less than 90.
         degrees: f64,

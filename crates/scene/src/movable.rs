@@ -45,8 +45,8 @@ pub struct MovedPart {
 }
 
 impl MovedPart {
-    /// Creates a part whose moved positions and normals another one writes, such as a GPU:
-    /// [`Movable::put_at`] winds its triangles and moves nothing.
+    /// Creates a part whose moved positions and normals are written elsewhere, such as by a GPU.
+    /// [`Movable::put_at`] then only winds the part's triangles.
     pub fn written_elsewhere(is_mirrored: bool) -> Self {
         Self {
             positions: Vec::new(),
@@ -151,7 +151,7 @@ impl MoveError {
 
 impl Movable {
     /// Cuts a mesh into parts to be moved. Part number n consists of all groups with the name
-    /// `parts[n]`.
+    /// `parts[n]`; the names must differ.
     ///
     /// # Errors
     /// Text that names the part: a name that no group has, or a part that shares positions with
@@ -170,9 +170,10 @@ impl Movable {
     }
 
     /// Joins meshes into one. Part number n is `meshes[n]`, which is given in a space of its own,
-    /// such as the model space of an instance. Triangles stand in the order of `meshes`, and within
-    /// a mesh in its own; without a mesh the scene is empty until parts are added. If only some of
-    /// the meshes have materials, the others get a plain one.
+    /// such as the model space of an instance; its map leads from there to world space. Triangles
+    /// stand in the order of `meshes`, and within a mesh in its own; without meshes
+    /// [`rest`](Self::rest) is empty. If only some of the meshes have materials, the others get a
+    /// plain white one.
     pub fn joined(meshes: &[&Mesh]) -> Self {
         let mut rest = Mesh::default();
         let has_materials = meshes.iter().any(|mesh| !mesh.surfaces.of.is_empty());
@@ -197,7 +198,8 @@ impl Movable {
         self.parts.len()
     }
 
-    /// Returns the triangles of part number `part`, as primitive ids in ascending order.
+    /// Returns the triangles of part number `part`, as primitive ids of [`rest`](Self::rest) in
+    /// ascending order.
     ///
     /// # Panics
     /// If there is no part of that number.
@@ -205,8 +207,8 @@ impl Movable {
         &self.parts[part].triangles
     }
 
-    /// Returns the positions of part number `part` that its triangles use, as indices into
-    /// [`Mesh::positions`] in ascending order.
+    /// Returns the positions of part number `part` that its triangles use, as indices into the
+    /// positions of [`rest`](Self::rest) in ascending order.
     ///
     /// # Panics
     /// If there is no part of that number.
@@ -215,8 +217,8 @@ impl Movable {
         part.corners.as_deref().unwrap_or(&part.positions)
     }
 
-    /// Returns the smallest ranges of [`Mesh::positions`] and [`Mesh::normals`] that hold those of
-    /// part number `part`.
+    /// Returns the smallest ranges of the positions and of the normals of [`rest`](Self::rest) that
+    /// hold those of part number `part`; `0..0` if it has none.
     ///
     /// # Panics
     /// If there is no part of that number.
@@ -226,8 +228,8 @@ impl Movable {
         [around(part.positions.iter().copied()), around(normals)]
     }
 
-    /// Returns the number of the first part that was [joined](Self::joined) from the same mesh as
-    /// part number `part`; `part` itself if no earlier part was.
+    /// Returns the number of the first part that was [joined](Self::joined) from the same mesh (the
+    /// same reference) as part number `part`; `part` itself if no earlier part was.
     ///
     /// # Panics
     /// If there is no part of that number.

@@ -27,9 +27,10 @@ impl Outline {
 
     /// Returns the outline of the points of all parts together; all outlines are of the same light.
     /// `known` has an entry for each part: its outline, or `None` if the part has moved since. For
-    /// such a part, `loose` returns a rough outline that contains the part, such as that of its
-    /// box, and `exact` returns the part's own outline. `exact` is called only for a part that may
-    /// reach the border of the result; its outline is then written into `known`.
+    /// such a part, given its index in `known`, `loose` returns a rough outline that contains the
+    /// part, such as that of its box, and `exact` returns the part's own outline. `exact` is called
+    /// only for a part that may reach the border of the result; its outline is then written into
+    /// `known`.
     pub fn joined(
         known: &mut [Option<Self>],
         mut loose: impl FnMut(usize) -> Self,

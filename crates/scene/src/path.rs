@@ -50,7 +50,7 @@ pub struct CameraKey {
     /// Position of the camera, world space.
     #[serde(with = "Vector")]
     pub eye: DVec3,
-    /// Direction in which the camera looks, of any length above 0.
+    /// Direction in which the camera looks, world space, of any length above 0.
     #[serde(with = "Vector")]
     pub direction: DVec3,
 }
@@ -62,7 +62,8 @@ pub struct CameraKey {
 pub struct LightKey {
     /// Time in seconds, on the same clock as the keyframes of the camera.
     pub at: f64,
-    /// Direction in which the light travels, of any length above 0; `None` for a point light.
+    /// Direction in which the light travels, world space, of any length above 0; `None` for a point
+    /// light.
     #[serde(default, deserialize_with = "Vector::some")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<Vector>"))]
     pub direction: Option<DVec3>,
@@ -110,12 +111,12 @@ impl CameraPath {
     }
 
     /// Returns the mesh of frame number `frame`, from 0, with all parts moved. `movable` is the
-    /// result of [`movable`](Self::movable). Its triangles are those at rest, because no motion
-    /// mirrors a part.
+    /// result of [`movable`](Self::movable). The triangles of the mesh are those at rest, because
+    /// no motion mirrors a part.
     ///
     /// # Errors
     /// A sentence that names path, part and frame, if f32 cannot hold a part at its place in that
-    /// frame.
+    /// frame, or if `movable` has another number of parts than the path moves.
     pub fn shape(&self, movable: &Movable, frame: u32) -> Result<Mesh, String> {
         moved(movable, &self.moves, self.at(frame))
             .map_err(|reason| format!("path {:?}: moves: frame {frame}: {reason}", self.view.name))

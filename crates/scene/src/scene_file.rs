@@ -43,7 +43,8 @@ use skiagraph_located_ron::{
 };
 use std::collections::HashMap;
 
-/// Content of a scene file. `SceneFile::parse` checks everything in it, but loads no mesh.
+/// Content of a scene file. `SceneFile::parse` checks everything in it, but loads no mesh. Serde
+/// alone refuses the lists `lights`, `views` and `paths`.
 #[derive(Clone, Debug, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, rename = "scene")]
@@ -95,8 +96,8 @@ pub enum MeshSource {
     /// A Wavefront OBJ file.
     Obj {
         /// Path of the file with forward slashes, relative to a folder. These folders are searched
-        /// in order: the folder of the scene file, the folders of `SKIAGRAPH_ASSETS`, the user's
-        /// cache folder.
+        /// in order: the folder of the scene file, the folders of `SKIAGRAPH_ASSETS`, Skiagraph's
+        /// folder of the user's cache.
         file: String,
         /// Names of the groups or objects that are left out: the whole text after `g` or `o`.
         #[serde(default)]

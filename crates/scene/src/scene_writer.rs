@@ -15,8 +15,9 @@ use glam::DVec3;
 /// view or key in a line.
 ///
 /// # Errors
-/// A sentence, if a view has a spot or point light of its own, which scene files cannot express. A
-/// path may have one that is among the scene's lights: a comment then names it.
+/// A sentence, if a view or path has a spot or point light of its own, which scene files cannot
+/// express. A path may have one that is among the scene's lights: a comment in the text then names
+/// the light.
 pub fn scene_text(scene: &SceneFile) -> Result<String, String> {
     let mut text = format!("(\n    format: 1,\n    name: {:?},\n", scene.name);
     if !scene.description.is_empty() {

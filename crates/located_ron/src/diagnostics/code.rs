@@ -3,7 +3,8 @@
 macro_rules! codes {
     ($($(#[doc = $doc:literal])+ $name:ident = $text:literal, $remedy:literal;)+) => {
         /// Kind of mistake that a [`Diagnostic`](super::diagnostic::Diagnostic) is about, with a
-        /// stable name for scripts.
+        /// stable name for scripts. Most kinds are about graph documents, whose terms the crate
+        /// `skiagraph_graph` explains.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         #[non_exhaustive]
         pub enum Code { $($(#[doc = $doc])+ $name,)+ }

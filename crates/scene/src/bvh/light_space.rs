@@ -59,7 +59,8 @@ impl LightSpaceNode {
 pub struct LightSpace {
     /// Direction of the rays in world space, of any length but zero.
     pub direction: Vec3,
-    /// Origin of the coordinates, in world space.
+    /// Origin of the coordinates, in world space. f32 rounds them least if it is the middle of the
+    /// mesh.
     pub centre: Vec3,
 }
 

@@ -41,8 +41,9 @@ impl Bvh {
         }
     }
 
-    /// Builds the hierarchy of a mesh on all cores. The same mesh always gives the same tree. Boxes
-    /// contain their triangles exactly (f32 minima and maxima of f32 corners).
+    /// Builds the hierarchy of a mesh, on all cores (with the feature `rayon`). The same mesh
+    /// always gives the same tree. Boxes contain their triangles exactly (f32 minima and maxima of
+    /// f32 corners).
     pub fn build(mesh: &Mesh) -> Self {
         let triangles: Vec<Triangle> = mesh
             .triangles

@@ -51,7 +51,8 @@ pub struct TwoLevelBvh {
     /// Nodes of the tree, the root first. [`top`](Self::top) and [`nodes_of`](Self::nodes_of) tell
     /// which nodes are of the top level and of a piece; others are unused. The two children of an
     /// inner node follow each other. No path from the root to a leaf has more than
-    /// [`MAX_DEPTH`](super::MAX_DEPTH) nodes, through both levels. Empty without triangles.
+    /// [`MAX_DEPTH`](super::MAX_DEPTH) nodes, through both levels. Empty after a
+    /// [`build`](Self::build) without triangles.
     pub nodes: Vec<BvhNode>,
     /// Primitive ids (indices into [`Mesh::triangles`]) in the order of the leaves. Each leaf names
     /// a range of this list; ids outside these ranges are unused.
@@ -91,10 +92,10 @@ pub struct Refit {
 }
 
 impl TwoLevelBvh {
-    /// Builds the hierarchy of those triangles of `mesh` that are in pieces, on all cores.
-    /// `at_rest` is the same mesh before its pieces were moved: each tree is built there, and its
-    /// boxes are then fitted to `mesh`. A copy takes the tree of the piece that it is a copy of. A
-    /// piece may have no triangles; its tree has no nodes then.
+    /// Builds the hierarchy of those triangles of `mesh` that are in pieces, on all cores (with the
+    /// feature `rayon`). `at_rest` is the same mesh before its pieces were moved: each tree is
+    /// built there, and its boxes are then fitted to `mesh`. A copy takes the tree of the piece
+    /// that it is a copy of. A piece may have no triangles; its tree has no nodes then.
     ///
     /// Where there would be more than `most` nodes, leaves of every tree are merged until there are
     /// not; `usize::MAX` sets no limit. The top level alone has nearly two nodes for each piece,
@@ -269,8 +270,8 @@ impl TwoLevelBvh {
     }
 
     /// Adds a piece as [`add`](Self::add) does, with a tree that was built before: `tree` over the
-    /// triangles of `at_rest`, whose [order](Bvh::order) is `order`. Only where it is deeper than
-    /// so many pieces allow is another one built.
+    /// triangles of `at_rest`, whose [order](Bvh::order) is `order`. If that tree is too deep for
+    /// so many pieces to stay within [`MAX_DEPTH`](super::MAX_DEPTH), another one is built.
     ///
     /// # Panics
     /// As [`add`](Self::add).
@@ -323,9 +324,9 @@ impl TwoLevelBvh {
         self.is_stale = true;
     }
 
-    /// States the box of a piece whose positions are not in the mesh, such as one that a GPU writes
-    /// and fits the nodes of. [`refit`](Self::refit) leaves its nodes as they are from then on, and
-    /// takes this box into the top level.
+    /// States the box (low and high corner, world space) of a piece whose positions are not in the
+    /// mesh, such as one that a GPU writes and fits the nodes of. [`refit`](Self::refit) leaves its
+    /// nodes as they are from then on, and takes this box into the top level.
     ///
     /// # Panics
     /// If there is no piece of that number.
@@ -336,8 +337,9 @@ impl TwoLevelBvh {
         self.is_stale = true;
     }
 
-    /// Returns the nodes of a piece but its root, by their height, those of leaves first. Node
-    /// number n of a piece is the n-th of [`nodes_of`](Self::nodes_of), from 1.
+    /// Returns the numbers of a piece's nodes but its root, in a list for each height, that of the
+    /// leaves first. Node number n of a piece is the n-th of [`nodes_of`](Self::nodes_of), from 1;
+    /// the root is number 0.
     ///
     /// # Panics
     /// If there is no piece of that number.
@@ -358,8 +360,9 @@ impl TwoLevelBvh {
         })
     }
 
-    /// Returns the nodes of a piece by their numbers, each before its children: the very list that
-    /// [`add_tree`](Self::add_tree) was given, unless another tree was built.
+    /// Returns the numbers of a piece's nodes, counted as by [`levels_of`](Self::levels_of), each
+    /// before its children: the very list that [`add_tree`](Self::add_tree) was given, unless
+    /// another tree was built.
     ///
     /// # Panics
     /// If there is no piece of that number.
@@ -425,8 +428,8 @@ impl TwoLevelBvh {
     }
 
     /// Fits the boxes of the pieces with the numbers in `pieces` to `mesh`, in which they have
-    /// moved, and builds the top level anew.
-    /// Of pieces whose bounds were [stated](Self::state_bounds) only the root's box changes.
+    /// moved, and builds the top level anew. Of pieces whose bounds were
+    /// [stated](Self::state_bounds) only the root's box changes.
     ///
     /// # Panics
     /// If a number in `pieces` is not that of a piece, or the mesh has fewer triangles than the

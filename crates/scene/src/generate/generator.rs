@@ -9,7 +9,7 @@ use std::{fmt, ops::RangeInclusive, str::FromStr};
 pub const TRIANGLES: RangeInclusive<u32> = 10_000..=10_000_000;
 
 /// Mesh that this crate generates. Its name as text is `park`, `avenue`, `level`, `city:100000` or
-/// `forest:100000`; the number is the number of triangles.
+/// `forest:100000`; the number is the number of triangles. Up is +y, and the ground lies at y = 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Generator {
     /// A bench, flowers, a lamp and trees on a lawn: about 55,000 triangles, in closed parts
@@ -27,8 +27,9 @@ pub enum Generator {
         /// Approximate number of triangles, within [`TRIANGLES`].
         triangles: u32,
     },
-    /// Trees on both sides of a straight lane. The number of trees and the number of leaves of a
-    /// tree both grow with the square root of the number of triangles.
+    /// Trees on both sides of a straight lane, on a square 960 scene units wide. The number of
+    /// trees and the number of leaves of a tree both grow with the square root of the number of
+    /// triangles.
     Forest {
         /// Approximate number of triangles, within [`TRIANGLES`].
         triangles: u32,

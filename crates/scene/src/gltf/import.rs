@@ -61,7 +61,7 @@ fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
 }
 
 /// Reads the bytes of a `.gltf` or `.glb` file into a mesh as [`load_gltf`] does. `path` names the
-/// file in messages; other files that it names are searched beside it.
+/// file in messages; other files that `bytes` name are searched in the folder of `path`.
 ///
 /// # Errors
 /// The errors of [`load_gltf`], except for errors of reading the file itself.
@@ -74,8 +74,8 @@ pub fn parse_gltf(
 }
 
 /// Reads the bytes of a `.gltf` or `.glb` file as [`load_gltf_scene`] does the file: mesh, cameras,
-/// lights and animations, and report. `path` names the file in messages; other files that it names
-/// are searched beside it.
+/// lights and animations, and report. `path` names the file in messages; other files that `bytes`
+/// name are searched in the folder of `path`.
 ///
 /// # Errors
 /// The errors of [`parse_gltf`].

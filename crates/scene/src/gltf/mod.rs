@@ -4,9 +4,10 @@
 //! first scene, and without scenes those of all meshes. Transforms of nodes and instances are
 //! applied, morph targets by their weights, and skins in the pose of their joints' nodes, all at
 //! rest. A material with `alphaMode: MASK` gets a mask, which includes the alpha of vertices;
-//! `BLEND` counts as opaque. Primitives without normals are flat-shaded. The import report lists
-//! parts that are left out. Cameras, lights (KHR_lights_punctual) and animations of nodes form a
-//! [`GltfScene`].
+//! `BLEND` counts as opaque. Primitives without normals are flat-shaded. A group of the mesh has
+//! the name of its node, or else that of the node's mesh, or else `mesh N` with the number of that
+//! mesh. The import report lists parts that are left out. Cameras, lights (KHR_lights_punctual) and
+//! animations of nodes form a [`GltfScene`].
 
 mod accessor;
 mod animations;

@@ -21,11 +21,11 @@ use serde_json::Value;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GltfScene {
     /// One view for each perspective camera that a node of the scene places. Its name is the
-    /// node's, or else the camera's, in small letters, digits and `_`; no two views have the same
-    /// name.
+    /// node's, or else the camera's, in small letters, digits and `_`, or else `camera_N` with the
+    /// number of the node; no two views have the same name.
     pub views: Vec<View>,
     /// One light for each light that a visible node of the scene places, except black lights and
-    /// those without power. Names are formed like those of `views`.
+    /// those without power. Names are formed like those of `views` (`light_N`).
     pub lights: Vec<Light>,
     /// Animations of the file's nodes, in file order.
     pub clips: Vec<Clip>,

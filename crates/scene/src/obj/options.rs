@@ -55,7 +55,7 @@ pub enum ObjMaterials {
     #[default]
     All,
     /// Only the names of materials are read: each material in this table gets a generated mask with
-    /// its pattern, and all others are opaque.
+    /// its pattern, and all others are opaque. A name that the file does not use is an error.
     Made(BTreeMap<String, Pattern>),
 }
 

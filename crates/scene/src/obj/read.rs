@@ -27,8 +27,8 @@ const OBJ_FILE: Limit = Limit {
 ///
 /// # Errors
 /// [`SceneError`] with file, line, group and face number: an unreadable or damaged file, a face
-/// that names missing or non-finite vertices, a group to be left out that does not exist, a file
-/// without triangles.
+/// that names missing or non-finite vertices, a polygon that cannot be cut, a mask that cannot be
+/// read, a group to be left out that does not exist, a file without triangles.
 pub fn load_obj(path: &Path, options: &ObjOptions) -> Result<(Mesh, ImportReport), SceneError> {
     let bytes = OBJ_FILE.read(path).map_err(|reason| SceneError::Read {
         path: path.to_owned(),

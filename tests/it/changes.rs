@@ -297,6 +297,8 @@ fn what_does_not_fit_the_mesh_or_the_plan_is_refused() {
     let error = executor.refresh(&mut provider).unwrap_err().to_string();
     assert!(error.contains("plan the graph anew"), "{error}");
 
+    let twice = Movable::new(&park.scene.mesh, &["tree 1", "tree 2", "tree 1"]).unwrap_err();
+    assert_eq!(twice, "the part `tree 1` is given twice");
     let unknown = Movable::new(&park.scene.mesh, &["tree 3"]).unwrap_err();
     assert!(
         unknown.contains("\"tree 3\"") && unknown.contains("tree 2"),

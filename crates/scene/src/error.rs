@@ -150,6 +150,14 @@ pub enum SceneError {
         /// Names of the built-in scenes.
         builtin: Vec<&'static str>,
     },
+    /// The scene file of a mesh file was asked for.
+    #[error(
+        "{argument:?} is a mesh, which has no scene file: name a scene, or the path of a .ron file"
+    )]
+    NoSceneFile {
+        /// Path of the mesh file.
+        argument: String,
+    },
     /// A number of triangles was given for a scene whose mesh cannot have that number.
     #[error("{argument:?}: {reason}")]
     Size {

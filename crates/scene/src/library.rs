@@ -147,9 +147,14 @@ impl SceneLibrary {
     /// at which the file was found.
     ///
     /// # Errors
-    /// The errors of [`load`](Self::load), except for errors in the content of the mesh. The path
-    /// of a mesh file, which has no scene file, is [`SceneError::UnknownScene`].
+    /// The errors of [`load`](Self::load), except for errors in the content of the mesh, and
+    /// [`SceneError::NoSceneFile`] for the path of a mesh file.
     pub fn scene_file(&self, argument: &str) -> Result<SceneFile, SceneError> {
+        if MeshFile::is_one(Path::new(argument)) {
+            return Err(SceneError::NoSceneFile {
+                argument: argument.to_owned(),
+            });
+        }
         let (file, mut scene) = self.parse_sized(argument)?;
         let found = match &scene.mesh {
             MeshSource::Obj {

@@ -51,6 +51,10 @@ pub struct Surfaces {
 impl Surfaces {
     /// Those of another mesh behind these; a plain one for its triangles if it has none.
     pub(crate) fn append(&mut self, other: &Self, triangles: usize) {
+        if self.uv_indices.len() < self.of.len() {
+            self.uv_indices = vec![[self.uvs.len() as u32; 3]; self.of.len()];
+            self.uvs.push(Vec2::ZERO);
+        }
         let [uv, material] = [self.uvs.len(), self.materials.len()].map(|count| count as u32);
         self.uvs.extend(&other.uvs);
         if other.uv_indices.is_empty() {
@@ -68,11 +72,13 @@ impl Surfaces {
     }
 
     /// Adds surfaces for triangles that were appended to the mesh, which now has `triangles`
-    /// triangles: the appended ones get the first material and the first texture coordinates. Does
-    /// nothing for a mesh without materials.
+    /// triangles: the appended ones get the first material and the first texture coordinates, if the
+    /// mesh has any.
     pub fn pad(&mut self, triangles: usize) {
         if !self.of.is_empty() {
             self.of.resize(triangles, 0);
+        }
+        if !self.uv_indices.is_empty() {
             self.uv_indices.resize(triangles, [0; 3]);
         }
     }

@@ -151,12 +151,16 @@ impl MoveError {
 
 impl Movable {
     /// Cuts a mesh into parts to be moved. Part number n consists of all groups with the name
-    /// `parts[n]`; the names must differ.
+    /// `parts[n]`.
     ///
     /// # Errors
-    /// Text that names the part: a name that no group has, or a part that shares positions with
-    /// triangles outside it, so that moving it would tear the surface.
+    /// Text that names the part: a name that no group has or that is given twice, or a part that
+    /// shares positions with triangles outside it, so that moving it would tear the surface.
     pub fn new(mesh: &Mesh, parts: &[&str]) -> Result<Self, String> {
+        let mut seen = HashSet::new();
+        if let Some(name) = parts.iter().find(|name| !seen.insert(**name)) {
+            return Err(format!("the part `{name}` is given twice"));
+        }
         let mut rest = mesh.clone();
         let parts = (0..)
             .zip(parts)

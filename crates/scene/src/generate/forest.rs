@@ -34,7 +34,7 @@ pub(super) fn build(triangles: u32) -> Mesh {
     builder.ground(HALF + 5.0);
     builder.group("trees");
     // As many on the right as on the left of the ride.
-    let beside = (0.08 * f64::from(triangles).sqrt()).round() as u32;
+    let beside = (0.08 * f64::from(triangles).sqrt()).round().max(1.0) as u32;
     let trees = 2 * beside;
     let left = triangles.saturating_sub(builder.triangles() + trees * LIMBS);
     let leaves = left / (trees * LEAF);
@@ -88,6 +88,11 @@ fn feet(beside: u32, reach: f64, random: &mut Random) -> Vec<DVec3> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_least_forest_has_trees() {
+        assert!(build(1).triangles.len() > 2);
+    }
 
     #[test]
     fn crowns_keep_apart_and_off_the_ride() {

@@ -1,6 +1,8 @@
 //! OBJ files with materials: masks and colours, and what is said where they are broken.
 
-use skiagraph_scene::{ImportReport, Mesh, ObjMaterials, ObjOptions, SceneError, Wrap, load_obj};
+use skiagraph_scene::{
+    ImportReport, Mesh, ObjMaterials, ObjOptions, SceneError, Surfaces, Wrap, load_obj,
+};
 use std::path::Path;
 use tempfile::TempDir;
 
@@ -192,4 +194,24 @@ fn texture_coordinates_must_be_there_where_a_mask_is() {
     let (_, report) = load(folder.path(), ObjMaterials::All).unwrap();
     let told = "1 face names texture coordinates that are not there";
     assert_eq!(report.remarks, [told]);
+}
+
+/// Materials may come without texture coordinates, which then are zero.
+#[test]
+fn surfaces_without_texture_coordinates_are_padded_and_replaced() {
+    let folder = folder(Some("newmtl leaf\nKd 1 0 0\n"));
+    let (mesh, _) = load(folder.path(), ObjMaterials::All).unwrap();
+    let leaf = &mesh.surfaces;
+    let mut bare = Surfaces {
+        uvs: Vec::new(),
+        uv_indices: Vec::new(),
+        ..leaf.clone()
+    };
+    bare.pad(3);
+    assert_eq!((bare.of.len(), bare.uv_indices.len()), (3, 0));
+    assert_eq!(bare.corner_uvs(2), [glam::Vec2::ZERO; 3]);
+    bare.put(leaf, (1, 2), 3);
+    assert_eq!(bare.corner_uvs(0), [glam::Vec2::ZERO; 3]);
+    assert_eq!(bare.corner_uvs(1), leaf.corner_uvs(0));
+    assert_eq!(bare.base_color(2, [0.2, 0.3, 0.5]), [1.0, 0.0, 0.0]);
 }

@@ -375,8 +375,8 @@ fn time(kept: &Kept, measured: &Measured) -> Result<f64, CompareError> {
     })
 }
 
-/// Returns lines about the measurements: one for each adapter, then one with the number of timed
-/// frames per run.
+/// Returns lines about the measurements: one for each adapter, then one with the numbers of timed
+/// frames of still views ([`Results::frames`]).
 pub fn conditions(kept: &[Kept]) -> Vec<String> {
     let results = || kept.iter().map(|kept| &kept.results);
     let adapters = results().map(|results| results.adapter.to_string());

@@ -318,7 +318,7 @@ pub fn path_panels<'a>(
 /// Renders a figure as the text of an SVG file.
 ///
 /// # Errors
-/// The errors of [`Figure::to_svg`].
+/// [`CompareError::Input`] with the message of an error of [`Figure::to_svg`].
 pub fn svg(figure: &Figure) -> Result<String, CompareError> {
     let svg = figure.to_svg();
     svg.map_err(|error| CompareError::Input(error.to_string()))

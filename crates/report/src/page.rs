@@ -59,7 +59,7 @@ pub fn write(places: &[PathBuf], file: &Path, sink: &dyn Sink) -> Result<(), Com
     write_page(&sources, &matrices, file, sink)
 }
 
-/// Joins the results in `places`, which are those of [`write`](write()), and writes results.json,
+/// Joins the results in `places`, each as for [`write`](write()), and writes results.json,
 /// results.csv and the HTML page into the folder `out`, which is made if it is missing. Records of
 /// adapters in `places` go into adapters.json and [`adapters::FILE`] there. Results and adapters
 /// that `out` holds already stay in it. Pictures are embedded in the page, but not copied into

@@ -201,7 +201,7 @@ pub fn adapter(folder: &Path) -> Result<Option<AdapterRecord>, CompareError> {
 }
 
 /// Reads the adapters in `place`: the adapter.json or the adapters.json of a folder, or a file that
-/// is an adapter.json by another name. Nothing if it has none.
+/// is an adapter.json by another name. The list is empty if `place` has none of these.
 ///
 /// # Errors
 /// A file that cannot be read, or is not what its name says; the message shows the place.
